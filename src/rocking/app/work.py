@@ -12,7 +12,7 @@ from starlette.requests import HTTPConnection
 
 from rocking.app.errors import Busy, Ending
 from rocking.app.schemas.inputs import size_of
-from rocking.bodies.formats.body_schema import BodyFile
+from rocking.bodies.formats.schema import BodyFile
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -4,11 +4,10 @@ from typing import TYPE_CHECKING
 
 from rocking.bodies import shapes
 from rocking.bodies.block import Block
-from rocking.bodies.body import Body
+from rocking.bodies.body import Body, Side
 from rocking.bodies.mass_points import MassPoints
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
-from rocking.bodies.side import Side
 from rocking.lazy import exports
 
 if TYPE_CHECKING:

@@ -4,9 +4,12 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY, Body, Interval
 from rocking.bodies.moments import PlaneMoments
+from rocking.conventions import FloatArray
 
 if TYPE_CHECKING:
     from rocking.bodies.section import Section
@@ -142,6 +145,10 @@ class Block(Body):
     def local_box(self) -> tuple[float, float, float, float]:
         """The rectangle itself [m]."""
         return 0.0, 0.0, self.width, self.height
+
+    def density_at(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        inside = (x >= 0.0) & (x <= self.width) & (y >= 0.0) & (y <= self.height)
+        return np.where(inside, self.density, 0.0)
 
     def mirrored(self) -> "Block":
         """Return the block itself: it is its own mirror image."""

@@ -3,13 +3,73 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Self
 
 from rocking import checks, conventions, plausibility
 from rocking.bodies.moments import PlaneMoments
-from rocking.bodies.side import Side
-from rocking.conventions import Assumed, Foot
-from rocking.errors import AsymmetricBodyError, GeometryError
+from rocking.conventions import Assumed, FloatArray, Foot
+from rocking.errors import AsymmetricBodyError, GeometryError, InvalidValueError
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """A body seen from one of its feet.
+
+    Parameters
+    ----------
+    foot : {"left", "right"}
+        The foot it turns about.
+    half_width : float
+        Horizontal distance b from the foot to the centre of mass [m].
+    centre_height : float
+        Height h of the centre of mass above the ground [m].
+    mass : float
+        Mass m [kg].
+    moment_of_inertia : float
+        Polar moment I_O about the foot [kg m2].
+    gravity : float
+        Acceleration of gravity [m/s2].
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> round(Block(width=1.0, height=4.0).side("left").slenderness_ratio, 12)
+    4.0
+    """
+
+    foot: Foot
+    half_width: float
+    centre_height: float
+    mass: float
+    moment_of_inertia: float
+    gravity: float = conventions.g
+
+    @property
+    def slenderness_ratio(self) -> float:
+        """Slenderness h/b [-]."""
+        return self.centre_height / self.half_width
+
+    @property
+    def slenderness_angle(self) -> float:
+        """Angle alpha = atan(b/h) between the vertical and the line from foot to centre [rad]."""
+        return math.atan2(self.half_width, self.centre_height)
+
+    @property
+    def semi_diagonal(self) -> float:
+        """Distance R from the foot to the centre of mass [m]."""
+        return math.hypot(self.half_width, self.centre_height)
+
+    @property
+    def frequency_parameter(self) -> float:
+        """Frequency parameter p = sqrt(m g R / I_O) [rad/s]."""
+        return math.sqrt(self.mass * self.gravity * self.semi_diagonal / self.moment_of_inertia)  # Eq. 26
+
+    @property
+    def uplift_acceleration(self) -> float:
+        """Horizontal ground acceleration g b/h that starts rocking about this foot [m/s2]."""
+        return self.gravity * self.half_width / self.centre_height
+
 
 Interval = tuple[float, float]
 
@@ -138,6 +198,26 @@ class Body(ABC):
         gravity = checks.positive("gravity", gravity, "m/s2")
         return Side(foot, half_width, moments.y, moments.mass, inertia, gravity)
 
+    def density_at(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Return the density at points, zero outside the body: what fields and pictures sample.
+
+        Parameters
+        ----------
+        x, y : ndarray
+            Points in the user's coordinates, of one shape [m].
+
+        Returns
+        -------
+        ndarray
+            Density [kg/m3].
+
+        Raises
+        ------
+        InvalidValueError
+            If this kind of body has no density field, as mass points.
+        """
+        raise InvalidValueError(f"a {type(self).__name__} body has no density field")
+
     @property
     def densities(self) -> tuple[float, ...]:
         """Densities of the parts; none of mass points [kg/m3]."""
@@ -208,10 +288,7 @@ class Body(ABC):
 
 
 def assumed_density(densities: Sequence[float]) -> tuple[str, ...]:
-    """Return what was assumed about densities.
-
-    densities: of all parts of a body [kg/m3]. Returns one sentence, or none where every density was given.
-    """
+    """Return what was assumed about densities."""
     assumed = [value for value in densities if isinstance(value, Assumed)]
     if not assumed:
         return ()

@@ -1,4 +1,4 @@
-"""Mass, centre and second moments of plane parts, and how parts add up."""
+"""Mass, centre and second moments, in the plane and in space, and how those of parts add up."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.portable import applied, gram, times
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,10 +25,7 @@ class PlaneMoments:
         return self.xx + self.yy
 
     def times(self, weight: float) -> "PlaneMoments":
-        """Return the same shape with `weight` times the mass.
-
-        Returns scaled mass and second moments, same centre.
-        """
+        """Return the same shape with `weight` times the mass."""
         return PlaneMoments(self.mass * weight, self.x, self.y, self.xx * weight, self.yy * weight)
 
 
@@ -50,9 +48,139 @@ def ring_moments(ring: FloatArray) -> PlaneMoments:
     return PlaneMoments(area, float(middle[0]) + cx, float(middle[1]) + cy, xx, yy)
 
 
-def combined(parts: Iterable[PlaneMoments]) -> PlaneMoments:
+def combined_plane(parts: Iterable[PlaneMoments]) -> PlaneMoments:
     """Moments of several parts together (parallel-axis theorem); holes have negative mass."""
     m, x, y, xx, yy = np.array([(p.mass, p.x, p.y, p.xx, p.yy) for p in parts]).T
     mass = float(m.sum())
     cx, cy = float((m * x).sum()) / mass, float((m * y).sum()) / mass
     return PlaneMoments(mass, cx, cy, float((xx + m * (x - cx) ** 2).sum()), float((yy + m * (y - cy) ** 2).sum()))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SolidMoments:
+    """Zeroth, first and central second moments of a mass distribution in space.
+
+    Parameters
+    ----------
+    mass : float
+        Integral of dm [kg], or of dV [m3] for a bare shape.
+    centre : ndarray, shape (3,)
+        Centre of mass [m].
+    second : ndarray, shape (3, 3)
+        Integral of ``(S - centre)(S - centre)^T dm`` [kg m2].
+    """
+
+    mass: float
+    centre: FloatArray
+    second: FloatArray
+
+    @property
+    def inertia(self) -> FloatArray:
+        """Inertia tensor about the centre, ``tr(J) 1 - J`` with J the second moments [kg m2]."""
+        tensor: FloatArray = float(np.trace(self.second)) * np.eye(3) - self.second
+        return tensor
+
+    def times(self, weight: float) -> "SolidMoments":
+        """Return the same shape with `weight` times the mass.
+
+        Parameters
+        ----------
+        weight : float
+            Factor, for instance a density.
+
+        Returns
+        -------
+        SolidMoments
+            Scaled mass and second moments, same centre.
+        """
+        return SolidMoments(self.mass * weight, self.centre, self.second * weight)
+
+    def placed(self, rotation: FloatArray, translation: FloatArray) -> "SolidMoments":
+        """Return the moments of the rotated, then translated, distribution.
+
+        Parameters
+        ----------
+        rotation : ndarray, shape (3, 3)
+            Rotation matrix [-].
+        translation : ndarray, shape (3,)
+            Displacement [m].
+
+        Returns
+        -------
+        SolidMoments
+            Of the distribution in its new place.
+        """
+        return SolidMoments(
+            self.mass, applied(rotation, self.centre) + translation, times(times(rotation, self.second), rotation.T)
+        )
+
+    def second_about(self, point: FloatArray) -> FloatArray:
+        """Return the integral of ``(S - point)(S - point)^T dm`` (parallel axes).
+
+        Parameters
+        ----------
+        point : ndarray, shape (3,)
+            The point, in the same frame as the centre [m].
+
+        Returns
+        -------
+        ndarray, shape (3, 3)
+            Second moments [kg m2].
+        """
+        arm = self.centre - point
+        return self.second + self.mass * np.outer(arm, arm)
+
+    def inertia_about(self, point: FloatArray) -> FloatArray:
+        """Return the inertia tensor about a point.
+
+        Parameters
+        ----------
+        point : ndarray, shape (3,)
+            The point, in the same frame as the centre [m].
+
+        Returns
+        -------
+        ndarray, shape (3, 3)
+            Inertia tensor [kg m2].
+        """
+        second = self.second_about(point)
+        tensor: FloatArray = float(np.trace(second)) * np.eye(3) - second
+        return tensor
+
+
+def combined(parts: Iterable[SolidMoments]) -> SolidMoments:
+    """Return the moments of several parts together; holes have negative mass."""
+    listed = list(parts)
+    masses = np.array([part.mass for part in listed])
+    centres = np.array([part.centre for part in listed])
+    mass = float(masses.sum())
+    centre = (masses[:, None] * centres).sum(axis=0) / mass
+    second = np.sum([part.second_about(centre) for part in listed], axis=0)
+    return SolidMoments(mass, centre, second)
+
+
+def polyhedron_moments(triangles: FloatArray) -> SolidMoments:
+    """Exact moments of the volume inside a closed surface of triangles (divergence theorem).
+
+    The surface is moved to the middle of its box first, so that nothing cancels far from the origin. Each triangle (a,
+    b, c) stands for the tetrahedron over it, of signed volume ``a.(b x c)/6`` and second moments ``V/20 (a a^T + b b^T
+    + c c^T + s s^T)``, ``s = a + b + c``.
+
+    triangles: corners [m], counter-clockwise seen from outside; inward faces count negative. Returns of the volume,
+    unit weight; the volume is negative if the surface is inside out.
+
+    >>> corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    >>> faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    >>> round(6.0 * polyhedron_moments(corners[faces]).mass, 12)
+    1.0
+    """
+    middle = 0.5 * (triangles.min(axis=(0, 1)) + triangles.max(axis=(0, 1)))
+    a, b, c = np.moveaxis(triangles - middle, 1, 0)
+    volumes = (a * np.cross(b, c)).sum(axis=1) / 6.0
+    volume = float(volumes.sum())
+    total = a + b + c
+    if volume == 0.0:
+        return SolidMoments(0.0, middle, np.zeros((3, 3)))
+    centre = (volumes[:, None] * total).sum(axis=0) / (4.0 * volume)
+    second = sum(gram(v, volumes / 20.0) for v in (a, b, c, total))
+    return SolidMoments(volume, middle + centre, second - volume * np.outer(centre, centre))

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking import checks
-from rocking.bodies import topology
+from rocking.bodies import _rings
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
@@ -48,9 +48,9 @@ class Region:
         given: object = holes
         if not isinstance(given, (Sequence, np.ndarray)):
             raise GeometryError("holes must be a list of rings, each a list of (x, y) points in m")
-        outer = topology.ring("outline", outline)
-        inner = tuple(topology.ring(f"hole {i}", hole) for i, hole in enumerate(holes))
-        topology.check_polygon("region", outer, inner)
+        outer = _rings.checked_ring("outline", outline)
+        inner = tuple(_rings.checked_ring(f"hole {i}", hole) for i, hole in enumerate(holes))
+        _rings.check_polygon("region", outer, inner)
         self._set(outer, checks.density("density", density), inner)
 
     def _set(self, outline: FloatArray, density: float, holes: Sequence[FloatArray]) -> None:

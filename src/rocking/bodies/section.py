@@ -1,5 +1,6 @@
 """A body of any plane shape: polygons with holes, each with its density."""
 
+import math
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
@@ -7,10 +8,9 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.bodies import shapes, topology
-from rocking.bodies.base import GROUND_TOLERANCE, extent_on_ground, flat_stretches, placed_feet
+from rocking.bodies import _rings, shapes
 from rocking.bodies.body import DEFAULT_DENSITY, Body, Interval
-from rocking.bodies.moments import PlaneMoments, combined, ring_moments
+from rocking.bodies.moments import PlaneMoments, combined_plane, ring_moments
 from rocking.bodies.region import Region
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
@@ -69,7 +69,7 @@ class Section(Body):
         self._size = float((high - low).max())
         self._check_ground(float(low[1]))
         self.regions = tuple(region.moved(-self._origin_x, -self._ground) for region in regions)
-        topology.check_disjoint([(region.outline, region.holes) for region in self.regions])
+        _rings.check_disjoint([(region.outline, region.holes) for region in self.regions])
         self._local_feet = self._placed(feet)
         self._check_support()
 
@@ -223,7 +223,7 @@ class Section(Body):
     @cached_property
     def local_moments(self) -> PlaneMoments:
         """Mass, centre and central second moments in the local frame, exact for polygons."""
-        return combined(
+        return combined_plane(
             ring_moments(ring).times(region.density * self._depth) for region in self.regions for ring in region.rings
         )
 
@@ -238,6 +238,17 @@ class Section(Body):
         low = np.min([region.outline.min(axis=0) for region in self.regions], axis=0)
         high = np.max([region.outline.max(axis=0) for region in self.regions], axis=0)
         return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+    def density_at(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        import shapely
+
+        local_x, local_y = np.asarray(x) - self.origin_x, np.asarray(y) - self.ground
+        density = np.zeros(np.broadcast_shapes(local_x.shape, local_y.shape))
+        for region in self.regions:
+            polygon = shapely.Polygon(region.outline, region.holes)
+            shapely.prepare(polygon)
+            density[shapely.intersects_xy(polygon, local_x, local_y)] = region.density
+        return density
 
     def mirrored(self) -> "Section":
         """Return the section seen in a vertical mirror."""
@@ -281,3 +292,63 @@ class Section(Body):
 
     def _placed(self, feet: tuple[float, float] | None) -> Interval:
         return placed_feet(extent_on_ground(self.regions, self._size), self._size, self._origin_x, feet)
+
+
+GROUND_TOLERANCE = 1e-9
+"""Vertices this close to the ground, relative to the body's size, stand on it."""
+
+
+def extent_on_ground(regions: Sequence[Region], size: float) -> Interval:
+    """Return the ends of the base: the outermost vertices on y = 0."""
+    tolerance = GROUND_TOLERANCE * size
+    touching = np.concatenate([r.outline[np.abs(r.outline[:, 1]) <= tolerance, 0] for r in regions])
+    return float(touching.min()), float(touching.max())
+
+
+def flat_stretches(regions: Sequence[Region], size: float, feet: Interval) -> tuple[Interval, ...]:
+    """Return the stretches of the ground that edges lie on, cut at the feet and merged."""
+    left, right = feet
+    merged: list[Interval] = []
+    for a, b in ((max(a, left), min(b, right)) for a, b in sorted(_edges(regions, GROUND_TOLERANCE * size))):
+        if b <= a:
+            continue
+        if merged and a <= merged[-1][1] + GROUND_TOLERANCE * size:
+            merged[-1] = (merged[-1][0], max(b, merged[-1][1]))
+        else:
+            merged.append((a, b))
+    return tuple(merged)
+
+
+def _edges(regions: Sequence[Region], tolerance: float) -> list[Interval]:
+    found: list[Interval] = []
+    for region in regions:
+        x, y = region.outline.T
+        low = np.abs(y) <= tolerance
+        both = low & np.roll(low, -1)
+        ends = zip(x[both].tolist(), np.roll(x, -1)[both].tolist(), strict=True)
+        found += [(min(a, b), max(a, b)) for a, b in ends]
+    return found
+
+
+def placed_feet(base: Interval, size: float, origin: float, feet: tuple[float, float] | None) -> Interval:
+    """Return the feet in the local frame, by default the ends of the base."""
+    if feet is None:
+        if base[1] - base[0] <= GROUND_TOLERANCE * size:
+            raise GeometryError("the body touches the ground in one point only; it needs two feet to rock")
+        return base
+    try:
+        left, right = feet
+    except (TypeError, ValueError) as error:
+        raise GeometryError("feet must be a pair (x_left, x_right) in m") from error
+    left = checks.number("left foot", left, "m") - origin
+    right = checks.number("right foot", right, "m") - origin
+    if not left < right:
+        raise GeometryError(f"the left foot must lie left of the right one, got {feet[0]:g} and {feet[1]:g} m")
+    slack = GROUND_TOLERANCE * size + 4.0 * math.ulp(abs(origin))
+    for name, x in (("left", left), ("right", right)):
+        if not base[0] - slack <= x <= base[1] + slack:
+            a, b = base[0] + origin, base[1] + origin
+            raise GeometryError(
+                f"the {name} foot must lie on the base, x in [{a:.9g}, {b:.9g}] m, got {x + origin:.9g}"
+            )
+    return max(left, base[0]), min(right, base[1])

@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking.bodies import Body, Section
-from rocking.bodies.density import density_at
 from rocking.conventions import FloatArray, Foot
 from rocking.plots.outline import outline_path
 from rocking.plots.style import DOUBLE, INK, in_journal_style, new_figure
@@ -52,7 +51,7 @@ def figure_2(body: Body | None = None, *, onto: Foot = "right", angular_velocity
     figure, axes = new_figure(DOUBLE, 0.85 + 1.3 * shape, columns=4, sharey=True)
     x, y = _grid(body)
     fields = _energy(body, ledger, x, y)
-    inside = density_at(body, x, y) > 0.0
+    inside = body.density_at(x, y) > 0.0
     top = max(float(field[inside].max()) for field in fields.values())
     for panel, stage in zip(axes, STAGES, strict=True):
         image = _panel(panel, body, ledger, stage, (x, y, fields[stage]), top)
@@ -99,7 +98,7 @@ def _panel(
 
 def _energy(body: Body, ledger: EnergyLedger, x: FloatArray, y: FloatArray) -> dict[str, FloatArray]:
     # beyond the outline, which clips the picture, the field goes on: no dark seam along sloping edges
-    density = density_at(body, x, y)
+    density = body.density_at(x, y)
     density = np.where(density > 0.0, density, density.max())
     return {stage: 0.5 * density * (v**2).sum(axis=-1) for stage, v in ledger.velocities(x, y).items()}
 

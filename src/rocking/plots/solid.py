@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.bodies.solid import Edge, RoundBase, Solid, SupportPolygon, box, voxels
-from rocking.bodies.solid.triangle_surface import TriangleSurface
+from rocking.bodies.solid.surfaces import TriangleSurface
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.plots.style import DOUBLE, GREY, INK, SINGLE, in_journal_style, new_figure

@@ -6,7 +6,6 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.bodies.density import density_at
 from rocking.conventions import FloatArray, Foot, opposite
 from rocking.restitution.ked import projected_moment
 
@@ -91,7 +90,7 @@ class EnergyLedger:
         dict of str to ndarray
             Stage to energy density, zero outside the body [J/m3].
         """
-        density = density_at(self.body, x, y)
+        density = self.body.density_at(x, y)
         fields = self.velocities(x, y)
         return {stage: 0.5 * density * (field**2).sum(axis=-1) for stage, field in fields.items()}
 

@@ -6,7 +6,7 @@ import pytest
 
 from rocking import read_body
 from rocking.bodies.formats import section_from_dxf
-from rocking.bodies.formats.curves import closed_ellipse, closed_polyline
+from rocking.bodies.formats.dxf import closed_ellipse, closed_polyline
 from rocking.errors import BodyFileError, RockingError
 
 ezdxf = pytest.importorskip("ezdxf")

@@ -10,9 +10,9 @@ from rocking import Block
 from rocking.bodies.formats import (
     FORMATS,
     body_from_toml,
-    body_schema,
     geojson,
     read_body,
+    schema,
     section_from_geojson,
     section_from_wkt,
     source,
@@ -265,7 +265,7 @@ def test_dxf_extra_missing(tmp_path, monkeypatch):
 
 def test_schema_agrees_with_the_package():
     """The schema's units are the package's, and every format has a reader."""
-    assert body_schema.UnitName.__args__ == tuple(LENGTH_UNITS)
+    assert schema.UnitName.__args__ == tuple(LENGTH_UNITS)
     assert set(FORMATS) == {".toml", ".wkt", ".geojson", ".json", ".dxf", ".stl", ".obj", ".ply", ".glb"}
     assert "not interpreted" in geojson.__doc__
 

@@ -15,8 +15,8 @@ from rocking.app.schemas.inputs import BodyAsked, BodyInput, check_file, parsed_
 from rocking.app.work import heavy, sized
 from rocking.bodies import Body
 from rocking.bodies.formats import read_plane_body
-from rocking.bodies.formats.body_schema import UnitName
 from rocking.bodies.formats.body_writer import body_to_toml
+from rocking.bodies.formats.schema import UnitName
 from rocking.bodies.formats.source import blamed
 from rocking.conventions import FEET, g
 from rocking.errors import BodyFileError

@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError
 
 from rocking.app.errors import Refused, TooLarge
 from rocking.bodies import Body
-from rocking.bodies.formats.body_schema import BODIES, BodyFile, Positive
+from rocking.bodies.formats.schema import BODIES, BodyFile, Positive
 from rocking.spec.document import OneMotionTable, ResponseTables, SettingsTable, check_start
 from rocking.spec.fields import JobTable, Words, refused
 

@@ -5,11 +5,11 @@ What these modules need (pydantic, shapely, ezdxf, trimesh) is imported when a b
 
 from rocking.bodies.formats.body_file import body_from_toml
 from rocking.bodies.formats.body_writer import body_to_toml
-from rocking.bodies.formats.dxf import regions_from_dxf, section_from_dxf
-from rocking.bodies.formats.geojson import regions_from_geojson, section_from_geojson
+from rocking.bodies.formats.dxf import section_from_dxf
+from rocking.bodies.formats.geojson import section_from_geojson
 from rocking.bodies.formats.reader import FORMATS, describes_solid, read_body, read_plane_body
 from rocking.bodies.formats.solid_file import solid_from_toml
-from rocking.bodies.formats.wkt import regions_from_wkt, section_from_wkt
+from rocking.bodies.formats.wkt import section_from_wkt
 
 __all__ = [
     "FORMATS",
@@ -18,9 +18,6 @@ __all__ = [
     "describes_solid",
     "read_body",
     "read_plane_body",
-    "regions_from_dxf",
-    "regions_from_geojson",
-    "regions_from_wkt",
     "section_from_dxf",
     "section_from_geojson",
     "section_from_wkt",

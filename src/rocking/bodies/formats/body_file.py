@@ -23,7 +23,7 @@ from rocking.bodies.formats.dxf import regions_from_dxf
 from rocking.bodies.formats.geojson import regions_from_geojson
 from rocking.bodies.formats.source import blamed, check_count, read_text
 from rocking.bodies.formats.wkt import regions_from_wkt
-from rocking.bodies.formats.words import sentence
+from rocking.bodies.formats.words import validated
 from rocking.bodies.mass_points import MassPoints
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
@@ -32,7 +32,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import BodyFileError
 
 if TYPE_CHECKING:
-    from rocking.bodies.formats import body_schema as schema
+    from rocking.bodies.formats import schema
 
 LARGEST_TOML = 16 * 2**20
 """Larger TOML files are refused [byte]: large outlines belong in WKT, GeoJSON or DXF."""
@@ -77,8 +77,10 @@ def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = 
     >>> body_from_toml('units = "cm"\n[block]\nwidth = 50\nheight = 200').slenderness_ratio
     4.0
     """
+    from rocking.bodies.formats.schema import BodyFile
+
     with blamed(name):
-        document = _validated(_plane(parsed_toml(text)))
+        document = validated(BodyFile, _plane(parsed_toml(text)))
         scale = length_unit(document.units)
         if document.block:
             return _block(document.block, scale)
@@ -90,11 +92,7 @@ def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = 
 
 
 def parsed_toml(text: Any) -> dict[str, Any]:
-    """Return the tables of a TOML text.
-
-    >>> parsed_toml('units = "m"')
-    {'units': 'm'}
-    """
+    """Return the tables of a TOML text."""
     if not isinstance(text, str):
         raise BodyFileError(f"a body file must be text, got {type(text).__name__}")
     if len(text) > LARGEST_TOML:
@@ -111,17 +109,6 @@ def _plane(given: dict[str, Any]) -> dict[str, Any]:
     if "solid" in given:
         raise BodyFileError("describes a body in space, [solid]; a plane body is needed here")
     return given
-
-
-def _validated(given: dict[str, Any]) -> "schema.BodyFile":
-    from pydantic import ValidationError
-
-    from rocking.bodies.formats.body_schema import BodyFile
-
-    try:
-        return BodyFile.model_validate(given)
-    except ValidationError as error:
-        raise BodyFileError(sentence(error, given.get("units"))) from error
 
 
 def _block(table: "schema.BlockTable", scale: float) -> Body:

@@ -4,15 +4,17 @@ Texts, dimensions, hatches and points are passed over; every other entity on a l
 no part of a body goes missing unseen.
 """
 
+import cmath
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+import numpy as np
+
 from rocking import checks
+from rocking.bodies._rings import nested
 from rocking.bodies.body import DEFAULT_DENSITY
-from rocking.bodies.formats.curves import closed_ellipse, closed_polyline
-from rocking.bodies.formats.rings import nested
 from rocking.bodies.formats.source import Placement, blamed, check_count, checked_file
 from rocking.bodies.formats.words import suggestion
 from rocking.bodies.region import Region
@@ -22,6 +24,7 @@ from rocking.errors import BodyFileError, MissingExtraError, how_to_install
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
+
 
 INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
 """Codes of the header variable $INSUNITS (DXF reference, HEADER section) that this package has units for."""
@@ -76,6 +79,11 @@ def section_from_dxf(
         If a density, the unit or the tolerance is refused.
     MissingExtraError
         If ezdxf is not installed.
+
+    Notes
+    -----
+    Rings inside others are holes, by the even-odd rule: among all rings, or layer by layer if `layers` is given, so
+    that an inlay is drawn as a hole on one layer and as an outline on another.
     """
     regions = regions_from_dxf(path, density, units=units, layers=layers, chord_tolerance=chord_tolerance)
     with blamed(Path(path).name):
@@ -90,40 +98,7 @@ def regions_from_dxf(
     layers: Mapping[str, float] | None = None,
     chord_tolerance: float | None = None,
 ) -> list[Region]:
-    """Return the polygons that a DXF drawing shows.
-
-    Rings inside others are holes, by the even-odd rule: among all rings, or layer by layer if `layers` is given,
-    so that an inlay is drawn as a hole on one layer and as an outline on another.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-    density : float
-        Density of everything, where `layers` does not say [kg/m3].
-    units : {"m", "cm", "mm", "ft", "in"}, optional
-        Unit of the drawing; needed if the file does not state one ($INSUNITS), refused if it contradicts the file.
-    layers : mapping of str to float, optional
-        Layers to read and the density of each [kg/m3]; by default all layers are read, with `density`.
-    chord_tolerance : float, optional
-        Largest distance between an arc and the chords that replace it [m]; by default 1e-5 of the curve's size.
-
-    Returns
-    -------
-    list of Region
-        Layer by layer, in the order of the drawing.
-
-    Raises
-    ------
-    BodyFileError
-        If the file is not a DXF drawing of closed curves, or its unit is unknown or contradicted.
-    GeometryError
-        If a curve crosses itself or another.
-    InvalidValueError
-        If a density, the unit or the tolerance is refused.
-    MissingExtraError
-        If ezdxf is not installed.
-    """
+    """Return the polygons that a DXF drawing shows, layer by layer, in the order of the drawing."""
     path = Path(path)
     with blamed(path.name):
         drawing = _opened(path)
@@ -264,3 +239,69 @@ def _flat(point: Any) -> complex:
 
 
 _READERS = {"CIRCLE": _circle, "ELLIPSE": _ellipse, "LWPOLYLINE": _lwpolyline, "POLYLINE": _old_polyline}
+
+
+FINEST = 1e-9
+"""Chord tolerances below this share of a curve's size are refused: the vertices would be too many."""
+
+_LARGEST_BULGE = 1000.0
+
+
+def sides(angle: float, radius: float, tolerance: float) -> int:
+    """Return how many chords an arc needs.
+
+    >>> sides(2.0 * math.pi, 1.0, 1e-3)
+    71
+    """
+    if not (math.isfinite(radius) and tolerance >= FINEST * radius):
+        raise BodyFileError(f"a chord tolerance of {tolerance:g} is too fine for a radius of {radius:g}")
+    step = 2.0 * math.acos(max(1.0 - tolerance / radius, -0.5))
+    return max(1, math.ceil(abs(angle) / step))
+
+
+def closed_ellipse(centre: complex, major: complex, minor: complex, tolerance: float) -> FloatArray:
+    """Return a full ellipse, or circle, as an inscribed polygon.
+
+    Returns Vertices; n is a multiple of 4, so that the polygon has the symmetry of the ellipse.
+
+    >>> closed_ellipse(0j, 2.0 + 0j, 1j, 1.0).tolist()[0]
+    [2.0, 0.0]
+    """
+    # an ellipse is a stretched circle, and the stretch makes no chord error larger than on the circle of its major axis
+    count = 4 * math.ceil(sides(2.0 * math.pi, abs(major), tolerance) / 4)
+    angle = 2.0 * math.pi * np.arange(count) / count
+    points = centre + major * np.cos(angle) + minor * np.sin(angle)
+    return np.column_stack([points.real, points.imag])
+
+
+def closed_polyline(points: Sequence[complex], bulges: Sequence[float], tolerance: float) -> FloatArray:
+    """Return a closed polyline with its bulges flattened.
+
+    bulges: of the segment that starts at each vertex: the tangent of a quarter of the arc's angle, above zero where the
+    arc turns counter-clockwise [-].
+
+    A square whose top is a half circle:
+
+    >>> ring = closed_polyline([0j, 2 + 0j, 2 + 2j, 2j], [0.0, 0.0, 1.0, 0.0], tolerance=0.01)
+    >>> round(float(ring[:, 1].max()), 2)
+    3.0
+    """
+    found: list[complex] = []
+    for i, (start, bulge) in enumerate(zip(points, bulges, strict=True)):
+        end = points[(i + 1) % len(points)]
+        found.append(start)
+        if not abs(bulge) <= _LARGEST_BULGE:
+            raise BodyFileError(f"the bulge at vertex {i} must be within {_LARGEST_BULGE:g}, got {bulge:g}")
+        if 0.5 * abs(bulge) * abs(end - start) > tolerance:  # the arc's rise over its chord
+            found += _arc(start, end, bulge, tolerance)
+        check_count(len(found))
+    z = np.array(found)
+    return np.column_stack([z.real, z.imag])
+
+
+def _arc(start: complex, end: complex, bulge: float, tolerance: float) -> list[complex]:
+    chord = end - start
+    centre = 0.5 * (start + end) + 0.5j * chord * (1.0 - bulge * bulge) / (2.0 * bulge)
+    angle = 4.0 * math.atan(bulge)
+    count = sides(angle, abs(start - centre), tolerance)
+    return [centre + (start - centre) * cmath.exp(1j * angle * k / count) for k in range(1, count)]

@@ -79,38 +79,7 @@ def regions_from_geojson(
     units: str = "m",
     name: str = "GeoJSON",
 ) -> list[Region]:
-    """Return the polygons that GeoJSON describes; coordinate reference systems are not interpreted.
-
-    Parameters
-    ----------
-    source : str or dict
-        Polygon, MultiPolygon, Feature, FeatureCollection or GeometryCollection, as text or parsed; y up.
-    density : float
-        Density of what has no property ``density`` of its own [kg/m3].
-    units : {"m", "cm", "mm", "ft", "in"}
-        Unit of the coordinates; never degrees.
-    name : str
-        Name that errors show.
-
-    Returns
-    -------
-    list of Region
-        In the order of the file.
-
-    Raises
-    ------
-    BodyFileError
-        If it is not GeoJSON, or is not made of plane polygons.
-    GeometryError
-        If a polygon crosses itself or a hole lies outside.
-    InvalidValueError
-        If a density or the unit is refused.
-
-    Examples
-    --------
-    >>> regions_from_geojson('{"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [0, 1], [0, 0]]]}')[0].density
-    2400.0
-    """
+    """Return the polygons that GeoJSON describes, in its order; coordinate reference systems are not interpreted."""
     with blamed(name):
         scale = checks.length_unit(units)
         given = _parsed(source) if isinstance(source, str) else source

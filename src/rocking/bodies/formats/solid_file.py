@@ -16,7 +16,7 @@
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,17 +24,17 @@ from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.formats.body_file import beside, parsed_toml
 from rocking.bodies.formats.mesh import mesh_from_file
 from rocking.bodies.formats.source import blamed, check_count
-from rocking.bodies.formats.words import sentence
-from rocking.bodies.solid.lathe import cone, cylinder, ellipsoid, frustum, revolution
+from rocking.bodies.formats.words import validated
 from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.prism import box, extrusion
 from rocking.bodies.solid.shape import Shape
 from rocking.bodies.solid.solid import Solid
+from rocking.bodies.solid.turned import cone, cylinder, ellipsoid, frustum, revolution
 from rocking.checks import length_unit
 from rocking.errors import BodyFileError
 
 if TYPE_CHECKING:
-    from rocking.bodies.formats import solid_schema as schema
+    from rocking.bodies.formats import schema
 
 _FARTHEST = 1e8
 
@@ -78,8 +78,10 @@ def solid_from_toml(text: str, name: str = "<text>", folder: str | Path | None =
     >>> solid_from_toml(text).mass
     1000.0
     """
+    from rocking.bodies.formats.schema import SolidDocument
+
     with blamed(name):
-        document = _validated(parsed_toml(text))
+        document = validated(SolidDocument, parsed_toml(text))
         root = None if folder is None else Path(folder)
         said: list[str] = []
         parts: list[Part] = []
@@ -90,17 +92,6 @@ def solid_from_toml(text: str, name: str = "<text>", folder: str | Path | None =
             solid = _standing(document, parts)
             solid.name, solid.repairs = document.name or name, tuple(said)
             return solid
-
-
-def _validated(given: dict[str, Any]) -> "schema.SolidDocument":
-    from pydantic import ValidationError
-
-    from rocking.bodies.formats.solid_schema import SolidDocument
-
-    try:
-        return SolidDocument.model_validate(given)
-    except ValidationError as error:
-        raise BodyFileError(sentence(error, given.get("units"))) from error
 
 
 def _standing(document: "schema.SolidDocument", parts: list[Part]) -> Solid:

@@ -58,10 +58,7 @@ def readable(path: Path) -> Iterator[None]:
 
 
 def checked_file(path: Path, limit: int = LARGEST_FILE) -> Path:
-    """Return the path of a regular file of acceptable size.
-
-    limit: size above which it is refused [byte].
-    """
+    """Return the path of a regular file of acceptable size."""
     try:
         found, size = path.is_file(), path.stat().st_size
     except FileNotFoundError as error:
@@ -76,10 +73,7 @@ def checked_file(path: Path, limit: int = LARGEST_FILE) -> Path:
 
 
 def read_text(path: Path, limit: int = LARGEST_FILE) -> str:
-    """Return the text of a UTF-8 file.
-
-    limit: size above which it is refused [byte]. Returns its text, without a byte order mark.
-    """
+    """Return the text of a UTF-8 file."""
     try:
         return checked_file(path, limit).read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
@@ -89,10 +83,7 @@ def read_text(path: Path, limit: int = LARGEST_FILE) -> str:
 
 
 def check_count(vertices: int) -> None:
-    """Refuse a body of more vertices than the limit.
-
-    vertices: number of vertices [-].
-    """
+    """Refuse a body of more vertices than the limit."""
     if vertices > MOST_VERTICES:
         raise BodyFileError(f"has {vertices} vertices; a body may have up to {MOST_VERTICES}; simplify the outline")
 

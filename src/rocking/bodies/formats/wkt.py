@@ -74,38 +74,7 @@ def regions_from_wkt(
     units: str = "m",
     name: str = "WKT",
 ) -> list[Region]:
-    """Return the polygons that well-known text describes.
-
-    Parameters
-    ----------
-    text : str
-        POLYGON with holes, MULTIPOLYGON, or GEOMETRYCOLLECTION of those; y up.
-    density : float or sequence of float
-        One density for all polygons, or one for each in order [kg/m3].
-    units : {"m", "cm", "mm", "ft", "in"}
-        Unit of the coordinates.
-    name : str
-        Name that errors show.
-
-    Returns
-    -------
-    list of Region
-        In the order of the text.
-
-    Raises
-    ------
-    BodyFileError
-        If the text is not WKT, or is not made of plane polygons.
-    GeometryError
-        If a polygon crosses itself or a hole lies outside.
-    InvalidValueError
-        If a density or the unit is refused.
-
-    Examples
-    --------
-    >>> len(regions_from_wkt("MULTIPOLYGON (((0 0, 1 0, 1 1, 0 0)), ((2 0, 3 0, 3 1, 2 0)))", [2400.0, 7850.0]))
-    2
-    """
+    """Return the polygons that well-known text describes, in its order."""
     with blamed(name):
         scale = length_unit(units)
         polygons = _polygons(_geometry(text))

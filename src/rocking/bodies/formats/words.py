@@ -3,13 +3,16 @@
 import difflib
 import reprlib
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rocking.conventions import LENGTH_UNITS
+from rocking.errors import BodyFileError
 
 if TYPE_CHECKING:
-    from pydantic import ValidationError
+    from pydantic import BaseModel, ValidationError
     from pydantic_core import ErrorDetails
+
+T = TypeVar("T", bound="BaseModel")
 
 _MUST_BE = {
     "float_type": "must be a number",
@@ -43,13 +46,20 @@ def suggestion(word: str, known: Iterable[str]) -> str:
 
 
 def sentence(error: "ValidationError", units: Any) -> str:
-    """Return a validation error as one sentence with key path, value and allowed range.
-
-    Returns the first problem, and how many more there are.
-    """
+    """Return a validation error as one sentence with key path, value and allowed range."""
     problems = error.errors(include_url=False)
     more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
     return _first(problems[0], units) + more
+
+
+def validated(kind: type[T], given: dict[str, Any]) -> T:
+    """Return the tables of a file as a model of pydantic, or refuse them in one sentence."""
+    from pydantic import ValidationError
+
+    try:
+        return kind.model_validate(given)
+    except ValidationError as error:
+        raise BodyFileError(sentence(error, given.get("units"))) from error
 
 
 def _first(problem: "ErrorDetails", units: Any) -> str:

@@ -1,16 +1,13 @@
 """Bodies in space: parts of any shape and density on a base."""
 
-from rocking.bodies.solid.hull import SupportPolygon, hull
-from rocking.bodies.solid.lathe import cone, cylinder, ellipsoid, frustum, revolution, sphere_cap
-from rocking.bodies.solid.moments import SolidMoments
-from rocking.bodies.solid.part import Part
-from rocking.bodies.solid.placement import rotation_about
+from rocking.bodies.moments import SolidMoments
+from rocking.bodies.solid.base import Base, Corner, Edge, RoundBase, SupportPolygon, hull
+from rocking.bodies.solid.part import Part, rotation_about
 from rocking.bodies.solid.polyhedron import Polyhedron
 from rocking.bodies.solid.prism import Box, Prism, box, extrusion
 from rocking.bodies.solid.shape import Shape
 from rocking.bodies.solid.solid import Solid
-from rocking.bodies.solid.support import Base, Corner, Edge, RoundBase
-from rocking.bodies.solid.turned import Turned
+from rocking.bodies.solid.turned import Turned, cone, cylinder, ellipsoid, frustum, revolution, sphere_cap
 from rocking.bodies.solid.units import Units, divided, voxels
 
 __all__ = [

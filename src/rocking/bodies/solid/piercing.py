@@ -1,11 +1,10 @@
-"""Faces that pass through each other: the lines in which pairs of triangles cross."""
+"""Faces that pass through each other: pairs of triangles whose boxes meet, and the lines in which they cross."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from rocking.bodies.solid.box_pairs import meeting_boxes
 from rocking.bodies.solid.surfaces import area_vectors
 from rocking.conventions import BoolArray, FloatArray, IntArray
 
@@ -33,12 +32,6 @@ def pierced(triangles: FloatArray) -> Piercing:
     Two triangles cross if each has corners on both sides of the other's plane and the pieces of the common line of both
     planes that lie in them overlap (T. Moeller, "A fast triangle-triangle intersection test", 1997), all by more than
     1e-6 of the size. Triangles in one plane do not cross, nor do those that are thinner than 1e-7 of the size.
-
-    triangles: corners, the middle of their box near the origin [m].
-
-    >>> flat = np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 2.0, 0.0]])
-    >>> pierced(np.stack([flat, flat[:, [2, 1, 0]]])).pairs
-    1
     """
     size = float(np.ptp(triangles, axis=(0, 1)).max())
     doubled = area_vectors(triangles) * 2.0
@@ -104,3 +97,68 @@ def _within(corners: FloatArray, heights: FloatArray, along: FloatArray) -> tupl
     at = np.argmin(first, axis=1)
     rows = np.arange(len(at))
     return first[rows, at], np.where(crosses, places, -np.inf).max(axis=1), points[rows, at]
+
+
+_CHUNK = 200_000
+
+
+def meeting_boxes(low: FloatArray, high: FloatArray) -> Iterator[tuple[IntArray, IntArray]]:
+    """Return the pairs of boxes that have a point in common, a piece at a time.
+
+    The boxes are halved at the median of their middles, along the longest side of each half, down to single ones; the
+    tree is then walked against itself from its root. Memory stays bounded, however many pairs there are.
+    """
+    order = _halved(0.5 * (low + high))
+    layers = _layers(order, low, high)
+    stack = [(0, np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.int64))]
+    while stack:
+        depth, one, two = stack.pop()
+        if depth + 1 == len(layers):
+            apart = one != two
+            yield order[one[apart]], order[two[apart]]
+            continue
+        one, two = _below(one, two)
+        keep = _meet(layers[depth + 1], one, two)
+        one, two = one[keep], two[keep]
+        stack += [(depth + 1, one[i : i + _CHUNK], two[i : i + _CHUNK]) for i in range(0, len(one), _CHUNK)]
+
+
+def _halved(middles: FloatArray) -> IntArray:
+    """Numbers of the boxes from left to right under the tree, repeated to a power of two."""
+    full = 1 << max(0, len(middles) - 1).bit_length()
+    padded = middles[np.minimum(np.arange(full), len(middles) - 1)]
+    order = np.arange(full)
+    for depth in range(full.bit_length() - 1):
+        groups = order.reshape(1 << depth, -1)
+        places = padded[groups]
+        axis = np.argmax(np.ptp(places, axis=1), axis=1)
+        along = np.take_along_axis(places, axis[:, None, None], axis=2)[..., 0]
+        order = np.take_along_axis(groups, np.argsort(along, axis=1, kind="stable"), axis=1).ravel()
+    return order
+
+
+def _layers(order: IntArray, low: FloatArray, high: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
+    """Boxes of the nodes, from the root to the leaves; what only fills up meets nothing."""
+    real = (order < len(low))[:, None]
+    numbers = np.minimum(order, len(low) - 1)
+    layers = [(np.where(real, low[numbers], np.inf), np.where(real, high[numbers], -np.inf))]
+    while len(layers[-1][0]) > 1:
+        below = layers[-1]
+        layers.append((below[0].reshape(-1, 2, 3).min(axis=1), below[1].reshape(-1, 2, 3).max(axis=1)))
+    return layers[::-1]
+
+
+def _below(one: IntArray, two: IntArray) -> tuple[IntArray, IntArray]:
+    left = np.concatenate([2 * one, 2 * one, 2 * one + 1, 2 * one + 1])
+    right = np.concatenate([2 * two, 2 * two + 1, 2 * two, 2 * two + 1])
+    keep = left <= right
+    return left[keep], right[keep]
+
+
+def _meet(layer: tuple[FloatArray, FloatArray], one: IntArray, two: IntArray) -> BoolArray:
+    low, high = layer
+    found = np.ones(len(one), dtype=bool)
+    for axis in range(3):
+        bottom, top = low[:, axis], high[:, axis]
+        found &= (bottom[one] <= top[two]) & (bottom[two] <= top[one])
+    return found

@@ -6,12 +6,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking import checks
-from rocking.bodies.solid.crossings import inside
-from rocking.bodies.solid.moments import SolidMoments, polyhedron_moments
-from rocking.bodies.solid.self_crossing import check_crossings
+from rocking.bodies.moments import SolidMoments, polyhedron_moments
+from rocking.bodies.solid.self_crossing import check_crossings, inside
 from rocking.bodies.solid.shape import Footprint, Shape, placed_points
-from rocking.bodies.solid.surfaces import Surface
-from rocking.bodies.solid.triangle_surface import TriangleSurface
+from rocking.bodies.solid.surfaces import Surface, TriangleSurface
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import GeometryError
 from rocking.portable import times
@@ -120,10 +118,7 @@ class Polyhedron(Shape):
 
 
 def open_edges(faces: IntArray) -> IntArray:
-    """Return the directed edges that no face runs along the other way.
-
-    Returns empty if the surface is closed and oriented.
-    """
+    """Return the directed edges that no face runs along the other way."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
     base = int(edges.max(initial=0)) + 1
     forward, back = edges[:, 0] * base + edges[:, 1], edges[:, 1] * base + edges[:, 0]

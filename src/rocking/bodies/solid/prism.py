@@ -4,13 +4,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking import checks
-from rocking.bodies.moments import combined as combined_plane
-from rocking.bodies.moments import ring_moments
+from rocking.bodies._rings import triangulated
+from rocking.bodies.moments import SolidMoments, combined_plane, ring_moments
 from rocking.bodies.region import Region
-from rocking.bodies.solid.moments import SolidMoments
 from rocking.bodies.solid.polyhedron import Polyhedron
-from rocking.bodies.solid.triangle_surface import TriangleSurface
-from rocking.bodies.solid.triangulation import triangulated
+from rocking.bodies.solid.surfaces import TriangleSurface
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import GeometryError
 
@@ -117,20 +115,8 @@ class Box(Polyhedron):
         return np.full(divisions**3, float(self.size.prod()) / divisions**3), grid * self.size
 
 
-def box(width: float, depth: float, height: float) -> Box:
-    """Return a box, centred on the z axis, its base on z = 0.
-
-    Parameters
-    ----------
-    width, depth, height : float
-        Full sizes along x, y and z [m].
-
-    Returns
-    -------
-    Box
-        The shape.
-    """
-    return Box(width, depth, height)
+box = Box
+"""Return a box, as the other functions of shapes do."""
 
 
 def extrusion(outline: ArrayLike, length: float, holes: tuple[ArrayLike, ...] = ()) -> Prism:

@@ -26,11 +26,6 @@ def gauss_order(ratio: float) -> int:
 
     The integrand is analytic within a Bernstein ellipse through the singular set; with ``z = 2/ratio`` its size is ``z
     + sqrt(1 + z^2)``, and a rule of n points errs by that to the power -2n.
-
-    ratio: diameter of the cell over its distance [-].
-
-    >>> gauss_order(1.0), gauss_order(0.1)
-    (12, 5)
     """
     z = 2.0 / ratio
     return math.ceil(_DIGITS * math.log(10.0) / (2.0 * math.log(z + math.hypot(1.0, z))))

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.bodies.solid.moments import SolidMoments
+from rocking.bodies.moments import SolidMoments
 from rocking.bodies.solid.surfaces import Surface
 from rocking.conventions import BoolArray, FloatArray
 from rocking.errors import GeometryError
@@ -143,9 +143,6 @@ def vector(name: str, value: Any, unit: str = "m") -> FloatArray:
 
 
 def placed_points(points: FloatArray, rotation: FloatArray | None, translation: FloatArray | None) -> FloatArray:
-    """Return points rotated, then translated.
-
-    points: points [m]; rotation: rotation matrix [-]; translation: displacement [m]. Returns the placed points [m].
-    """
+    """Return points rotated, then translated."""
     turned = points if rotation is None else applied(rotation, points)
     return turned if translation is None else turned + translation

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from rocking.bodies.solid.crossings import inside
-from rocking.bodies.solid.moments import polyhedron_moments
+from rocking.bodies.moments import polyhedron_moments
+from rocking.bodies.solid.self_crossing import inside
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import GeometryError
 
@@ -31,10 +31,7 @@ def turned_consistently(faces: IntArray, said: list[str]) -> IntArray:
 
 
 def oriented_shells(points: FloatArray, faces: IntArray, said: list[str]) -> IntArray:
-    """Return the faces with outer shells looking outward and shells inside others looking inward.
-
-    points: vertices [m].
-    """
+    """Return the faces with outer shells looking outward and shells inside others looking inward."""
     labels = _labels(len(faces), *_neighbours(faces)[:2])
     count = int(labels.max()) + 1
     if count > MOST_SHELLS:

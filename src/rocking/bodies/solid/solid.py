@@ -9,16 +9,13 @@ from numpy.typing import ArrayLike
 
 from rocking import checks, plausibility
 from rocking.bodies.body import assumed_density
+from rocking.bodies.moments import SolidMoments, combined
 from rocking.bodies.section import Section
-from rocking.bodies.solid.hull import SupportPolygon, hull
-from rocking.bodies.solid.moments import SolidMoments, combined
-from rocking.bodies.solid.overlap import check_disjoint
-from rocking.bodies.solid.part import Part
-from rocking.bodies.solid.placement import rotation_about
-from rocking.bodies.solid.possible import check_possible
+from rocking.bodies.solid.admissible import check_disjoint, check_possible
+from rocking.bodies.solid.base import Base, RoundBase, SupportPolygon, hull
+from rocking.bodies.solid.part import Part, rotation_about
 from rocking.bodies.solid.prism import Prism
 from rocking.bodies.solid.shape import Shape
-from rocking.bodies.solid.support import Base, RoundBase
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
 
@@ -271,11 +268,7 @@ class Solid:
 
 
 def found_base(parts: Sequence[Part], tolerance: float) -> Base:
-    """Return what parts stand on: the hull of their corners on the ground, or the round face there.
-
-    tolerance: corners this close to the ground stand on it [m]. Returns A polygon, or a circle if everything else lies
-    inside it.
-    """
+    """Return what parts stand on: the hull of their corners on the ground, or the round face there."""
     prints = [part.footprint(0.0, tolerance) for part in parts]
     points = np.concatenate([print_[0] for print_ in prints])
     discs = [disc for print_ in prints for disc in print_[1]]

@@ -1,12 +1,14 @@
-"""Pieces of the surface of a solid, and how each is split and sampled."""
+"""Pieces of the surface of a solid, flat or turned about an axis, and how each is split and sampled."""
 
+import math
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.portable import gauss_legendre, gauss_rule
+from rocking.portable import gauss_legendre, gauss_rule, times
 
 
 class Surface(ABC):
@@ -33,25 +35,16 @@ class Surface(ABC):
 
     @abstractmethod
     def sample(self, cells: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
-        """Return Gauss points of the cells with their area vectors.
-
-        Returns points [m] and weighted outward normals [m2] (shape (n order^2, 3)).
-        """
+        """Return Gauss points of the cells with their area vectors."""
 
     @abstractmethod
     def triangles(self, divisions: int) -> FloatArray:
-        """Return triangles that picture the surface.
-
-        Returns Corners, counter-clockwise seen from outside [m].
-        """
+        """Return triangles that picture the surface."""
 
 
 @cache
 def gauss(order: int) -> tuple[FloatArray, FloatArray]:
-    """Return the Gauss-Legendre rule on [0, 1].
-
-    Returns exact for polynomials of degree ``2 order - 1``.
-    """
+    """Return the Gauss-Legendre rule on [0, 1]."""
     nodes, weights = gauss_legendre(order)
     return 0.5 * (1.0 + nodes), 0.5 * weights
 
@@ -78,20 +71,140 @@ def gauss_triangle(order: int) -> tuple[FloatArray, FloatArray]:
 
 @cache
 def gauss_square(order: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the product rule on the unit square.
-
-    Returns nodes and weights (shape (order^2,)).
-    """
+    """Return the product rule on the unit square."""
     nodes, weights = gauss(order)
     u, v = np.meshgrid(nodes, nodes, indexing="ij")
     return u.ravel(), v.ravel(), np.outer(weights, weights).ravel()
 
 
 def area_vectors(triangles: FloatArray) -> FloatArray:
-    """Return normals of triangles times their areas.
-
-    triangles: corners [m]. Returns area vectors [m2].
-    """
+    """Return normals of triangles times their areas."""
     a, b, c = np.moveaxis(triangles, 1, 0)
     vectors: FloatArray = 0.5 * np.cross(b - a, c - a)
     return vectors
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleSurface(Surface):
+    """Flat triangles."""
+
+    corners: FloatArray  # corners, counter-clockwise seen from outside [m]; shape (n, 3, 3)
+
+    def cells(self) -> FloatArray:
+        return self.corners
+
+    def outline(self, cells: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return centroid and corners of each triangle, with its area vector.
+
+        cells: triangles [m]. Returns points [m] and area vectors [m2] (shape (n, 4, 3)).
+        """
+        points = np.concatenate([cells.mean(axis=1, keepdims=True), cells], axis=1)
+        return points, np.repeat(area_vectors(cells)[:, None], 4, axis=1)
+
+    def split(self, cells: FloatArray) -> FloatArray:
+        """Return the four triangles between corners and midpoints."""
+        a, b, c = np.moveaxis(cells, 1, 0)
+        ab, bc, ca = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
+        quarters = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
+        return np.concatenate([np.stack(quarter, axis=1) for quarter in quarters])
+
+    def sample(self, cells: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
+        """Return Gauss points of a square collapsed onto each triangle."""
+        shares, weights = gauss_triangle(order)
+        points = times(shares, cells)
+        areas = weights[:, None] * area_vectors(cells)[:, None]
+        return points.reshape(-1, 3), areas.reshape(-1, 3)
+
+    def triangles(self, divisions: int) -> FloatArray:
+        """Return the triangles, split until none is longer than the largest over `divisions`."""
+        cells, done = self.corners, []
+        limit = 1.001 * float(_longest(cells).max()) / divisions
+        while len(cells):
+            large = _longest(cells) > limit
+            done.append(cells[~large])
+            cells = self.split(cells[large])
+        return np.concatenate(done)
+
+
+def _longest(triangles: FloatArray) -> FloatArray:
+    longest: FloatArray = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
+    return longest
+
+
+@dataclass(frozen=True, eq=False)
+class TurnedSurface(Surface):
+    """A meridian turned about the z axis, stretched to half axes, then placed."""
+
+    # straight: (radius, height) at both ends [m]. Arc: its two polar angles from the top [rad] in the first row, its
+    # height of centre and vertical half axis [m] in the second; the radius is then 1; shape (2, 2)
+    meridian: FloatArray
+    half_axes: tuple[float, float]  # stretch along x and y [-], or the half axes of the ellipse [m] for an arc
+    arc: bool  # whether the meridian is an arc of an ellipse
+    rotation: FloatArray  # rotation matrix [-]; shape (3, 3)
+    translation: FloatArray  # displacement [m]; shape (3,)
+
+    def cells(self) -> FloatArray:
+        """Return the whole turn in eight sectors, the meridian in pieces of at most an eighth of a turn."""
+        u = np.linspace(0.0, 1.0, 1 + max(1, math.ceil(self._sweep / (0.25 * math.pi) - 1e-9)))
+        phi = np.linspace(0.0, 2.0 * math.pi, 9)
+        return np.array([(*u[i : i + 2], *phi[j : j + 2]) for i in range(len(u) - 1) for j in range(8)])
+
+    def outline(self, cells: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the middle and eight points around of each cell, with area vectors.
+
+        Returns points [m] and area vectors [m2] (shape (n, 9, 3)).
+        """
+        ends = np.array([0.5, 0.0, 1.0])
+        s, t = (grid.ravel() for grid in np.meshgrid(ends, ends, indexing="ij"))
+        return self._at(cells, s, t)
+
+    def split(self, cells: FloatArray) -> FloatArray:
+        u0, u1, p0, p1 = cells.T
+        um, pm = 0.5 * (u0 + u1), 0.5 * (p0 + p1)
+        quarters = ((u0, um, p0, pm), (um, u1, p0, pm), (u0, um, pm, p1), (um, u1, pm, p1))
+        return np.concatenate([np.stack(quarter, axis=1) for quarter in quarters])
+
+    def sample(self, cells: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
+        """Return Gauss points of each cell, at least eight in each direction for the curvature's sake."""
+        u, v, weights = gauss_square(max(order, 8))
+        points, areas = self._at(cells, u, v)
+        return points.reshape(-1, 3), (areas * weights[:, None]).reshape(-1, 3)
+
+    def triangles(self, divisions: int) -> FloatArray:
+        """Return two triangles for each patch of a regular net."""
+        pieces = divisions * (math.ceil(self._sweep / (0.5 * math.pi) - 1e-9) if self.arc else 1)
+        u, v = np.linspace(0.0, 1.0, pieces + 1), np.linspace(0.0, 1.0, 4 * divisions + 1)
+        s, t = (grid.ravel() for grid in np.meshgrid(u, v, indexing="ij"))
+        net = self._at(np.array([[0.0, 1.0, 0.0, 2.0 * math.pi]]), s, t)[0].reshape(len(u), len(v), 3)
+        a, b, c, d = net[:-1, :-1], net[1:, :-1], net[1:, 1:], net[:-1, 1:]
+        both = np.concatenate([np.stack(corners, axis=2).reshape(-1, 3, 3) for corners in ((a, c, b), (a, d, c))])
+        kept: FloatArray = both[
+            np.linalg.norm(area_vectors(both), axis=1) > 1e-14 * np.ptp(net, axis=(0, 1)).max() ** 2
+        ]
+        return kept
+
+    @property
+    def _sweep(self) -> float:
+        return abs(float(self.meridian[0, 1] - self.meridian[0, 0])) if self.arc else 0.0
+
+    def _at(self, cells: FloatArray, s: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+        u0, u1, p0, p1 = (column[:, None] for column in cells.T)
+        r, z, dr, dz = self._meridian(u0 + (u1 - u0) * s)
+        phi = p0 + (p1 - p0) * t
+        (a, b), cos, sin = self.half_axes, np.cos(phi), np.sin(phi)
+        local = np.stack([a * r * cos, b * r * sin, z], axis=-1)
+        along = np.stack([a * dr * cos, b * dr * sin, dz], axis=-1)
+        around = np.stack([-a * r * sin, b * r * cos, np.zeros_like(r)], axis=-1)
+        areas = np.cross(around, along) * ((u1 - u0) * (p1 - p0))[..., None]
+        return times(local, self.rotation.T) + self.translation, times(areas, self.rotation.T)
+
+    def _meridian(self, u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        first, second = self.meridian
+        if not self.arc:
+            (r0, z0), (r1, z1) = first, second
+            ones = np.ones_like(u)
+            return r0 + (r1 - r0) * u, z0 + (z1 - z0) * u, (r1 - r0) * ones, (z1 - z0) * ones
+        (q0, q1), (centre, half) = first, second
+        sweep = q1 - q0
+        polar = q0 + sweep * u
+        return np.sin(polar), centre + half * np.cos(polar), np.cos(polar) * sweep, -half * np.sin(polar) * sweep

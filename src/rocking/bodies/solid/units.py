@@ -14,6 +14,7 @@ MOST_UNITS = 20_000_000
 """Finer divisions are refused [-]."""
 
 _SUBGRID = 3
+_Pieces = tuple[FloatArray, FloatArray, int]  # masses [kg], centres [m], order of convergence
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,14 +74,7 @@ def divided(solid: Solid, divisions: int) -> Units:
     64
     """
     count = _whole(divisions)
-    pieces = [_of_part(part, count) for part in solid.local_parts]
-    numbers = [np.full(len(mass), i) for i, (mass, _, _) in enumerate(pieces)]
-    return Units(
-        np.concatenate([mass for mass, _, _ in pieces]),
-        np.concatenate([centre for _, centre, _ in pieces]) + solid.origin,
-        np.concatenate(numbers),
-        min(order for _, _, order in pieces),
-    )
+    return _assembled(solid, [_of_part(part, count) for part in solid.local_parts])
 
 
 def voxels(solid: Solid, divisions: int) -> Units:
@@ -100,16 +94,14 @@ def voxels(solid: Solid, divisions: int) -> Units:
     Units
         Of order 1, because the surface cuts cubes.
     """
-    count = _whole(divisions)
-    step = solid.size / count
-    pieces = [_voxels_of(part, step) for part in solid.local_parts]
-    numbers = [np.full(len(mass), i) for i, (mass, _) in enumerate(pieces)]
-    return Units(
-        np.concatenate([mass for mass, _ in pieces]),
-        np.concatenate([centre for _, centre in pieces]) + solid.origin,
-        np.concatenate(numbers),
-        1,
-    )
+    step = solid.size / _whole(divisions)
+    return _assembled(solid, [_voxels_of(part, step) for part in solid.local_parts])
+
+
+def _assembled(solid: Solid, pieces: list[_Pieces]) -> Units:
+    masses, centres, orders = zip(*pieces, strict=True)
+    numbers = [np.full(len(mass), i) for i, mass in enumerate(masses)]
+    return Units(np.concatenate(masses), np.concatenate(centres) + solid.origin, np.concatenate(numbers), min(orders))
 
 
 def _whole(divisions: int) -> int:
@@ -121,16 +113,15 @@ def _whole(divisions: int) -> int:
     return int(divisions)
 
 
-def _of_part(part: Part, count: int) -> tuple[FloatArray, FloatArray, int]:
+def _of_part(part: Part, count: int) -> _Pieces:
     cells = part.shape.cells(count)
     if cells is None:
-        mass, centre = _voxels_of(part, float(np.ptp(part.box(), axis=0).max()) / count)
-        return mass, centre, 1
+        return _voxels_of(part, float(np.ptp(part.box(), axis=0).max()) / count)
     volume, centre = cells
     return part.density * volume, placed_points(centre, part.rotation, part.translation), 2
 
 
-def _voxels_of(part: Part, step: float) -> tuple[FloatArray, FloatArray]:
+def _voxels_of(part: Part, step: float) -> _Pieces:
     low, high = part.box()
     counts = np.maximum(np.ceil((high - low) / step - 1e-9).astype(int), 1)
     if counts.prod() * _SUBGRID**3 > MOST_UNITS * 10:
@@ -146,4 +137,4 @@ def _voxels_of(part: Part, step: float) -> tuple[FloatArray, FloatArray]:
     used = share > 0
     sums = np.stack([np.bincount(number, weights=points[:, i], minlength=len(share)) for i in range(3)], axis=1)
     mass: FloatArray = part.density * share[used].astype(np.float64) * (step / _SUBGRID) ** 3
-    return mass, sums[used] / share[used, None]
+    return mass, sums[used] / share[used, None], 1

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from rocking.bodies import Body, MassPoints
-from rocking.bodies.density import density_at
 from rocking.conventions import FloatArray, Foot
 from rocking.restitution import EnergyLedger, energy_ledger
 
@@ -54,4 +53,4 @@ def _places(body: Body) -> FloatArray:
     step = max(x1 - x0, height) / (2.0 * _ARROWS)
     x, y = np.meshgrid(np.arange(x0 + 0.5 * step, x1, step), np.arange(0.5 * step, height, step))
     points = np.stack([x.ravel() + body.origin_x, y.ravel() + body.ground], axis=-1)
-    return points[density_at(body, points[:, 0], points[:, 1]) > 0.0]
+    return points[body.density_at(points[:, 0], points[:, 1]) > 0.0]

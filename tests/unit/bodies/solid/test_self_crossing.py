@@ -10,9 +10,8 @@ from hypothesis import strategies as st
 
 from rocking.bodies.formats import read_body
 from rocking.bodies.solid import Part, Polyhedron, Solid, SolidMoments, box, extrusion
-from rocking.bodies.solid.box_pairs import meeting_boxes
-from rocking.bodies.solid.piercing import pierced
-from rocking.bodies.solid.possible import check_possible
+from rocking.bodies.solid.admissible import check_possible
+from rocking.bodies.solid.piercing import meeting_boxes, pierced
 from rocking.bodies.solid.repair import repaired
 from rocking.bodies.solid.self_crossing import check_crossings
 from rocking.cli import main

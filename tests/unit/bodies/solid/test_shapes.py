@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rocking import Region, Section
+from rocking.bodies.moments import combined, polyhedron_moments
 from rocking.bodies.solid import (
     Polyhedron,
     Prism,
@@ -21,7 +22,6 @@ from rocking.bodies.solid import (
     rotation_about,
     sphere_cap,
 )
-from rocking.bodies.solid.moments import combined, polyhedron_moments
 from rocking.bodies.solid.sampling import samples
 from rocking.errors import GeometryError, InvalidValueError
 

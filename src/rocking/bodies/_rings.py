@@ -1,4 +1,4 @@
-"""Is this set of rings a body? Validity is GEOS's verdict (shapely), put in words a user can act on."""
+"""Rings of polygons: which are valid (by GEOS, in words a user can act on), which are holes, and their triangles."""
 
 import re
 from collections.abc import Sequence
@@ -9,17 +9,14 @@ import numpy as np
 from rocking import checks
 from rocking.checks import LARGEST, SMALLEST
 from rocking.conventions import FloatArray
-from rocking.errors import GeometryError, InvalidValueError
+from rocking.errors import BodyFileError, GeometryError, InvalidValueError
 
 # Neighbouring regions share edges that rounding may cross: overlaps below this share of the smaller area pass.
 OVERLAP_TOLERANCE = 1e-9
 
 
-def ring(name: str, points: Any) -> FloatArray:
-    """Return vertices as an open ring of distinct neighbours.
-
-    points: vertices [m]; a repeated closing point and repeated neighbours are dropped.
-    """
+def checked_ring(name: str, points: Any) -> FloatArray:
+    """Return vertices as an open ring of distinct neighbours."""
     try:
         vertices = checks.real_array(name, points)
     except InvalidValueError as error:
@@ -39,10 +36,7 @@ def ring(name: str, points: Any) -> FloatArray:
 
 
 def check_polygon(name: str, outline: FloatArray, holes: Sequence[FloatArray]) -> None:
-    """Refuse rings that cross themselves or each other, and holes outside their outline.
-
-    outline: outer ring [m]; holes: inner rings [m].
-    """
+    """Refuse rings that cross themselves or each other, and holes outside their outline."""
     import shapely
 
     # local coordinates: far from the origin GEOS would work on what rounding leaves over
@@ -65,10 +59,7 @@ def check_polygon(name: str, outline: FloatArray, holes: Sequence[FloatArray]) -
 
 
 def check_disjoint(polygons: Sequence[tuple[FloatArray, Sequence[FloatArray]]]) -> None:
-    """Refuse regions that overlap; shared edges are welcome.
-
-    polygons: one pair per region, in one frame near the origin [m].
-    """
+    """Refuse regions that overlap; shared edges are welcome."""
     if len(polygons) < 2:
         return
     import shapely
@@ -109,3 +100,51 @@ def _split(words: str, origin: FloatArray) -> tuple[str, str]:
         return words, ""
     x, y = float(match[2]) + origin[0], float(match[3]) + origin[1]
     return match[1], f" near x = {x:.9g} m, y = {y:.9g} m"
+
+
+Nested = tuple[FloatArray, list[FloatArray]]
+
+
+def nested(rings: Sequence[FloatArray], names: Sequence[str]) -> list[Nested]:
+    """Sort rings into outlines and their holes by the even-odd rule.
+
+    A ring inside no other or inside an even number of others is an outline; one inside an odd number is a hole of the
+    innermost of them.
+    """
+    import shapely
+
+    kept = [checked_ring(name, ring) for name, ring in zip(names, rings, strict=True)]
+    for name, ring in zip(names, kept, strict=True):
+        check_polygon(name, ring, [])
+    origin = np.min([ring.min(axis=0) for ring in kept], axis=0)
+    shapes = np.array([shapely.Polygon(ring - origin) for ring in kept])
+    areas = shapely.area(shapes)
+    inner, outer = shapely.STRtree(shapes).query(shapely.point_on_surface(shapes), predicate="within")
+    around: list[list[int]] = [[] for _ in kept]
+    for i, j in zip(inner.tolist(), outer.tolist(), strict=True):
+        if i < j and shapes[i].normalize().equals_exact(shapes[j].normalize(), 1e-12 * float(np.sqrt(areas[i]))):
+            raise BodyFileError(f"{names[i]} and {names[j]} are the same curve drawn twice; delete one")
+        # a point of a large ring may fall inside a small one in its middle: that is no nesting
+        if areas[i] < areas[j] and shapes[j].covers(shapes[i]):
+            around[i].append(j)
+    return [
+        (ring, [kept[k] for k in range(len(kept)) if _is_hole_of(k, i, around)])
+        for i, ring in enumerate(kept)
+        if len(around[i]) % 2 == 0
+    ]
+
+
+def _is_hole_of(ring: int, outline: int, around: list[list[int]]) -> bool:
+    return outline in around[ring] and len(around[ring]) == len(around[outline]) + 1
+
+
+def triangulated(outline: FloatArray, holes: Sequence[FloatArray] = ()) -> FloatArray:
+    """Return counter-clockwise triangles that fill a polygon."""
+    import shapely
+
+    pieces = shapely.constrained_delaunay_triangles(shapely.Polygon(outline, holes))
+    triangles = shapely.get_coordinates(shapely.get_parts(pieces)).reshape(-1, 4, 2)[:, :3]
+    side, other = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    turned = side[:, 0] * other[:, 1] - side[:, 1] * other[:, 0] < 0.0
+    ordered: FloatArray = np.where(turned[:, None, None], triangles[:, ::-1], triangles)
+    return ordered
