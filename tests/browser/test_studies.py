@@ -365,7 +365,7 @@ DRAWN = {
     },
     "motion": {"pulse": "sine:amplitude=3,period=0.6", "scale": 1.0625},
     "restitution": {"models": ["housner", "ked"]},
-    "response": {"friction": 0.375},
+    "response": {"assumed_friction": 0.375},
 }  # fmt: skip
 
 

@@ -83,10 +83,10 @@ CASES = {
         {"settings": {"gravity": 9.81, "linear": True}},
     ),
     "points, record": ("points", {"record": "", "scale": 1.7}, "models", {}),
-    "cabinet, record": ("cabinet", {"record": "", "scale": 1.3}, "sides", {"response": {"friction": 0.2}}),
+    "cabinet, record": ("cabinet", {"record": "", "scale": 1.3}, "sides", {"response": {"assumed_friction": 0.2}}),
     "statue, synthetic": ("statue", {"synthetic": "pulse-like", "seed": 5, "member": 2, "pga": 3.3}, "value", {}),
     "statue, let go": ("statue", None, "sides", {"response": {"free": -0.7}}),
-    "cabinet, let go": ("cabinet", None, "both", {"response": {"free": 0.3, "friction": 0.25}}),
+    "cabinet, let go": ("cabinet", None, "both", {"response": {"free": 0.3, "assumed_friction": 0.25}}),
     "hollow, reference": (
         "hollow",
         {"pulse": "sine:amplitude=2.5,period=0.9"},

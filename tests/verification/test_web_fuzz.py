@@ -28,7 +28,7 @@ INPUTS: dict[str, Any] = {
     "body": {"units": "cm", "width": 50, "height": 200},
     "motion": {"pulse": "sine:amplitude=3.2,period=0.8", "scale": 1.0},
     "restitution": {"models": ["ked", "housner"]},
-    "response": {"friction": 0.5},
+    "response": {"assumed_friction": 0.5},
     "settings": {"engine": "auto"},
 }
 ODD = [

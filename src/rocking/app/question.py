@@ -8,8 +8,8 @@ from rocking.bodies import Body
 from rocking.bodies.formats.source import blamed
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError, RockingError
-from rocking.spec.parts import body_of
-from rocking.spec.response import ResponseQuestion, made_motion, question_from
+from rocking.spec.construction import body_of
+from rocking.spec.response import ResponseProblem, motion_of, problem_of
 
 if TYPE_CHECKING:
     from rocking.app.records import RecordStore
@@ -20,14 +20,14 @@ __all__ = ["Question", "body_from", "motion_from", "question_of"]
 _LIGHTEST = 1e-200
 """Products of smaller masses and moments leave the range of numbers that have all their digits."""
 
-Question = ResponseQuestion
+Question = ResponseProblem
 """Body, motion, restitutions and settings, made and checked; `answered_with` gives the response."""
 
 
 def question_of(inputs: "Inputs", records: "RecordStore") -> Question:
     """Return what a user asked, with everything read that it needs."""
     motion = None if inputs.motion is None else motion_from(inputs.motion, records)
-    return question_from(inputs, body_from(inputs.body), motion)
+    return problem_of(inputs, body_from(inputs.body), motion)
 
 
 def body_from(given: "BodyInput") -> Body:
@@ -82,7 +82,7 @@ def _check_inertia(body: Body) -> Body:
 
 def _made(given: "MotionInput") -> Motion:
     if given.synthetic is None:
-        return made_motion(given)
+        return motion_of(given)
     return _synthetic(given.synthetic, given.seed, given.member, given.pga, given.pgv, given.time_step)
 
 
@@ -97,6 +97,4 @@ def _synthetic(
 ) -> Motion:
     from rocking.spec.document import OneMotionTable
 
-    return made_motion(
-        OneMotionTable(synthetic=family, seed=seed, member=member, pga=pga, pgv=pgv, time_step=time_step)
-    )
+    return motion_of(OneMotionTable(synthetic=family, seed=seed, member=member, pga=pga, pgv=pgv, time_step=time_step))

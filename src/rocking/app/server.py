@@ -122,12 +122,12 @@ def _response() -> None:
     from rocking.motions.pulses import pulse
     from rocking.motions.spectrum import response_spectrum
     from rocking.plots.traces import fine_samples
-    from rocking.spec.response import question_from
+    from rocking.spec.response import problem_of
 
     moved = "sine:amplitude=3,period=0.8"
     asked = ResponseAsked.model_validate({"body": _BLOCK, "motion": {"pulse": moved}})
     motion = pulse(moved)
-    ResponseAnswers.of(question_from(asked, body_from(asked.body), motion)).facts(10)
+    ResponseAnswers.of(problem_of(asked, body_from(asked.body), motion)).facts(10)
     response_spectrum(fine_samples(motion), [1.0], 0.05)
 
 

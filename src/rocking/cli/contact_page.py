@@ -31,7 +31,7 @@ def contact_response(question: Question, restitution: str, bounce: float) -> Pla
     bounce: Newton's coefficient of normal velocities [-].
     """
     law = None if restitution == COMPLEMENTARITY else restitution_from(restitution)
-    contact = {"friction": question.friction, "bounce": bounce, "gravity": question.settings.gravity}
+    contact = {"friction": question.assumed_friction, "bounce": bounce, "gravity": question.settings.gravity}
     response: PlanarResponse = (
         free_rocking(question.body, question.rotation, law, **contact)
         if question.motion is None

@@ -14,9 +14,9 @@ from rocking.errors import InvalidValueError
 from rocking.evidence._coefficient_table import CoefficientRow, outside_evidence
 from rocking.reports.facts.impact import ImpactAnswer, impact_facts
 from rocking.restitution import energy_ledger
+from rocking.spec.construction import body_of
 from rocking.spec.document import SettingsTable
 from rocking.spec.fields import JobTable
-from rocking.spec.parts import body_of
 from rocking.spec.reading import InputFiles, is_response, located, read_text, validated
 
 

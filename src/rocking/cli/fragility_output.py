@@ -49,11 +49,11 @@ class FragilityFiles:
 
         check_files(self.picture, self.csv, *(getattr(self, name) for name in _CURVES))
         asked = [f"--{name}" for name in _CURVES if getattr(self, name) is not None]
-        if asked and len(question.choices) > 1:
+        if asked and len(question.restitutions) > 1:
             raise InvalidValueError(f"{', '.join(asked)} holds the curves of one --restitution; --csv holds several")
-        if self.picture is not None and len(question.choices) > MOST_CHOICES:
+        if self.picture is not None and len(question.restitutions) > MOST_CHOICES:
             raise InvalidValueError(
-                f"a picture holds {MOST_CHOICES} --restitution at most, got {len(question.choices)}"
+                f"a picture holds {MOST_CHOICES} --restitution at most, got {len(question.restitutions)}"
             )
         if self.nrml is not None:
             intensity_type(question.measure.name)

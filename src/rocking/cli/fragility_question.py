@@ -49,7 +49,7 @@ class FragilityQuestion:
     written: str  # unit that the levels were written in, empty if none; medians are printed in it
     states: tuple[float, ...]  # rotations over alpha [-]
     factor: float  # factor on all motions of a cloud [-]
-    choices: dict[str, Any]  # by the word that was given, the first one first
+    restitutions: dict[str, Any]  # by the word that was given, the first one first
     settings: dict[str, Any]  # as of `rocking.cli.output.settings_from`
 
     @property
@@ -83,7 +83,7 @@ class FragilityQuestion:
         """Make the motions and compute."""
         motions, facts = motions_from(sources, told, quiet=quiet)
         levels = self._levels(motions)
-        total = len(motions) * (1 if levels is None else levels.size) * len(self.choices)
+        total = len(motions) * (1 if levels is None else levels.size) * len(self.restitutions)
         if total > MOST_HISTORIES:
             raise InvalidValueError(
                 f"there must be at most {MOST_HISTORIES} histories, got {total}; rocking campaign computes more"
@@ -96,7 +96,7 @@ class FragilityQuestion:
         if self.analysis == "cloud" or self.levels is not None:
             return self.levels
         options = {name: value for name, value in self.settings.items() if name != "threads"}
-        subject = Subject.of(self.body, motions, next(iter(self.choices.values())), self.measure, options)
+        subject = Subject.of(self.body, motions, next(iter(self.restitutions.values())), self.measure, options)
         low, high, count = _REACH
         lifts = 1.0 if self.measure.uplift is None else self.measure.uplift(subject.scale)
         return np.geomspace(low * lifts, high * lifts, count)
@@ -108,11 +108,11 @@ class FragilityQuestion:
         from rocking.studies.sensitivity import fragility_sensitivity
 
         options = {**self.settings, "measure": self.measure, "states": self.states, "progress": tell}
-        first = next(iter(self.choices))
-        if len(self.choices) > 1:
-            compared = fragility_sensitivity(self.body, motions, levels, self.choices, **options)
+        first = next(iter(self.restitutions))
+        if len(self.restitutions) > 1:
+            compared = fragility_sensitivity(self.body, motions, levels, self.restitutions, **options)
             return compared.results[first], compared
-        law = self.choices[first]
+        law = self.restitutions[first]
         if self.analysis == "cloud":
             return cloud(self.body, motions, law, factor=self.factor, **options), None
         study = multiple_stripe_analysis if self.analysis == "stripes" else incremental_dynamic_analysis
@@ -133,7 +133,7 @@ class FragilityAnswer:
         """The analyses by their restitution."""
         if self.compared is not None:
             return self.compared.results
-        return {next(iter(self.question.choices)): self.found}
+        return {next(iter(self.question.restitutions)): self.found}
 
 
 def _levels(kind: str, wanted: IntensityMeasure, word: str | None) -> tuple[FloatArray | None, str]:

@@ -45,7 +45,7 @@ class MapQuestion:
     motion: Motion
     x: Axis  # x, y: the axes
     y: Axis
-    choices: dict[str, Any]  # by the word that was given; the first is the map that is printed
+    restitutions: dict[str, Any]  # by the word that was given; the first is the map that is printed
     refine: int | None  # levels of refinement
     settings: dict[str, Any]  # as of `rocking.cli.output.settings_from`
     # units that axes were written in, by axis, in which they are printed and drawn
@@ -93,17 +93,17 @@ class MapQuestion:
         from rocking.studies.islands import safe_islands
         from rocking.studies.sensitivity import map_sensitivity
 
-        first, several = next(iter(self.choices)), len(self.choices) > 1
-        total = None if self.refine else self.x.values.size * self.y.values.size * len(self.choices)
+        first, several = next(iter(self.restitutions)), len(self.restitutions) > 1
+        total = None if self.refine else self.x.values.size * self.y.values.size * len(self.restitutions)
         compared = None
         with output.bar("histories", total, quiet=quiet) as tell:
             options = {**self.settings, "progress": tell}
             given = (self.body, self.motion, self.x, self.y)
             if several:
-                compared = map_sensitivity(*given, self.choices, **options)
+                compared = map_sensitivity(*given, self.restitutions, **options)
                 found = compared.datasets[first]
             else:
-                found = overturning_map(*given, self.choices[first], refine=self.refine, **options)
+                found = overturning_map(*given, self.restitutions[first], refine=self.refine, **options)
         return MapAnswer(self, found, safe_islands(found), compared)
 
 
@@ -183,7 +183,7 @@ def _draw(answer: MapAnswer, path: Path) -> None:
 
     asked = answer.question
     lines = boundary(
-        asked.body, asked.motion, asked.x, asked.y, next(iter(asked.choices.values())),
+        asked.body, asked.motion, asked.x, asked.y, next(iter(asked.restitutions.values())),
         levels=asked.refine or 0, tolerance=_LINE, **asked.settings,
     ) if str(answer.found.attrs["engine"]).startswith("fast") else []  # fmt: skip
     figure = overturning_map_picture(answer.found, lines)

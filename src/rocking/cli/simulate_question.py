@@ -16,9 +16,9 @@ from rocking.dynamics.response import Motion, Response
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome
-from rocking.spec.response import ResponseQuestion
+from rocking.spec.response import ResponseProblem
 
-Question = ResponseQuestion
+Question = ResponseProblem
 """Everything that a response depends on."""
 
 _SIZE = ("width", "height", "depth", "density", "angle", "semi_diagonal", "unit")
@@ -50,7 +50,7 @@ def question_of(
     share = None if free is None else _share(body, checks.number("--free", free))
     settings = Settings(gravity=pull, linear=linear)
     mu = DEFAULT_FRICTION if friction is None else checks.positive("--friction", friction)
-    return Question(body, motion, {}, settings, engine, friction=mu, free=share, scale=scale)
+    return Question(body, motion, {}, settings, engine, assumed_friction=mu, free=share, scale=scale)
 
 
 def _share(body: Body, free: float) -> float:
@@ -204,18 +204,20 @@ class ResponseComparison:
 
         response = _computed(question, restitution_from(restitution))
         rivals = {model.label: model for model in default_models() if model.label != response.rocker.label}
-        return cls(response, question.friction, {name: _tried(question, model) for name, model in rivals.items()})
+        return cls(
+            response, question.assumed_friction, {name: _tried(question, model) for name, model in rivals.items()}
+        )
 
     @classmethod
     def of_choices(cls, question: Question) -> "ResponseComparison":
         """Compute the response with the first restitution of a question, and with all others that it lists."""
-        (_, first), *rest = question.choices.items()
+        (_, first), *rest = question.restitutions.items()
         response = _computed(question, first)
-        return cls(response, question.friction, {name: _tried(question, choice) for name, choice in rest})
+        return cls(response, question.assumed_friction, {name: _tried(question, choice) for name, choice in rest})
 
 
 def _computed(question: Question, restitution: Any) -> Response:
-    response = question.answered_with(restitution)
+    response = question.answer(restitution)
     if response.outcome is Outcome.FAILED:
         raise RockingError(f"there is no response: {response.status.value}")
     return response
@@ -223,7 +225,7 @@ def _computed(question: Question, restitution: Any) -> Response:
 
 def _tried(question: Question, restitution: Any) -> Response | str:
     try:
-        return question.answered_with(restitution)
+        return question.answer(restitution)
     except InvalidValueError as error:
         return str(error)
 
@@ -235,7 +237,7 @@ def answer_of(path: Path) -> ResponseComparison:
     """
     from rocking.spec.response import ResponseJob
 
-    return ResponseComparison.of_choices(ResponseJob.read(path).question)
+    return ResponseComparison.of_choices(ResponseJob.read(path).problem)
 
 
 def typed(context: typer.Context, name: str) -> bool:

@@ -1,13 +1,14 @@
 """What may stand in the file of a campaign or of a response. Imported only when one is read: it loads pydantic."""
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
 
 from rocking.conventions import DEFAULT_FRICTION
 from rocking.spec.fields import JobTable, Names, Numbers, Positive, Seed, Values, Words, in_list, refused
-from rocking.studies.histories import LARGEST_CHUNK
+
+if TYPE_CHECKING:
+    from rocking.studies.axis import Axis
 
 Kind = Literal[
     "overturning-map", "minimum-acceleration", "rocking-spectrum", "stripes", "incremental", "cloud", "inventory",
@@ -31,14 +32,12 @@ _OWN_BODIES = {
 }
 _MANY_BODIES = {"histories", "minimum-acceleration", *_OWN_BODIES}
 _ANALYSES = [kind for kind, table in NEEDS.items() if table == "fragility"]
-SOURCES = ("pulse", "record", "synthetic")
-"""Keys of a motion, of which one is needed."""
+_OF_FILES = {"format", "units", "time_step", "component", "vertical", "vertical_file", "scale"}
 
-_OWN = {
-    "pulse": {"scale"},
-    "record": {"format", "units", "time_step", "component", "vertical", "scale"},
-    "synthetic": {"seed", "member", "pga", "pgv", "time_step", "scale"},
-}
+
+def _key(description: str, usual: Any = None, **limits: Any) -> Any:
+    """Return a field with what it means, which options and the documentation of keys repeat."""
+    return Field(default=usual, description=description, **limits)
 
 
 class RandomTable(JobTable):
@@ -96,42 +95,50 @@ class CampaignTable(JobTable):
     name: Words
     kind: Kind
     note: str | None = None
-    chunk: Annotated[int, Field(ge=1, le=LARGEST_CHUNK)] | None = None
+    chunk: Annotated[int, Field(ge=1, le=1 << 22)] | None = None
     seed: Seed = 0
 
 
-class MotionTable(JobTable):
-    """Records, pulses, or a family of synthetic motions."""
+class MotionKeys(JobTable):
+    """What one motion, or several, are made of."""
 
-    records: Names | None = None
-    pulse: Names | None = None
-    synthetic: Words | None = None
-    format: Words | None = None
-    units: Words | None = None
-    time_step: Positive | None = None
-    component: Words | None = None
-    vertical: Words | None = None
-    scale: float = 1.0
-    count: Annotated[int, Field(ge=1, le=10_000_000)] | None = None
-    seed: Seed | None = None
-    pga: Positive | None = None
-    pgv: Positive | None = None
+    synthetic: Words | None = _key("family of synthetic motions: firm-ground, soft-ground, point-source and more")
+    format: Words | None = _key("format of the record file, if not found by content: see rocking formats")
+    units: Words | None = _key("unit of the record where its file states none: m/s2, cm/s2, mm/s2, gal, g, g/10, mg")
+    time_step: Positive | None = _key("step between samples where the file does not state it [s]")
+    component: Words | None = _key("horizontal component of the file, by name")
+    vertical: Words | None = _key("vertical component, by name")
+    vertical_file: Words | None = _key("file of the vertical component, where it has its own")
+    scale: float = _key("factor on the acceleration of the ground [-]", 1.0)
+    seed: Seed | None = _key("seed of the synthetic motions")
+    pga: Positive | None = _key("peak ground acceleration to which synthetic motions are scaled [m/s2]")
+    pgv: Positive | None = _key("peak ground velocity to which synthetic motions are scaled [m/s]")
 
-    @model_validator(mode="after")
-    def _one_source(self) -> "MotionTable":
-        source = self.chosen("records", "pulse", "synthetic")
-        own = {
-            "records": {"format", "units", "time_step", "component", "vertical", "scale"},
-            "pulse": {"scale"},
-            "synthetic": {"count", "seed", "pga", "pgv", "time_step"},
-        }[source]
-        odd = sorted(self.model_fields_set - own - {source})
+    def _one_source(self, keys: dict[str, set[str]]) -> str:
+        """Return the only source of the motion, after refusing keys of another."""
+        source = self.chosen(*keys)
+        stated = {name for name in self.model_fields_set if getattr(self, name) is not None}
+        odd = sorted(stated & set().union(*keys.values()) - keys[source])
         if odd:
-            raise refused(f"{source} takes no {', '.join(odd)}; allowed beside it: {', '.join(sorted(own))}")
-        if source == "synthetic" and self.count is None:
-            raise refused("count is missing: how many synthetic motions?")
+            raise refused(f"{source} takes no {', '.join(odd)}; allowed beside it: {', '.join(sorted(keys[source]))}")
         if self.scale == 0.0:
             raise refused("scale must not be 0: nothing would move")
+        return source
+
+
+class MotionTable(MotionKeys):
+    """Records, pulses, or a family of synthetic motions."""
+
+    records: Names | None = _key("record files; a name may be a pattern such as *.at2")
+    pulse: Names | None = _key("pulses such as sine:amplitude=3,period=0.8")
+    count: Annotated[int, Field(ge=1, le=10_000_000)] | None = _key("how many synthetic motions")
+
+    @model_validator(mode="after")
+    def _whole(self) -> "MotionTable":
+        own = {"count", "seed", "pga", "pgv", "time_step"}
+        source = self._one_source({"records": _OF_FILES, "pulse": {"scale"}, "synthetic": own})
+        if source == "synthetic" and self.count is None:
+            raise refused("count is missing: how many synthetic motions?")
         return self
 
 
@@ -144,11 +151,22 @@ class AxisTable(Values):
 class MapTable(JobTable):
     """The two axes of a map, and how closely to follow the boundaries in it."""
 
-    x: AxisTable
-    y: AxisTable
-    refine: Annotated[int, Field(ge=0, le=12)] | None = None
-    boundary: Literal["verdict", "mode"] = "verdict"
-    tolerance: Annotated[float, Field(ge=1e-15, le=0.1)] = 1e-10
+    x: AxisTable = _key("axis, and its values in SI", ...)
+    y: AxisTable = _key("the upright axis", ...)
+    refine: int | None = _key("levels of refinement along boundaries, each of half the spacing", None, ge=0, le=12)
+    boundary: Literal["verdict", "mode"] = _key("which boundaries: of overturning, or of all modes", "verdict")
+    tolerance: float = _key("how closely boundaries are bisected [-]", 1e-10, ge=1e-15, le=0.1)
+
+    def axes(self) -> "tuple[Axis, Axis]":
+        """Return the axes x and y."""
+        from rocking.spec.reading import located
+        from rocking.studies.axis import axis_of
+
+        made = []
+        for name, table in (("x", self.x), ("y", self.y)):
+            with located(f"map.{name}"):
+                made.append(axis_of((table.axis, table.numbers())))
+        return made[0], made[1]
 
     @model_validator(mode="after")
     def _refined(self) -> "MapTable":
@@ -159,13 +177,13 @@ class MapTable(JobTable):
 
 
 class MinimumTable(JobTable):
-    """Where and how closely to look for crossings: accelerations [m/s2]."""
+    """Where and how closely to look for the accelerations at which a body begins or ceases to overturn."""
 
-    lowest: Positive | None = None
-    highest: Positive | None = None
-    points: Annotated[int, Field(ge=2, le=1_000_000)] = 400
-    levels: Annotated[int, Field(ge=0, le=12)] = 4
-    tolerance: Annotated[float, Field(ge=0.0, le=0.1)] = 1e-12
+    lowest: Positive | None = _key("where to begin; what lifts the body if not given [m/s2]")
+    highest: Positive | None = _key("where to end; 50 times what lifts the body if not given [m/s2]")
+    points: int = _key("first samples, in equal ratios", 400, ge=2, le=1_000_000)
+    levels: int = _key("how often suspicious intervals are halved, 0 to 12", 4, ge=0, le=12)
+    tolerance: float = _key("width of the last brackets over the acceleration [-]", 1e-12, ge=0.0, le=0.1)
 
 
 class ThresholdsTable(JobTable):
@@ -203,40 +221,44 @@ class ExportTable(JobTable):
 
 
 class SpectrumTable(JobTable):
-    """The blocks of rocking spectra: slenderness angles [rad] and periods 2 pi/p [s]."""
+    """The blocks of rocking spectra."""
 
-    slenderness_angles: Numbers
-    periods: Numbers
-    scale: float = 1.0
+    slenderness_angles: Numbers = _key("slenderness angles alpha = atan(b/h) [rad]", ...)
+    periods: Numbers = _key("periods 2 pi / p [s]", ...)
+    scale: float = _key("factor on the acceleration of the ground [-]", 1.0)
 
 
 class HistoriesTable(JobTable):
-    """Factors on the motions [-]."""
+    """What the histories of a campaign are made with, beside bodies, motions and restitutions."""
 
-    scales: Numbers = Values(values=[1.0])
+    scales: Numbers = _key("factors on the motions [-]", Values(values=[1.0]))
 
 
 class FragilityTable(JobTable):
-    """Measure, levels [its unit] and states of a fragility analysis."""
+    """Measure, levels and limit states of a fragility analysis."""
 
-    measure: Words = "pga"
-    levels: Numbers | None = None
-    states: list[Positive] = Field(default=[0.5])
-    tolerance: Annotated[float, Field(ge=0.0, le=0.1)] | None = None
-    factor: Positive | None = None
+    measure: Words = _key("measure of intensity: pga, pgv, arias, sa(0.5) and more", "pga")
+    levels: Numbers | None = _key("levels of the measure [its unit]")
+    states: list[Positive] = _key("rotations over the slenderness angle that count [-]", [0.5])
+    tolerance: float | None = _key("width of the last brackets over the level [-]", None, ge=0.0, le=0.1)
+    factor: Positive | None = _key("factor on all motions of a cloud [-]")
 
 
 class SettingsTable(JobTable):
     """How to integrate: what is left out has its usual value."""
 
-    gravity: Positive | None = None
-    linear: bool | None = None
-    rest_speed: float | None = None
-    most_events: int | None = None
-    longest_step: float | None = None
-    order: int | None = None
-    tolerance: float | None = None
-    engine: Literal["auto", "fast", "reference"] = "auto"
+    gravity: Positive | None = _key("acceleration of gravity [m/s2]")
+    linear: bool | None = _key("slender-linear equations")
+    rest_speed: float | None = _key("speed below which a motion ends at once [-]")
+    most_events: int | None = _key("a history with more impacts and changes of contact is stopped")
+    longest_step: float | None = _key("longest Taylor step as p times time [-]")
+    order: int | None = _key("order of the Taylor series")
+    tolerance: float | None = _key("bound on the last two terms of a Taylor step [-]")
+    engine: Literal["auto", "fast", "reference"] = _key("which engine computes", "auto")
+
+    def stated(self) -> dict[str, Any]:
+        """Return what was stated, without the engine, as `Settings` takes it."""
+        return self.model_dump(exclude={"engine"}, exclude_none=True)
 
 
 class CampaignDocument(JobTable):
@@ -314,40 +336,61 @@ class CampaignDocument(JobTable):
 class ResponseTable(JobTable):
     """How the body starts, and on what it stands."""
 
-    free: Annotated[float | None, Field(description="first rotation over the slenderness angle [-]")] = None
-    friction: float = Field(
-        gt=0.0, default_factory=lambda: DEFAULT_FRICTION, description="between body and ground; 0.5 is assumed [-]"
+    free: float | None = _key("no motion: let go at this share of the slenderness angle; negative to the left [-]")
+    friction: float | None = _key("coefficient of friction, which lets the body slide, hop and fly [-]", None, gt=0.0)
+    bounce: float | None = _key("with friction: Newton's coefficient of normal velocities, from 0 [-]", None, ge=0.0)
+    assumed_friction: float = Field(
+        gt=0.0,
+        default_factory=lambda: DEFAULT_FRICTION,
+        description="without friction: what pure rocking is compared with; 0.5 if not given [-]",
     )
 
+    @model_validator(mode="after")
+    def _bounces(self) -> "ResponseTable":
+        if self.bounce is not None and self.friction is None:
+            raise refused("pure rocking does not leave the ground: bounce goes with friction")
+        if self.friction is not None and "assumed_friction" in self.model_fields_set:
+            raise refused("give friction, which lets the body slide, or assumed_friction, not both")
+        return self
 
-class OneMotionTable(JobTable):
+
+class OneMotionTable(MotionKeys):
     """One pulse, one record, or one motion of a synthetic family."""
 
-    pulse: Words | None = None
-    record: Words | None = None
-    synthetic: Words | None = None
-    format: Words | None = None
-    units: Words | None = None
-    time_step: Positive | None = None
-    component: Words | None = None
-    vertical: Words | None = None
-    scale: float = 1.0
-    seed: Seed | None = None
-    member: Annotated[int, Field(ge=0, lt=10_000_000)] | None = None
-    pga: Positive | None = None
-    pgv: Positive | None = None
+    pulse: Words | None = _key("a pulse such as sine:amplitude=3,period=0.8")
+    record: Words | None = _key("a record file")
+    member: Annotated[int, Field(ge=0, lt=10_000_000)] | None = _key("which motion of the synthetic family, from 0")
 
     @model_validator(mode="after")
-    def _one_source(self) -> "OneMotionTable":
-        source = self.chosen(*SOURCES)
-        given = self.model_fields_set - {name for name in self.model_fields_set if getattr(self, name) is None}
-        odd = sorted(given & set().union(*_OWN.values()) - _OWN[source])
-        if odd:
-            raise refused(f"{source} takes no {', '.join(odd)}; allowed beside it: {', '.join(sorted(_OWN[source]))}")
-        if self.scale == 0.0:
-            raise refused("scale must not be 0: nothing would move")
+    def _whole(self) -> "OneMotionTable":
+        own = {"seed", "member", "pga", "pgv", "time_step", "scale"}
+        self._one_source({"pulse": {"scale"}, "record": _OF_FILES, "synthetic": own})
         if self.pga is not None and self.pgv is not None:
             raise refused("motions can be scaled to pga or to pgv, not to both")
+        return self
+
+
+class ComponentsTable(OneMotionTable):
+    """One motion, or one along each of the axes x, y and z of a body in space; z is up."""
+
+    x: OneMotionTable | None = _key("motion along x")
+    y: OneMotionTable | None = _key("motion along y")
+    z: OneMotionTable | None = _key("motion along z, upwards")
+
+    @property
+    def components(self) -> dict[str, OneMotionTable]:
+        """The motions by their axis; none where there is one motion alone."""
+        along = {"x": self.x, "y": self.y, "z": self.z}
+        return {axis: table for axis, table in along.items() if table is not None}
+
+    @model_validator(mode="after")
+    def _whole(self) -> "ComponentsTable":
+        if not self.components:
+            super()._whole()
+        elif odd := sorted(self.model_fields_set - {"x", "y", "z"}):
+            raise refused(f"{', '.join(odd)} stands with each of the motions along x, y and z")
+        elif self.x is not None and self.z is not None and (self.x.vertical or self.x.vertical_file):
+            raise refused("the vertical motion is given twice: beside the one along x, and along z")
         return self
 
 
@@ -367,17 +410,11 @@ class ResponseTables(JobTable):
 
 
 def check_start(moved: bool, free: float | None) -> None:
-    """Refuse a document that has neither or both of a motion and a first rotation.
-
-    free: first rotation over the slenderness angle [-].
-    """
-    words = ""
+    """Refuse a document that has neither or both of a motion and a first rotation over the slenderness angle [-]."""
     if moved and free is not None:
-        words = "give a motion or response.free, not both"
+        raise refused("give a motion or response.free, not both")
     if not moved and free is None:
-        words = "what moves the body? Give a motion, or response.free (such as 0.5) for free rocking"
-    if words:
-        raise PydanticCustomError("contradiction", "{words}", {"words": words})
+        raise refused("what moves the body? Give a motion, or response.free (such as 0.5) for free rocking")
 
 
 class ResponseDocument(ResponseTables):
@@ -385,7 +422,7 @@ class ResponseDocument(ResponseTables):
 
     response: ResponseTable
     body: dict[str, Any]
-    motion: OneMotionTable | None = None
+    motion: ComponentsTable | None = None
 
     @model_validator(mode="after")
     def _moves(self) -> "ResponseDocument":

@@ -1,4 +1,4 @@
-"""One body, one motion or first rotation, some restitutions: the question of a response, and its file."""
+"""One body and what moves it: the problem of a response, made from its tables, and its answer."""
 
 import os
 import warnings
@@ -8,42 +8,53 @@ from typing import TYPE_CHECKING, Any
 
 from rocking import checks, plausibility
 from rocking.bodies import Body
+from rocking.bodies.solid import Solid
 from rocking.conventions import DEFAULT_FRICTION
 from rocking.dynamics import free_rocking, simulate
-from rocking.dynamics.response import Motion, Response
+from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, PureRockingWarning
-from rocking.motions.formats.reader import read_motion
-from rocking.motions.pulses import pulse
-from rocking.spec.parts import body_of, choices_of
+from rocking.spec.construction import any_body_of, motion_of, restitutions_of
 from rocking.spec.reading import InputFiles, located, read_text, validated
-from rocking.studies.motion_sets import SyntheticSet
 
 if TYPE_CHECKING:
-    from rocking.spec.document import OneMotionTable, ResponseDocument, ResponseTables
+    from rocking.spec.document import ComponentsTable, ResponseDocument, ResponseTables, RestitutionTable
+
+COMPLEMENTARITY = "complementarity"
+"""Restitution of a body that slides and hops: its rocking impacts follow from complementarity, as all others do."""
+
+_MECHANICS = {"rocking": "pure rocking", "contact": "sliding and hopping", "space": "a body in space"}
 
 
 @dataclass(frozen=True, slots=True)
-class ResponseQuestion:
+class ResponseProblem:
     """Everything that a response depends on."""
 
-    body: Body
-    motion: Motion | None  # the motion, not scaled; None for free rocking
-    # restitutions by label, as `simulate` takes them
-    choices: dict[str, Any] = field(default_factory=lambda: {"ked": "ked"})
+    body: Any  # a plane body, or a `Solid`
+    motion: Motion | dict[str, Motion] | None  # not scaled; by axis for a body in space, None for free rocking
+    restitutions: dict[str, Any] = field(default_factory=lambda: {"ked": "ked"})  # by label, as `simulate` takes them
     settings: Settings = field(default_factory=Settings)  # how to integrate
-    engine: str = "auto"  # which engine
-    friction: float = DEFAULT_FRICTION  # coefficient of friction between body and ground [-]
-    free: float | None = None  # first rotation over the slenderness angle of the side it leans to, for free rocking [-]
+    engine: str = "auto"
+    friction: float | None = None  # coefficient of friction with which the body slides and hops [-]
+    bounce: float = 0.0  # Newton's coefficient of normal velocities, with friction [-]
+    assumed_friction: float = DEFAULT_FRICTION  # what pure rocking is compared with [-]
+    free: float | None = None  # first rotation over the slenderness angle of the side it leans to [-]
     scale: float = 1.0  # factor on the motion [-]
 
     def __post_init__(self) -> None:
         """Check what the engines do not check."""
-        plausibility.warn(plausibility.of_friction(checks.positive("friction", self.friction)))
+        for name in ("friction", "assumed_friction"):
+            if getattr(self, name) is not None:
+                plausibility.warn(plausibility.of_friction(checks.positive("friction", getattr(self, name))))
         if self.free is not None:
             checks.number("free", self.free)
         if (self.motion is None) != (self.free is not None):
             raise InvalidValueError("give either a motion or a first rotation (free), got both or neither")
+
+    @property
+    def mechanics(self) -> str:
+        """How it moves: rocking, contact or space."""
+        return "rocking" if self.friction is None and isinstance(self.body, Body) else self.settings.mechanics
 
     @property
     def rotation(self) -> float:
@@ -53,16 +64,74 @@ class ResponseQuestion:
         side = self.body.side("right" if self.free > 0.0 else "left", self.settings.gravity)
         return self.free * side.slenderness_angle
 
-    def answered_with(self, restitution: Any) -> Response:
-        """Return the response with one restitution."""
-        how = {**self.settings.stated, "engine": self.engine}
+    def answer(self, restitution: Any = ...) -> Any:
+        """Return the response with one restitution, the first if none is given."""
+        law = next(iter(self.restitutions.values())) if restitution is ... else restitution
+        options: dict[str, Any] = dict(self.settings.stated)
+        if self.mechanics == "rocking":
+            options["engine"] = self.engine
+        if self.mechanics == "contact":
+            options |= {"friction": self.friction, "bounce": self.bounce}
         with warnings.catch_warnings():  # whoever shows the response shows its doubts
             warnings.simplefilter("ignore", PureRockingWarning)
             if self.motion is None:
-                response: Response = free_rocking(self.body, self.rotation, restitution, **how)
-            else:
-                response = simulate(self.body, self.motion, restitution, scale=self.scale, **how)
-            return response
+                return free_rocking(self.body, self.rotation, law, **options)
+            return simulate(self.body, self.motion, law, scale=self.scale, **options)
+
+
+def problem_of(tables: "ResponseTables", body: Any, motion: Any, *, scale: float | None = None) -> ResponseProblem:
+    """Return the problem that tables describe, with the body and the motion that have been made.
+
+    scale: factor on the motion; what the tables say of their motion if not given [-].
+    """
+    table, start = getattr(tables, "motion", None), tables.response
+    mechanics = "rocking" if start.friction is None else "contact"
+    if isinstance(body, Solid):
+        mechanics = "space"
+        _refuse("a body in space has an engine of its own", start, {"free", "friction", "bounce", "assumed_friction"})
+    if mechanics != "rocking":
+        _refuse(
+            f"{_MECHANICS[mechanics]} has one engine, with the full equations", tables.settings, {"linear", "engine"}
+        )
+    with located("settings"):
+        settings = Settings(mechanics=mechanics, **tables.settings.stated())
+    return ResponseProblem(
+        body,
+        motion,
+        _restitutions(tables.restitution, mechanics, body),
+        settings,
+        engine=tables.settings.engine,
+        friction=start.friction,
+        bounce=start.bounce or 0.0,
+        assumed_friction=start.assumed_friction,
+        free=start.free,
+        scale=scale if scale is not None else 1.0 if table is None else table.scale,
+    )
+
+
+def _refuse(reason: str, table: Any, keys: set[str]) -> None:
+    stated = [name for name in type(table).model_fields if name in keys & table.model_fields_set]
+    if any(getattr(table, name) not in {None, False} for name in stated):
+        raise InvalidValueError(f"{reason}, so it takes no {', '.join(stated)}")
+
+
+def _restitutions(table: "RestitutionTable", mechanics: str, body: Any) -> dict[str, Any]:
+    if mechanics == "contact" and table.model == COMPLEMENTARITY:
+        return {COMPLEMENTARITY: None}
+    if mechanics != "space":
+        return restitutions_of(table, 0, [body])
+    if table.distribution is not None or table.left is not None:
+        raise InvalidValueError("restitution: a body in space takes model, models, value or values")
+    texts = [*([] if table.model is None else [table.model]), *(table.models or [])]
+    numbers = [*([] if table.value is None else [table.value]), *(table.values or [])]
+    return {**{text: _number_or_text(text) for text in texts}, **{repr(number): number for number in numbers}}
+
+
+def _number_or_text(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 @dataclass(frozen=True)
@@ -70,15 +139,12 @@ class ResponseJob:
     """A file that describes one response, read with all files that it names."""
 
     document: "ResponseDocument"  # its tables
-    question: ResponseQuestion  # body, motion, restitutions and settings
+    problem: ResponseProblem  # body, motion, restitutions and settings
     inputs: InputFiles  # the files that were read, with their hashes
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> "ResponseJob":
-        """Read a file.
-
-        path: TOML with the tables [response], [body], [motion], [restitution] and [settings].
-        """
+        """Read a TOML file with the tables [response], [body], [motion], [restitution] and [settings]."""
         where = Path(path)
         with located(str(where)):
             return cls.of_text(read_text(where), where.parent)
@@ -89,63 +155,35 @@ class ResponseJob:
 
         >>> text = '[response]\nfree = 0.5\n[body]\nunits = "m"\nwidth = 1\nheight = 4'
         >>> job = ResponseJob.of_text(text, ".")
-        >>> job.question.free, list(job.question.choices)
+        >>> job.problem.free, list(job.problem.restitutions)
         (0.5, ['ked'])
         """
         from rocking.spec.document import ResponseDocument
 
-        document = validated(ResponseDocument, text)
+        return cls.of(validated(ResponseDocument, text), folder)
+
+    @classmethod
+    def of(cls, document: "ResponseDocument", folder: str | os.PathLike[str]) -> "ResponseJob":
+        """Make what tables describe."""
         inputs = InputFiles(Path(folder))
         with located("body"):
-            body = body_of(document.body, inputs)
+            body = any_body_of(document.body, inputs)
         motion = None
         if document.motion is not None:
-            with located("motion"):
-                motion = _motion(document.motion, inputs)
-        return cls(document, question_from(document, body, motion), inputs)
+            motion = _motion(document.motion, inputs, solid=isinstance(body, Solid))
+        return cls(document, problem_of(document, body, motion), inputs)
 
 
-def question_from(
-    tables: "ResponseTables", body: "Body", motion: Motion | None, scale: float | None = None
-) -> ResponseQuestion:
-    """Return the question that tables ask about a body and a motion that have been made.
-
-    scale: factor on the motion; what the tables say of their motion if not given [-].
-    """
-    with located("settings"):
-        told = tables.settings.model_dump(exclude={"engine"}, exclude_none=True)
-        settings = Settings(**told)
-    table = getattr(tables, "motion", None)
-    return ResponseQuestion(
-        body,
-        motion,
-        choices_of(tables.restitution, 0, [body]),
-        settings,
-        engine=tables.settings.engine,
-        friction=tables.response.friction,
-        free=tables.response.free,
-        scale=scale if scale is not None else 1.0 if table is None else table.scale,
-    )
-
-
-def made_motion(table: "OneMotionTable") -> Motion:
-    """Return a motion that needs no file: a pulse, or one of a synthetic family.
-
-    Returns not scaled by `scale`; scaled to `pga` or `pgv`.
-    """
-    if table.pulse is not None:
-        return pulse(table.pulse)
-    if table.synthetic is None:
-        raise InvalidValueError("a record is a file; only pulses and synthetic motions are made")
-    member = table.member or 0
-    made = SyntheticSet(
-        table.synthetic, member + 1, table.seed or 0, pga=table.pga, pgv=table.pgv, time_step=table.time_step
-    )
-    return made[member]
-
-
-def _motion(table: "OneMotionTable", inputs: InputFiles) -> Motion:
-    if table.record is None:
-        return made_motion(table)
-    path = inputs.file(table.record)
-    return read_motion(path, table.format, table.units, table.time_step, table.component, table.vertical)
+def _motion(table: "ComponentsTable", inputs: InputFiles, *, solid: bool) -> Any:
+    if not table.components:
+        with located("motion"):
+            return motion_of(table, inputs)
+    if not solid:
+        raise InvalidValueError("motion: a plane body has one motion and its vertical part; x, y and z are for solids")
+    motions: dict[str, Motion] = {}
+    for axis, one in table.components.items():
+        with located(f"motion.{axis}"):
+            motions[axis] = motion_of(one, inputs)
+            if one.scale != 1.0:
+                motions[axis] = motions[axis].scaled(one.scale)
+    return motions

@@ -77,10 +77,10 @@ class ResponseAnswers:
         """
         found: dict[str, Response | str] = {}
         samples = 0
-        for label, choice in question.choices.items():
+        for label, choice in question.restitutions.items():
             found[label] = tried = _tried(question, choice)
             samples += tried.segments.count if isinstance(tried, Response) else 0
-            _refuse_long(samples, len(found), len(question.choices))
+            _refuse_long(samples, len(found), len(question.restitutions))
         reasons = [reason for reason in found.values() if isinstance(reason, str)]
         if len(reasons) == len(found):
             raise InvalidValueError(reasons[0])
@@ -118,7 +118,7 @@ def answer_facts(
     window: the part of the time that is drawn [s]. Returns what `rocking.reports.facts.response.response_facts` says,
     with ``label``, ``series`` and ``fall``.
     """
-    facts = response_facts(response, question.friction)
+    facts = response_facts(response, question.assumed_friction)
     series = response_series(response, points, window)
     return {"label": label, **facts, "series": series, "fall": fall_series(response)}
 
@@ -133,7 +133,7 @@ def _refuse_long(samples: int, done: int, asked: int) -> None:
 
 def _tried(question: Question, restitution: Any) -> Response | str:
     try:
-        response = question.answered_with(restitution)
+        response = question.answer(restitution)
     except InvalidValueError as error:
         return str(error)
     if response.outcome is Outcome.FAILED:

@@ -240,6 +240,8 @@ class MotionInput(OneMotionTable):
     def _named_record(self) -> "MotionInput":
         if self.file_name is not None and self.record is None:
             raise refused("file_name goes with record only")
+        if self.vertical_file is not None:
+            raise refused("vertical_file: the application reads no file by its name; upload one with both components")
         return self
 
 
@@ -253,6 +255,9 @@ class Inputs(ResponseTables):
 
     @model_validator(mode="after")
     def _few_restitutions(self) -> "Inputs":
+        if self.response.friction is not None:
+            raise refused("response.friction: the page rocks without sliding, compared with response.assumed_friction; "
+                          "`rocking simulate` lets a body slide, hop and fly")  # fmt: skip
         chosen = len(self.restitution.models or ()) + len(self.restitution.values or ())
         refuse_more(chosen, MOST_RESTITUTIONS, "one question compares up to {most} restitutions")
         return self

@@ -34,7 +34,7 @@ def written(
     study: OpenStudy, kind: Kind, target: Path, what: str | None, restitution: int, crossing: Crossing | None = None
 ) -> None:
     """Write a finished study into a file."""
-    labels = list(study.job.job.parts.choices)
+    labels = list(study.job.job.problem.restitutions)
     if not 0 <= restitution < len(labels):
         raise NotFound(f"restitution must be a number from 0 to {len(labels) - 1}, got {restitution}")
     if kind == "toml":

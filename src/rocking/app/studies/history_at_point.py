@@ -21,9 +21,9 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.pulses import pulse
 from rocking.outcome import Outcome
-from rocking.spec.parts import motions_of
+from rocking.spec.construction import motions_of
 from rocking.spec.reading import InputFiles
-from rocking.spec.response import ResponseQuestion
+from rocking.spec.response import ResponseProblem
 from rocking.studies.adaptive_grid import Plane
 from rocking.studies.axis import RestitutionAxis, axis_of
 from rocking.studies.question import Question
@@ -72,7 +72,7 @@ class HistoryPlace:
     @classmethod
     def of(cls, study: OpenStudy, x: int, y: int, restitution: int = 0, motion: int = 0) -> "HistoryPlace":
         """Return the history at a point of a picture."""
-        dims, choices = study.job.job.study.dims, len(study.job.job.parts.choices)
+        dims, choices = study.job.job.study.dims, len(study.job.job.problem.restitutions)
         across = across_of(study)
         index = {"motion": motion} | {across[0]: x, across[1]: y}
         sizes = {name: dims[name] for name in study.axes} | {"the restitution": choices}
@@ -120,7 +120,7 @@ class Variation:
             drawn = {side: float(rows.values[f"r_{side}"][0]) for side in ("left", "right")}
             restitution, choice = drawn, dict(drawn)
         if job.document.map is not None:
-            made = cls(job.parts.bodies[0], _table(study, 0), label, restitution, choice, scale)
+            made = cls(job.problem.bodies[0], _table(study, 0), label, restitution, choice, scale)
             return _on_map(made, study, place)
         if job.document.spectrum is not None:
             angle, period = (job.study.coordinates[name].values for name in ("slenderness_angle", "semi_diagonal"))
@@ -129,7 +129,7 @@ class Variation:
             )
             return cls(body, body_table(body), label, restitution, choice, scale)
         number = place.index.get("body", 0)
-        return cls(job.parts.bodies[number], _table(study, number), label, restitution, choice, scale)
+        return cls(job.problem.bodies[number], _table(study, number), label, restitution, choice, scale)
 
 
 def _on_map(made: Variation, study: OpenStudy, place: HistoryPlace) -> Variation:
@@ -139,7 +139,7 @@ def _on_map(made: Variation, study: OpenStudy, place: HistoryPlace) -> Variation
     axes = {side: axis_of((table.axis, table.numbers())) for side, table in (
         ("x", job.document.map.x), ("y", job.document.map.y),
     )}  # fmt: skip
-    question = Question(made.body, job.parts.motions[0], made.restitution, job.parts.settings)
+    question = Question(made.body, job.problem.motions[0], made.restitution, job.problem.settings)
     at = {side: axis.values[place.index[axis.name]][None] for side, axis in axes.items()}
     case = Plane(question, axes["x"], axes["y"]).case(at["x"], at["y"])
     geometry = {name: float(values[0]) for name, values in case.geometry.items()}
@@ -169,7 +169,7 @@ def _table(study: OpenStudy, number: int) -> dict[str, Any]:
 def _choice(study: OpenStudy, place: HistoryPlace) -> tuple[str, Any, dict[str, Any] | None]:
     """Return label, restitution, and what inputs say of it."""
     table, number = study.job.job.document.restitution, place.restitution
-    label, restitution = list(study.job.job.parts.choices.items())[number]
+    label, restitution = list(study.job.job.problem.restitutions.items())[number]
     told: list[dict[str, Any] | None] = [{"model": table.model}] if table.model else []
     told += [{"model": word} for word in table.models or []]
     told += [{"value": value} for value in ([] if table.value is None else [table.value]) + (table.values or [])]
@@ -209,7 +209,7 @@ class ChosenMotion:
             return cls._of_record(table, place, stretch, study)
         told = {"synthetic": table.synthetic, "seed": table.seed or 0, "member": place}
         told |= {name: getattr(table, name) for name in _OF_FAMILIES if getattr(table, name) is not None}
-        made = _stretched(study.job.job.parts.motions[number], stretch)
+        made = _stretched(study.job.job.problem.motions[number], stretch)
         return cls(made, told if stretch == 1.0 else None, 1.0)
 
     @classmethod
@@ -308,11 +308,16 @@ def stored(study: OpenStudy, place: HistoryPlace) -> dict[str, Any]:
 
 def _responded(
     study: OpenStudy, place: HistoryPlace, variation: Variation, motion: ChosenMotion
-) -> tuple[ResponseQuestion, Response]:
+) -> tuple[ResponseProblem, Response]:
     job = study.job.job
     scale, engine = variation.scale * motion.scale, job.document.settings.engine
-    asked = ResponseQuestion(
-        variation.body, motion.motion, {variation.label: variation.restitution}, job.parts.settings, engine, scale=scale
+    asked = ResponseProblem(
+        variation.body,
+        motion.motion,
+        {variation.label: variation.restitution},
+        job.problem.settings,
+        engine,
+        scale=scale,
     )
     how = {**asked.settings.stated, "engine": engine, "key": place.number}
     with warnings.catch_warnings():  # the answer shows its doubts

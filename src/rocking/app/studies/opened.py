@@ -86,7 +86,7 @@ class OpenStudy:
 
         study = self.job.job.study
         several = len(self.axes) < len(study.dims)
-        label = list(self.job.job.parts.choices)[restitution]
+        label = list(self.job.job.problem.restitutions)[restitution]
         arrays = {name: (tuple(study.dims), values) for name, values in self.results.items()}
         coordinates = {
             name: (one.dims, one.values, {"units": one.unit, "long_name": one.meaning})

@@ -167,7 +167,7 @@ def spectrum_result(study: OpenStudy) -> dict[str, Any]:
     modes = by_restitution(study, "mode")
     coefficient = job.study.coordinates["coefficient"].values
     curves = []
-    for k, label in enumerate(job.parts.choices):
+    for k, label in enumerate(job.problem.restitutions):
         found = study.dataset(k)
         for place, angle in enumerate(angles["values"]):
             low, middle, high = fractiles(found, place)
@@ -392,7 +392,7 @@ def result_of(study: OpenStudy) -> dict[str, Any]:
     document = study.job.job.document
     kind = str(document.campaign.kind)
     head = {"id": study.id, "kind": kind, "name": str(document.campaign.name), "contact": _contact(study, kind)}
-    return {**head, "restitutions": list(study.job.job.parts.choices), **_BY_KIND[kind](study)}
+    return {**head, "restitutions": list(study.job.job.problem.restitutions), **_BY_KIND[kind](study)}
 
 
 def _contact(study: OpenStudy, kind: str) -> str:

@@ -44,7 +44,7 @@ def _body(body: Mapping[str, Any]) -> list[str] | None:
 
 def _start(inputs: Mapping[str, Any], record: str | None) -> list[str] | None:
     motion, response = inputs.get("motion"), inputs.get("response") or {}
-    friction = _options({"friction": response.get("friction")})
+    friction = _options({"friction": response.get("assumed_friction")})
     if motion is None:
         return None if response.get("free") is None else [*_options({"free": response["free"]}), *friction]
     scale = _options({"scale": motion.get("scale")})

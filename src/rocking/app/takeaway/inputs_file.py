@@ -65,9 +65,12 @@ def commands(inputs: Inputs) -> list[str]:
 
 def inputs_as_toml(inputs: Inputs) -> str:
     """Return inputs as a file that `rocking simulate` takes."""
-    told, friction = plain_inputs(inputs), inputs.response.friction
+    told, friction = plain_inputs(inputs), inputs.response.assumed_friction
     tables: dict[str, Any] = {
-        "response": {**({} if isinstance(friction, Assumed) else {"friction": friction}), **told.get("response", {})},
+        "response": {
+            **({} if isinstance(friction, Assumed) else {"assumed_friction": friction}),
+            **told.get("response", {}),
+        },
         "body": told["body"],
         "motion": _motion_on_disk(told.get("motion"), record_name(inputs)),
         "restitution": told.get("restitution", {"model": "ked"}),

@@ -24,7 +24,7 @@ def report_of(asked: Evaluation, date: str) -> bytes:
         _measures(asked) if moved else {},
         asked.responses,
         asked.refused,
-        asked.question.friction,
+        asked.question.assumed_friction,
     )
     inputs, told = asked.inputs, asked.about
     about = About(

@@ -30,7 +30,7 @@ def comparable(folder: JobFolder) -> bool:
     Returns whether `comparison` has something to say of it.
     """
     study = folder.job.study
-    return len(folder.job.parts.choices) > 1 and study.search is None and study.assess is None
+    return len(folder.job.problem.restitutions) > 1 and study.search is None and study.assess is None
 
 
 def comparison(folder: JobFolder) -> Sensitivity:
@@ -56,7 +56,7 @@ def comparison(folder: JobFolder) -> Sensitivity:
     if not comparable(folder):
         raise InvalidValueError("a comparison needs a map, spectra, fragility or histories with several restitutions")
     refuse_unfinished(folder)
-    choices = folder.job.parts.choices
+    choices = folder.job.problem.restitutions
     results = _datasets(folder) if folder.job.study.finish is None else analyses(folder)
     drawn = [label for label, law in choices.items() if isinstance(law, ImpactLaw) and law.kind == _RANDOM]
     return Sensitivity(results, baseline=next(iter(choices)), drawn=drawn)
@@ -72,7 +72,7 @@ _RANDOM = RandomRestitution.kind
 
 def _datasets(folder: JobFolder) -> "dict[str, xr.Dataset]":
     xarray: Any = extra("xarray", "comparing restitutions")
-    study, labels = folder.job.study, list(folder.job.parts.choices)
+    study, labels = folder.job.study, list(folder.job.problem.restitutions)
     flat = {name: np.empty(study.histories.count, TYPES[name]) for name in _KEPT}
     for first, last, found in Results(study, folder.campaign, {}).pieces():
         for name in _KEPT:

@@ -193,7 +193,7 @@ def _check_what(
         if suffix == ".nc" and what in {"refined", "boundary"}:
             more = "; the .nc of the histories (--what histories) holds points and polylines too"
         raise InvalidValueError(f"{what} can be written as {', '.join(allowed)}, got {suffix or 'no ending'!r}{more}")
-    labels = list(folder.job.parts.choices)
+    labels = list(folder.job.problem.restitutions)
     if what not in _OF_ONE and restitution is not None:
         raise InvalidValueError("restitution goes with fragility, fema-p58 and measures; every history has its own")
     if what not in ANALYSES and crossing is not None:

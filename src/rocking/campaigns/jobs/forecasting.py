@@ -106,7 +106,7 @@ def _later(job: Job) -> tuple[int, int] | None:
         return None
     count, table = job.study.histories.count, job.document.map
     if table is None or table.refine is None:
-        low, high = _OF_SEARCHES["pulses" if job.parts.motions[0].__class__ is Pulse else "records"]
+        low, high = _OF_SEARCHES["pulses" if job.problem.motions[0].__class__ is Pulse else "records"]
         return int(low * count), int(high * count)
     # a line across the map, cut into edges of the finest level, each found, and halved until it is as short as asked
     edges = math.sqrt(count) * 2.0**table.refine
@@ -124,7 +124,7 @@ def _held(job: Job, later: tuple[int, int] | None) -> int:
 
 def _motions(job: Job) -> int:
     """Return the room that motions take which are held in memory [bytes]."""
-    motions = job.parts.motions
+    motions = job.problem.motions
     if not motions.in_memory:
         return MOTIONS_AT_ONCE * 8 * 8192
     samples = sum(np.size(getattr(motions[k], "acceleration", 0)) for k in range(len(motions)))

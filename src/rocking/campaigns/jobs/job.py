@@ -11,7 +11,7 @@ from rocking.spec.reading import document_of, located, read_text
 if TYPE_CHECKING:
     from rocking.campaigns.jobs.study import Study
     from rocking.spec.document import CampaignDocument
-    from rocking.spec.parts import Parts
+    from rocking.spec.study import StudyProblem
 
 
 @dataclass(frozen=True)
@@ -97,23 +97,23 @@ class Job:
         return document_of(self.text)
 
     @cached_property
-    def parts(self) -> "Parts":
+    def problem(self) -> "StudyProblem":
         """Bodies, motions, restitutions and settings."""
-        from rocking.spec.parts import Parts
+        from rocking.spec.study import StudyProblem
 
-        return Parts.of(self.document, self.folder)
+        return StudyProblem.of(self.document, self.folder)
 
     @cached_property
     def study(self) -> "Study":
         """Histories, what they are over, and what is read off their results."""
         from rocking.campaigns.jobs.kinds import KINDS
 
-        return KINDS[self.document.campaign.kind](self.parts)
+        return KINDS[self.document.campaign.kind](self.problem)
 
     @property
     def inputs(self) -> list[dict[str, Any]]:
         """The files that it names: path, sha256 and bytes of each."""
-        return self.parts.inputs.told()
+        return self.problem.inputs.told()
 
     @cached_property
     def provenance(self) -> dict[str, Any]:

@@ -61,12 +61,12 @@ def measure_comparison(
         raise InvalidValueError(f"{_NOTHING} measures are compared over a cloud, this is {document.campaign.kind!r}")
     refuse_unfinished(folder)
     chosen = _chosen(folder, restitution)
-    names, columns = measures_of(document), columns_of(document, folder.job.parts.motions)
+    names, columns = measures_of(document), columns_of(document, folder.job.problem.motions)
     if document.export is None or document.export.columns is None:
         rocked = clearly_lifted(chosen.responses, chosen.least)
         columns = {name: values for name, values in columns.items() if np.unique(values[rocked]).size > 1}
     count = folder.campaign.plan.count
-    told = None if progress is None else _Told(progress, len(folder.job.parts.motions) * len(names), count)
+    told = None if progress is None else _Told(progress, len(folder.job.problem.motions) * len(names), count)
     try:
         return compare_measures(chosen, names, columns, progress=told)
     except InvalidValueError as error:

@@ -32,8 +32,8 @@ def provenance(job: "Job") -> dict[str, Any]:
         "inputs": job.inputs,
         "histories": histories.count,
         "histories_key": histories.key(),
-        "restitution": [_model(label, choice) for label, choice in job.parts.choices.items()],
-        "settings": job.parts.settings.stated,
+        "restitution": [_model(label, choice) for label, choice in job.problem.restitutions.items()],
+        "settings": job.problem.settings.stated,
         "engine": _engine(job),
         "seeds": _seeds(job),
         "motions": _motions(job),
@@ -63,10 +63,10 @@ def _engine(job: "Job") -> str:
 
 def _seeds(job: "Job") -> dict[str, Any]:
     motions = [table.seed or 0 for table in job.document.motions if table.synthetic is not None]
-    draws = [choice.seed for choice in job.parts.choices.values() if hasattr(choice, "seed")]
+    draws = [choice.seed for choice in job.problem.restitutions.values() if hasattr(choice, "seed")]
     return {"campaign": job.document.campaign.seed, "motions": motions, "restitution": draws}
 
 
 def _motions(job: "Job") -> dict[str, Any]:
-    told = job.parts.motions.description()
-    return {name: value for name, value in told.items() if name != "motions"} | {"count": len(job.parts.motions)}
+    told = job.problem.motions.description()
+    return {name: value for name, value in told.items() if name != "motions"} | {"count": len(job.problem.motions)}

@@ -42,7 +42,7 @@ def _axis(name: str, count: int = 4) -> Tables:
 
 def _cells(study: OpenStudy) -> list[tuple[HistoryPlace, Tables]]:
     sizes = [study.job.job.study.dims[name] for name in study.job.job.study.dims if name != "restitution"]
-    count = len(study.job.job.parts.choices)
+    count = len(study.job.job.problem.restitutions)
     places = [HistoryPlace.of(study, x, y, r) for x in range(sizes[-1]) for y in range(sizes[0]) for r in range(count)]
     return [(place, cell_of(study, place, 50)) for place in places]
 
@@ -69,7 +69,7 @@ def test_cells_of_every_axis_are_what_the_map_has(
         assert cell["stored"]["mode"] == again["mode"][0]
         assert cell["stored"]["peak_rotation_over_alpha"] == again["peak_ratio"][0]
         question = question_of(Inputs.model_validate(cell["inputs"]), records)
-        response = question.answered_with(next(iter(question.choices.values())))
+        response = question.answer(next(iter(question.restitutions.values())))
         assert response.outcome.code == cell["stored"]["outcome"]
         # the response has samples between the steps of the map: the same accuracy by other steps
         assert response.peak_rotation == pytest.approx(abs(cell["stored"]["peak_rotation_rad"]), rel=1e-4)
@@ -87,7 +87,7 @@ def test_another_cell_is_another_history(
     study = computed(map_job(map={"x": _axis("frequency_ratio"), "y": {"axis": "pga", "values": [4.0, 4.01]}}))
     inputs = cell_of(study, HistoryPlace.of(study, 2, 1))["inputs"]
     question = question_of(Inputs.model_validate(inputs), records)
-    found = question.answered_with("ked").peak_rotation
+    found = question.answer("ked").peak_rotation
     here, there = (cell_of(study, HistoryPlace.of(study, 2, y))["stored"]["peak_rotation_rad"] for y in (1, 0))
     assert found == pytest.approx(abs(here), rel=1e-9)
     assert found != pytest.approx(abs(there), rel=1e-6)
@@ -100,7 +100,7 @@ def test_sections_change_their_size(
     study = computed(map_job(body=SECTION, map={"x": _axis("semi_diagonal"), "y": _axis("pga")}))
     for _, cell in _cells(study):
         question = question_of(Inputs.model_validate(cell["inputs"]), records)
-        response = question.answered_with(next(iter(question.choices.values())))
+        response = question.answer(next(iter(question.restitutions.values())))
         assert response.outcome.code == cell["stored"]["outcome"]
         assert response.peak_rotation == pytest.approx(abs(cell["stored"]["peak_rotation_rad"]), rel=1e-4)
 
@@ -123,7 +123,7 @@ def test_cells_of_records_name_the_upload(
     for _, cell in _cells(study):
         assert cell["inputs"]["motion"]["record"] == record
         question = question_of(Inputs.model_validate(cell["inputs"]), records)
-        response = question.answered_with(next(iter(question.choices.values())))
+        response = question.answer(next(iter(question.restitutions.values())))
         assert response.outcome.code == cell["stored"]["outcome"]
         assert response.peak_rotation == pytest.approx(abs(cell["stored"]["peak_rotation_rad"]), rel=1e-4)
 
@@ -170,7 +170,7 @@ def test_points_of_other_studies_are_histories_too(
                 study, HistoryPlace.of(study, x, y, 1, motion=2 if kind in {"rocking-spectrum", "histories"} else 0)
             )
             question = question_of(Inputs.model_validate(cell["inputs"]), records)
-            response = question.answered_with(next(iter(question.choices.values())))
+            response = question.answer(next(iter(question.restitutions.values())))
             assert response.outcome.code == cell["stored"]["outcome"]
             assert response.peak_rotation == pytest.approx(abs(cell["stored"]["peak_rotation_rad"]), rel=1e-4)
 
@@ -187,7 +187,7 @@ def test_draws_of_a_history_become_its_coefficient(
             assert cell["difference_rad"] < 1e-4
             if told:
                 question = question_of(Inputs.model_validate(cell["inputs"]), records)
-                response = question.answered_with(next(iter(question.choices.values())))
+                response = question.answer(next(iter(question.restitutions.values())))
                 assert response.outcome.code == cell["stored"]["outcome"]
 
 

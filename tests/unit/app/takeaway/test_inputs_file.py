@@ -63,7 +63,7 @@ DOCUMENTS = st.fixed_dictionaries(
     optional={
         "motion": PULSE | RECORD | SYNTHETIC | st.none(),
         "restitution": RESTITUTION,
-        "response": st.fixed_dictionaries({}, optional={"free": st.floats(-1.0, 1.0), "friction": POSITIVE}),
+        "response": st.fixed_dictionaries({}, optional={"free": st.floats(-1.0, 1.0), "assumed_friction": POSITIVE}),
         "settings": st.fixed_dictionaries({}, optional={"gravity": POSITIVE, "linear": st.booleans()}),
     },
 )
@@ -71,7 +71,7 @@ EXAMPLE = {
     "body": {"units": "cm", "width": 50, "height": 200, "name": "Vase"},
     "motion": {"pulse": "sine:amplitude=3,period=0.8", "scale": 1.05},
     "restitution": {"models": ["ked", "housner"]},
-    "response": {"friction": 0.4},
+    "response": {"assumed_friction": 0.4},
 }
 
 
@@ -92,7 +92,7 @@ def test_writing_and_reading_is_the_identity(document):
 
 def test_another_digit_is_another_document():
     """The identity has teeth: the last digit of one number changes file and fingerprint."""
-    one, two = ({**EXAMPLE, "response": {"friction": each}} for each in (0.4, 0.4000000000000001))
+    one, two = ({**EXAMPLE, "response": {"assumed_friction": each}} for each in (0.4, 0.4000000000000001))
     first, second = Inputs.model_validate(one), Inputs.model_validate(two)
     assert inputs_as_toml(first) != inputs_as_toml(second)
     assert fingerprint(first) != fingerprint(second)
@@ -102,10 +102,10 @@ def test_the_command_line_reads_the_file(tmp_path):
     """`rocking simulate` reads what is written: same body, motion, scale, restitutions and friction."""
     path = tmp_path / "response.toml"
     path.write_text(inputs_as_toml(Inputs.model_validate(EXAMPLE)), encoding="utf-8")
-    question = ResponseJob.read(path).question
+    question = ResponseJob.read(path).problem
     assert (question.body.width, question.body.height) == (0.5, 2.0)
-    assert (question.scale, question.friction) == (1.05, 0.4)
-    assert list(question.choices) == ["ked", "housner"]
+    assert (question.scale, question.assumed_friction) == (1.05, 0.4)
+    assert list(question.restitutions) == ["ked", "housner"]
 
 
 def test_the_words_are_one_line_of_a_shell():

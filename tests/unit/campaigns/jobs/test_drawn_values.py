@@ -50,7 +50,7 @@ def test_same_as_from_python(each, kind):
 def test_label_and_base():
     """The label says what is drawn; draws may multiply a model."""
     told = 'values = [0.95, 1.0, 0.9]\ntimes = "housner"\nseed = 1'
-    (label,) = Job.of_text(MAP.format(told=told)).parts.choices
+    (label,) = Job.of_text(MAP.format(told=told)).problem.restitutions
     assert label == "drawn per impact: 3 values from 0.9 to 1, seed 1"
 
 

@@ -60,9 +60,9 @@ def test_so_many_values(each):
 
 def test_label():
     """The label says what is drawn, and whether the body is more slender than what was measured."""
-    (label,) = job_of("posterior = true\ncount = 30").parts.choices
+    (label,) = job_of("posterior = true\ncount = 30").problem.restitutions
     assert label == "drawn per impact: 30 values of the posterior of the measurements, seed 8"
-    (label,) = job_of("posterior = true", body=BODY.replace("2.0", "40.0")).parts.choices
+    (label,) = job_of("posterior = true", body=BODY.replace("2.0", "40.0")).problem.restitutions
     cut = restitution_distribution(80.0).cut["left"]
     assert label == "drawn per impact: posterior of the measurements (extrapolated in slenderness), seed 8" + (
         f" (of the distribution {percent(cut)} cut off, where impacts would create energy)"
@@ -72,7 +72,7 @@ def test_label():
 def test_one_response():
     """The document of one response takes it too, drawn per impact."""
     text = f"[response]\nfree = 0.5\n{BODY}[restitution.distribution]\nposterior = true\nseed = 3"
-    (law,) = ResponseJob.of_text(text, ".").question.choices.values()
+    (law,) = ResponseJob.of_text(text, ".").problem.restitutions.values()
     wanted = restitution_distribution(BLOCK).per_impact(3)
     assert type(law) is type(wanted)
     assert np.array_equal(law.factors, wanted.factors)
@@ -128,7 +128,7 @@ def test_a_body_with_unequal_sides(each, count):
     if count:
         law = type(law).of_sample({foot: found.sample(30, 8, foot) for foot in ("left", "right")}, seed=8)
     job = job_of(f'posterior = true\neach = "{each}"\n{count}', "histories", body=SECTION, rest="")
-    (told,) = job.parts.choices.values()
+    (told,) = job.problem.restitutions.values()
     assert type(told) is type(law)
     assert np.array_equal(told.factors, law.factors)
     assert not np.array_equal(told.table("left"), told.table("right"))
@@ -141,7 +141,7 @@ def test_the_label_says_what_is_cut_off():
     body = rk.Section([rk.Region([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 3.0)], 2400.0)])
     text = SECTION.replace("0.4, 1.5], [0.0, 1.2", "1.0, 1.0], [0.0, 3.0").replace("0.4", "1.0")
     with pytest.warns(PlausibilityWarning, match=r"9\.78 % of the distribution"):
-        (label,) = job_of("mean = 0.9\ndeviation = 0.05", "histories", body=text, rest="").parts.choices
+        (label,) = job_of("mean = 0.9\ndeviation = 0.05", "histories", body=text, rest="").problem.restitutions
     with pytest.warns(PlausibilityWarning, match=r"9\.78 % of the distribution"):
         told = rk.simulate_many(body, rk.pulses.sine(3.0, 0.6), rk.dynamics.RandomRestitution.normal(0.9, 0.05, seed=8))
     words = " (of the distribution 9.78 % onto right cut off, where impacts would create energy)"

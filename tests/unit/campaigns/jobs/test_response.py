@@ -11,20 +11,20 @@ import rocking as rk
 from rocking.cli import main
 from rocking.errors import InvalidValueError
 from rocking.spec.reading import is_response
-from rocking.spec.response import ResponseJob, ResponseQuestion
+from rocking.spec.response import ResponseJob, ResponseProblem
 
 EXAMPLES = sorted((Path(__file__).parents[4] / "examples" / "responses").glob("*.toml"))
 BODY = '[body]\nunits = "cm"\nwidth = 50\nheight = 200\n'
-TEXT = f'[response]\nfriction = 0.4\n{BODY}[motion]\npulse = "sine:amplitude=3,period=0.8"\nscale = 1.2\n'
+TEXT = f'[response]\nassumed_friction = 0.4\n{BODY}[motion]\npulse = "sine:amplitude=3,period=0.8"\nscale = 1.2\n'
 
 
 def test_tables_become_the_question(tmp_path):
     """Body, motion, factor, friction, restitutions in their order, and settings are those of the file."""
     text = TEXT + '[restitution]\nmodels = ["housner"]\nvalues = [0.9]\n[settings]\ngravity = 9.81\nengine = "fast"\n'
-    question = ResponseJob.of_text(text, tmp_path).question
+    question = ResponseJob.of_text(text, tmp_path).problem
     assert question.body == rk.Block(width=0.5, height=2.0)
-    assert (question.scale, question.friction, question.engine) == (1.2, 0.4, "fast")
-    assert list(question.choices) == ["housner", "0.9"]
+    assert (question.scale, question.assumed_friction, question.engine) == (1.2, 0.4, "fast")
+    assert list(question.restitutions) == ["housner", "0.9"]
     assert question.settings.gravity == 9.81
     assert question.motion.peak == 3.0
 
@@ -34,42 +34,42 @@ def test_a_record_lies_beside_the_file(tmp_path):
     (tmp_path / "a.txt").write_text("\n".join(f"{k * 0.01:.2f} {math.sin(k):.3f}" for k in range(50)))
     (tmp_path / "job.toml").write_text(f'[response]\n{BODY}[motion]\nrecord = "a.txt"\nunits = "g"\n')
     job = ResponseJob.read(tmp_path / "job.toml")
-    assert np.array_equal(job.question.motion.acceleration, rk.read_motion(tmp_path / "a.txt", units="g").acceleration)
+    assert np.array_equal(job.problem.motion.acceleration, rk.read_motion(tmp_path / "a.txt", units="g").acceleration)
     assert [item["path"] for item in job.inputs.told()] == ["a.txt"]
 
 
 def test_free_rocking_starts_at_a_share_of_the_slenderness_angle():
     """A share below zero leans to the left, over the angle of the left side."""
-    question = ResponseQuestion(rk.Block(width=1.0, height=4.0), None, free=-0.5)
+    question = ResponseProblem(rk.Block(width=1.0, height=4.0), None, free=-0.5)
     assert math.isclose(question.rotation, -0.5 * math.atan(0.25))
-    assert question.answered_with(0.9).rotation[0] == question.rotation
+    assert question.answer(0.9).rotation[0] == question.rotation
 
 
 @pytest.mark.parametrize("given", [{"motion": None}, {"motion": rk.pulses.sine(1.0, 1.0), "free": 0.5}])
 def test_a_question_has_one_start(given):
     """Neither or both of a motion and a first rotation are no question."""
     with pytest.raises(InvalidValueError, match="either a motion or a first rotation"):
-        ResponseQuestion(rk.Block(width=1.0, height=4.0), **given)
+        ResponseProblem(rk.Block(width=1.0, height=4.0), **given)
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples_run_as_they_say(path, capsys):
     """Every example is recognised, answered, and prints JSON with the restitutions that it lists."""
     assert is_response(path)
-    question = ResponseJob.read(path).question
+    question = ResponseJob.read(path).problem
     with pytest.raises(SystemExit) as stop:
         main(["simulate", str(path), "--json"])
     assert not stop.value.code
     printed = json.loads(capsys.readouterr().out)
-    assert [*printed["other_models"]] == [*question.choices][1:]
-    first = question.answered_with(next(iter(question.choices.values())))
+    assert [*printed["other_models"]] == [*question.restitutions][1:]
+    first = question.answer(next(iter(question.restitutions.values())))
     assert printed["peak_rotation_rad"] == first.peak_rotation
 
 
 def test_the_example_of_a_decision_shows_one():
     """Under the pulse of the example KED overturns and Housner stands: two models, two verdicts."""
-    question = ResponseJob.read(next(path for path in EXAMPLES if "pulse" in path.stem)).question
-    outcomes = [question.answered_with(choice).outcome.name for choice in ("ked", "housner")]
+    question = ResponseJob.read(next(path for path in EXAMPLES if "pulse" in path.stem)).problem
+    outcomes = [question.answer(choice).outcome.name for choice in ("ked", "housner")]
     assert outcomes == ["OVERTURNED", "ROCKED"]
 
 
@@ -86,7 +86,7 @@ REFUSED = {
     "unknown key": (TEXT.replace("scale", "scle"), "did you mean scale?"),
     "no body": ("[response]\nfree = 0.5\n", "body is missing"),
     "nothing moves": (f"[response]\n{BODY}", "what moves the body?"),
-    "both": (TEXT.replace("friction = 0.4", "free = 0.5"), "not both"),
+    "both": (TEXT.replace("assumed_friction = 0.4", "free = 0.5"), "not both"),
     "two sources": (TEXT + 'record = "a.at2"\n', "exactly one of pulse, record, synthetic"),
     "pulse with units": (TEXT + 'units = "g"\n', "pulse takes no units"),
     "zero": (TEXT.replace("1.2", "0.0"), "nothing would move"),

@@ -71,7 +71,7 @@ def test_records_by_pattern_and_name(text, records):
     assert job.inputs[0]["sha256"] == hashlib.sha256(data).hexdigest()
     assert job.inputs[0]["bytes"] == len(data)
     # the file says 4 sin at 0.01 s steps through the quarter period 0.125 s: largest sample 4 sin(2 pi 0.12 / 0.5)
-    assert job.parts.motions[0].peak == pytest.approx(0.08 * np.sin(2 * np.pi * 0.12 / 0.5), rel=1e-6)
+    assert job.problem.motions[0].peak == pytest.approx(0.08 * np.sin(2 * np.pi * 0.12 / 0.5), rel=1e-6)
 
 
 def test_records_elsewhere(text, records, tmp_path):
@@ -84,12 +84,12 @@ def test_records_elsewhere(text, records, tmp_path):
 
 def test_families(text):
     """One family is a set that is made when needed; with others it is a list of the same motions."""
-    alone = Job.of_text(text("stripes")).parts.motions
+    alone = Job.of_text(text("stripes")).problem.motions
     assert isinstance(alone, SyntheticSet)
     more = text("stripes").replace(
         "[motions]", '[[motions]]\nsynthetic = "firm-ground"\ncount = 2\npga = 2.0\n[[motions]]'
     )
-    both = Job.of_text(more).parts.motions
+    both = Job.of_text(more).problem.motions
     assert len(both) == 14
     assert both[0].peak == pytest.approx(2.0)
     assert np.array_equal(both[2].acceleration, alone[0].acceleration)
@@ -113,7 +113,7 @@ def test_bodies_in_every_way(text, tmp_path):
     for words, files in ways.items():
         job = Job.of_text(text("overturning-map").replace(short, words), "job", tmp_path)
         assert [item["path"] for item in job.inputs] == files
-        side = job.parts.bodies[0].side("right", 9.80665)
+        side = job.problem.bodies[0].side("right", 9.80665)
         assert side.slenderness_angle == pytest.approx(np.arctan(0.25), rel=1e-12)
 
 

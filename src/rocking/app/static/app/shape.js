@@ -58,6 +58,6 @@ const isRestitution = (table) => isSide(table) && eachOf(table, ["left", "right"
 const CHECKS = {
   body: isTable,
   restitution: isRestitution,
-  response: (table) => isTable(table) && eachOf(table, ["free", "friction"], isNumber),
+  response: (table) => isTable(table) && eachOf(table, ["free", "assumed_friction"], isNumber),
   settings: isTable,
 };

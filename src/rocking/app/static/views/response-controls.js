@@ -37,7 +37,7 @@ class ResponseControls {
       max: 10,
       step: 0.05,
       help: "Rocking that takes more would slide.",
-      onChange: (value) => app.inputs.set("response.friction", value),
+      onChange: (value) => app.inputs.set("response.assumed_friction", value),
     });
     const turn = card("Turn and see", this.scale, this.size, this.free, this.first, this.friction);
     const models = card("Models of the impact", this.models.element);
@@ -102,7 +102,7 @@ class ResponseControls {
     if (free !== null && Math.abs(this.first.value - free) > 1e-9) this.first.value = free;
     this.scale.hidden = free !== null || !motion;
     if (motion && this.scale.value !== (motion.scale ?? 1)) this.scale.value = clipped(motion.scale ?? 1);
-    this.friction.value = response?.friction ?? 0.5;
+    this.friction.value = response?.assumed_friction ?? 0.5;
     this.models.show(restitution);
   }
 }

@@ -140,7 +140,7 @@ class ResponseView {
     const shown = shownOf(answer);
     this.verdict.show(answer);
     this.scene.show(answer, shown);
-    this.charts.show(shown, this.app.inputs.get().response?.friction ?? 0.5);
+    this.charts.show(shown, this.app.inputs.get().response?.assumed_friction ?? 0.5);
     this.impacts.show(shown);
     this.results.dataset.drawn = String(Number(this.results.dataset.drawn || 0) + 1);
   }

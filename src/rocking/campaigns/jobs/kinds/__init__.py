@@ -9,9 +9,9 @@ from rocking.campaigns.jobs.kinds.minimum import minimum_study
 from rocking.campaigns.jobs.kinds.overturning_map import map_study
 from rocking.campaigns.jobs.kinds.spectrum import spectrum_study
 from rocking.campaigns.jobs.study import Study
-from rocking.spec.parts import Parts
+from rocking.spec.study import StudyProblem
 
-KINDS: dict[str, Callable[[Parts], Study]] = {
+KINDS: dict[str, Callable[[StudyProblem], Study]] = {
     "overturning-map": map_study,
     "minimum-acceleration": minimum_study,
     "rocking-spectrum": spectrum_study,

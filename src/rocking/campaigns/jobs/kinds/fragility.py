@@ -12,8 +12,8 @@ from rocking.campaigns.jobs.study import Study
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.spec.document import FragilityTable
-from rocking.spec.parts import Parts
 from rocking.spec.reading import located
+from rocking.spec.study import StudyProblem
 from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_plan
 from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_plan
 from rocking.studies.fragility.cloud_analysis import cloud_plan
@@ -25,30 +25,30 @@ from rocking.tables import Column
 Finish = Callable[[Arrays], Any]
 
 
-def fragility_study(parts: Parts) -> Study:
+def fragility_study(problem: StudyProblem) -> Study:
     """Return the study of a fragility analysis, of one body.
 
     Returns over motion and level (a cloud: over motion), and the restitution where there are several.
     """
-    table = parts.document.fragility or FragilityTable()
+    table = problem.document.fragility or FragilityTable()
     with located("fragility"):
-        plans = {label: _plan(table, parts, choice) for label, choice in parts.choices.items()}
+        plans = {label: _plan(table, problem, choice) for label, choice in problem.restitutions.items()}
         products = [product for product, _ in plans.values()]
         merged = _merged(products)
-    if parts.document.campaign.kind == "cloud":
+    if problem.document.campaign.kind == "cloud":
         with located("export"):
-            check_told(parts.document, parts.motions)
+            check_told(problem.document, problem.motions)
     levels = None if table.levels is None else table.levels.numbers()
-    dims = {"motion": len(parts.motions)} | ({} if levels is None else {"level": levels.size})
-    subject = Subject.of(parts.bodies[0], parts.motions, parts.only_choice, table.measure, dict(parts.options))
+    dims = {"motion": len(problem.motions)} | ({} if levels is None else {"level": levels.size})
+    subject = Subject.of(problem.bodies[0], problem.motions, problem.restitution, table.measure, dict(problem.options))
     label = subject.label
-    coordinates = {"motion": of_motions(parts.motions)}
+    coordinates = {"motion": of_motions(problem.motions)}
     if levels is None:
         found = subject.measure.scaled(subject.intensities, table.factor or 1.0)
         coordinates["intensity"] = along("motion", found, label["units"], label["long_name"])
     else:
         coordinates["level"] = along("level", levels, label["units"], label["long_name"])
-        scales = np.broadcast_to(merged.scales, (len(parts.motions), levels.size))
+        scales = np.broadcast_to(merged.scales, (len(problem.motions), levels.size))
         coordinates["factor"] = Column(scales, "1", "factor on the motion", dims=("motion", "level"))
     if len(plans) > 1:
         dims["restitution"] = len(plans)
@@ -73,9 +73,9 @@ class _Finish:
         }
 
 
-def _plan(table: FragilityTable, parts: Parts, choice: Any) -> tuple[Product, Finish]:
-    body, motions, kind = parts.bodies[0], parts.motions, parts.document.campaign.kind
-    how = {"measure": table.measure, "states": tuple(table.states), **parts.options}
+def _plan(table: FragilityTable, problem: StudyProblem, choice: Any) -> tuple[Product, Finish]:
+    body, motions, kind = problem.bodies[0], problem.motions, problem.document.campaign.kind
+    how = {"measure": table.measure, "states": tuple(table.states), **problem.options}
     if kind == "cloud":
         return cloud_plan(body, motions, choice, factor=1.0 if table.factor is None else table.factor, **how)
     assert table.levels is not None  # the document refuses to be without
@@ -83,7 +83,7 @@ def _plan(table: FragilityTable, parts: Parts, choice: Any) -> tuple[Product, Fi
         return multiple_stripe_plan(body, motions, table.levels.numbers(), choice, **how)
     tolerance = 1e-8 if table.tolerance is None else table.tolerance
     # what is in [fragility] is the search's; that of [settings] is the reference engine's
-    if how["tolerance"] != type(parts.settings)().tolerance:
+    if how["tolerance"] != type(problem.settings)().tolerance:
         raise InvalidValueError("settings.tolerance cannot be changed in an incremental analysis; leave it out")
     return incremental_dynamic_plan(body, motions, table.levels.numbers(), choice, **(how | {"tolerance": tolerance}))
 

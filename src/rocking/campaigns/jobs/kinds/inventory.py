@@ -4,8 +4,8 @@ from rocking.campaigns.jobs.kinds.words import along, of_motions, of_words
 from rocking.campaigns.jobs.study import Study
 from rocking.errors import InvalidValueError
 from rocking.spec.document import InventoryTable
-from rocking.spec.parts import Parts
 from rocking.spec.reading import located
+from rocking.spec.study import StudyProblem
 from rocking.studies.inventory.assessment import assessment_plan
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.lights import Thresholds
@@ -14,23 +14,23 @@ from rocking.studies.inventory.reading import Inventory, read_inventory
 from rocking.studies.motion_sets import SyntheticSet
 
 
-def inventory_study(parts: Parts) -> Study:
+def inventory_study(problem: StudyProblem) -> Study:
     """Return the study of an inventory.
 
     Returns over motion, object, direction and the model of impact: the one asked for and the one beside it.
     """
-    table = parts.document.inventory
+    table = problem.document.inventory
     assert table is not None  # the document refuses to be without
-    if len(parts.choices) > 1:
+    if len(problem.restitutions) > 1:
         raise InvalidValueError("restitution: an inventory takes one; that of Housner stands beside it")
     try:
         limits = Thresholds(**table.thresholds.model_dump(exclude_none=True))
     except InvalidValueError as error:  # which begins with the key
         raise InvalidValueError(f"inventory.thresholds.{error}") from error
     with located("inventory"):
-        objects, hazard = _objects(table, parts), _hazard(table, parts)
+        objects, hazard = _objects(table, problem), _hazard(table, problem)
         product, finish, items = assessment_plan(
-            objects, hazard, restitution=parts.only_choice, thresholds=limits, gravity=parts.settings.gravity
+            objects, hazard, restitution=problem.restitution, thresholds=limits, gravity=problem.settings.gravity
         )
     dims = dict(
         zip(("motion", "object", "direction", "restitution"), (len(hazard.motions), len(items), 2, 2), strict=True)
@@ -46,14 +46,14 @@ def inventory_study(parts: Parts) -> Study:
     return Study(product, dims, coordinates, told, assess=finish)
 
 
-def _objects(table: InventoryTable, parts: Parts) -> Inventory:
-    return read_inventory(parts.inputs.file(table.objects), table.encoding)
+def _objects(table: InventoryTable, problem: StudyProblem) -> Inventory:
+    return read_inventory(problem.inputs.file(table.objects), table.encoding)
 
 
-def _hazard(table: InventoryTable, parts: Parts) -> Hazard:
+def _hazard(table: InventoryTable, problem: StudyProblem) -> Hazard:
     words = {"PGA": table.pga, "PGV": table.pgv}
     level = next((IntensityLevel.of(kind, word) for kind, word in words.items() if word is not None), None)
-    motions = parts.motions
+    motions = problem.motions
     if isinstance(motions, SyntheticSet):
         assert level is not None  # the document refuses to be without
         return Hazard.of_family(motions.family, level, count=motions.count, seed=motions.seed)

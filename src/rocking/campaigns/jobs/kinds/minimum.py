@@ -15,9 +15,10 @@ from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.fast_engine import Arrays, empty_results
 from rocking.errors import InvalidValueError
+from rocking.spec.construction import MOST_IN_MEMORY
 from rocking.spec.document import MinimumTable
-from rocking.spec.parts import MOST_IN_MEMORY, Parts
 from rocking.spec.reading import located
+from rocking.spec.study import StudyProblem
 from rocking.studies.minimum_acceleration import Cases, Effort, searched
 from rocking.studies.motion_sets import MotionList
 from rocking.studies.question import modes_of, peak_ratio, sides_of
@@ -58,17 +59,17 @@ class MinimumSearch:
         return AdaptiveResult(crossings, tables_of(crossings, self.cases, self.effort, self.shape, self.names))
 
 
-def minimum_study(parts: Parts) -> Study:
+def minimum_study(problem: StudyProblem) -> Study:
     """Return the study of minimum overturning accelerations.
 
     Returns of the first samples, over motion, restitution, body and point; its search asks for the others.
     """
-    table = parts.document.minimum or MinimumTable()
-    motions, settings = _held(parts), parts.settings
+    table = problem.document.minimum or MinimumTable()
+    motions, settings = _held(problem), problem.settings
     with located("body"):
         rockers = [
-            [RockingParameters.of_body(b, choice, settings.gravity) for b in parts.bodies]
-            for choice in parts.choices.values()
+            [RockingParameters.of_body(b, choice, settings.gravity) for b in problem.bodies]
+            for choice in problem.restitutions.values()
         ]
     sides = [sides_of(row) for row in rockers]
     with located("minimum"):
@@ -77,24 +78,24 @@ def minimum_study(parts: Parts) -> Study:
             Cases.of(motions[k], each, settings, table.lowest, table.highest)
             for k in range(len(motions)) for each in sides
         ])  # fmt: skip
-    shape = (len(motions), len(parts.choices), len(parts.bodies))
-    names = {"motion": [motions[k].name for k in range(len(motions))], "restitution": list(parts.choices)}
-    options = {"settings": settings, "engine": parts.document.settings.engine}
+    shape = (len(motions), len(problem.restitutions), len(problem.bodies))
+    names = {"motion": [motions[k].name for k in range(len(motions))], "restitution": list(problem.restitutions)}
+    options = {"settings": settings, "engine": problem.document.settings.engine}
     search = MinimumSearch(cases, effort, motions, shape, rockers[0][0].law, options, names)
     dims = dict(zip(("motion", "restitution", "body", "point"), (*shape, effort.points), strict=True))
     scale = cases.grid(effort.points).reshape(*dims.values())
     coordinates = {
         "motion": of_words("motion", names["motion"], "name of the motion"),
         "restitution": of_words("restitution", names["restitution"], "restitution"),
-        "body": along("body", np.arange(len(parts.bodies)), "1", "number of the body in the job"),
+        "body": along("body", np.arange(len(problem.bodies)), "1", "number of the body in the job"),
         "scale": Column(scale, "1", "factor on the motion", dims=tuple(dims)),
     }
     told = {"points": effort.points, "levels": effort.levels, "tolerance": effort.tolerance}
-    bodies = "; ".join(repr(body) for body in parts.bodies)[:4000]
+    bodies = "; ".join(repr(body) for body in problem.bodies)[:4000]
     return Study(first_round(search), dims, coordinates, {**told, "bodies": bodies}, search=search)
 
 
-def _held(parts: Parts) -> MotionList:
-    if len(parts.motions) > MOST_IN_MEMORY:
-        raise InvalidValueError(f"motions: there may be up to {MOST_IN_MEMORY}, got {len(parts.motions)}")
-    return MotionList([parts.motions[k] for k in range(len(parts.motions))])
+def _held(problem: StudyProblem) -> MotionList:
+    if len(problem.motions) > MOST_IN_MEMORY:
+        raise InvalidValueError(f"motions: there may be up to {MOST_IN_MEMORY}, got {len(problem.motions)}")
+    return MotionList([problem.motions[k] for k in range(len(problem.motions))])

@@ -7,30 +7,29 @@ from rocking.campaigns.jobs.kinds.refined_map import MapSearch
 from rocking.campaigns.jobs.kinds.words import along, of_words
 from rocking.campaigns.jobs.study import Study
 from rocking.errors import InvalidValueError
-from rocking.spec.document import AxisTable
-from rocking.spec.parts import Parts
 from rocking.spec.reading import located
+from rocking.spec.study import StudyProblem
 from rocking.studies.adaptive_grid import Plane
-from rocking.studies.axis import Axis, RestitutionAxis, axis_of
+from rocking.studies.axis import RestitutionAxis
 from rocking.studies.question import Question
 from rocking.studies.sensitivity.restitutions import sampled
 
 
-def map_study(parts: Parts) -> Study:
+def map_study(problem: StudyProblem) -> Study:
     """Return the study of an overturning map.
 
     Returns over y and x, and the restitution before them where there are several.
     """
-    table = parts.document.map
+    table = problem.document.map
     assert table is not None  # the document refuses to be without
-    if len(parts.motions) != 1:
-        raise InvalidValueError(f"motions: a map is of one motion, got {len(parts.motions)}")
-    axes = [_axis(f"map.{name}", given) for name, given in (("x", table.x), ("y", table.y))]
-    engine = parts.document.settings.engine
+    if len(problem.motions) != 1:
+        raise InvalidValueError(f"motions: a map is of one motion, got {len(problem.motions)}")
+    axes = table.axes()
+    engine = problem.document.settings.engine
     with located("map"):
         questions = [
-            Question(parts.bodies[0], parts.motions[0], choice, parts.settings, None, engine)
-            for choice in parts.choices.values()
+            Question(problem.bodies[0], problem.motions[0], choice, problem.settings, None, engine)
+            for choice in problem.restitutions.values()
         ]
         if len(questions) > 1 and any(isinstance(axis, RestitutionAxis) for axis in axes):
             raise InvalidValueError("restitution cannot be an axis where it is what is compared; leave one model")
@@ -40,8 +39,8 @@ def map_study(parts: Parts) -> Study:
     several = {"restitution": len(planes)} if len(planes) > 1 else {}
     coordinates = {axis.name: along(axis.name, axis.values, axis.unit, axis.words) for axis in (y, x)}
     if several:
-        coordinates["restitution"] = of_words("restitution", parts.choices, "restitution")
-    attributes = {"body": repr(parts.bodies[0]), "motion": parts.motions[0].name}
+        coordinates["restitution"] = of_words("restitution", problem.restitutions, "restitution")
+    attributes = {"body": repr(problem.bodies[0]), "motion": problem.motions[0].name}
     study = Study(
         sampled(histories),
         several | {y.name: y.values.size, x.name: x.values.size},
@@ -50,8 +49,3 @@ def map_study(parts: Parts) -> Study:
         rescale=histories.rescaled,
     )
     return study if table.refine is None else replace(study, search=MapSearch.of(study, planes, table))
-
-
-def _axis(where: str, table: AxisTable) -> Axis:
-    with located(where):
-        return axis_of((table.axis, table.numbers()))

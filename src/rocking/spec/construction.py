@@ -1,19 +1,23 @@
-"""What a question puts together: bodies, motions, restitutions and settings, made from its tables."""
+"""Bodies, motions and restitutions, made from the tables that describe them."""
 
 import json
 import tomllib
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rocking.bodies import Body
+from rocking import checks
+from rocking.bodies import Block, Body
+from rocking.bodies.formats import read_body
 from rocking.bodies.formats.body_file import body_from_toml
+from rocking.bodies.formats.words import suggestion
+from rocking.bodies.solid import Solid
+from rocking.checks import length_unit
 from rocking.conventions import FEET
 from rocking.dynamics.impact_laws import RandomRestitution
 from rocking.dynamics.parameters import cut_of, cut_words
 from rocking.dynamics.response import Motion
-from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
 from rocking.motions.formats.reader import read_motion
 from rocking.motions.pulses import pulse
@@ -23,7 +27,7 @@ from rocking.spec.reading import InputFiles, located
 from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
 
 if TYPE_CHECKING:
-    from rocking.spec.document import CampaignDocument, MotionTable, RandomTable, RestitutionTable
+    from rocking.spec.document import MotionKeys, MotionTable, OneMotionTable, RandomTable, RestitutionTable
 
 MOST_IN_MEMORY = 100_000
 """Synthetic motions that may be put into a list with others; a set of one family alone is made piece by piece."""
@@ -32,17 +36,13 @@ _INLINE = "table"
 _OUTSIDE = ("units", "name", "note")
 
 
-def choices_of(
+def restitutions_of(
     table: "RestitutionTable", seed: int, bodies: Sequence[Body] = (), inputs: InputFiles | None = None
 ) -> dict[str, Any]:
-    """Return the restitutions that a table describes.
-
-    Returns Models, coefficients, pairs by side or laws, as `simulate` takes them, by label.
-    """
+    """Return models, coefficients, pairs by side or laws, as `simulate` takes them, by their label."""
     with located("restitution"):
-        words = [*([table.model] if table.model else []), *(table.models or [])]
-        models = [_model(word, inputs) for word in words]
-        pairs: list[tuple[str, Any]] = [(each.label, each) for each in models]
+        texts = [*([table.model] if table.model else []), *(table.models or [])]
+        pairs = [_model_or_coefficient(text, inputs) for text in texts]
         numbers = [*([] if table.value is None else [table.value]), *(table.values or [])]
         pairs += [(f"{value!r}", value) for value in numbers]
         if table.left is not None:
@@ -54,6 +54,14 @@ def choices_of(
         if twice:
             raise InvalidValueError(f"{twice[0]} is given twice")
         return dict(pairs)
+
+
+def _model_or_coefficient(text: str, inputs: InputFiles | None) -> tuple[str, Any]:
+    try:
+        return text, float(text)
+    except ValueError:
+        chosen = _model(text, inputs)
+        return chosen.label, chosen
 
 
 def _model(word: str, inputs: InputFiles | None) -> RestitutionModel:
@@ -103,58 +111,20 @@ def _posterior(table: "RandomTable", seed: int, bodies: Sequence[Body]) -> tuple
     return replace(type(law).of_sample(values, seed=seed), cut=law.cut), f"{table.count} values of the {words}"
 
 
-@dataclass(frozen=True)
-class Parts:
-    """What the histories of a job are made of."""
-
-    document: "CampaignDocument"  # the tables of the job
-    bodies: list[Body]  # the bodies; none for spectra
-    motions: MotionSet
-    choices: dict[str, Any]  # restitutions by label
-    settings: Settings  # how to integrate
-    inputs: InputFiles  # the files that were read
-
-    @classmethod
-    def of(cls, document: "CampaignDocument", folder: Path) -> "Parts":
-        """Return the parts that tables describe."""
-        inputs = InputFiles(folder)
-        with located("settings"):
-            told = document.settings.model_dump(exclude={"engine"}, exclude_none=True)
-            settings = Settings(**told)
-        bodies = _bodies(document.body or [], inputs)
-        return cls(
-            document,
-            bodies,
-            motions_of(document.motions, inputs),
-            choices_of(document.restitution, document.campaign.seed, bodies, inputs),
-            settings,
-            inputs,
-        )
-
-    @property
-    def options(self) -> dict[str, Any]:
-        """Settings and engine, as the studies take them."""
-        return {**self.settings.stated, "engine": self.document.settings.engine}
-
-    @property
-    def only_choice(self) -> Any:
-        """The restitution, where there is one."""
-        return next(iter(self.choices.values()))
-
-
-def _bodies(tables: list[dict[str, Any]], inputs: InputFiles) -> list[Body]:
-    many = len(tables) > 1
-    made = []
-    for k, table in enumerate(tables):
-        with located(f"body[{k}]" if many else "body"):
-            made.append(body_of(table, inputs))
-    return made
-
-
 def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:
-    """Return the body that a table describes."""
+    """Return the plane body that a table describes."""
+    body = any_body_of(table, inputs)
+    if isinstance(body, Solid):
+        raise InvalidValueError("describes a body in space; a plane body is needed here")
+    return body
+
+
+def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Solid:
+    """Return the body that a table describes, plane or in space."""
     if "file" in table:
         return _body_in_file(table, inputs)
+    if {"slenderness_angle", "semi_diagonal"} & set(table):
+        return _from_angle(table)
     if {"width", "height"} & set(table):
         own = {key: value for key, value in table.items() if key not in _OUTSIDE}
         table = {**{key: value for key, value in table.items() if key in _OUTSIDE}, "block": own}
@@ -169,18 +139,38 @@ def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:
         raise InvalidValueError(str(error).removeprefix(f"{_INLINE}: ")) from error
 
 
-def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body:
-    odd = sorted(set(table) - {"file"})
-    if odd:
-        raise InvalidValueError(f"file stands alone, without {', '.join(odd)}")
+_BESIDE_FILE = ("units", "density", "up", "fill_holes", "base_tolerance")
+
+
+def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | Solid:
+    options = {key: value for key, value in table.items() if key != "file"}
+    if odd := sorted(set(options) - set(_BESIDE_FILE)):
+        raise InvalidValueError(f"unknown key {odd[0]!r:.60} beside file{suggestion(odd[0], _BESIDE_FILE)}")
     if not isinstance(table["file"], str):
         raise InvalidValueError(f"file must be text, got {table['file']!r:.60}")
     if inputs is None:
         raise InvalidValueError(f"names the file {table['file']!r:.60}, but a body cannot name files here")
     path = inputs.file(table["file"])
-    text, name, folder = path.read_text(encoding="utf-8-sig", errors="replace"), table["file"], path.parent
-    _note_outlines(text, str(Path(table["file"]).parent), inputs)
-    return body_from_toml(text, name=name, folder=folder)
+    if path.suffix.lower() == ".toml":
+        _note_outlines(path.read_text("utf-8-sig", "replace"), str(Path(table["file"]).parent), inputs)
+    if options.get("base_tolerance") is not None:
+        options["base_tolerance"] *= length_unit(options.get("units") or "m")
+    return read_body(path, **options)
+
+
+def _from_angle(table: dict[str, Any]) -> Body:
+    """Return a block by its slenderness angle [rad] and its semi-diagonal."""
+    allowed = {"units", "slenderness_angle", "semi_diagonal", "depth", "density", "name", "note"}
+    if odd := sorted(set(table) - allowed):
+        raise InvalidValueError(f"unknown key {odd[0]!r:.60}{suggestion(odd[0], sorted(allowed))}")
+    if missing := sorted({"units", "slenderness_angle", "semi_diagonal"} - set(table)):
+        raise InvalidValueError(f"{missing[0]} is missing: a block has slenderness_angle, semi_diagonal and units")
+    scale = length_unit(table["units"])
+    sizes = {key: checks.number(key, table[key]) for key in ("semi_diagonal", "depth") if key in table}
+    options = {"density": table["density"]} if "density" in table else {}
+    if "depth" in sizes:
+        options["depth"] = sizes["depth"] * scale
+    return Block.from_angle(table["slenderness_angle"], sizes["semi_diagonal"] * scale, **options)
 
 
 def _note_outlines(text: str, folder: str, inputs: InputFiles) -> None:
@@ -213,34 +203,29 @@ def _as_toml(value: Any) -> str:
 
 
 def motions_of(tables: "list[MotionTable]", inputs: InputFiles) -> MotionSet:
-    """Return the motions that tables describe.
-
-    Returns A `SyntheticSet` where there is one family and nothing else; otherwise a `MotionList`.
-    """
+    """Return the motions that tables describe: a `SyntheticSet` of one family alone, otherwise a `MotionList`."""
     sets: list[list[Motion] | SyntheticSet] = []
     for k, table in enumerate(tables):
         with located(f"motions[{k}]"):
-            sets.append(_some(table, inputs))
+            sets.append(_motions(table, inputs))
     if len(sets) == 1 and isinstance(sets[0], SyntheticSet):
         return sets[0]
     count = sum(len(each) for each in sets)
     if count > MOST_IN_MEMORY:
         raise InvalidValueError(f"motions: a set of several sources may have up to {MOST_IN_MEMORY}, got {count}")
     with located("motions"):
-        return MotionList([motion for each in sets for motion in _all(each)])
+        return MotionList([each[k] for each in sets for k in range(len(each))])
 
 
-def _all(motions: list[Motion] | SyntheticSet) -> Iterator[Motion]:
-    return (motions[k] for k in range(len(motions)))
-
-
-def _some(table: "MotionTable", inputs: InputFiles) -> list[Motion] | SyntheticSet:
+def _motions(table: "MotionTable", inputs: InputFiles) -> list[Motion] | SyntheticSet:
     if table.synthetic is not None:
         assert table.count is not None  # the table refuses to be without
         levels = {"pga": table.pga, "pgv": table.pgv, "time_step": table.time_step}
         return SyntheticSet(table.synthetic, table.count, table.seed or 0, **levels)
-    made: list[Motion] = [pulse(word) for word in table.pulse] if table.pulse is not None else _records(table, inputs)
-    return made if table.scale == 1.0 else [motion.scaled(table.scale) for motion in made]
+    motions: list[Motion] = (
+        [pulse(text) for text in table.pulse] if table.pulse is not None else _records(table, inputs)
+    )
+    return motions if table.scale == 1.0 else [motion.scaled(table.scale) for motion in motions]
 
 
 def _records(table: "MotionTable", inputs: InputFiles) -> list[Motion]:
@@ -248,9 +233,28 @@ def _records(table: "MotionTable", inputs: InputFiles) -> list[Motion]:
     twice = sorted({name for name in names if names.count(name) > 1}) if len(names) < 1000 else []
     if twice:
         raise InvalidValueError(f"records: {twice[0]} is named twice")
-    found: list[Motion] = []
+    motions: list[Motion] = []
     for name in names:
-        path = inputs.file(name)
         with located(f"records: {name}"):
-            found.append(read_motion(path, table.format, table.units, table.time_step, table.component, table.vertical))
-    return found
+            motions.append(_record(name, table, inputs))
+    return motions
+
+
+def _record(name: str, table: "MotionKeys", inputs: InputFiles) -> Motion:
+    upright = None if table.vertical_file is None else inputs.file(table.vertical_file)
+    keys = (table.format, table.units, table.time_step, table.component, table.vertical)
+    return read_motion(inputs.file(name), *keys, vertical_path=upright)
+
+
+def motion_of(table: "OneMotionTable", inputs: InputFiles | None) -> Motion:
+    """Return one motion, not scaled by `scale`; scaled to `pga` or `pgv`."""
+    if table.pulse is not None:
+        return pulse(table.pulse)
+    if table.record is not None:
+        if inputs is None:
+            raise InvalidValueError("a record is a file; only pulses and synthetic motions are made")
+        return _record(table.record, table, inputs)
+    assert table.synthetic is not None  # the table refuses to be without
+    levels = {"pga": table.pga, "pgv": table.pgv, "time_step": table.time_step}
+    member = table.member or 0
+    return SyntheticSet(table.synthetic, member + 1, table.seed or 0, **levels)[member]

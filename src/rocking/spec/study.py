@@ -1,0 +1,128 @@
+"""A study of many histories: its tables, what they describe, and its answer."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rocking.bodies import Body
+from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError
+from rocking.spec.construction import body_of, motions_of, restitutions_of
+from rocking.spec.reading import InputFiles, located
+from rocking.studies.motion_sets import MotionSet
+
+if TYPE_CHECKING:
+    from rocking.spec.document import CampaignDocument
+
+
+@dataclass(frozen=True)
+class StudyProblem:
+    """What the histories of a study are made of."""
+
+    document: "CampaignDocument"  # its tables
+    bodies: list[Body]  # none for spectra
+    motions: MotionSet
+    restitutions: dict[str, Any]  # by label
+    settings: Settings  # how to integrate
+    inputs: InputFiles  # the files that were read
+
+    @classmethod
+    def of(cls, document: "CampaignDocument", folder: Path) -> "StudyProblem":
+        """Return what tables describe; the files that they name lie in a folder."""
+        inputs = InputFiles(folder)
+        with located("settings"):
+            settings = Settings(**document.settings.stated())
+        bodies = []
+        for k, table in enumerate(document.body or []):
+            with located("body" if len(document.body or []) == 1 else f"body[{k}]"):
+                bodies.append(body_of(table, inputs))
+        motions = motions_of(document.motions, inputs)
+        restitutions = restitutions_of(document.restitution, document.campaign.seed, bodies, inputs)
+        return cls(document, bodies, motions, restitutions, settings, inputs)
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Settings and engine, as the studies take them."""
+        return {**self.settings.stated, "engine": self.document.settings.engine}
+
+    @property
+    def restitution(self) -> Any:
+        """The first restitution."""
+        return next(iter(self.restitutions.values()))
+
+    def answer(self, progress: Callable[[int], None] | None = None, threads: int | None = None) -> Any:
+        """Compute the study in memory.
+
+        Returns what its function in `rocking.studies` does; with several restitutions a comparison of them.
+        """
+        compute = _ANSWERS[self.document.campaign.kind]
+        return compute(self, {**self.options, "threads": threads, "progress": progress})
+
+    def only(self, things: str) -> Any:
+        """Return the one body, motion or restitution of a study that takes no more."""
+        held: Any = getattr(self, things)
+        if len(held) != 1:
+            raise InvalidValueError(f"{things}: in memory this is computed with one, got {len(held)}; "
+                                    "rocking campaign takes several")  # fmt: skip
+        return self.restitution if things == "restitutions" else held[0]
+
+
+def _map(problem: StudyProblem, options: dict[str, Any]) -> Any:
+    from rocking.studies import overturning_map
+    from rocking.studies.sensitivity import map_sensitivity
+
+    table = problem.document.map
+    assert table is not None  # the document refuses to be without
+    subject = (problem.only("bodies"), problem.only("motions"), *table.axes())
+    if len(problem.restitutions) == 1:
+        return overturning_map(*subject, problem.restitution, refine=table.refine, **options)
+    if table.refine is not None:
+        raise InvalidValueError("map.refine is for one restitution: several are compared cell by cell")
+    return map_sensitivity(*subject, problem.restitutions, **options)
+
+
+def _minimum(problem: StudyProblem, options: dict[str, Any]) -> Any:
+    from rocking.spec.document import MinimumTable
+    from rocking.studies import minimum_overturning_acceleration
+
+    search = vars(problem.document.minimum or MinimumTable())
+    subject = (problem.only("bodies"), problem.only("motions"), problem.only("restitutions"))
+    return minimum_overturning_acceleration(*subject, **{**options, **search})
+
+
+def _spectrum(problem: StudyProblem, options: dict[str, Any]) -> Any:
+    from rocking.studies import rocking_spectrum
+
+    table = problem.document.spectrum
+    assert table is not None  # the document refuses to be without
+    motions = [problem.motions[k] for k in range(len(problem.motions))]
+    blocks = (table.slenderness_angles.numbers(), table.periods.numbers())
+    return rocking_spectrum(motions, *blocks, problem.only("restitutions"), scale=table.scale, **options)
+
+
+def _fragility(problem: StudyProblem, options: dict[str, Any]) -> Any:
+    from rocking.spec.document import FragilityTable
+    from rocking.studies import fragility
+    from rocking.studies.sensitivity import fragility_sensitivity
+
+    table, kind = problem.document.fragility or FragilityTable(), problem.document.campaign.kind
+    options = {**options, "measure": table.measure, "states": tuple(table.states)}
+    subject = (problem.only("bodies"), problem.motions)
+    if kind == "cloud":
+        factor = 1.0 if table.factor is None else table.factor
+        return fragility.cloud(*subject, problem.only("restitutions"), factor=factor, **options)
+    assert table.levels is not None  # the document refuses to be without
+    levels = table.levels.numbers()
+    if len(problem.restitutions) > 1:
+        if kind != "stripes":
+            raise InvalidValueError(f"several restitutions are compared by stripes, not by {kind}")
+        return fragility_sensitivity(*subject, levels, problem.restitutions, **options)
+    study = fragility.multiple_stripe_analysis if kind == "stripes" else fragility.incremental_dynamic_analysis
+    return study(*subject, levels, problem.restitution, **options)
+
+
+_ANSWERS: dict[str, Callable[[StudyProblem, dict[str, Any]], Any]] = {
+    "overturning-map": _map, "minimum-acceleration": _minimum, "rocking-spectrum": _spectrum,
+    "stripes": _fragility, "incremental": _fragility, "cloud": _fragility,
+}  # fmt: skip
