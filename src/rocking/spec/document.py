@@ -1,14 +1,11 @@
 """What may stand in the file of a campaign or of a response. Imported only when one is read: it loads pydantic."""
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from rocking.conventions import DEFAULT_FRICTION
 from rocking.spec.fields import JobTable, Names, Numbers, Positive, Seed, Values, Words, in_list, refused
-
-if TYPE_CHECKING:
-    from rocking.studies.axis import Axis
 
 Kind = Literal[
     "overturning-map", "minimum-acceleration", "rocking-spectrum", "stripes", "incremental", "cloud", "inventory",
@@ -156,17 +153,6 @@ class MapTable(JobTable):
     refine: int | None = _key("levels of refinement along boundaries, each of half the spacing", None, ge=0, le=12)
     boundary: Literal["verdict", "mode"] = _key("which boundaries: of overturning, or of all modes", "verdict")
     tolerance: float = _key("how closely boundaries are bisected [-]", 1e-10, ge=1e-15, le=0.1)
-
-    def axes(self) -> "tuple[Axis, Axis]":
-        """Return the axes x and y."""
-        from rocking.spec.reading import located
-        from rocking.studies.axis import axis_of
-
-        made = []
-        for name, table in (("x", self.x), ("y", self.y)):
-            with located(f"map.{name}"):
-                made.append(axis_of((table.axis, table.numbers())))
-        return made[0], made[1]
 
     @model_validator(mode="after")
     def _refined(self) -> "MapTable":

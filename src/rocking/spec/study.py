@@ -10,10 +10,11 @@ from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.spec.construction import body_of, motions_of, restitutions_of
 from rocking.spec.reading import InputFiles, located
+from rocking.studies.axis import Axis, axis_of
 from rocking.studies.motion_sets import MotionSet
 
 if TYPE_CHECKING:
-    from rocking.spec.document import CampaignDocument
+    from rocking.spec.document import CampaignDocument, MapTable
 
 
 @dataclass(frozen=True)
@@ -68,13 +69,22 @@ class StudyProblem:
         return self.restitution if things == "restitutions" else held[0]
 
 
+def axes_of(table: "MapTable") -> tuple[Axis, Axis]:
+    """Return the axes x and y of a map."""
+    axes = []
+    for name, one in (("x", table.x), ("y", table.y)):
+        with located(f"map.{name}"):
+            axes.append(axis_of((one.axis, one.numbers())))
+    return axes[0], axes[1]
+
+
 def _map(problem: StudyProblem, options: dict[str, Any]) -> Any:
     from rocking.studies import overturning_map
     from rocking.studies.sensitivity import map_sensitivity
 
     table = problem.document.map
     assert table is not None  # the document refuses to be without
-    subject = (problem.only("bodies"), problem.only("motions"), *table.axes())
+    subject = (problem.only("bodies"), problem.only("motions"), *axes_of(table))
     if len(problem.restitutions) == 1:
         return overturning_map(*subject, problem.restitution, refine=table.refine, **options)
     if table.refine is not None:

@@ -8,7 +8,7 @@ from rocking.campaigns.jobs.kinds.words import along, of_words
 from rocking.campaigns.jobs.study import Study
 from rocking.errors import InvalidValueError
 from rocking.spec.reading import located
-from rocking.spec.study import StudyProblem
+from rocking.spec.study import StudyProblem, axes_of
 from rocking.studies.adaptive_grid import Plane
 from rocking.studies.axis import RestitutionAxis
 from rocking.studies.question import Question
@@ -24,7 +24,7 @@ def map_study(problem: StudyProblem) -> Study:
     assert table is not None  # the document refuses to be without
     if len(problem.motions) != 1:
         raise InvalidValueError(f"motions: a map is of one motion, got {len(problem.motions)}")
-    axes = table.axes()
+    axes = axes_of(table)
     engine = problem.document.settings.engine
     with located("map"):
         questions = [
