@@ -106,7 +106,7 @@ class Fast:
     def __call__(self) -> tuple[Arrays, dict[str, int]]:
         """Results and work."""
         out: Arrays = {name: np.empty(self.count, dtype) for name, dtype in RESULTS.items()}
-        given = {**self.rows.values, "motion": self.rows.motion, "key": self.rows.key}
+        given = {**self.rows.values, "motion": self.rows.motion, "key": self.rows.stream}
         work = module().run_batch(
             self.library.handle, given, out, order=self.settings.order, threads=self.threads, chunk=CHUNK,
             **common(self.settings, ConstantRestitution()),

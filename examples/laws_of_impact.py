@@ -20,9 +20,9 @@ fast = np.abs(by_speed.impacts["velocity_before"])
 assert (np.diff(by_speed.impacts["coefficient"][np.argsort(fast)]) <= 0.0).all()
 
 drawn = rk.dynamics.RandomRestitution.normal(0.9, 0.03, seed=11)
-drawn_responses = [rk.simulate(block, shaking, restitution=drawn, key=key) for key in range(100)]
+drawn_responses = [rk.simulate(block, shaking, restitution=drawn, stream=stream) for stream in range(100)]
 falls = sum(response.outcome is rk.Outcome.OVERTURNED for response in drawn_responses)
 print(f"drawn:       overturned in {falls} of 100 draws of the same distribution")
 assert 0 < falls < 100
-again = rk.simulate(block, shaking, restitution=drawn, key=5)
+again = rk.simulate(block, shaking, restitution=drawn, stream=5)
 assert (again.rotation == drawn_responses[5].rotation).all()  # the same seed and key, the same draws

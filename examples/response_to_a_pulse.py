@@ -16,7 +16,7 @@ responses = {
 
 figure, (axis,) = new_figure(6.5, 3.2)
 for (model, response), style in zip(responses.items(), ("-", "-.", "--"), strict=True):
-    r = response.rocker.right.coefficient
+    r = response.parameters.right.coefficient
     time = np.linspace(0.0, min(4.0, response.time[-1]), 2000)
     axis.plot(time, response.at(time) / cabinet.slenderness_angle, style, label=f"{model}, r = {r:.3f}")
     print(f"{model:20s} r = {r:.3f}: {response.summary}")

@@ -103,8 +103,8 @@ def test_the_verdict_is_that_of_python(answered: Callable[..., Any], shot: Calla
     for label in MODELS:
         found = response(GENTLE, label)
         text = card(page, label).inner_text()
-        ratio = found.peak_rotation / found.rocker.right.slenderness_angle
-        assert f"r = {found.rocker.right.coefficient:.4g}" in text
+        ratio = found.peak_rotation / found.parameters.right.slenderness_angle
+        assert f"r = {found.parameters.right.coefficient:.4g}" in text
         assert f"peak {ratio:.3g}" in text
         assert f"{found.impacts.size} impacts" in text
     shot(page, "response-light")
@@ -178,7 +178,7 @@ def test_the_fall_does_not_hide_the_rocking(answered: Callable[..., Any]) -> Non
     """Velocity is drawn until 1.5 times the slenderness angle; with the whole fall its extreme would be larger."""
     page = answered(link(DECISIVE, restitution={"models": ["ked"]}))
     found = response(DECISIVE, "ked")
-    alpha = found.rocker.right.slenderness_angle
+    alpha = found.parameters.right.slenderness_angle
     fallen = int(np.argmax(np.abs(found.rotation) > 1.5 * alpha))
     shown, whole = np.abs(found.angular_velocity[:fallen]).max(), np.abs(found.angular_velocity).max()
     assert whole > 1.3 * shown
@@ -443,7 +443,7 @@ def test_the_fallen_body_is_told_with_one_angle(answered: Callable[..., Any]) ->
     page = answered(link(DECISIVE, restitution={"models": ["ked"]}))
     page.get_by_test_id("scene-stage").focus()
     page.keyboard.press("End")
-    alpha = math.degrees(response(DECISIVE, "ked").rocker.right.slenderness_angle)
+    alpha = math.degrees(response(DECISIVE, "ked").parameters.right.slenderness_angle)
     words = page.get_by_test_id("scene-rotation").inner_text().replace("\u2212", "-")
     degrees, share = (abs(float(each)) for each in re.findall(r"-?[0-9.]+", words))
     assert degrees == pytest.approx(90.0, abs=0.01)
@@ -459,7 +459,7 @@ def test_the_curve_of_a_fall_ends(answered: Callable[..., Any]) -> None:
     page.get_by_role("button", name=re.compile("Copy table: Rotation over slenderness")).click()
     rows = [row.split("\t") for row in pasted(page).splitlines()[1:]]
     found = response(DECISIVE, "ked")
-    alpha = found.rocker.right.slenderness_angle
+    alpha = found.parameters.right.slenderness_angle
     fall = float(found.time[int(np.argmax(np.abs(found.rotation) > 1.5 * alpha))])
     shown = [(float(time), abs(float(share))) for time, share in (row[:2] for row in rows) if share.strip()]
     assert max(share for _, share in shown) <= 1.5
@@ -528,7 +528,7 @@ def test_curves_reach_their_peaks_to_the_dot(answered: Callable[..., Any], serve
     found = rattle(page, served)
     assert found.outcome is Outcome.ROCKED
     fine = np.linspace(0.0, found.time[-1], 20 * found.time.size)
-    alphas = found.rocker.left.slenderness_angle, found.rocker.right.slenderness_angle
+    alphas = found.parameters.left.slenderness_angle, found.parameters.right.slenderness_angle
     share = found.at(fine) / np.where(found.at(fine) > 0.0, alphas[1], alphas[0])
     title = "Rotation over slenderness angle"
     frame, points = drawn(page, title)

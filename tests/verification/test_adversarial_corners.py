@@ -86,8 +86,8 @@ def test_a_peak_within_a_step(rotation: float, velocity: float, name: str) -> No
 
 def released(alpha: float, p: float, start: float, step: float, count: int, name: str) -> Trajectory:
     side = RockingSide(alpha, p, 1.0, 0.8)
-    rocker = RockingParameters(side, side, ConstantRestitution(), "")
-    return run(rocker, Segments.still(step, count), Settings(), engine=name, rotation=start)
+    parameters = RockingParameters(side, side, ConstantRestitution(), "")
+    return run(parameters, Segments.still(step, count), Settings(), engine=name, rotation=start)
 
 
 def time_to_fall(alpha: float, p: float, start: float) -> float:

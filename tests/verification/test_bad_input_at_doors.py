@@ -27,7 +27,7 @@ OPTIONS: dict[str, tuple[Any, ...]] = {
     "rest_speed": (-1e-9, 0.5),
     "longest_step": (0.0, 2.0, 1e-9),
     "tolerance": (0.0, 1.0),
-    "key": (-1, 0.5, 2**63),
+    "stream": (-1, 0.5, 2**63),
     "order": (3, 8.5, 0),
     "most_events": (0, 10.0, -1),
     "linear": (0, 1, "no"),
@@ -118,7 +118,7 @@ def test_the_value_is_named() -> None:
 def test_good_input_passes() -> None:
     """Negative control: what was refused for its values is taken with others."""
     good: dict[str, Any] = {"gravity": 9.81, "rest_speed": 1e-3, "longest_step": 0.1, "most_events": 500}
-    one = rk.simulate(BODY, MOTION, 0.9, scale=1.5, rotation=0.1, duration=2.0, key=3, tolerance=1e-12, **good)
+    one = rk.simulate(BODY, MOTION, 0.9, scale=1.5, rotation=0.1, duration=2.0, stream=3, tolerance=1e-12, **good)
     assert one.status is Status.GOOD
     assert rk.free_rocking(BODY, 0.1, "ked", angular_velocity=-0.1).outcome is Outcome.ROCKED
     many = rk.simulate_many([BODY], [MOTION], 0.9, scale=[1.0, 2.0], **good)

@@ -200,8 +200,8 @@ def test_the_ledger_closes(motion, body, linear, engine):
     assert energy.closure < 1e-10
     assert energy.lost[-1] > 0.01 * (energy.kinetic + energy.potential).max()
     # negative control: work by the rule of trapezoids from sample to sample does not close
-    alpha = np.where(response.rotation < 0.0, response.rocker.left.slenderness_angle, 0.0)
-    alpha = np.where(response.rotation > 0.0, response.rocker.right.slenderness_angle, alpha)
+    alpha = np.where(response.rotation < 0.0, response.parameters.left.slenderness_angle, 0.0)
+    alpha = np.where(response.rotation > 0.0, response.parameters.right.slenderness_angle, alpha)
     cosine = np.ones_like(alpha) if linear else np.cos(alpha - np.abs(response.rotation))
     radius = body.side("right").semi_diagonal
     power = -body.mass * radius * response.ground_acceleration * cosine * response.angular_velocity

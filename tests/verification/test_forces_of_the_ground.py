@@ -51,7 +51,7 @@ def of_the_path(
     body: rk.Section, response: Any, motion: rk.GroundMotion, until: float = math.inf
 ) -> tuple[np.ndarray, np.ndarray]:
     """Forces over m g from the path of the centre alone: second differences within steps, carried on to their ends."""
-    parts, times = response.intervals, np.arange(motion.acceleration.size) * STEP
+    parts, times = response.dense_output, np.arange(motion.acceleration.size) * STEP
     last = np.fmin(until, np.nan_to_num(response.overturning_time, nan=math.inf))
     use = (parts.side != 0.0) & (parts.length > 1e-4) & (parts.start < last - 1e-9)
     start, length, side = parts.start[use, None], parts.length[use, None], parts.side[use, None]

@@ -97,12 +97,12 @@ def random_blocks(count, seed=20240607):
 
 
 def impacts_of(body, r, rotation, engine):
-    rocker = RockingParameters.of_body(body, r, conventions.g)
-    p = rocker.right.frequency_parameter
-    times, _ = truth(rocker.right.slenderness_angle, p, r, abs(rotation))
+    parameters = RockingParameters.of_body(body, r, conventions.g)
+    p = parameters.right.frequency_parameter
+    times, _ = truth(parameters.right.slenderness_angle, p, r, abs(rotation))
     step = 0.15 / p if engine == "fast" else 0.8 / p  # the longest default step of the fast engine
     still = Segments.still(step, int(np.ceil(1.02 * times[-1] / step)) + 1)
-    found = run(rocker, still, Settings(rest_speed=1e-6), engine=engine, rotation=rotation)
+    found = run(parameters, still, Settings(rest_speed=1e-6), engine=engine, rotation=rotation)
     events = [e for e in found.events if e.kind is EventKind.IMPACT][:IMPACTS]
     return np.array([e.time for e in events]), np.array([e.before for e in events])
 
@@ -241,9 +241,9 @@ def threshold(overturns, low, high):
 
 
 def pushed(speed, engine, *, linear, stretches, r=0.9):
-    rocker = RockingParameters.of_body(BLOCK, r, G)
+    parameters = RockingParameters.of_body(BLOCK, r, G)
     still = Segments.still(0.15 / P, stretches)
-    return run(rocker, still, Settings(gravity=G, linear=linear), engine=engine, velocity=P * speed)
+    return run(parameters, still, Settings(gravity=G, linear=linear), engine=engine, velocity=P * speed)
 
 
 @pytest.mark.parametrize(("engine", "bound"), [("fast", 3e-11), ("reference", 3e-15)])

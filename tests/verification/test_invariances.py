@@ -59,7 +59,7 @@ def respond(body: Any, motion: Any, r: Any, name: str, **options: Any) -> rk.Res
 
 def clear_impacts(response: rk.Response) -> Any:
     """Times of impacts over 1 / p, but for those too slow to be told from rest, which may be counted differently."""
-    side = response.rocker.right
+    side = response.parameters.right
     p = side.frequency_parameter
     return response.impacts["time"][np.abs(response.impacts["velocity_after"]) > 1e-3 * p * side.slenderness_angle] * p
 
@@ -177,8 +177,8 @@ def test_dimensionless_groups(
 def histories(
     name: str, sides: tuple[RockingSide, RockingSide], motion: Segments, *, linear: bool = False, **state: Any
 ) -> Trajectory:
-    rocker = RockingParameters(*sides, ConstantRestitution(), "")
-    return run(rocker, motion, Settings(linear=linear, rest_speed=1e-6), engine=name, **state)
+    parameters = RockingParameters(*sides, ConstantRestitution(), "")
+    return run(parameters, motion, Settings(linear=linear, rest_speed=1e-6), engine=name, **state)
 
 
 @ENGINES

@@ -73,10 +73,10 @@ class Histories:
             motion, velocity = kind(rng, strength), 0.3 * rng.uniform(0.3, 1.0)
             if strongest(motion) > 2.0:
                 continue
-            rocker = RockingParameters(RIGHT, LEFT, ConstantRestitution(), "")
+            parameters = RockingParameters(RIGHT, LEFT, ConstantRestitution(), "")
             settings = Settings(linear=linear, tolerance=1e-16)
             # shorter stretches, so that the oracle takes steps of at most p h = 1/4
-            found = Reference(rocker, motion.refined(4), settings, to_the_ground=False).run(0.0, velocity)
+            found = Reference(parameters, motion.refined(4), settings, to_the_ground=False).run(0.0, velocity)
             over = found.outcome is Outcome.OVERTURNED
             at = found.overturning_time if over else found.peak_time
             before = sum(e.kind is EventKind.IMPACT and e.time < at for e in found.events)
@@ -167,14 +167,14 @@ SPEEDS = np.linspace(0.7, 0.99, 200)
 def test_order_against_the_closed_form():
     """Times of the first five impacts of free rocking converge to the closed form with order 8."""
     side = RockingSide(0.3, 1.0, 1.0, 0.9)
-    rocker = RockingParameters(side, side, ConstantRestitution(), "")
+    parameters = RockingParameters(side, side, ConstantRestitution(), "")
     errors = []
     for step in LINEAR_STEPS:
         settings = Settings(linear=True, longest_step=step)
         found = []
         for speed in SPEEDS:
             still = Segments.still(1.0, 30)
-            events = run(rocker, still, settings, engine="fast", velocity=0.3 * speed).events
+            events = run(parameters, still, settings, engine="fast", velocity=0.3 * speed).events
             times = [e.time for e in events if e.kind is EventKind.IMPACT][:5]
             found.append(np.abs(times - true_impacts(speed, 5)))
         errors.append(np.ravel(found))

@@ -141,7 +141,12 @@ def coefficients(law: RandomRestitution, key: int, name: str, sides: tuple[float
     right, left = (RockingSide(0.2, 3.0, 1.0, r) for r in sides)
     settings = Settings(rest_speed=1e-7, most_events=10_000)
     found = run(
-        RockingParameters(right, left, law, ""), Segments.still(0.05, 400), settings, engine=name, key=key, rotation=0.1
+        RockingParameters(right, left, law, ""),
+        Segments.still(0.05, 400),
+        settings,
+        engine=name,
+        stream=key,
+        rotation=0.1,
     )
     return [(e.coefficient, e.side) for e in found.events if e.kind is EventKind.IMPACT]
 

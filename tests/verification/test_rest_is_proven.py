@@ -33,11 +33,11 @@ def case(number):
 
 
 def run(name, number, rest_speed):
-    rocker, segments = case(number)
+    parameters, segments = case(number)
     settings = Settings(rest_speed=rest_speed)
     if name == "fast":
-        return run_fast(rocker, segments, settings)
-    return Reference(rocker, segments, settings).run()
+        return run_fast(parameters, segments, settings)
+    return Reference(parameters, segments, settings).run()
 
 
 def lifts(trajectory):
@@ -62,8 +62,8 @@ def test_rest_without_proof_is_wrong(monkeypatch):
     """Putting every slow body to rest, as is often done, changes later uplifts."""
     unproven = [lifts(run("reference", number, 0.01)) for number in range(COUNT)]
 
-    def slow(rocker, ground, sign, after, stretch, tau, rest_speed):
-        side = rocker.side(sign)
+    def slow(parameters, ground, sign, after, stretch, tau, rest_speed):
+        side = parameters.side(sign)
         limit = rest_speed * side.frequency_parameter * side.slenderness_angle
         return after <= limit and ground.held(sign, stretch, tau) > 0.0
 

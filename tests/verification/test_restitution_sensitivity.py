@@ -64,8 +64,8 @@ def test_other_boundaries_are_rejected():
 
 def drawn(count, law, pieces=1):
     """Outcomes of a full sine at Omega = 3 and the amplitude where r = 0.9 is just enough to overturn."""
-    rocker = RockingParameters.of_body(BLOCK, 1.0, conventions.g)
-    side = rocker.right
+    parameters = RockingParameters.of_body(BLOCK, 1.0, conventions.g)
+    side = parameters.right
     names = {"alpha": side.slenderness_angle, "p": side.frequency_parameter, "r": 1.0}
     values = {f"{name}_{foot}": value for name, value in names.items() for foot in ("right", "left")}
     amplitude = LOWER[3][0] * conventions.g * side.slenderness_angle

@@ -74,8 +74,8 @@ def _both(seed):
 
 
 def _mode(response):
-    stance = response.trajectory.fell_over
-    return (-1, -1) if stance is None else (stance.contact.code, stance.points[0])
+    contact = response.trajectory.fell_over
+    return (-1, -1) if contact is None else (contact.mode.code, contact.points[0])
 
 
 def _near(seed, width):

@@ -52,7 +52,7 @@ def test_without_watching_the_neighbours_a_body_enters_the_ground(monkeypatch):
     """Negative control: with no gaps watched the same measure shows centimetres of penetration."""
     start = {"start": SpatialStart(0.1, 0.6), "duration": 2.0}
     assert rk.free_rocking(SQUARE, **start).states.least_gap.min() >= -1e-12
-    monkeypatch.setattr(event_functions, "watched", lambda body, stance: ())
+    monkeypatch.setattr(event_functions, "watched", lambda body, contact: ())
     assert rk.free_rocking(SQUARE, **start).states.least_gap.min() < -1e-2
 
 
@@ -62,7 +62,7 @@ def test_an_impact_without_complementarity_is_rejected():
     omega *= -np.sign(np.cross(omega, SQUARE.vertices[1] - SQUARE.vertices[0])[2])
     state = SpatialState(SQUARE.vertices[0], omega, UP, -G * UP)
     (choice,) = of_impact(SQUARE, state, (0, 1), law_of("housner-3d"))
-    assert choice.stance.points == (1,)
+    assert choice.contact.points == (1,)
     leaves = np.cross(choice.velocity, SQUARE.vertices[0] - SQUARE.vertices[1])[2]
     assert leaves > 0.0 > np.cross(omega, SQUARE.vertices[1] - SQUARE.vertices[0])[2]
 

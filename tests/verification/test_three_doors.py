@@ -203,14 +203,14 @@ def python_motion(motion, record):
 
 def numbers_of(response):
     """Every number of a response, as the library holds them."""
-    rocker, finite = response.rocker, lambda value: value if math.isfinite(value) else None
+    parameters, finite = response.parameters, lambda value: value if math.isfinite(value) else None
     contact = response.contact
     return {
         "peak_rotation_rad": response.peak_rotation,
         "overturning_time_s": finite(response.overturning_time),
         "impacts": [tuple(row) for row in response.impacts.tolist()],
         "uplifts_s": response.uplifts.tolist(),
-        "coefficients": (rocker.left.coefficient, rocker.right.coefficient),
+        "coefficients": (parameters.left.coefficient, parameters.right.coefficient),
         "energy_closure": response.energy.closure,
         "error_estimate_rad": finite(response.error_estimate),
         "friction": (finite(contact.friction_of_motion), finite(contact.friction_of_impacts)),

@@ -56,8 +56,8 @@ def bound(body: Any, onto: Foot) -> float:
     return math.sqrt(about["left" if onto == "right" else "right"] / about[onto])
 
 
-def coefficients(rocker: RockingParameters, onto: Foot, count: int = 2000) -> Any:
-    return np.array([rocker.coefficient(SIGNS[onto], 1.0, key, 3) for key in range(count)])
+def coefficients(parameters: RockingParameters, onto: Foot, count: int = 2000) -> Any:
+    return np.array([parameters.coefficient(SIGNS[onto], 1.0, key, 3) for key in range(count)])
 
 
 def cut_normal(mean: float, sd: float, most: float) -> Any:
@@ -76,39 +76,39 @@ CASES = list(zip(BODIES, (0.9, 0.97, 0.9), (0.05, 0.03, 0.05), strict=True))  # 
 @pytest.mark.parametrize(("body", "mean", "sd"), CASES)
 def test_draws_follow_the_truncated_distribution(body: Any, mean: float, sd: float, law: Any) -> None:
     """On either side draws are those of the normal distribution on condition that 0 <= r <= bound; to a bound of 1."""
-    rocker = RockingParameters.of_body(body, law.normal(mean, sd, seed=11), 9.81)
+    parameters = RockingParameters.of_body(body, law.normal(mean, sd, seed=11), 9.81)
     narrow = min(FEET, key=lambda foot: bound(body, foot))
     for foot in FEET:
-        drawn, exact = coefficients(rocker, foot), cut_normal(mean, sd, min(1.0, bound(body, foot)))
+        drawn, exact = coefficients(parameters, foot), cut_normal(mean, sd, min(1.0, bound(body, foot)))
         assert stats.kstest(drawn, exact.cdf).pvalue > ALARM
         assert drawn.max() <= bound(body, foot)
         # straight lines between 1025 quantiles: the worst is the first step of the tail, cut at a quarter of it
         u = np.linspace(0.01, 0.99, 99)
-        found = [rocker.side(SIGNS[foot]).coefficient * quantile(rocker, foot, p) for p in u]
+        found = [parameters.side(SIGNS[foot]).coefficient * quantile(parameters, foot, p) for p in u]
         np.testing.assert_allclose(found, exact.ppf(u), atol=0.02 * sd)
     # negative controls: draws that are clipped instead, and those of the other side
     whole = np.array([law.normal(mean, sd, seed=11).factor(1.0, key, 3) for key in range(2000)])
     exact = cut_normal(mean, sd, bound(body, narrow))
     assert stats.kstest(np.minimum(whole, bound(body, narrow)), exact.cdf).pvalue < ALARM
     other: Foot = "left" if narrow == "right" else "right"
-    assert stats.kstest(coefficients(rocker, other), exact.cdf).pvalue < ALARM
+    assert stats.kstest(coefficients(parameters, other), exact.cdf).pvalue < ALARM
 
 
-def quantile(rocker: RockingParameters, onto: Foot, p: float) -> float:
-    law: Any = rocker.law
-    return float(law.quantile(rocker.side(SIGNS[onto]).share * p, onto))
+def quantile(parameters: RockingParameters, onto: Foot, p: float) -> float:
+    law: Any = parameters.law
+    return float(law.quantile(parameters.side(SIGNS[onto]).share * p, onto))
 
 
 @quietly
 @pytest.mark.parametrize(("body", "mean", "sd"), CASES)
 def test_what_is_cut_off_is_stated(body: Any, mean: float, sd: float) -> None:
     """The share that is left, and the words, are the probability within the bound, of the distribution on [0, 1]."""
-    rocker = RockingParameters.of_body(body, RandomRestitution.normal(mean, sd, seed=1), 9.81)
+    parameters = RockingParameters.of_body(body, RandomRestitution.normal(mean, sd, seed=1), 9.81)
     whole = cut_normal(mean, sd, 1.0)
     for foot in FEET:
-        share = rocker.side(SIGNS[foot]).share
+        share = parameters.side(SIGNS[foot]).share
         assert share == pytest.approx(whole.cdf(bound(body, foot)), abs=1e-4)  # of a step of 1/1024 between quantiles
-        assert (share < 1.0) == (f"{percent(1.0 - share)} onto {foot}" in rocker.label)
+        assert (share < 1.0) == (f"{percent(1.0 - share)} onto {foot}" in parameters.label)
 
 
 def one_point(eta: float, k: float, s: float) -> Calibration:
@@ -135,10 +135,10 @@ def test_posterior_is_truncated_on_both_sides(body: Any, point: tuple[float, flo
         assert found.bounds[foot] == pytest.approx(most, rel=1e-12)
         assert f"{foot}={percent(found.cut[foot])}" in repr(found)
         for law in (found.per_history(3), found.per_impact(3)):
-            rocker = RockingParameters.of_body(body, law, 9.81)
-            assert rocker.side(SIGNS[foot]).share == 1.0
-            assert (f"{percent(found.cut[foot])} onto {foot}" in rocker.label) == (found.cut[foot] > 1e-4)
-            assert stats.kstest(coefficients(rocker, foot), exact.cdf).pvalue > ALARM
+            parameters = RockingParameters.of_body(body, law, 9.81)
+            assert parameters.side(SIGNS[foot]).share == 1.0
+            assert (f"{percent(found.cut[foot])} onto {foot}" in parameters.label) == (found.cut[foot] > 1e-4)
+            assert stats.kstest(coefficients(parameters, foot), exact.cdf).pvalue > ALARM
             clipped = np.minimum(whole.ppf([uniform(3, key, 3 * (not law.per_history)) for key in range(2000)]), most)
             if found.cut[foot] > 0.1:
                 assert stats.kstest(clipped, exact.cdf).pvalue < ALARM
@@ -215,12 +215,12 @@ def test_no_draw_is_beyond_the_bound(body: Any, left: Any, right: Any, seed: int
     size = min(len(left), len(right))
     law = RandomRestitution({"left": left[:size], "right": right[:size]}, seed)
     try:
-        rocker = RockingParameters.of_body(body, law, 9.81)
+        parameters = RockingParameters.of_body(body, law, 9.81)
     except InvalidValueError:
         assert any(bound(body, foot) < 1.001 * law.table(foot)[0] + 1e-3 for foot in FEET)
         return
     for foot in FEET:
-        most = max([rocker.largest(SIGNS[foot]), *coefficients(rocker, foot, 50)])
+        most = max([parameters.largest(SIGNS[foot]), *coefficients(parameters, foot, 50)])
         assert most <= bound(body, foot) * (1.0 + 2e-9)  # the rounding that r and I are granted
 
 
@@ -233,7 +233,7 @@ def test_no_impact_creates_energy(name: str, body: Any) -> None:
     inertia = {SIGNS[f]: body.moment_of_inertia + body.mass * body.side(f).semi_diagonal ** 2 for f in FEET}
     ratios, factors = [], []
     for key in range(6):
-        response = rk.free_rocking(body, 0.1, law, key=key, engine=name, duration=20.0)
+        response = rk.free_rocking(body, 0.1, law, stream=key, engine=name, duration=20.0)
         for event in response.trajectory.events:
             if event.kind is EventKind.IMPACT:
                 ratios.append((event.after / event.before) ** 2 * inertia[event.side] / inertia[-event.side])
@@ -288,15 +288,15 @@ def test_each_impact_draws_from_its_side(name: str) -> None:
     """The n-th impact lands on a side with the quantile of that side at its share of the n-th number, to the bit."""
     law = RandomRestitution(TWO, 9)
     right, left = RockingSide(0.2, 3.0, 1.0, 0.95, share=0.4), RockingSide(0.25, 3.3, 1.0, 0.9, share=0.7)
-    rocker, options = RockingParameters(right, left, law, ""), Settings(rest_speed=1e-7, most_events=10_000)
-    found = run(rocker, Segments.still(0.05, 400), options, engine=name, key=4, rotation=0.1)
+    parameters, options = RockingParameters(right, left, law, ""), Settings(rest_speed=1e-7, most_events=10_000)
+    found = run(parameters, Segments.still(0.05, 400), options, engine=name, stream=4, rotation=0.1)
     impacts = [(e.coefficient, e.side) for e in found.events if e.kind is EventKind.IMPACT]
     assert len(impacts) > 10
     for n, (r, side) in enumerate(impacts):
         table, one = (TWO["right"], right) if side > 0 else (TWO["left"], left)
         expected = np.interp(one.share * uniform(9, 4, n), np.linspace(0.0, 1.0, 3), table)
         assert r == pytest.approx(one.coefficient * expected, abs=3e-16)
-        assert r == rocker.coefficient(side, 1.0, 4, n)
+        assert r == parameters.coefficient(side, 1.0, 4, n)
 
 
 @ENGINES
@@ -338,7 +338,7 @@ def test_studies_take_asymmetric_bodies(law: Any) -> None:
     """Batches, maps and stripes draw for every side as a single response of the same number does."""
     body, pulse = BODIES[1], rk.pulses.sine(amplitude=3.0, period=0.6)
     made, scales = law.normal(0.95, 0.04, seed=3), np.array([1.0, 1.5, 2.0, 2.5])
-    single = [rk.simulate(body, pulse, made, scale=scale, key=key) for key, scale in enumerate(scales)]
+    single = [rk.simulate(body, pulse, made, scale=scale, stream=key) for key, scale in enumerate(scales)]
     wanted = [response.peak_rotation for response in single]
     assert all(len(response.impacts) > 1 for response in single[:3])
     found = rk.simulate_many(body, pulse, made, scale=scales)
@@ -360,7 +360,7 @@ def test_sides_share_the_draw_of_a_history() -> None:
     body = BODIES[0]
     law = restitution_distribution(body, calibration=one_point(0.98, 0.55, 0.2)).per_history(6)
     for key in (0, 7):
-        response = rk.free_rocking(body, 0.15, law, key=key)
+        response = rk.free_rocking(body, 0.15, law, stream=key)
         events = [event for event in response.trajectory.events if event.kind is EventKind.IMPACT]
         assert {event.side for event in events} == {-1, 1}
         for event in events:

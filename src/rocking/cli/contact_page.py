@@ -7,7 +7,7 @@ from typing import Any
 from rocking.cli.options import in_unit
 from rocking.cli.simulate_question import Question, restitution_from
 from rocking.conventions import LENGTH_UNITS, Assumed, given_or_assumed
-from rocking.dynamics import PlanarResponse, free_rocking, simulate
+from rocking.dynamics import ContactResponse, free_rocking, simulate
 from rocking.errors import RockingError
 from rocking.outcome import Outcome, Regime
 from rocking.reports.facts.response import finite, moved_facts, still_rocking_facts
@@ -25,14 +25,14 @@ COMPLEMENTARITY = "complementarity"
 """Word for rocking impacts that follow from complementarity, as all others do."""
 
 
-def contact_response(question: Question, restitution: str, bounce: float) -> PlanarResponse:
+def contact_response(question: Question, restitution: str, bounce: float) -> ContactResponse:
     """Return what a body does that may slide and hop.
 
     bounce: Newton's coefficient of normal velocities [-].
     """
     law = None if restitution == COMPLEMENTARITY else restitution_from(restitution)
     contact = {"friction": question.assumed_friction, "bounce": bounce, "gravity": question.settings.gravity}
-    response: PlanarResponse = (
+    response: ContactResponse = (
         free_rocking(question.body, question.rotation, law, **contact)
         if question.motion is None
         else simulate(question.body, question.motion, law, scale=question.scale, **contact)
@@ -42,7 +42,7 @@ def contact_response(question: Question, restitution: str, bounce: float) -> Pla
     return response
 
 
-def contact_facts(response: PlanarResponse) -> dict[str, Any]:
+def contact_facts(response: ContactResponse) -> dict[str, Any]:
     """Return everything that is said of a response with contact, as plain values.
 
     Returns SI units, named in the keys; None where something does not exist.
@@ -79,12 +79,12 @@ def contact_facts(response: PlanarResponse) -> dict[str, Any]:
     }
 
 
-def as_json(response: PlanarResponse) -> str:
+def as_json(response: ContactResponse) -> str:
     """Return everything as JSON."""
     return json.dumps(contact_facts(response), indent=2, allow_nan=False)
 
 
-def show(response: PlanarResponse, length: str = "m") -> None:
+def show(response: ContactResponse, length: str = "m") -> None:
     """Print contact, outcome, modes, impacts and measures."""
     from rich.console import Console
 
@@ -109,7 +109,7 @@ def _rows(table: Any, keys: tuple[str, ...]) -> list[dict[str, Any]]:
     return [dict(zip(keys, row, strict=True)) for row in table.tolist()]
 
 
-def _facts(response: PlanarResponse) -> list[tuple[str, str]]:
+def _facts(response: ContactResponse) -> list[tuple[str, str]]:
     motion, law = response.motion, response.law
     times = "" if response.scale == 1.0 else f"{response.scale:g} times "
     let_go = f"none; let go at {math.degrees(float(response.rotation[0])):.4g} deg"
@@ -143,7 +143,7 @@ def _impacts(rows: Any) -> Any:
     return table
 
 
-def _measures(response: PlanarResponse, length: str) -> list[tuple[str, str]]:
+def _measures(response: ContactResponse, length: str) -> list[tuple[str, str]]:
     fell, energy = response.outcome is Outcome.OVERTURNED, response.energy
     at_the_end = in_unit(float(response.displacement[-1]), length, "+.6g")
     return [

@@ -170,7 +170,7 @@ def as_json(answer: FragilityAnswer) -> str:
 def _result(found: Any) -> dict[str, Any]:
     told = found.summary()
     made = {
-        "restitution": found.subject.rocker.label,
+        "restitution": found.subject.parameters.label,
         "definition": found.definition,
         "uplift": told["uplift"],
         "failed": told["failed"],
@@ -206,7 +206,7 @@ def show(answer: FragilityAnswer, length: str = "m") -> None:
     from rich.console import Console
 
     console, found = Console(highlight=False, soft_wrap=True), answer.found
-    labels = dict.fromkeys(one.subject.rocker.label for one in answer.results.values())
+    labels = dict.fromkeys(one.subject.parameters.label for one in answer.results.values())
     head = {
         **dict(output.body_lines(answer.question.body, answer.question.settings["gravity"], length)),
         "motions": _motions(answer.motions),

@@ -15,7 +15,7 @@ from rocking.cli.output import check_files
 from rocking.cli.simulate_question import ResponseComparison, SimulateOptions
 from rocking.conventions import g
 from rocking.dynamics import simulate
-from rocking.dynamics.contact import PlanarResponse
+from rocking.dynamics.contact import ContactResponse
 from rocking.dynamics.exportable import Exportable
 from rocking.dynamics.response import Motion, Response
 from rocking.dynamics.space import SpatialResponse
@@ -132,7 +132,7 @@ def answer_of_contact(asked: SimulateOptions, files: ResponseFiles, *, as_json: 
         print(f"wrote {path}")
 
 
-def _drawn_contact(response: PlanarResponse) -> Any:
+def _drawn_contact(response: ContactResponse) -> Any:
     from rocking.plots.regimes import regimes_picture
 
     return regimes_picture(response)

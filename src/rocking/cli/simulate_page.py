@@ -48,11 +48,11 @@ def show(answer: ResponseComparison, length: str = "m", acceleration: str = "m/s
 
 
 def _facts(response: Response, length: str, acceleration: str) -> list[tuple[str, str]]:
-    body, rocker, motion = response.body, response.rocker, response.motion
-    r = {rocker.left.coefficient, rocker.right.coefficient}
-    value = f"r = {rocker.left.coefficient:.6f}"
+    body, parameters, motion = response.body, response.parameters, response.motion
+    r = {parameters.left.coefficient, parameters.right.coefficient}
+    value = f"r = {parameters.left.coefficient:.6f}"
     if len(r) > 1:
-        value = f"onto the left foot {value}, onto the right one r = {rocker.right.coefficient:.6f}"
+        value = f"onto the left foot {value}, onto the right one r = {parameters.right.coefficient:.6f}"
     if motion is None:
         ground = f"none; let go at {math.degrees(float(response.rotation[0])):.4g} deg"
     else:
@@ -68,7 +68,7 @@ def _facts(response: Response, length: str, acceleration: str) -> list[tuple[str
         ("body", body_words(body, response.settings.gravity, length)),
         *(("density", sentence.removeprefix("density ")) for sentence in body.assumed),
         ("motion", ground),
-        ("restitution", f"{rocker.label}, {value}"),
+        ("restitution", f"{parameters.label}, {value}"),
         ("engine", f"{response.engine}{equations}"),
     ]
 
@@ -105,12 +105,12 @@ def _measures(answer: ResponseComparison) -> list[tuple[str, str]]:
 
 def _rivals(answer: ResponseComparison) -> Any:
     table = _table(("model", "r", "outcome", "peak deg", "/ alpha", "impacts"), left=("model", "outcome"))
-    chosen = answer.response.rocker.label
+    chosen = answer.response.parameters.label
     for name, found in {chosen: answer.response, **answer.others}.items():
         if isinstance(found, str):
             table.add_row(name, "", "not for this body", "", "", "")
             continue
-        left, right = found.rocker.left.coefficient, found.rocker.right.coefficient
+        left, right = found.parameters.left.coefficient, found.parameters.right.coefficient
         r = f"{right:.4f}" if left == right else f"{left:.3f}/{right:.3f}"
         fell = found.outcome is Outcome.OVERTURNED
         size = ("-", "-") if fell else (f"{math.degrees(found.peak_rotation):.4g}", f"{_over_alpha(found):.4g}")
@@ -119,7 +119,7 @@ def _rivals(answer: ResponseComparison) -> Any:
 
 
 def _verdict(answer: ResponseComparison) -> str:
-    found = {answer.response.rocker.label: answer.response}
+    found = {answer.response.parameters.label: answer.response}
     found |= {name: one for name, one in answer.others.items() if isinstance(one, Response)}
     return ModelAgreement.of(found).sentence
 
@@ -133,7 +133,7 @@ def _short(response: Response) -> str:
 
 
 def _over_alpha(response: Response) -> float:
-    side = response.rocker.side(response.trajectory.peak_rotation)
+    side = response.parameters.side(response.trajectory.peak_rotation)
     return response.peak_rotation / side.slenderness_angle
 
 

@@ -203,7 +203,7 @@ class ResponseComparison:
         from rocking.evidence._coefficient_table import default_models
 
         response = _computed(question, restitution_from(restitution))
-        rivals = {model.label: model for model in default_models() if model.label != response.rocker.label}
+        rivals = {model.label: model for model in default_models() if model.label != response.parameters.label}
         return cls(
             response, question.assumed_friction, {name: _tried(question, model) for name, model in rivals.items()}
         )

@@ -12,14 +12,14 @@ from rocking.lazy import exports
 from rocking.outcome import Outcome, Status
 
 if TYPE_CHECKING:
-    from rocking.dynamics.contact import PlanarResponse, Start
+    from rocking.dynamics.contact import ContactResponse, Start
     from rocking.dynamics.space import SpatialBody, SpatialResponse, SpatialStart
 
 __all__ = [
     "ConstantRestitution",
+    "ContactResponse",
     "ImpactLaw",
     "Outcome",
-    "PlanarResponse",
     "RandomRestitution",
     "Response",
     "RockingParameters",
@@ -39,7 +39,7 @@ __all__ = [
 __getattr__, __dir__ = exports(
     "rocking.dynamics",
     {
-        "PlanarResponse": "rocking.dynamics.contact",
+        "ContactResponse": "rocking.dynamics.contact",
         "SpatialBody": "rocking.dynamics.space",
         "SpatialResponse": "rocking.dynamics.space",
         "SpatialStart": "rocking.dynamics.space",

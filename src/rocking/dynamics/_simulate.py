@@ -15,7 +15,7 @@ from rocking.errors import InvalidValueError, PureRockingWarning
 
 if TYPE_CHECKING:
     from rocking.bodies.solid import Solid
-    from rocking.dynamics.contact import PlanarResponse, Start
+    from rocking.dynamics.contact import ContactResponse, Start
     from rocking.dynamics.space import SpatialBody, SpatialResponse, SpatialStart
 
 AnyMotion = Motion | Mapping[str, Motion] | tuple[Component, ...]
@@ -29,7 +29,7 @@ def simulate(
 @overload
 def simulate(
     body: Body, motion: AnyMotion, restitution: Any = "ked", *, friction: float, **options: Any
-) -> "PlanarResponse": ...
+) -> "ContactResponse": ...
 @overload
 def simulate(
     body: "Solid | SpatialBody", motion: AnyMotion, restitution: Any = "ked", **options: Any
@@ -48,7 +48,7 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
     gravity: float = conventions.g,
     duration: float | None = None,
     engine: str = "auto",
-    key: int = 0,
+    stream: int = 0,
     linear: bool = False,
     rest_speed: float | None = None,
     most_events: int = 100_000,
@@ -100,14 +100,14 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
         leans less: `outcome` needs it.
     engine : {"auto", "fast", "reference"}
         Which engine; which one ran is in `Response.engine`. The fast one is for rocking alone.
-    key : int
+    stream : int
         Number of the history, for random coefficients.
     linear, rest_speed, most_events, longest_step, order, tolerance
         How to integrate: see `Settings`.
 
     Returns
     -------
-    Response, PlanarResponse or SpatialResponse
+    Response, ContactResponse or SpatialResponse
         Of a plane body, of one with friction, of one in space: motion, impacts, energy, forces, outcome.
 
     Raises
@@ -136,7 +136,7 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
         "gravity": gravity, "linear": linear, "rest_speed": rest_speed, "most_events": most_events,
         "longest_step": longest_step, "order": order, "tolerance": tolerance,
     }  # fmt: skip
-    alone = {"rotation": rotation, "angular_velocity": angular_velocity, "engine": engine, "key": key}
+    alone = {"rotation": rotation, "angular_velocity": angular_velocity, "engine": engine, "stream": stream}
     moved = components_of(motion) if in_space(body) else in_plane(motion)
     how = {"scale": scale, "duration": duration}
     return _response(body, moved, restitution, settings, alone, {"friction": friction, "bounce": bounce}, start, how)
@@ -149,7 +149,7 @@ def free_rocking(
 @overload
 def free_rocking(
     body: Body, rotation: float = 0.0, restitution: Any = "ked", *, friction: float, **options: Any
-) -> "PlanarResponse": ...
+) -> "ContactResponse": ...
 @overload
 def free_rocking(
     body: "Solid | SpatialBody", rotation: float = 0.0, restitution: Any = "ked", **options: Any
@@ -166,7 +166,7 @@ def free_rocking(  # type: ignore[misc]  # noqa: PLR0913 - as for `simulate`
     gravity: float = conventions.g,
     duration: float | None = None,
     engine: str = "auto",
-    key: int = 0,
+    stream: int = 0,
     linear: bool = False,
     rest_speed: float | None = None,
     most_events: int = 100_000,
@@ -196,14 +196,14 @@ def free_rocking(  # type: ignore[misc]  # noqa: PLR0913 - as for `simulate`
         How long to follow the body [s]; if not given, until it rests or lies, or 300 / p; with friction 60 sqrt(R / g).
     engine : {"auto", "fast", "reference"}
         Which engine.
-    key : int
+    stream : int
         Number of the history, for random coefficients.
     linear, rest_speed, most_events, longest_step, order, tolerance
         How to integrate: see `Settings`.
 
     Returns
     -------
-    Response, PlanarResponse or SpatialResponse
+    Response, ContactResponse or SpatialResponse
         As of `simulate`; the motion is None.
 
     Raises
@@ -228,7 +228,7 @@ def free_rocking(  # type: ignore[misc]  # noqa: PLR0913 - as for `simulate`
         "gravity": gravity, "linear": linear, "rest_speed": rest_speed, "most_events": most_events,
         "longest_step": longest_step, "order": order, "tolerance": tolerance,
     }  # fmt: skip
-    alone = {"rotation": rotation, "angular_velocity": angular_velocity, "engine": engine, "key": key}
+    alone = {"rotation": rotation, "angular_velocity": angular_velocity, "engine": engine, "stream": stream}
     contact = {"friction": friction, "bounce": bounce}
     moved = (None, None, None) if in_space(body) else None
     return _response(body, moved, restitution, settings, alone, contact, start, {"duration": duration})
@@ -253,7 +253,7 @@ def _response(  # noqa: PLR0917 - what the two questions have in common
         from rocking.dynamics.space.start import SpatialStart
 
         body = SpatialBody.of(body)
-        _refuse("a body in space", {**contact, "engine": alone["engine"], "key": alone["key"]})
+        _refuse("a body in space", {**contact, "engine": alone["engine"], "stream": alone["stream"]})
         spin = state["angular_velocity"] if np.ndim(state["angular_velocity"]) else (0.0, 0.0, 0.0)
         if not np.ndim(state["angular_velocity"]) and state["angular_velocity"]:
             raise InvalidValueError("angular_velocity of a body in space must be three numbers [rad/s], got one")
@@ -271,14 +271,14 @@ def _response(  # noqa: PLR0917 - what the two questions have in common
     from rocking.dynamics.contact.histories import response_with_contact
     from rocking.dynamics.contact.start import Start
 
-    _refuse("a body with friction", {"engine": alone["engine"], "key": alone["key"]})
+    _refuse("a body with friction", {"engine": alone["engine"], "stream": alone["stream"]})
     return response_with_contact(
         body, motion, friction, restitution, Settings(**settings, mechanics="contact"), bounce=contact["bounce"],
         start=_start(start, Start) or Start(**state), **how,
     )  # fmt: skip
 
 
-_USUAL = {"friction": (None,), "bounce": (0.0,), "engine": ("auto", "reference"), "key": (0,), "start": (None,)}
+_USUAL = {"friction": (None,), "bounce": (0.0,), "engine": ("auto", "reference"), "stream": (0,), "start": (None,)}
 
 
 def _refuse(what: str, options: dict[str, Any]) -> None:

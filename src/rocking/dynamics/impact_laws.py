@@ -59,14 +59,14 @@ class ImpactLaw:
         factors = getattr(self, "factors", None)
         return 1.0 if factors is None else float(factors.max())
 
-    def factor(self, speed: float, key: int, impact: int) -> float:
+    def factor(self, speed: float, stream: int, impact: int) -> float:
         """Return the factor for an impact.
 
         Parameters
         ----------
         speed : float
             Angular velocity before the impact, without its sign [rad/s].
-        key : int
+        stream : int
             Number of the history.
         impact : int
             Impacts that the history has had before.
@@ -125,14 +125,14 @@ class ConstantRestitution(ImpactLaw):
     factors: FloatArray = field(default_factory=lambda: np.ones(1))
     seed: int = 0
 
-    def factor(self, speed: float, key: int, impact: int) -> float:
+    def factor(self, speed: float, stream: int, impact: int) -> float:
         """Return one.
 
         Parameters
         ----------
         speed : float
             Not used [rad/s].
-        key, impact : int
+        stream, impact : int
             Not used.
 
         Returns
@@ -183,14 +183,14 @@ class SpeedRestitution(ImpactLaw):
         object.__setattr__(self, "at", speeds)
         object.__setattr__(self, "factors", _factors(self.factors, speeds.size))
 
-    def factor(self, speed: float, key: int, impact: int) -> float:
+    def factor(self, speed: float, stream: int, impact: int) -> float:
         """Return the coefficient at a speed.
 
         Parameters
         ----------
         speed : float
             Angular velocity before the impact, without its sign [rad/s].
-        key, impact : int
+        stream, impact : int
             Not used.
 
         Returns
@@ -378,14 +378,14 @@ class DrawnRestitution(ImpactLaw):
         part = (most - table[k - 1]) / (table[k] - table[k - 1])
         return float(self.at[k - 1] + (self.at[k] - self.at[k - 1]) * part)  # Eq. 42
 
-    def factor(self, speed: float, key: int, impact: int) -> float:
+    def factor(self, speed: float, stream: int, impact: int) -> float:
         """Return the draw for an impact, of a law that is the same for both sides.
 
         Parameters
         ----------
         speed : float
             Not used [rad/s].
-        key : int
+        stream : int
             Number of the history.
         impact : int
             Impacts that the history has had before; not used where all of them share the draw.
@@ -395,14 +395,14 @@ class DrawnRestitution(ImpactLaw):
         float
             Coefficient or factor [-].
         """
-        return self.draw(key, impact)
+        return self.draw(stream, impact)
 
-    def draw(self, key: int, impact: int, onto: Foot | None = None, share: float = 1.0) -> float:
+    def draw(self, stream: int, impact: int, onto: Foot | None = None, share: float = 1.0) -> float:
         """Return the draw for an impact on a foot, from the lowest part of the distribution.
 
         Parameters
         ----------
-        key : int
+        stream : int
             Number of the history.
         impact : int
             Impacts that the history has had before; not used where all of them share the draw.
@@ -416,7 +416,7 @@ class DrawnRestitution(ImpactLaw):
         float
             Coefficient or factor [-].
         """
-        return self.quantile(share * uniform(self.seed, key, 0 if self.per_history else impact), onto)  # Eq. 41
+        return self.quantile(share * uniform(self.seed, stream, 0 if self.per_history else impact), onto)  # Eq. 41
 
 
 class RandomRestitution(DrawnRestitution):
@@ -460,9 +460,9 @@ def interpolated(at: FloatArray, values: FloatArray, x: float) -> float:
     return float(values[k - 1] + (values[k] - values[k - 1]) * ((x - at[k - 1]) / (at[k] - at[k - 1])))  # Eq. 44
 
 
-def uniform(seed: int, key: int, impact: int) -> float:
+def uniform(seed: int, stream: int, impact: int) -> float:
     """Return a number in [0, 1) that depends on seed, history and impact, on nothing else (splitmix64)."""
-    return (_mixed(_mixed(_mixed(seed) + key & _MASK) + impact & _MASK) >> 11) * 2.0**-53  # Eq. 43
+    return (_mixed(_mixed(_mixed(seed) + stream & _MASK) + impact & _MASK) >> 11) * 2.0**-53  # Eq. 43
 
 
 def _mixed(z: int) -> int:

@@ -128,19 +128,21 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     if not choices:
         raise InvalidValueError("restitution must be at least one model, got none")
     law = _common_law(choices)
-    rockers = [[RockingParameters.of_body(body, choice, settings.gravity) for choice in choices] for body in body_list]
+    all_parameters = [
+        [RockingParameters.of_body(body, choice, settings.gravity) for choice in choices] for body in body_list
+    ]
     shape = (len(body_list), len(motion_list), scales.size, len(choices))
     batch = Batch([m.segments() for m in motion_list], law, settings, threads, engine)
     count = int(np.prod(shape))
-    results, work = batch.run(count, _pieces(rockers, scales, shape), progress)
+    results, work = batch.run(count, _pieces(all_parameters, scales, shape), progress)
     if twin:
         finer = replace(settings, longest_step=max(SHORTEST_STEP, 0.5 * settings.longest_step))
         halved = replace(batch, motions=[segments.refined(2) for segments in batch.motions], settings=finer)
-        results |= _twin(results, halved.run(count, _pieces(rockers, scales, shape))[0])
+        results |= _twin(results, halved.run(count, _pieces(all_parameters, scales, shape))[0])
     dims = ("body", "motion", "scale", "restitution")
     results |= flags(results)
     data = {name: (dims, values.reshape(shape), quantities.attributes(name)) for name, values in results.items()}
-    first = [row[0].right for row in rockers]
+    first = [row[0].right for row in all_parameters]
     made: xr.Dataset = xarray.Dataset(
         data,
         coords={
@@ -151,7 +153,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
             "scale": ("scale", scales, {"units": "1"}),
             "restitution": [
                 _most_cut(column).label if law.kind else _label(choice)
-                for column, choice in zip(zip(*rockers, strict=True), choices, strict=True)
+                for column, choice in zip(zip(*all_parameters, strict=True), choices, strict=True)
             ],
         },
         attrs={
@@ -186,12 +188,12 @@ def _twin(results: dict[str, Any], again: dict[str, Any]) -> dict[str, FloatArra
 
 
 def _pieces(
-    rockers: list[list[RockingParameters]], scales: np.ndarray, shape: tuple[int, ...]
+    all_parameters: list[list[RockingParameters]], scales: np.ndarray, shape: tuple[int, ...]
 ) -> "Callable[[int, int], Rows]":
     from rocking.dynamics.plane.batch import SIDES, Rows
 
     table = {
-        f"{short}_{side}": np.array([[getattr(getattr(r, side), name) for r in row] for row in rockers])
+        f"{short}_{side}": np.array([[getattr(getattr(r, side), name) for r in row] for row in all_parameters])
         for short, name in SIDES
         for side in ("right", "left")
     }
@@ -238,9 +240,9 @@ def _common_law(choices: Sequence[Any]) -> ImpactLaw:
     return laws[0]
 
 
-def _most_cut(rockers: Sequence[RockingParameters]) -> RockingParameters:
+def _most_cut(all_parameters: Sequence[RockingParameters]) -> RockingParameters:
     """Return the first of those bodies that keep the least of a distribution: its label stands for all."""
-    return min(rockers, key=lambda rocker: min(rocker.left.share, rocker.right.share))
+    return min(all_parameters, key=lambda parameters: min(parameters.left.share, parameters.right.share))
 
 
 def _label(choice: Any) -> str:

@@ -97,7 +97,7 @@ class RockingParameters:
             return side.coefficient * law.quantile(side.share, _foot(sign))
         return side.coefficient * law.largest
 
-    def coefficient(self, sign: float, speed: float, key: int, impact: int) -> float:
+    def coefficient(self, sign: float, speed: float, stream: int, impact: int) -> float:
         """Return the coefficient of an impact.
 
         Parameters
@@ -106,7 +106,7 @@ class RockingParameters:
             Above zero for landing on the right, below for the left.
         speed : float
             Angular velocity before the impact, without its sign [rad/s].
-        key : int
+        stream : int
             Number of the history.
         impact : int
             Impacts that the history has had before.
@@ -123,8 +123,8 @@ class RockingParameters:
         """
         side, law = self.side(sign), self.law
         if isinstance(law, DrawnRestitution) and law.truncates:
-            return side.coefficient * law.draw(key, impact, _foot(sign), side.share)
-        factor = law.factor(speed, key, impact)
+            return side.coefficient * law.draw(stream, impact, _foot(sign), side.share)
+        factor = law.factor(speed, stream, impact)
         if not 0.0 <= factor <= law.largest:
             raise InvalidValueError(
                 f"{type(law).__name__}.factor must be in [0, {law.largest:g}], its largest, got {factor!r}"

@@ -21,7 +21,7 @@ from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, Status
 
 if TYPE_CHECKING:
-    from rocking.dynamics.contact import PlanarResponse
+    from rocking.dynamics.contact import ContactResponse
     from rocking.dynamics.plane.dense_output import DenseOutput
     from rocking.dynamics.plane.energy_balance import ResponseEnergy
     from rocking.dynamics.plane.ground_forces import GroundForces
@@ -47,7 +47,7 @@ class Response(Exportable):
         The body.
     motion : GroundMotion or Pulse, optional
         The motion; None for free rocking.
-    rocker : RockingParameters
+    parameters : RockingParameters
         The body as the equations see it, with its coefficients of restitution.
     settings : Settings
         How it was integrated.
@@ -55,7 +55,7 @@ class Response(Exportable):
         The motion as it was integrated, rest of the ground after it included [m/s2].
     scale : float
         Factor on the motion [-].
-    key : int
+    stream : int
         Number of the history, for random coefficients.
     trajectory : Trajectory
         What the engine returned.
@@ -63,11 +63,11 @@ class Response(Exportable):
 
     body: Body
     motion: Motion | None
-    rocker: RockingParameters
+    parameters: RockingParameters
     settings: Settings
     segments: Segments = field(repr=False)
     scale: float
-    key: int
+    stream: int
     trajectory: Trajectory = field(repr=False)
 
     def __repr__(self) -> str:
@@ -155,7 +155,7 @@ class Response(Exportable):
         """Whether the ground would have to pull, so that the verdict assumes contact; None if there is no result."""
         return None if self.outcome is Outcome.FAILED else self.least_force < 0.0
 
-    def with_contact(self, friction: float | None = None) -> "PlanarResponse":
+    def with_contact(self, friction: float | None = None) -> "ContactResponse":
         """Return what the body does if it may slide, hop and fly: the same question to `simulate` with friction.
 
         Parameters
@@ -166,7 +166,7 @@ class Response(Exportable):
 
         Returns
         -------
-        PlanarResponse
+        ContactResponse
             With the full equations.
 
         Raises
@@ -177,15 +177,15 @@ class Response(Exportable):
         from rocking.dynamics.contact.histories import response_with_contact
         from rocking.dynamics.contact.start import Start
 
-        rocker, run = self.rocker, self.trajectory
-        if rocker.law.kind:
-            raise InvalidValueError(f"restitution must be constant where the body may fly, got {rocker.label}")
+        parameters, run = self.parameters, self.trajectory
+        if parameters.law.kind:
+            raise InvalidValueError(f"restitution must be constant where the body may fly, got {parameters.label}")
         start = Start(rotation=float(run.rotation[0]), angular_velocity=float(run.angular_velocity[0]))
         for mu in (friction,) if friction is not None else (10.0, 3.0, 1.0):
             with warnings.catch_warnings():  # what was asked has been doubted
                 warnings.simplefilter("ignore", PlausibilityWarning)
                 found = response_with_contact(
-                    self.body, self.motion, mu, {f: getattr(rocker, f).coefficient for f in ("left", "right")},
+                    self.body, self.motion, mu, {f: getattr(parameters, f).coefficient for f in ("left", "right")},
                     Settings(self.settings.gravity, mechanics="contact"), start=start, scale=self.scale,
                     duration=self.segments.count * self.segments.step,
                 )  # fmt: skip
@@ -254,7 +254,7 @@ class Response(Exportable):
             count = {0: "without an impact", 1: "after 1 impact"}.get(run.impacts, f"after {run.impacts} impacts")
             return f"overturned to the {side} {count}, past the point of no return at {run.overturning_time:.4g} s"
         if run.outcome is Outcome.ROCKED:
-            angle = self.rocker.side(run.peak_rotation).slenderness_angle
+            angle = self.parameters.side(run.peak_rotation).slenderness_angle
             ratio = self.peak_rotation / angle
             return (
                 f"rocked and stayed standing: largest rotation {np.degrees(self.peak_rotation):.4g} degrees, "
@@ -277,25 +277,25 @@ class Response(Exportable):
         return np.append(self.time, fall) if fall > last + _ROUNDING * self.segments.step else self.time
 
     @cached_property
-    def intervals(self) -> "DenseOutput":
+    def dense_output(self) -> "DenseOutput":
         """The response between its samples and events."""
         from rocking.dynamics.plane.dense_output import DenseOutput
 
-        return DenseOutput.of(self.trajectory, self.segments, self.rocker, self.settings, self.scale)
+        return DenseOutput.of(self.trajectory, self.segments, self.parameters, self.settings, self.scale)
 
     @cached_property
     def energy(self) -> "ResponseEnergy":
         """Kinetic and potential energy, work of the ground and losses at the samples, and at a later fall [J]."""
         from rocking.dynamics.plane.energy_balance import energy_of
 
-        return energy_of(self.intervals, self._covered, self.body.mass, self.settings)
+        return energy_of(self.dense_output, self._covered, self.body.mass, self.settings)
 
     @cached_property
     def contact(self) -> "GroundForces":
         """Forces of the ground, friction demand and loss of contact."""
         from rocking.dynamics.plane.ground_forces import contact_of
 
-        return contact_of(self.trajectory, self.intervals, self._covered, self.body, self.settings)
+        return contact_of(self.trajectory, self.dense_output, self._covered, self.body, self.settings)
 
     @cached_property
     def ground_acceleration(self) -> FloatArray:
@@ -345,15 +345,15 @@ class Response(Exportable):
             If a time is not finite, or before the start or after the end by more than rounding: the last sample, or
             where the body lies.
         """
-        intervals, end = self.intervals, float(self.intervals.end[-1])
+        output, end = self.dense_output, float(self.dense_output.end[-1])
         given = checks.real_array("time", time, "s")
         bad = given[~((given >= -_ROUNDING * end) & (given <= (1.0 + _ROUNDING) * end))]
         if bad.size:
             raise InvalidValueError(f"time must be in [0, {end:g}] s, where the response is known, got {bad[0]:g}")
         t = np.clip(given, 0.0, end)
-        k = np.clip(np.searchsorted(intervals.start, t, side="right") - 1, 0, intervals.start.size - 1)
-        x = (t - intervals.start[k]) / intervals.length[k]
-        c = intervals.quintics()[k]
+        k = np.clip(np.searchsorted(output.start, t, side="right") - 1, 0, output.start.size - 1)
+        x = (t - output.start[k]) / output.length[k]
+        c = output.quintics()[k]
         return np.asarray((c * x[..., None] ** np.arange(6)).sum(axis=-1))
 
     def exported(self) -> "Table":

@@ -78,7 +78,7 @@ def page(response: Response) -> str:
     about = [
         "free rocking, the ground at rest" if motion is None else motion.name,
         *([f"{response.scale:g} times"] if response.scale != 1.0 else []),
-        f"restitution {response.rocker.label}",
+        f"restitution {response.parameters.label}",
         f"engine {response.engine}",
     ]
     lifted = isinstance(motion, GroundMotion) and motion.vertical is not None
@@ -105,7 +105,7 @@ def page_data(response: Response) -> dict[str, Any]:
     Returns SI units; `rotation`, `velocity`, `ground` and `acceleration` at equal steps from 0 to `end`, both included.
     """
     scene = scene_of(response)
-    rocker, fall = response.rocker, response.overturning_time
+    parameters, fall = response.parameters, response.overturning_time
     impacts = response.impacts
     signs = np.where(impacts["onto"] == "right", 1, -1)
     columns = (impacts["time"], impacts["velocity_before"], impacts["velocity_after"], impacts["coefficient"], signs)
@@ -120,7 +120,7 @@ def page_data(response: Response) -> dict[str, Any]:
         "impacts": [list(row) for row in zip(*(column.tolist() for column in columns), strict=True)],
         "fall": None if np.isnan(fall) else fall,
         "overturnedTo": response.trajectory.side,
-        "alpha": [rocker.left.slenderness_angle, rocker.right.slenderness_angle],
+        "alpha": [parameters.left.slenderness_angle, parameters.right.slenderness_angle],
         "regions": [{"shade": shade, "rings": [_short(ring) for ring in rings]} for shade, rings in shape.regions],
         "points": _short(shape.points),
         "feet": list(shape.feet),

@@ -111,7 +111,7 @@ def scene_of(response: Response, step: float | None = None) -> Scene:
         time = np.linspace(0.0, end, max(2, min(int(end * FASTEST_RATE), MOST_SAMPLES)))
     else:
         time = np.append(np.arange(0.0, end, step), end)
-    known, ends = float(response.intervals.end[-1]), response.segments.count * response.segments.step
+    known, ends = float(response.dense_output.end[-1]), response.segments.count * response.segments.step
     rotation, velocity = response.at(np.minimum(time, known)), velocity_at(response, time)
     if fall.time.size:
         falls = time > known

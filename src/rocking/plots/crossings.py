@@ -106,7 +106,7 @@ def crossings_picture(
     axes.plot(place / g, np.where(standing, peaks, np.nan), color=INK, linewidth=0.9, zorder=4)
     axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
     _finish(axes, found, place, peaks[standing])
-    note(axes, f"{plain(motion.name)}, scaled; restitution {plain(question.rocker.label)}")
+    note(axes, f"{plain(motion.name)}, scaled; restitution {plain(question.parameters.label)}")
     return figure
 
 
@@ -127,7 +127,7 @@ def _places(found: Transitions, count: int) -> FloatArray:
 
 
 def _curve(question: Question, place: FloatArray) -> tuple[FloatArray, IntArray]:
-    sides = {name: np.repeat(value, place.size) for name, value in sides_of([question.rocker]).items()}
+    sides = {name: np.repeat(value, place.size) for name, value in sides_of([question.parameters]).items()}
     # the same random numbers at every amplitude, as in the search
     keys = np.zeros(place.size, dtype=np.int64)
     made, _ = question.run({**sides, "scale": place / question.motion.peak}, np.ones(place.size), keys)

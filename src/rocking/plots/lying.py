@@ -43,7 +43,7 @@ def fall_of(response: Response, lying: tuple[float, float]) -> Fall:
     """
     if response.outcome is not Outcome.OVERTURNED:
         return Fall(np.empty(0), np.empty(0), np.empty(0))
-    last = response.intervals
+    last = response.dense_output
     falling = _Falling(response, lying)
     rows = [(float(last.end[-1]), float(last.rotation[-1, 1]), float(last.velocity[-1, 1]))]
     side = 1.0 if (rows[0][1] or rows[0][2]) > 0.0 else -1.0
@@ -69,7 +69,7 @@ class _Falling:
 
     def advanced(self, side: float, state: _State) -> tuple[float, _State]:
         """Return side and state after a step, or where the body meets the ground or the other foot within it."""
-        step = _STEP / self.response.rocker.side(side).frequency_parameter
+        step = _STEP / self.response.parameters.side(side).frequency_parameter
         after = self._step(side, state, step)
         lands = side * after[1] < 0.0
         if not (lands or self.lies(after, side)):
@@ -86,8 +86,8 @@ class _Falling:
         return -side, (time, 0.0, self._coefficient(-side, speed) * speed)
 
     def _coefficient(self, onto: float, speed: float) -> float:
-        rocker, run = self.response.rocker, self.response.trajectory
-        return rocker.coefficient(onto, abs(speed), self.response.key, run.impacts + 1)
+        parameters, run = self.response.parameters, self.response.trajectory
+        return parameters.coefficient(onto, abs(speed), self.response.stream, run.impacts + 1)
 
     def _step(self, side: float, state: _State, step: float) -> _State:
         """Return the state after a step, by the classical method of Runge and Kutta."""
@@ -111,7 +111,7 @@ class _Falling:
             powers = (place - k) ** np.arange(segments.degree + 1) * response.scale / response.settings.gravity
             push = float(segments.horizontal[k] @ powers)
             weight = 0.0 if segments.vertical is None else float(segments.vertical[k] @ powers)
-        on = response.rocker.side(side)
+        on = response.parameters.side(side)
         return float(
             equations.angular_acceleration(
                 rotation, side, on.slenderness_angle, on.frequency_parameter, push, 1.0 + weight,

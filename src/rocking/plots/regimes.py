@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.dynamics.contact.response import PlanarResponse
+from rocking.dynamics.contact.response import ContactResponse
 from rocking.dynamics.contact.shenton import friction_demand, regime_map
 from rocking.errors import InvalidValueError
 from rocking.outcome import Regime
@@ -112,12 +112,12 @@ def _boundaries(axes: "Axes", body: Body, slender: float, largest: float) -> Non
 
 
 @in_journal_style
-def regimes_picture(response: PlanarResponse) -> "Figure":
+def regimes_picture(response: ContactResponse) -> "Figure":
     """Draw a planar response over its regimes: rotation, place of the centre, energy.
 
     Parameters
     ----------
-    response : PlanarResponse
+    response : ContactResponse
         What `simulate` returned of a plane body with friction.
 
     Returns
@@ -155,7 +155,7 @@ def regimes_picture(response: PlanarResponse) -> "Figure":
     return figure
 
 
-def _energy(axes: "Axes", response: PlanarResponse) -> None:
+def _energy(axes: "Axes", response: ContactResponse) -> None:
     energy = response.energy
     rows = (
         ("kinetic and potential", energy.kinetic + energy.potential, INK, "-"),
@@ -169,7 +169,7 @@ def _energy(axes: "Axes", response: PlanarResponse) -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.0, borderpad=0.2)
 
 
-def _bands(axes: list["Axes"], response: PlanarResponse) -> None:
+def _bands(axes: list["Axes"], response: ContactResponse) -> None:
     from matplotlib.patches import Patch
 
     regimes = response.regimes

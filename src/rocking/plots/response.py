@@ -79,7 +79,7 @@ def _title(response: Response) -> list[str]:
     if response.scale != 1.0:
         ground = f"{response.scale:g} times {ground}"
     summary = response.summary[:1].upper() + response.summary[1:]
-    lines = [ground, f"restitution: {response.rocker.label};  engine: {response.engine}"]
+    lines = [ground, f"restitution: {response.parameters.label};  engine: {response.engine}"]
     short = [line if len(line) <= _LONGEST_LINE else line[: _LONGEST_LINE - 3] + "..." for line in lines]
     return [summary, *(line.replace("$", r"\$") for line in short)]
 

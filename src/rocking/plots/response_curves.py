@@ -26,9 +26,9 @@ class MotionCurves:
 
 def motion_curves(response: Response) -> MotionCurves:
     """Return rotation and velocity of a response with every jump upright."""
-    intervals = response.intervals
-    rotation, velocity = intervals.inside(_INSIDE)
-    time = intervals.start[:, None] + _INSIDE * intervals.length[:, None]
+    dense_output = response.dense_output
+    rotation, velocity = dense_output.evaluated(_INSIDE)
+    time = dense_output.start[:, None] + _INSIDE * dense_output.length[:, None]
     return MotionCurves(time.ravel(), rotation.ravel(), velocity.ravel())
 
 
@@ -37,12 +37,12 @@ def velocity_at(response: Response, time: Any) -> FloatArray:
 
     time: times [s]. Returns theta' [rad/s].
     """
-    intervals = response.intervals
-    t = np.clip(np.asarray(time, dtype=np.float64), 0.0, intervals.end[-1])
-    k = np.clip(np.searchsorted(intervals.start, t, side="right") - 1, 0, intervals.start.size - 1)
-    x = (t - intervals.start[k]) / intervals.length[k]
-    slopes = intervals.quintics()[k][..., 1:] * np.arange(1, 6)
-    return np.asarray((slopes * x[..., None] ** np.arange(5)).sum(axis=-1) / intervals.length[k])
+    dense_output = response.dense_output
+    t = np.clip(np.asarray(time, dtype=np.float64), 0.0, dense_output.end[-1])
+    k = np.clip(np.searchsorted(dense_output.start, t, side="right") - 1, 0, dense_output.start.size - 1)
+    x = (t - dense_output.start[k]) / dense_output.length[k]
+    slopes = dense_output.quintics()[k][..., 1:] * np.arange(1, 6)
+    return np.asarray((slopes * x[..., None] ** np.arange(5)).sum(axis=-1) / dense_output.length[k])
 
 
 def over_slenderness(response: Response, rotation: FloatArray) -> FloatArray:
@@ -50,8 +50,8 @@ def over_slenderness(response: Response, rotation: FloatArray) -> FloatArray:
 
     rotation: theta [rad]. Returns beyond one the centre of mass is past the foot [-].
     """
-    rocker = response.rocker
-    return rotation / np.where(rotation > 0.0, rocker.right.slenderness_angle, rocker.left.slenderness_angle)
+    parameters = response.parameters
+    return rotation / np.where(rotation > 0.0, parameters.right.slenderness_angle, parameters.left.slenderness_angle)
 
 
 def shown_until(response: Response) -> float:
@@ -59,7 +59,7 @@ def shown_until(response: Response) -> float:
 
     Returns Time, at most the end of the response [s].
     """
-    end = float(response.time[-1]) or float(response.intervals.end[-1])  # it may lie before the second sample
+    end = float(response.time[-1]) or float(response.dense_output.end[-1])  # it may lie before the second sample
     if response.outcome is Outcome.OVERTURNED or not response.trajectory.events:
         return end if response.outcome is not Outcome.NO_UPLIFT else min(end, _quiet_end(response))
     last = max(event.time for event in response.trajectory.events)

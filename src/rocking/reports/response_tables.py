@@ -91,8 +91,8 @@ def _outcome(label: str, response: Response, friction: float) -> list[Cell]:
     word = _SHORT[response.outcome] + (f" to the {facts['overturned_to']}" if fell else "")
     return [
         cell(restitution_words(label)),
-        cell(f"{response.rocker.left.coefficient:.4f}"),
-        cell(f"{response.rocker.right.coefficient:.4f}"),
+        cell(f"{response.parameters.left.coefficient:.4f}"),
+        cell(f"{response.parameters.right.coefficient:.4f}"),
         cell(word, _MARKS.get(response.outcome, "plain")),
         cell("-" if fell else f"{math.degrees(response.peak_rotation):.4g}"),
         cell("-" if fell else f"{facts['peak_rotation_over_alpha']:.4g}"),

@@ -142,4 +142,4 @@ def _attributes(question: Question, settings: Settings, scale: float, motions: M
     kept = question.attributes({})
     told = {k: v for k, v in kept.items() if k in {"software", "seed"} or k.startswith("setting_")}
     hashes = "; ".join(item["sha256"] for item in motions.description()["motions"])
-    return {**told, "restitution": question.rocker.label, "scale": scale, "motion_sha256": hashes}
+    return {**told, "restitution": question.parameters.label, "scale": scale, "motion_sha256": hashes}

@@ -79,7 +79,7 @@ class Histories(ABC):
         Returns
         -------
         Rows
-            The rows; the key of a history is its number.
+            The rows; the stream of a history is its number.
         """
 
     @abstractmethod
@@ -204,7 +204,7 @@ class Histories(ABC):
                 chosen = np.flatnonzero((places >= low) & (places < low + len(some)))
                 local = Rows(
                     {name: rows.values[name][chosen] for name in ROWS}, places[chosen].astype(np.int64) - low,
-                    rows.key[chosen],
+                    rows.stream[chosen],
                 )  # fmt: skip
                 for name, values in self._made(some, local, threads).items():
                     results[name][start - first + chosen] = values
@@ -221,7 +221,7 @@ class Histories(ABC):
 def part(rows: Rows, first: int, last: int) -> Rows:
     """Return some of the rows."""
     values = {name: rows.values[name][first:last] for name in ROWS}
-    return Rows(values, rows.motion[first:last], rows.key[first:last])
+    return Rows(values, rows.motion[first:last], rows.stream[first:last])
 
 
 @dataclass(frozen=True, eq=False)

@@ -42,17 +42,17 @@ class Question:
         """Refuse what cannot be asked."""
         if not isinstance(self.motion, (GroundMotion, Pulse)):
             raise InvalidValueError(f"motion must be a GroundMotion or a pulse, got {self.motion!r:.60}")
-        _ = self.rocker
+        _ = self.parameters
 
     @cached_property
-    def rocker(self) -> RockingParameters:
+    def parameters(self) -> RockingParameters:
         """The body as it is, before any axis changes it."""
         return self.rocker_of(self.body)
 
     @property
     def law(self) -> ImpactLaw:
         """How the coefficient changes from impact to impact."""
-        return self.rocker.law
+        return self.parameters.law
 
     @cached_property
     def batch(self) -> Batch:
@@ -67,7 +67,7 @@ class Question:
         self,
         values: dict[str, FloatArray],
         stretch: FloatArray,
-        key: Any = None,
+        stream: Any = None,
         progress: Callable[[int], None] | None = None,
     ) -> tuple[Arrays, dict[str, int]]:
         """Return the results of many variations, their modes and relative peaks with them.
@@ -83,7 +83,7 @@ class Question:
         if np.any(stretch != 1.0):
             self.check_stretching("an axis")
         quick = {n: v * stretch if n in {"p_right", "p_left"} else v for n, v in values.items()}  # Eq. 179
-        rows = Rows.of(count, 0, key, **quick)
+        rows = Rows.of(count, 0, stream, **quick)
         found, work = self.batch.run(count, lambda a, b: part(rows, a, b), progress)
         for name in ("peak_time", "overturning_time", "first_uplift"):
             found[name] = found[name] * stretch
@@ -109,21 +109,21 @@ class Question:
             "body": repr(self.body),
             "motion": motion.name,
             "motion_provenance": "; ".join(getattr(motion, "provenance", ())) or repr(motion),
-            "restitution": self.rocker.label,
+            "restitution": self.parameters.label,
             "seed": int(getattr(self.law, "seed", 0)),
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in self.settings.stated.items()},
             **{f"work_{k}": v for k, v in work.items()},
         }
 
 
-def sides_of(rockers: Sequence[RockingParameters | None]) -> dict[str, FloatArray]:
+def sides_of(all_parameters: Sequence[RockingParameters | None]) -> dict[str, FloatArray]:
     """Return the sides of many bodies as arrays.
 
     Returns alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left, q_right, q_left, share_right,
     share_left [-]; NaN where there is no body.
     """
     return {
-        f"{short}_{side}": np.array([np.nan if r is None else getattr(getattr(r, side), name) for r in rockers])
+        f"{short}_{side}": np.array([np.nan if r is None else getattr(getattr(r, side), name) for r in all_parameters])
         for short, name in SIDES
         for side in ("right", "left")
     }

@@ -64,7 +64,7 @@ def same(answer, response):
         and answer["energy_closure"] == response.energy.closure
         and answer["error_estimate_rad"] == response.error_estimate
         and answer["engine"] == response.engine
-        and answer["restitution"] == response.rocker.label
+        and answer["restitution"] == response.parameters.label
     )
 
 

@@ -52,9 +52,9 @@ def test_rows_are_repeated() -> None:
     assert rows.values["alpha_left"].tolist() == [0.1, 0.2, 0.3]
     assert rows.values["scale"].tolist() == [1.0, 1.0, 1.0]
     assert not any(rows.values[key].any() for key in ("rotation", "velocity"))
-    assert (rows.key.tolist(), rows.motion.tolist()) == ([0, 1, 2], [0, 0, 0])
+    assert (rows.stream.tolist(), rows.motion.tolist()) == ([0, 1, 2], [0, 0, 0])
     assert all(v.dtype == np.float64 and v.flags.c_contiguous for v in rows.values.values())
-    assert Rows.of(2, 1, 5, **GOOD).key.tolist() == [5, 5]
+    assert Rows.of(2, 1, 5, **GOOD).stream.tolist() == [5, 5]
 
 
 @pytest.mark.parametrize(

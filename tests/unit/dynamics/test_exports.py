@@ -27,7 +27,7 @@ with warnings.catch_warnings():  # 20 g: it would fly
     warnings.simplefilter("ignore")
     WITHIN = rk.simulate(BLOCK, rk.GroundMotion(np.array([-200.0] * 3 + [0.0]), 1.0), "ked")
 RESPONSES = {
-    "rocked": rk.simulate(BLOCK, RECORD, "housner", duration=4.5, key=7),
+    "rocked": rk.simulate(BLOCK, RECORD, "housner", duration=4.5, stream=7),
     "free": rk.free_rocking(BLOCK, -0.1, {"left": 0.8, "right": 0.9}),
     "no uplift": rk.simulate(BLOCK, rk.pulses.sine(1.0, 0.5), "ked", duration=1.0),
     "overturned": rk.simulate(BLOCK, rk.pulses.sine(9.0, 1.0), "ked", scale=-1.0),
@@ -176,7 +176,7 @@ def test_provenance() -> None:
     assert found["coefficient_left"] == found["coefficient_right"] == pytest.approx(housner, rel=1e-14)
     assert found["slenderness_angle_left"] == pytest.approx(math.atan(0.25), rel=1e-15)
     assert (found["motion"], found["motion_provenance"]) == (FORMULA, "Tōhoku, read by hand; cut")
-    assert (found["random_key"], found["scale"], found["setting_gravity"]) == (7, 1.0, 9.80665)
+    assert (found["random_stream"], found["scale"], found["setting_gravity"]) == (7, 1.0, 9.80665)
     assert (found["outcome"], found["status"]) == ("ROCKED", "GOOD")
     assert found["summary"] == RESPONSES["rocked"].summary
     free = provenance(RESPONSES["free"])

@@ -64,7 +64,7 @@ def test_lies_within_the_first_step(name: str) -> None:
     assert contact.least_vertical == pytest.approx(contact.vertical[1], rel=1e-12)
     assert contact.loses_contact
     assert response.at(response.overturning_time) == pytest.approx(ALPHA, rel=1e-8)
-    assert response.at(response.intervals.end[-1]) > 0.5 * math.pi
+    assert response.at(response.dense_output.end[-1]) > 0.5 * math.pi
     with pytest.raises(InvalidValueError, match="where the response is known"):
         response.at(1.0)
 
@@ -124,8 +124,8 @@ def test_after_rest_in_one_step(name: str) -> None:
     fall = response.overturning_time
     assert response.time[-1] > fall
     assert response.contact.time.size == response.time.size
-    before = response.intervals.end <= fall * (1.0 + 1e-12)
-    assert response.intervals.end[before][-1] == pytest.approx(fall, rel=1e-12)
+    before = response.dense_output.end <= fall * (1.0 + 1e-12)
+    assert response.dense_output.end[before][-1] == pytest.approx(fall, rel=1e-12)
     assert abs(float(response.at(fall))) == pytest.approx(ALPHA, rel=1e-8)
 
 

@@ -24,7 +24,7 @@ MASK = 2**64 - 1
 
 
 def impacts_of(restitution: Any, name: str, key: int = 0) -> Any:
-    return rk.free_rocking(BLOCK, 0.12, restitution, engine=name, key=key, duration=4.0).impacts
+    return rk.free_rocking(BLOCK, 0.12, restitution, engine=name, stream=key, duration=4.0).impacts
 
 
 def splitmix64(state: int) -> int:

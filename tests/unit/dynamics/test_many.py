@@ -142,7 +142,7 @@ def test_random_restitution(name: str) -> None:
     assert len(set(peaks.tolist())) > 1, "one scale, other draws"
     assert found["restitution"].item() == "at random: 0.6 to 0.95 times 1"
     for key in range(3):
-        alone = rk.simulate(BODIES[0], MOTIONS[0], law, key=key, duration=MOTIONS[0].duration, engine=name)
+        alone = rk.simulate(BODIES[0], MOTIONS[0], law, stream=key, duration=MOTIONS[0].duration, engine=name)
         assert peaks[key] == alone.trajectory.peak_rotation
     speed = rk.simulate_many(BODIES[0], MOTIONS[0], [SPEED([0.0, 1.0], [0.9, 0.5])], engine=name)
     assert speed["restitution"].item() == "of the speed: 0.5 to 0.9 times 1"

@@ -26,14 +26,14 @@ every_engine = pytest.mark.parametrize("name", ENGINES)
 ALPHA, P = 0.25, 2.0
 
 
-def rocker(r: float = 0.8, left: float = ALPHA) -> RockingParameters:
+def parameters(r: float = 0.8, left: float = ALPHA) -> RockingParameters:
     return RockingParameters(RockingSide(ALPHA, P, 1.8, r), RockingSide(left, P, 1.8, r), ConstantRestitution(), "")
 
 
 def ground(horizontal: Any, vertical: Any = None, left: float = ALPHA) -> RestoringMoments:
     x = np.array(horizontal, dtype=float)
     z = np.zeros_like(x) if vertical is None else np.array(vertical)
-    return RestoringMoments(rocker(left=left), Push(0.1, x, z), linear=True)
+    return RestoringMoments(parameters(left=left), Push(0.1, x, z), linear=True)
 
 
 def uplift(where: RestoringMoments, stretch: int = 0, tau: float = 0.0) -> Any:
@@ -126,7 +126,7 @@ def test_impacts_that_end(after: float, horizontal: Any, r: float, expected: boo
     r = 1, near uplift, beyond the end of the record, over a jump of a smooth pulse, for far too long, or where
     one flight turns the body so far that it could be lifted."""
     x = np.array(horizontal)
-    body = rocker(r)
+    body = parameters(r)
     where = RestoringMoments(body, Push(0.1, x, np.zeros_like(x)), linear=True)
     # v / p alpha times 2 alpha / p is a flight: 2.5e-3 s, and 1 / (1 - r) of them follow
     assert comes_to_rest(body, where, 1, after, 0, 0.2, 0.01) is expected
@@ -136,7 +136,7 @@ def test_impacts_that_end(after: float, horizontal: Any, r: float, expected: boo
 def test_nothing_is_rest_whatever_the_rest_speed(speed: Any) -> None:
     """At most 1e-9 p alpha is rest on ground that holds, also for a rest speed of zero; twice that is not, and
     nothing is where the ground lifts."""
-    body, none = rocker(1.0), 1e-9 * P * ALPHA
+    body, none = parameters(1.0), 1e-9 * P * ALPHA
     holds, lifts = (
         RestoringMoments(body, Push(0.1, x, np.zeros_like(x)), linear=True)
         for x in np.array([[[0.2, 0.0]], [[-0.3, 0.0]]])
@@ -314,7 +314,7 @@ def test_what_holds_over_stretches_of_a_smooth_motion(sign: int, linear: bool) -
     -0.04, least moments, sums of rises and jumps, and steepness are those of these numbers."""
     x = sign * np.array([[0.02, 0.03, 0.01], [0.08, 0.02, 0.0]])
     z = np.array([[-0.10, 0.05, 0.02], [-0.05, 0.01, 0.0]])
-    where = RestoringMoments(rocker(left=0.4), Push(0.1, x, z), linear=linear)
+    where = RestoringMoments(parameters(left=0.4), Push(0.1, x, z), linear=linear)
     held = where.window(0, 0.0, 2)
     assert held is not None
     sine, cosine = (

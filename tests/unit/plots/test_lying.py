@@ -71,9 +71,9 @@ def test_a_fall_that_was_cut_is_that_of_the_longer_history():
     whole = simulate(body, motion, "ked")
     cut = simulate(body, motion, "ked", duration=motion.duration)
     assert cut.time[-1] < whole.time[-1]
-    assert abs(cut.rotation[-1]) < 1.2 < abs(whole.intervals.rotation[-1, 1])
+    assert abs(cut.rotation[-1]) < 1.2 < abs(whole.dense_output.rotation[-1, 1])
     fall = fall_of(cut, DrawnShape.of(body).lying)
-    known = fall.time < whole.intervals.end[-1]
+    known = fall.time < whole.dense_output.end[-1]
     assert known.sum() > 10
     np.testing.assert_allclose(fall.rotation[known], whole.at(fall.time[known]), atol=1e-8)
 
@@ -105,7 +105,7 @@ def test_a_body_that_ends_on_its_way_over_the_other_foot_lands_on_it_first():
     whole = free_rocking(body, rotation=rotation, angular_velocity=velocity, restitution="ked", duration=3.0)
     assert (cut.impacts.size, whole.impacts.size, cut.outcome) == (0, 1, whole.outcome)
     fall = fall_of(cut, DrawnShape.of(body).lying)
-    known = fall.time < whole.intervals.end[-1]
+    known = fall.time < whole.dense_output.end[-1]
     np.testing.assert_allclose(fall.rotation[known], whole.at(fall.time[known]), atol=1e-8)
     assert fall.rotation[-1] < -1.4
 

@@ -230,5 +230,5 @@ def test_a_body_that_lies_within_the_first_step() -> None:
         response = simulate(Block(width=0.5, height=2.0), GroundMotion([-200.0, -200.0, -200.0, 0.0], 1.0))
     assert response.time.size == 1
     left, right = response_picture(response).axes[0].get_xlim()
-    assert (left, right) == (0.0, response.intervals.end[-1])
+    assert (left, right) == (0.0, response.dense_output.end[-1])
     assert right > response.overturning_time

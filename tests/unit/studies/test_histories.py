@@ -40,7 +40,7 @@ class Reversed(Product):
 
     def rows(self, first, last):
         rows = super().rows(first, last)
-        return type(rows)(rows.values, rows.motion[::-1].copy(), rows.key)
+        return type(rows)(rows.values, rows.motion[::-1].copy(), rows.stream)
 
 
 @dataclass
@@ -110,7 +110,7 @@ def test_product_order():
     assert np.array_equal(rows.values["alpha_right"], np.array([0.2, 0.25, 0.3])[body])
     assert np.array_equal(rows.values["scale"], np.array([0.5, 1.0, 2.0, 4.0])[scale])
     assert np.array_equal(rows.values["r_left"], np.array([0.8, 0.9])[choice])
-    assert np.array_equal(rows.key, np.arange(120))
+    assert np.array_equal(rows.stream, np.arange(120))
 
 
 @pytest.mark.parametrize("size", [1, 7, 50])
@@ -131,7 +131,7 @@ def test_key_by_place_would_be_caught():
     class Wrong(Product):
         def rows(self, first, last):
             rows = super().rows(first, last)
-            return type(rows)(rows.values, rows.motion, rows.key - first)
+            return type(rows)(rows.values, rows.motion, rows.stream - first)
 
     right = product(law=RandomRestitution.normal(0.9, 0.05, seed=3))
     wrong = Wrong(right.motions, right.sides, right.scales, law=right.law)

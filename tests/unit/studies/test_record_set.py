@@ -63,10 +63,10 @@ def test_motions_are_made_when_asked_for():
 def test_histories_are_those_of_the_same_motions_in_memory():
     """A study of the lazy set and one of its motions in a list have the same results, in any pieces."""
     motions = SyntheticSet("point-source", 6, 4, pga=3.0)
-    rocker = RockingParameters.of_body(Block(width=0.2, height=1.0), "ked", 9.80665)
+    parameters = RockingParameters.of_body(Block(width=0.2, height=1.0), "ked", 9.80665)
     names = {"alpha": "slenderness_angle", "p": "frequency_parameter", "r": "coefficient"}
     sides = {
-        f"{short}_{foot}": np.full((1, 1), getattr(getattr(rocker, foot), name))
+        f"{short}_{foot}": np.full((1, 1), getattr(getattr(parameters, foot), name))
         for short, name in names.items()
         for foot in ("right", "left")
     }

@@ -180,17 +180,17 @@ def fall_series(response: Response) -> dict[str, Any]:
 
 def _states(response: Response) -> tuple[FloatArray, dict[str, FloatArray]]:
     """Return times and curves; what comes after a jump stands the smallest step of time after it."""
-    intervals = response.intervals
-    curves = _at_both_ends(response, intervals)
+    dense_output = response.dense_output
+    curves = _at_both_ends(response, dense_output)
     jumps = np.any([np.append(True, each[1:, 0] != each[:-1, 1]) for each in curves.values()], axis=0)
-    turns, x = _turns(intervals)
-    late = np.nextafter(intervals.start, np.inf)
-    late[0] = intervals.start[0]
+    turns, x = _turns(dense_output)
+    late = np.nextafter(dense_output.start, np.inf)
+    late[0] = dense_output.start[0]
     # of those at one instant the first stays: the state before an event, at it
-    time = np.concatenate([intervals.end, late[jumps], intervals.start[turns] + x * intervals.length[turns]])
+    time = np.concatenate([dense_output.end, late[jumps], dense_output.start[turns] + x * dense_output.length[turns]])
     time, chosen = np.unique(time, return_index=True)
     turned = {
-        "rotation": (intervals.quintics()[turns] * x[:, None] ** np.arange(6)).sum(axis=1),
+        "rotation": (dense_output.quintics()[turns] * x[:, None] ** np.arange(6)).sum(axis=1),
         "velocity": np.zeros(x.size),
     }
     columns = {}
@@ -200,28 +200,28 @@ def _states(response: Response) -> tuple[FloatArray, dict[str, FloatArray]]:
     return time, columns
 
 
-def _at_both_ends(response: Response, intervals: DenseOutput) -> dict[str, FloatArray]:
+def _at_both_ends(response: Response, dense_output: DenseOutput) -> dict[str, FloatArray]:
     """Return every curve at the start and at the end of every interval."""
     mass, settings = response.body.mass, response.settings
-    kinetic, potential, work, lost = energies(intervals, mass, settings)
-    _, vertical, demand = forces(intervals, settings.gravity)
+    kinetic, potential, work, lost = energies(dense_output, mass, settings)
+    _, vertical, demand = forces(dense_output, settings.gravity)
     return {
-        "rotation": intervals.rotation,
-        "velocity": intervals.velocity,
+        "rotation": dense_output.rotation,
+        "velocity": dense_output.velocity,
         "kinetic": kinetic,
         "potential": potential,
         "work": work,
         "lost": lost,
         "friction_demand": demand,
         "vertical_force": mass * vertical,
-        "ground_acceleration": intervals.push,
+        "ground_acceleration": dense_output.push,
     }
 
 
-def _turns(intervals: DenseOutput) -> tuple[np.ndarray, FloatArray]:
+def _turns(dense_output: DenseOutput) -> tuple[np.ndarray, FloatArray]:
     """Return in which intervals the body turns round, and where within them, from 0 to 1."""
-    at = np.flatnonzero(intervals.velocity[:, 0] * intervals.velocity[:, 1] < 0.0)
-    c, (start, end) = intervals.quintics()[at], intervals.velocity[at].T
+    at = np.flatnonzero(dense_output.velocity[:, 0] * dense_output.velocity[:, 1] < 0.0)
+    c, (start, end) = dense_output.quintics()[at], dense_output.velocity[at].T
     x, power = start / (start - end), np.arange(6)
     for _ in range(_NEWTON_STEPS):
         slope = (c[:, 1:] * power[1:] * x[:, None] ** power[:5]).sum(axis=1)

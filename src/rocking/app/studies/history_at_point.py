@@ -319,7 +319,7 @@ def _responded(
         engine,
         scale=scale,
     )
-    how = {**asked.settings.stated, "engine": engine, "key": place.number}
+    how = {**asked.settings.stated, "engine": engine, "stream": place.number}
     with warnings.catch_warnings():  # the answer shows its doubts
         warnings.simplefilter("ignore", PureRockingWarning)
         return asked, simulate(asked.body, motion.motion, variation.restitution, scale=scale, **how)

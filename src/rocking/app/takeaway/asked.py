@@ -92,7 +92,7 @@ class Evaluation:
         chosen = self.inputs.restitution
         if len(chosen.models or ()) + len(chosen.values or ()) < 2:
             return f"{self.name or 'rocking'} {what}"
-        label = plain_line(self.chosen(index).rocker.label, 60)
+        label = plain_line(self.chosen(index).parameters.label, 60)
         return f"{self.name or 'rocking'} {what} {label}"
 
     @cached_property

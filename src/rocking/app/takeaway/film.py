@@ -25,7 +25,7 @@ def page_of(response: Response) -> bytes:
     """Return a web page in which the body rocks."""
     from rocking.plots.animation import page
 
-    label = response.rocker.label
+    label = response.parameters.label
     told = page(response).replace(f"restitution {label};", f"restitution {restitution_words(label)};", 1)
     return told.encode("utf-8")
 

@@ -70,7 +70,7 @@ def _responses(asked: Evaluation, restitution: int | None) -> "Figure":
     if restitution is None and len(asked.responses) > 1:
         return comparison_picture(asked.responses)
     chosen = asked.chosen(restitution)
-    return in_words(response_picture(chosen, asked.question.assumed_friction), [chosen.rocker.label])
+    return in_words(response_picture(chosen, asked.question.assumed_friction), [chosen.parameters.label])
 
 
 def named(figure: "Figure", what: str, name: str) -> "Figure":

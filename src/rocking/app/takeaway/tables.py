@@ -81,7 +81,7 @@ def _response(kind: str, asked: Evaluation, restitution: int | None) -> bytes:
         return _exported(asked.chosen(restitution), kind)
     if restitution is not None:
         chosen = asked.chosen(restitution)
-        return written([(chosen.rocker.label, response_table(chosen, asked.about))], kind)
+        return written([(chosen.parameters.label, response_table(chosen, asked.about))], kind)
     about, responses = asked.about, asked.responses
     samples = [(label, response_table(response, about)) for label, response in responses.items()]
     return written(

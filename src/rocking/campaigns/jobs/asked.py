@@ -59,7 +59,7 @@ class AskedBatch(Batch):
             return super().run(0, rows)
         given = rows(0, count)
         options: dict[str, Any] = {"law": self.law, "settings": self.settings, "engine": self.engine}
-        asked = NumberedTable(self.motion_set, given.motion, given.values, given.key, **options)
+        asked = NumberedTable(self.motion_set, given.motion, given.values, given.stream, **options)
         found = self.compute(sampled(asked))
         # nobody asks for what a round does not keep, and views of one NaN need no room
         return {name: found.get(name, np.broadcast_to(np.nan, count)) for name in RESULTS}, {}

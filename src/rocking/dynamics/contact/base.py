@@ -19,7 +19,7 @@ BOTH = (LEFT, RIGHT)
 
 
 @dataclass(frozen=True)
-class Footing:
+class Base:
     """Where the feet are, seen from the centre of mass."""
 
     mass: float  # mass m [kg]
@@ -29,8 +29,8 @@ class Footing:
     right: float
 
     @classmethod
-    def of_body(cls, body: Body) -> "Footing":
-        """Return the footing of a body."""
+    def of_body(cls, body: Body) -> "Base":
+        """Return the base of a body."""
         if not isinstance(body, Body):
             raise InvalidValueError(f"body must be a Block, Section or MassPoints, got {body!r:.60}")
         left, right = body.side("left"), body.side("right")
@@ -38,7 +38,7 @@ class Footing:
         return cls(mass, body.moment_of_inertia / mass, right.centre_height, left.half_width, right.half_width)
 
     @property
-    def base(self) -> float:
+    def width(self) -> float:
         """Distance between the feet [m]."""
         return self.left + self.right
 

@@ -7,12 +7,12 @@ Lemke's algorithm would find is among them, and unlike it the trial also sees wh
 from itertools import chain, combinations
 from typing import NamedTuple
 
-from rocking.dynamics.contact.base import Footing
+from rocking.dynamics.contact.base import Base
 from rocking.dynamics.contact.event_functions import consistent, margins
 from rocking.dynamics.contact.ground import GroundSeries
 from rocking.dynamics.contact.mode import Mode
 from rocking.dynamics.contact.mode_series import ModeSeries, course
-from rocking.dynamics.contact.state import PlanarState, along, away
+from rocking.dynamics.contact.state import ContactState, along, away
 from rocking.outcome import Status
 
 TOLERANCE = 1e-12
@@ -21,16 +21,16 @@ _ORDER = 8
 _SAME = 1e-6
 
 
-def candidates(footing: Footing, state: PlanarState) -> list[Mode]:
+def candidates(base: Base, state: ContactState) -> list[Mode]:
     """Return the modes that the velocities allow.
 
     Returns modes with most feet first, and those that stick before those that slide.
     """
-    resting = [foot for foot in state.touching if away(footing, state, foot) == 0.0]
+    resting = [foot for foot in state.touching if away(base, state, foot) == 0.0]
     subsets = chain.from_iterable(combinations(resting, n) for n in range(len(resting), 0, -1))
     found = []
     for feet in subsets:
-        speed = along(footing, state, feet[0])
+        speed = along(base, state, feet[0])
         if speed == 0.0:
             found.append(Mode(feet))
         found += [Mode(feet, slip) for slip in (1, -1) if slip * speed >= 0.0]
@@ -44,19 +44,19 @@ class NextMode(NamedTuple):
     tolerance: float  # below it, over their scale, coefficients counted as zero [-]
 
 
-def choose(footing: Footing, state: PlanarState, ground: GroundSeries, friction: float) -> NextMode | Status:
+def choose(base: Base, state: ContactState, ground: GroundSeries, friction: float) -> NextMode | Status:
     """Return the mode that follows a state.
 
     friction: Coulomb's coefficient [-]. Returns the mode; where there is none, or where two of them move the body
     differently, a status that says so.
     """
     weight = weight_of(ground)
-    tried = [(mode, course(footing, state, mode, ground, friction, _ORDER)) for mode in candidates(footing, state)]
-    possible = [(m, c, margins(footing, m, c, friction, weight)) for m, c in tried if c.stiff > 0.0]
+    tried = [(mode, course(base, state, mode, ground, friction, _ORDER)) for mode in candidates(base, state)]
+    possible = [(m, c, margins(base, m, c, friction, weight)) for m, c in tried if c.stiff > 0.0]
     for tolerance in _LADDER:
         good = [(m, c) for m, c, found in possible if consistent(found, 1.0, tolerance)]  # Eq. 20
         if good:
-            same = all(_agree(good[0][1], other, footing.size) for _, other in good[1:])
+            same = all(_agree(good[0][1], other, base.size) for _, other in good[1:])
             return NextMode(good[0][0], tolerance) if same else Status.AMBIGUOUS
     return Status.NO_CONTACT_FORCE
 

@@ -8,11 +8,11 @@ import numpy as np
 from rocking.conventions import FloatArray
 
 if TYPE_CHECKING:
-    from rocking.dynamics.contact.response import PlanarResponse
+    from rocking.dynamics.contact.response import ContactResponse
 
 
 @dataclass(frozen=True)
-class PlanarEnergy:
+class ContactEnergy:
     """Energy in the frame of the ground."""
 
     time: FloatArray  # times of the samples [s]
@@ -38,7 +38,7 @@ class PlanarEnergy:
 
 
 @dataclass(frozen=True)
-class PlanarForces:
+class ContactForces:
     """Forces of the ground on the body."""
 
     time: FloatArray  # times of the samples [s]
@@ -53,11 +53,11 @@ class PlanarForces:
         return np.asarray(self.left + self.right)
 
 
-def energy_of(response: "PlanarResponse") -> PlanarEnergy:
+def energy_of(response: "ContactResponse") -> ContactEnergy:
     """Return the energy of a response."""
-    mass, j = response.footing.mass, response.footing.inertia
+    mass, j = response.base.mass, response.base.inertia
     u, w, spin = response.horizontal_velocity, response.vertical_velocity, response.angular_velocity
-    return PlanarEnergy(
+    return ContactEnergy(
         response.time,
         0.5 * mass * (u**2 + w**2 + j * spin**2),  # Eq. 62
         mass * response.settings.gravity * response.rise,
@@ -67,15 +67,15 @@ def energy_of(response: "PlanarResponse") -> PlanarEnergy:
     )
 
 
-def forces_of(response: "PlanarResponse") -> PlanarForces:
+def forces_of(response: "ContactResponse") -> ContactForces:
     """Return the forces of a response.
 
     Returns at its samples, as limits from before.
     """
-    mass, friction = response.footing.mass, response.law.friction
+    mass, friction = response.base.mass, response.law.friction
     tangential = response.sampled("tangential")
     left, right = response.sampled("normal_left"), response.sampled("normal_right")
     most = friction * (left + right)
     usage = np.zeros(most.size)
     np.divide(np.abs(tangential), most, out=usage, where=most > 0.0)  # Eq. 78
-    return PlanarForces(response.time, mass * tangential, mass * left, mass * right, usage)
+    return ContactForces(response.time, mass * tangential, mass * left, mass * right, usage)

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from rocking.dynamics.contact.base import BOTH, Footing
+from rocking.dynamics.contact.base import BOTH, Base
 from rocking.dynamics.contact.complementarity import TOLERANCE, NextMode, choose, weight_of
 from rocking.dynamics.contact.event_functions import Kind, consistent, first_end, margins
 from rocking.dynamics.contact.excitation_screening import stirring
@@ -23,7 +23,7 @@ from rocking.dynamics.contact.log import Blow, Log
 from rocking.dynamics.contact.mode import FLIGHT, REST, Mode
 from rocking.dynamics.contact.mode_series import ModeSeries, course
 from rocking.dynamics.contact.power_series import value
-from rocking.dynamics.contact.state import PlanarState, away, kept, kinetic
+from rocking.dynamics.contact.state import ContactState, away, kept, kinetic
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import first_fall, shifted
 from rocking.motions.segments import Segments
@@ -36,7 +36,7 @@ _MOST_CHANGES = 40
 _AFTER = 60.0
 
 
-class Planar:
+class ContactEngine:
     """One history.
 
     segments: the motion [m/s2]; scale: factor on the motion [-].
@@ -44,7 +44,7 @@ class Planar:
 
     def __init__(
         self,
-        footing: Footing,
+        base: Base,
         segments: Segments,
         law: GroundContact,
         settings: Settings,
@@ -54,11 +54,11 @@ class Planar:
         self.push, self.lift = segments.horizontal * scale, vertical * scale
         self.lift[:, 0] += settings.gravity
         self.step, self.count = segments.step, segments.count
-        self.footing, self.law, self.settings = footing, law, settings
-        self.pace = math.sqrt(settings.gravity / footing.size)
-        self.slowest = settings.rest_speed * math.sqrt(settings.gravity * footing.size)
+        self.base, self.law, self.settings = base, law, settings
+        self.pace = math.sqrt(settings.gravity / base.size)
+        self.slowest = settings.rest_speed * math.sqrt(settings.gravity * base.size)
         self.log = Log(self.count, settings.gravity)
-        self.state, self.mode = PlanarState(), REST
+        self.state, self.mode = ContactState(), REST
         self.stretch, self.tau = 0, 0.0
         self.tolerance, self.changed, self.events = TOLERANCE, 0, 0
         self.passed = math.nan
@@ -66,10 +66,10 @@ class Planar:
         self.lies = False
         self.latest: ModeSeries | None = None
 
-    def run(self, state: PlanarState | None = None) -> History:
+    def run(self, state: ContactState | None = None) -> History:
         """Return the history from a state."""
-        self.state = state or PlanarState()
-        if any(away(self.footing, self.state, foot) < 0.0 for foot in self.state.touching):
+        self.state = state or ContactState()
+        if any(away(self.base, self.state, foot) < 0.0 for foot in self.state.touching):
             self._strike(FLIGHT)
         else:
             self._change()
@@ -89,7 +89,7 @@ class Planar:
         if self.stretch < self.count:
             return False
         side = 1 if self.state.rotation > 0.0 else -1
-        tilted = abs(self.state.rotation) > self.footing.slenderness_angle(side)
+        tilted = abs(self.state.rotation) > self.base.slenderness_angle(side)
         return not tilted or (self.stretch - self.count) * self.step * self.pace > _AFTER
 
     def _ground(self, unit: float) -> GroundSeries:
@@ -105,14 +105,14 @@ class Planar:
         if self.mode == REST and self._skip():
             return
         ground = self._ground((1.0 - self.tau) * self.step)
-        full = course(self.footing, self.state, self.mode, ground, self.law.friction, _ORDER)
+        full = course(self.base, self.state, self.mode, ground, self.law.friction, _ORDER)
         part = self._trusted(full)
         if not part > 0.0:
             self.ended = Status.NOT_FINITE if full.stiff > 0.0 else Status.NO_CONTACT_FORCE
             return
         whole, here = full.shortened(part), ground.shortened(part)
         stretch = whole.unit * self.pace
-        found = margins(self.footing, self.mode, whole, self.law.friction, weight_of(here))
+        found = margins(self.base, self.mode, whole, self.law.friction, weight_of(here))
         if full.stiff <= 0.0 or not consistent(found, stretch, self.tolerance):
             self._change()
             return
@@ -133,7 +133,7 @@ class Planar:
             return 0.0
         if full.rotation.size <= _ORDER:
             return 1.0
-        part, size = 1.0, self.footing.size
+        part, size = 1.0, self.base.size
         series = [(full.rotation, 1.0), (full.x, size), *((gap, size) for gap in full.gaps.values())]
         for c, unit in series:
             for k in (_ORDER - 1, _ORDER):
@@ -142,8 +142,8 @@ class Planar:
                     part = min(part, float(over) ** (-1.0 / k))  # Eq. 52
         return part
 
-    def _move(self, tau: float, reached: PlanarState, at: float) -> None:
-        self.state = kept(self.footing, reached, self.mode.feet, stick=self.mode.slip == 0)
+    def _move(self, tau: float, reached: ContactState, at: float) -> None:
+        self.state = kept(self.base, reached, self.mode.feet, stick=self.mode.slip == 0)
         if tau > _WHOLE:
             self.stretch, self.tau = self.stretch + 1, 0.0
             self.log.sample(self.stretch, self.state, self.mode, self.latest, at)
@@ -154,7 +154,7 @@ class Planar:
         """Note when the centre passes over the foot."""
         side = 1 if value(whole.rotation, at) > 0.0 else -1
         gap = -side * whole.rotation
-        gap[0] += self.footing.slenderness_angle(side)
+        gap[0] += self.base.slenderness_angle(side)
         if value(gap, at) >= 0.0:
             self.passed = math.nan
         elif gap[0] > 0.0 or math.isnan(self.passed):
@@ -171,21 +171,21 @@ class Planar:
             self._land(whole, at)
         else:
             if kind is Kind.STICKING:
-                self.state = kept(self.footing, self.state, self.mode.feet, stick=True)
+                self.state = kept(self.base, self.state, self.mode.feet, stick=True)
             self._change()
 
     def _land(self, whole: ModeSeries, at: float) -> None:
         before, mode = self.state, self.mode
         if mode.feet:
             upright = before._replace(rotation=0.0, rise=0.0)
-            self.state = kept(self.footing, upright, mode.feet, stick=mode.slip == 0)._replace(touching=BOTH)
+            self.state = kept(self.base, upright, mode.feet, stick=mode.slip == 0)._replace(touching=BOTH)
         else:
-            slack = _CLOSED * self.footing.size
+            slack = _CLOSED * self.base.size
             feet = tuple(foot for foot in BOTH if value(whole.gaps[foot], at) <= slack)
             if len(feet) == 2:
                 self.state = before._replace(rotation=0.0, rise=0.0, touching=feet)
             else:
-                rise = self.footing.rise_on(feet[0], before.rotation)
+                rise = self.base.rise_on(feet[0], before.rotation)
                 self.state = before._replace(rise=rise, touching=feet)
         self._strike(mode, self.settings.gravity * (before.rise - self.state.rise))
 
@@ -196,34 +196,34 @@ class Planar:
         if isinstance(struck, Status):
             self.ended = struck
             return
-        rounding = 1e-13 * largest_speed(self.footing, before)
-        after = self._calmed(cleaned(self.footing, struck, rounding))
-        loss = dropped + kinetic(self.footing, before) - kinetic(self.footing, after)
+        rounding = 1e-13 * largest_speed(self.base, before)
+        after = self._calmed(cleaned(self.base, struck, rounding))
+        loss = dropped + kinetic(self.base, before) - kinetic(self.base, after)
         self.log.strike(Blow(self._now, before, struck, after, loss))
         self.state = after
         self._change()
 
-    def _struck(self, before: PlanarState, mode: Mode) -> Struck | Status:
+    def _struck(self, before: ContactState, mode: Mode) -> Struck | Status:
         law = self.law
         if law.restitution is not None and len(mode.feet) == 1:
             foot = -mode.feet[0]
             r = law.restitution[0 if foot < 0 else 1]
-            imposed = strike_with(self.footing, before, foot, law.friction, r)
+            imposed = strike_with(self.base, before, foot, law.friction, r)
             if imposed is not None:
                 return imposed
-        bounces = {foot: law.bounce * -away(self.footing, before, foot) for foot in before.touching}
+        bounces = {foot: law.bounce * -away(self.base, before, foot) for foot in before.touching}
         bounce = {foot: law.bounce if v > self.slowest else 0.0 for foot, v in bounces.items()}
-        return strike(self.footing, before, law.friction, bounce)
+        return strike(self.base, before, law.friction, bounce)
 
-    def _calmed(self, after: PlanarState) -> PlanarState:
+    def _calmed(self, after: ContactState) -> ContactState:
         """Let a body that hardly moves after an impact stand, if the ground lets it."""
-        slow = max(abs(after.w), abs(after.spin) * self.footing.size) <= self.slowest
+        slow = max(abs(after.w), abs(after.spin) * self.base.size) <= self.slowest
         if after.touching != BOTH or not slow:
             return after
-        calm = kept(self.footing, after, BOTH, stick=False)
+        calm = kept(self.base, after, BOTH, stick=False)
         if abs(calm.u) <= self.slowest * 1e-3:
             calm = calm._replace(u=0.0)
-        found = choose(self.footing, calm, self._ground(1.0 / self.pace), self.law.friction)
+        found = choose(self.base, calm, self._ground(1.0 / self.pace), self.law.friction)
         return calm if isinstance(found, NextMode) and found.mode.feet == BOTH else after
 
     def _count(self) -> None:
@@ -236,7 +236,7 @@ class Planar:
         if self.ended is not None:
             return
         self.changed += 1
-        found = choose(self.footing, self.state, self._ground(1.0 / self.pace), self.law.friction)
+        found = choose(self.base, self.state, self._ground(1.0 / self.pace), self.law.friction)
         if isinstance(found, Status):
             self.ended = found
             return
@@ -246,27 +246,27 @@ class Planar:
         self.mode = found.mode
         self.log.change(self._now, self.mode)
         if self.mode.feet != BOTH and len(self.mode.feet) == 1 and self.state.rotation != 0.0:
-            self.state = kept(self.footing, self.state, self.mode.feet, stick=self.mode.slip == 0)
+            self.state = kept(self.base, self.state, self.mode.feet, stick=self.mode.slip == 0)
 
     # ---- rest -------------------------------------------------------------------------------------------------------
 
     def _first_sample(self) -> None:
         if self.ended is None:
             ground = self._ground(self.step)
-            self.latest = course(self.footing, self.state, self.mode, ground, self.law.friction, _ORDER)
+            self.latest = course(self.base, self.state, self.mode, ground, self.law.friction, _ORDER)
         self.log.sample(0, self.state, self.mode, self.latest, 0.0)
 
     def _skip(self) -> bool:
         """Rest through stretches that cannot move the body; whether there were any."""
         if not hasattr(self, "_stirring"):
-            self._stirring = stirring(self.footing, self.push, self.lift, self.law.friction)
+            self._stirring = stirring(self.base, self.push, self.lift, self.law.friction)
         at = int(np.searchsorted(self._stirring, self.stretch))
         until = int(self._stirring[at]) if at < self._stirring.size else self.count
         if until <= self.stretch:
             return False
         while self.stretch < until:
             ground = self._ground((1.0 - self.tau) * self.step)
-            self.latest = course(self.footing, self.state, REST, ground, self.law.friction, _ORDER)
+            self.latest = course(self.base, self.state, REST, ground, self.law.friction, _ORDER)
             self.log.pass_through(self._now, self.latest, ground, 1.0, self.law.friction)
             self._move(1.0, self.state, 1.0)
         return True

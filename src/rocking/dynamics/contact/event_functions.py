@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.base import BOTH, Footing
+from rocking.dynamics.contact.base import BOTH, Base
 from rocking.dynamics.contact.mode import Mode
 from rocking.dynamics.contact.mode_series import ModeSeries
 from rocking.dynamics.contact.power_series import padded
@@ -41,14 +41,14 @@ class Margin(NamedTuple):
     scale: float  # size that rounding of the others is measured by
 
 
-def margins(footing: Footing, mode: Mode, course: ModeSeries, friction: float, weight: float) -> list[Margin]:
+def margins(base: Base, mode: Mode, course: ModeSeries, friction: float, weight: float) -> list[Margin]:
     """Return what must stay above zero in a mode.
 
     friction: Coulomb's coefficient [-]; weight: acceleration that forces are measured by, such as g + |a_x| + |a_z|
     [m/s2].
     """
     found = [Margin(Kind.RELEASE, normal, 0, weight) for normal in course.normals.values()]
-    per_gap = weight * course.unit**2 / (1.0 if not mode.feet else footing.size)
+    per_gap = weight * course.unit**2 / (1.0 if not mode.feet else base.size)
     found += [Margin(Kind.LANDING, gap, 2, per_gap) for gap in course.gaps.values()]
     if mode.slip and course.sliding is not None:
         found.append(Margin(Kind.STICKING, mode.slip * course.sliding, 1, weight * course.unit))

@@ -3,14 +3,14 @@
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.base import LEFT, RIGHT, Footing
+from rocking.dynamics.contact.base import LEFT, RIGHT, Base
 from rocking.dynamics.contact.history import History
 from rocking.dynamics.contact.mode import Mode
 
 REGIME = np.dtype(
     [("start", "f8"), ("end", "f8"), ("regime", "U10"), ("feet", "U5"), ("slip", "i1"), ("distance", "f8")]
 )
-"""Fields of `PlanarResponse.regimes`: [s], [s], name of a `Regime`, feet that carry, direction, [m] to the right."""
+"""Fields of `ContactResponse.regimes`: [s], [s], name of a `Regime`, feet that carry, direction, [m] to the right."""
 
 IMPACT = np.dtype(
     [
@@ -18,10 +18,10 @@ IMPACT = np.dtype(
         ("normal_right", "f8"), ("tangential_left", "f8"), ("tangential_right", "f8"), ("lost", "f8"), ("slips", "?"),
     ]
 )  # fmt: skip
-"""Fields of `PlanarResponse.impacts`: [s], feet that touch, theta' [rad/s] twice, impulses [N s], [J], whether."""
+"""Fields of `ContactResponse.impacts`: [s], feet that touch, theta' [rad/s] twice, impulses [N s], [J], whether."""
 
 
-def regimes_of(history: History, footing: Footing) -> np.ndarray:
+def regimes_of(history: History, base: Base) -> np.ndarray:
     """Return the regimes of a history in order.
 
     Returns of type `REGIME`; intervals of no duration are left out.
@@ -29,22 +29,22 @@ def regimes_of(history: History, footing: Footing) -> np.ndarray:
     changes = history.log.changes
     ends = [*(time for time, _ in changes[1:]), history.end][: len(changes)]
     rows = [
-        (start, end, mode.regime.name, mode.carrier, mode.slip, _distance(history, footing, mode, start, end))
+        (start, end, mode.regime.name, mode.carrier, mode.slip, _distance(history, base, mode, start, end))
         for (start, mode), end in zip(changes, ends, strict=True)
         if end > start
     ]
     return np.array(rows, dtype=REGIME)
 
 
-def _distance(history: History, footing: Footing, mode: Mode, start: float, end: float) -> float:
+def _distance(history: History, base: Base, mode: Mode, start: float, end: float) -> float:
     if not mode.slip:
         return 0.0
     (x_start, _, turned), (x_end, _, turned_on) = places_of(history, np.array([start, end])).tolist()
     foot = mode.feet[0]
-    return float(x_end + footing.arm(foot, turned_on)[0] - x_start - footing.arm(foot, turned)[0])
+    return float(x_end + base.arm(foot, turned_on)[0] - x_start - base.arm(foot, turned)[0])
 
 
-def impacts_of(history: History, footing: Footing) -> np.ndarray:
+def impacts_of(history: History, base: Base) -> np.ndarray:
     """Return the impacts of a history in order.
 
     Returns of type `IMPACT`. On a flat base only the sum of the impulses along the ground is determined; it is shared
@@ -56,8 +56,8 @@ def impacts_of(history: History, footing: Footing) -> np.ndarray:
         total = sum(normal.values())
         part = {foot: blow.struck.tangential * n / total if total else 0.0 for foot, n in normal.items()}
         feet = Mode(tuple(sorted(blow.before.touching))).carrier
-        impulses = [footing.mass * p for p in (normal[LEFT], normal[RIGHT], part[LEFT], part[RIGHT])]
-        lost = footing.mass * blow.loss
+        impulses = [base.mass * p for p in (normal[LEFT], normal[RIGHT], part[LEFT], part[RIGHT])]
+        lost = base.mass * blow.loss
         rows.append((blow.time, feet, blow.before.spin, blow.after.spin, *impulses, lost, blow.struck.slip != 0))
     return np.array(rows, dtype=IMPACT)
 

@@ -10,7 +10,7 @@ from rocking.tables import Column, Table
 from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
-    from rocking.dynamics.contact.response import PlanarResponse
+    from rocking.dynamics.contact.response import ContactResponse
 
 SAMPLES = (
     "time", "displacement", "rise", "rotation", "horizontal_velocity", "vertical_velocity", "angular_velocity",
@@ -24,7 +24,7 @@ _IMPACTS = (
 )  # fmt: skip
 
 
-def columns(response: "PlanarResponse") -> dict[str, FloatArray]:
+def columns(response: "ContactResponse") -> dict[str, FloatArray]:
     """Return the samples of a response by name.
 
     Returns all of one length, in the order of `SAMPLES`.
@@ -39,9 +39,9 @@ def columns(response: "PlanarResponse") -> dict[str, FloatArray]:
     return dict(zip(SAMPLES, values, strict=True))
 
 
-def provenance(response: "PlanarResponse") -> dict[str, Any]:
+def provenance(response: "ContactResponse") -> dict[str, Any]:
     """Return what was computed from what, as plain values."""
-    motion, law, footing = response.motion, response.law, response.footing
+    motion, law, base = response.motion, response.law, response.base
     imposed = (
         "none: complementarity" if law.restitution is None else "left {:.9g}, right {:.9g}".format(*law.restitution)
     )
@@ -53,11 +53,11 @@ def provenance(response: "PlanarResponse") -> dict[str, Any]:
         "still_rocking": response.still_rocking,
         "summary": response.summary,
         "body": type(response.body).__name__,
-        "mass_kg": footing.mass,
-        "inertia_kg_m2": footing.mass * footing.inertia,
-        "centre_height_m": footing.height,
-        "half_width_left_m": footing.left,
-        "half_width_right_m": footing.right,
+        "mass_kg": base.mass,
+        "inertia_kg_m2": base.mass * base.inertia,
+        "centre_height_m": base.height,
+        "half_width_left_m": base.left,
+        "half_width_right_m": base.right,
         "friction": law.friction,
         "bounce": law.bounce,
         "imposed_restitution": imposed,
@@ -68,7 +68,7 @@ def provenance(response: "PlanarResponse") -> dict[str, Any]:
     }
 
 
-def exported(response: "PlanarResponse") -> Table:
+def exported(response: "ContactResponse") -> Table:
     """Return what the files of a response hold.
 
     Returns Samples, impacts, intervals of one regime, and provenance.

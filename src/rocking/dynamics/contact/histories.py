@@ -5,10 +5,10 @@ from typing import Any
 
 from rocking import checks, conventions, plausibility
 from rocking.bodies import Body
-from rocking.dynamics.contact.base import Footing
-from rocking.dynamics.contact.engine import Planar
+from rocking.dynamics.contact.base import Base
+from rocking.dynamics.contact.engine import ContactEngine
 from rocking.dynamics.contact.ground_contact import GroundContact
-from rocking.dynamics.contact.response import PlanarResponse
+from rocking.dynamics.contact.response import ContactResponse
 from rocking.dynamics.contact.start import Start
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters
@@ -34,23 +34,23 @@ def response_with_contact(  # noqa: PLR0913 - what the front door hands on
     start: Start,
     scale: float = 1.0,
     duration: float | None = None,
-) -> PlanarResponse:
+) -> ContactResponse:
     """Return how a body rests, slides, rocks, slides while it rocks, and flies; on ground at rest without a motion.
 
     restitution: None for impacts by complementarity alone; scale: factor on the motion [-]; duration: how long to
     follow the body [s]; if not given, the motion and 15 sqrt(R / g) after it, 60 sqrt(R / g) on ground at rest.
     """
-    footing = Footing.of_body(body)
+    base = Base.of_body(body)
     law = GroundContact(
         friction if isinstance(friction, conventions.Assumed) else checks.number("friction", friction),
         checks.number("bounce", bounce),
         _imposed(body, restitution, settings),
     )
     scale = checks.within("scale", scale, -1e6, 1e6)
-    segments = _segments(motion, footing, settings.gravity, duration)
+    segments = _segments(motion, base, settings.gravity, duration)
     plausibility.warn(plausibility.of_scaled([motion], scale))
-    history = Planar(footing, segments, law, settings, scale).run(start.state(footing))
-    return PlanarResponse(body, motion, footing, law, settings, segments, scale, history)
+    history = ContactEngine(base, segments, law, settings, scale).run(start.state(base))
+    return ContactResponse(body, motion, base, law, settings, segments, scale, history)
 
 
 def _imposed(body: Body, restitution: Any, settings: Settings) -> tuple[float, float] | None:
@@ -61,12 +61,12 @@ def _imposed(body: Body, restitution: Any, settings: Settings) -> tuple[float, f
             f"restitution must be a model, a name or a number here, got {type(restitution).__name__}: "
             "laws that change from impact to impact are for simulate()"
         )
-    rocker = RockingParameters.of_body(body, restitution, settings.gravity)
-    return rocker.left.coefficient, rocker.right.coefficient
+    parameters = RockingParameters.of_body(body, restitution, settings.gravity)
+    return parameters.left.coefficient, parameters.right.coefficient
 
 
-def _segments(motion: object, footing: Footing, gravity: float, duration: float | None) -> Segments:
-    slow = math.sqrt(footing.size / gravity)
+def _segments(motion: object, base: Base, gravity: float, duration: float | None) -> Segments:
+    slow = math.sqrt(base.size / gravity)
     if motion is None:
         length = _FREE * slow if duration is None else checks.positive("duration", duration, "s")
         count = max(1, math.ceil(length / (_FINE * slow) - 1e-9))

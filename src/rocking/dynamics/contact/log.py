@@ -13,7 +13,7 @@ from rocking.dynamics.contact.impact_resolution import Struck
 from rocking.dynamics.contact.mode import Mode
 from rocking.dynamics.contact.mode_series import ModeSeries
 from rocking.dynamics.contact.power_series import derivative, integral, value
-from rocking.dynamics.contact.state import PlanarState
+from rocking.dynamics.contact.state import ContactState
 from rocking.dynamics.taylor import turning_points
 
 SAMPLED = (
@@ -35,9 +35,9 @@ class Blow(NamedTuple):
     """An impact."""
 
     time: float  # when [s]
-    before: PlanarState  # the state before it
+    before: ContactState  # the state before it
     struck: Struck  # impulses and state after it
-    after: PlanarState  # the state from which the history goes on
+    after: ContactState  # the state from which the history goes on
     loss: float  # energy lost, per unit of mass [J/kg]
 
 
@@ -91,7 +91,7 @@ class Log:
             if tangential > 0.0 and normal > 0.0:
                 self.usage = max(self.usage, tangential / normal / friction if friction else 1.0)  # Eq. 78
 
-    def sample(self, row: int, state: PlanarState, mode: Mode, course: ModeSeries | None, at: float) -> None:
+    def sample(self, row: int, state: ContactState, mode: Mode, course: ModeSeries | None, at: float) -> None:
         """Write a sample."""
         if row > self.count:
             return

@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, Footing
+from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, Base
 from rocking.dynamics.contact.ground import GroundSeries
 from rocking.dynamics.contact.mode import Mode
 from rocking.dynamics.contact.pivot_motion import turning
 from rocking.dynamics.contact.power_series import derivative, padded, twice, value
-from rocking.dynamics.contact.state import PlanarState, along, away
+from rocking.dynamics.contact.state import ContactState, along, away
 
 
 @dataclass(frozen=True)
@@ -30,11 +30,11 @@ class ModeSeries:
     gaps: dict[int, FloatArray] = field(default_factory=dict)
     stiff: float = 1.0  # below or at zero no force is possible (Painleve) [-]
 
-    def state(self, at: float, touching: tuple[int, ...]) -> PlanarState:
+    def state(self, at: float, touching: tuple[int, ...]) -> ContactState:
         """Return the state at an instant."""
         x, rise, rotation = (value(c, at) for c in (self.x, self.rise, self.rotation))
         u, w, spin = (value(derivative(c), at) / self.unit for c in (self.x, self.rise, self.rotation))
-        return PlanarState(x, rise, rotation, u, w, spin, touching)
+        return ContactState(x, rise, rotation, u, w, spin, touching)
 
     def shortened(self, part: float) -> "ModeSeries":
         """Return the beginning of the course.
@@ -58,36 +58,36 @@ class ModeSeries:
 
 
 def course(
-    footing: Footing, state: PlanarState, mode: Mode, ground: GroundSeries, friction: float, order: int
+    base: Base, state: ContactState, mode: Mode, ground: GroundSeries, friction: float, order: int
 ) -> ModeSeries:
     """Return the course of a body in a mode.
 
     friction: Coulomb's coefficient [-].
     """
     if not mode.feet:
-        return _flight(footing, state, ground, order)
+        return _flight(base, state, ground, order)
     if len(mode.feet) == 2:
-        return _flat(footing, state, mode, ground, friction)
-    return _turning(footing, state, mode, ground, friction, order)
+        return _flat(base, state, mode, ground, friction)
+    return _turning(base, state, mode, ground, friction, order)
 
 
-def _flat(footing: Footing, state: PlanarState, mode: Mode, ground: GroundSeries, friction: float) -> ModeSeries:
+def _flat(base: Base, state: ContactState, mode: Mode, ground: GroundSeries, friction: float) -> ModeSeries:
     """Both feet: the resultant force decides how they share it."""
     size = max(len(ground.push), len(ground.lift)) + 2
     push, weight = padded(ground.push, size), padded(ground.lift, size)
     tangential = -mode.slip * friction * weight if mode.slip else push
     x = twice(tangential - push, state.x, state.u, ground.unit) if mode.slip else padded([state.x], size)
-    turn = tangential * footing.height
+    turn = tangential * base.height
     normals = {
-        LEFT: (weight * footing.right + turn) / footing.base,  # Eq. 63
-        RIGHT: (weight * footing.left - turn) / footing.base,  # Eq. 63
+        LEFT: (weight * base.right + turn) / base.width,  # Eq. 63
+        RIGHT: (weight * base.left - turn) / base.width,  # Eq. 63
     }
     still = np.zeros(size)
     sliding = derivative(x) / ground.unit if mode.slip else still
     return ModeSeries(ground.unit, still, x, still, tangential, normals, sliding)
 
 
-def _flight(footing: Footing, state: PlanarState, ground: GroundSeries, order: int) -> ModeSeries:
+def _flight(base: Base, state: ContactState, ground: GroundSeries, order: int) -> ModeSeries:
     """No foot: parabolas above a ground that moves."""
     size = order + 1
     x = twice(-padded(ground.push, size), state.x, state.u, ground.unit)  # Eq. 64
@@ -101,22 +101,22 @@ def _flight(footing: Footing, state: PlanarState, ground: GroundSeries, order: i
     lowered[0] = 2.0 * math.sin(0.5 * state.rotation) ** 2  # 1 - cos(theta) without cancellation
     gaps = {}
     for foot in BOTH:
-        gap = rise - footing.lever(foot) * sines + footing.height * lowered  # Eq. 65
+        gap = rise - base.lever(foot) * sines + base.height * lowered  # Eq. 65
         if foot in state.touching:
-            gap[0], gap[1] = 0.0, away(footing, state, foot) * ground.unit
+            gap[0], gap[1] = 0.0, away(base, state, foot) * ground.unit
         gaps[foot] = gap
     rotation = padded([state.rotation, state.spin * ground.unit], size)
     return ModeSeries(ground.unit, rotation, x, rise, np.zeros(size), gaps=gaps)
 
 
 def _turning(
-    footing: Footing, state: PlanarState, mode: Mode, ground: GroundSeries, friction: float, order: int
+    base: Base, state: ContactState, mode: Mode, ground: GroundSeries, friction: float, order: int
 ) -> ModeSeries:
     """One foot carries: the other one rises as theta does."""
     (foot,) = mode.feet
     pull = mode.slip * friction if mode.slip else None
-    arm = footing.arm(foot, state.rotation)
-    found = turning(footing.inertia, arm, (state.rotation, state.spin), ground, pull, order)
+    arm = base.arm(foot, state.rotation)
+    found = turning(base.inertia, arm, (state.rotation, state.spin), ground, pull, order)
     size = order + 1
     rotation, arm_x, arm_z = (padded(c, size) for c in (found.rotation, found.arm_x, found.arm_z))
     rise = -arm_z
@@ -132,7 +132,7 @@ def _turning(
         tangential = -pull * normal
         x = twice(tangential - push, state.x, state.u, ground.unit)
         sliding = derivative(x + arm_x) / ground.unit
-        sliding[0] = along(footing, state, foot)
+        sliding[0] = along(base, state, foot)
     return ModeSeries(
         ground.unit, rotation, x, rise, tangential, {foot: normal}, sliding, {-foot: foot * rotation}, found.stiff
     )

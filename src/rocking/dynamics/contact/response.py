@@ -9,8 +9,8 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.contact.base import Footing
-from rocking.dynamics.contact.energy_balance import PlanarEnergy, PlanarForces, energy_of, forces_of
+from rocking.dynamics.contact.base import Base
+from rocking.dynamics.contact.energy_balance import ContactEnergy, ContactForces, energy_of, forces_of
 from rocking.dynamics.contact.events import impacts_of, places_of, regimes_of
 from rocking.dynamics.contact.ground_contact import GroundContact
 from rocking.dynamics.contact.history import History
@@ -30,7 +30,7 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class PlanarResponse(Exportable):
+class ContactResponse(Exportable):
     """What `simulate` returns of a plane body with friction.
 
     Parameters
@@ -39,7 +39,7 @@ class PlanarResponse(Exportable):
         The body.
     motion : GroundMotion or Pulse, optional
         The motion; None on ground at rest.
-    footing : Footing
+    base : Base
         The body as the equations see it.
     law : ContactLaw
         Friction and restitution.
@@ -55,7 +55,7 @@ class PlanarResponse(Exportable):
 
     body: Body
     motion: GroundMotion | Pulse | None
-    footing: Footing
+    base: Base
     law: GroundContact
     settings: Settings
     segments: Segments = field(repr=False)
@@ -64,7 +64,7 @@ class PlanarResponse(Exportable):
 
     def __repr__(self) -> str:
         """Outcome in words."""
-        return f"<PlanarResponse: {self.summary}>"
+        return f"<ContactResponse: {self.summary}>"
 
     @cached_property
     def _samples(self) -> FloatArray:
@@ -130,12 +130,12 @@ class PlanarResponse(Exportable):
     @cached_property
     def regimes(self) -> np.ndarray:
         """Regimes in order: start, end, regime, feet, slip, and the distance that the feet slid."""
-        return regimes_of(self.history, self.footing)
+        return regimes_of(self.history, self.base)
 
     @cached_property
     def impacts(self) -> np.ndarray:
         """Impacts in order: time, feet, velocities, impulses at each foot, energy lost, whether the feet slid."""
-        return impacts_of(self.history, self.footing)
+        return impacts_of(self.history, self.base)
 
     @property
     def sliding_distance(self) -> float:
@@ -143,12 +143,12 @@ class PlanarResponse(Exportable):
         return self.history.log.slid
 
     @cached_property
-    def energy(self) -> PlanarEnergy:
+    def energy(self) -> ContactEnergy:
         """Kinetic and potential energy, work of the ground, losses in impacts and in friction [J]."""
         return energy_of(self)
 
     @cached_property
-    def forces(self) -> PlanarForces:
+    def forces(self) -> ContactForces:
         """Forces of the ground on the feet [N], and how much of the friction is used."""
         return forces_of(self)
 

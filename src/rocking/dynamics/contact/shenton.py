@@ -15,10 +15,10 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.contact.base import LEFT, RIGHT, Footing
+from rocking.dynamics.contact.base import LEFT, RIGHT, Base
 from rocking.dynamics.contact.complementarity import NextMode, choose
 from rocking.dynamics.contact.ground import GroundSeries
-from rocking.dynamics.contact.state import PlanarState
+from rocking.dynamics.contact.state import ContactState
 from rocking.errors import InvalidValueError
 from rocking.outcome import Regime
 
@@ -50,11 +50,11 @@ def friction_demand(body: Body, acceleration: float) -> float:
     0.30985915493
     """
     push = checks.number("acceleration", acceleration)
-    footing = Footing.of_body(body)
-    lever, height = abs(footing.lever(LEFT if push > 0.0 else RIGHT)), footing.height
+    base = Base.of_body(body)
+    lever, height = abs(base.lever(LEFT if push > 0.0 else RIGHT)), base.height
     if not abs(push) * height >= lever:
         raise InvalidValueError(f"acceleration must be at least b / h = {lever / height:g} to lift it, got {push:g}")
-    spin = (abs(push) * height - lever) / (footing.inertia + lever**2 + height**2)
+    spin = (abs(push) * height - lever) / (base.inertia + lever**2 + height**2)
     return abs(abs(push) - height * spin) / (1.0 + lever * spin)  # Eq. 76
 
 
@@ -92,12 +92,12 @@ def regime_at_start(
     >>> regime_at_start(Block(width=1.0, height=4.0), 0.5, 0.3).name
     'SLIDE_ROCK'
     """
-    footing = Footing.of_body(body)
+    base = Base.of_body(body)
     gravity = checks.positive("gravity", gravity, "m/s2")
     push, lift = checks.number("acceleration", acceleration), checks.number("vertical", vertical)
     mu = checks.within("friction", friction, 0.0, 1e6)
-    ground = GroundSeries([push * gravity], [gravity + lift * gravity], float(np.sqrt(footing.size / gravity)))
-    found = choose(footing, PlanarState(), ground, mu)
+    ground = GroundSeries([push * gravity], [gravity + lift * gravity], float(np.sqrt(base.size / gravity)))
+    found = choose(base, ContactState(), ground, mu)
     if not isinstance(found, NextMode):
         raise InvalidValueError(f"friction and acceleration must leave one contact force, got {mu:g} and {push:g}")
     return found.mode.regime
@@ -120,9 +120,9 @@ def analytic_regime(body: Body, acceleration: float, friction: float) -> Regime:
     Regime
         The regime; on a boundary the calmer one.
     """
-    footing = Footing.of_body(body)
+    base = Base.of_body(body)
     push = checks.number("acceleration", acceleration)
-    slender = abs(footing.lever(LEFT if push > 0.0 else RIGHT)) / footing.height
+    slender = abs(base.lever(LEFT if push > 0.0 else RIGHT)) / base.height
     if abs(push) <= min(friction, slender):
         return Regime.REST
     if friction < slender:

@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass
 
 from rocking import checks
-from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, Footing
-from rocking.dynamics.contact.state import PlanarState
+from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, Base
+from rocking.dynamics.contact.state import ContactState
 
 
 @dataclass(frozen=True)
@@ -53,12 +53,12 @@ class Start:
         checks.within("height", self.height, 0.0, 1e4, unit="m", hint="the ground is at zero")
         checks.within("vertical_velocity", self.vertical_velocity, -1e4, 1e4, unit="m/s")
 
-    def state(self, footing: Footing) -> PlanarState:
+    def state(self, base: Base) -> ContactState:
         """Return the state of the centre of mass.
 
         Parameters
         ----------
-        footing : Footing
+        base : Base
             The body.
 
         Returns
@@ -68,14 +68,14 @@ class Start:
         """
         turned = self.rotation or self.angular_velocity
         foot = RIGHT if turned > 0.0 else LEFT
-        r_x, r_z = footing.arm(foot, self.rotation)
+        r_x, r_z = base.arm(foot, self.rotation)
         touching: tuple[int, ...] = ()
         if self.height == 0.0:
             touching = BOTH if self.rotation == 0.0 else (foot,)
         spin = self.angular_velocity
-        return PlanarState(
-            footing.lever(foot) - r_x,
-            footing.rise_on(foot, self.rotation) + self.height,
+        return ContactState(
+            base.lever(foot) - r_x,
+            base.rise_on(foot, self.rotation) + self.height,
             self.rotation,
             self.horizontal_velocity - r_z * spin,
             self.vertical_velocity + r_x * spin,

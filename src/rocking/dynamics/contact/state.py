@@ -2,10 +2,10 @@
 
 from typing import NamedTuple
 
-from rocking.dynamics.contact.base import BOTH, Footing
+from rocking.dynamics.contact.base import BOTH, Base
 
 
-class PlanarState(NamedTuple):
+class ContactState(NamedTuple):
     """Where the body is and how it moves."""
 
     # x, rise, rotation: displacement of the centre of mass to the right [m] and upwards [m] from where it stood, and
@@ -19,23 +19,23 @@ class PlanarState(NamedTuple):
     touching: tuple[int, ...] = BOTH  # feet that touch the ground, exactly
 
 
-def along(footing: Footing, state: PlanarState, foot: int) -> float:
+def along(base: Base, state: ContactState, foot: int) -> float:
     """Return the velocity of a foot along the ground.
 
     Returns v_t, to the right; exactly zero where the foot was made to stick [m/s].
     """
-    return state.u + footing.arm(foot, state.rotation)[1] * state.spin  # Eq. 60
+    return state.u + base.arm(foot, state.rotation)[1] * state.spin  # Eq. 60
 
 
-def away(footing: Footing, state: PlanarState, foot: int) -> float:
+def away(base: Base, state: ContactState, foot: int) -> float:
     """Return the velocity of a foot away from the ground.
 
     Returns v_n, upwards; exactly zero where the foot was put to rest [m/s].
     """
-    return state.w - footing.arm(foot, state.rotation)[0] * state.spin  # Eq. 61
+    return state.w - base.arm(foot, state.rotation)[0] * state.spin  # Eq. 61
 
 
-def kept(footing: Footing, state: PlanarState, feet: tuple[int, ...], *, stick: bool) -> PlanarState:
+def kept(base: Base, state: ContactState, feet: tuple[int, ...], *, stick: bool) -> ContactState:
     """Return the state with rounding taken out of what the contacts fix.
 
     Returns with ``v_n = 0``, and ``v_t = 0`` if they stick, exactly.
@@ -43,17 +43,17 @@ def kept(footing: Footing, state: PlanarState, feet: tuple[int, ...], *, stick: 
     if not feet:
         return state
     if len(feet) == 2:
-        u = 0.0 if stick else along(footing, state, feet[0])
-        return PlanarState(state.x, 0.0, 0.0, u, 0.0, 0.0, feet)
+        u = 0.0 if stick else along(base, state, feet[0])
+        return ContactState(state.x, 0.0, 0.0, u, 0.0, 0.0, feet)
     (foot,) = feet
-    r_x, r_z = footing.arm(foot, state.rotation)
+    r_x, r_z = base.arm(foot, state.rotation)
     u = -(r_z * state.spin) if stick else state.u
-    return state._replace(rise=footing.rise_on(foot, state.rotation), u=u, w=r_x * state.spin)
+    return state._replace(rise=base.rise_on(foot, state.rotation), u=u, w=r_x * state.spin)
 
 
-def kinetic(footing: Footing, state: PlanarState) -> float:
+def kinetic(base: Base, state: ContactState) -> float:
     """Return the kinetic energy in the frame of the ground, per unit of mass.
 
     Returns ``(x'^2 + z'^2 + (I_C / m) theta'^2) / 2`` [J/kg].
     """
-    return 0.5 * (state.u**2 + state.w**2 + footing.inertia * state.spin**2)  # Eq. 62
+    return 0.5 * (state.u**2 + state.w**2 + base.inertia * state.spin**2)  # Eq. 62

@@ -25,7 +25,7 @@ ROWS = (
     "alpha_right", "alpha_left", "p_right", "p_left", "r_right", "r_left", "q_right", "q_left",
     "share_right", "share_left", "scale", "rotation", "velocity",
 )  # fmt: skip
-"""Numbers that make a history, beside the number of its motion and its key."""
+"""Numbers that make a history, beside the number of its motion and its stream."""
 
 SIDES = (
     ("alpha", "slenderness_angle"), ("p", "frequency_parameter"), ("r", "coefficient"), ("q", "inertia_ratio"),
@@ -45,10 +45,10 @@ class Rows:
     # distribution that its coefficient is drawn from
     values: dict[str, FloatArray]
     motion: np.ndarray  # number of the motion
-    key: np.ndarray  # number of the history, for random coefficients
+    stream: np.ndarray  # number of the history, for random coefficients
 
     @classmethod
-    def of(cls, count: int, motion: Any = 0, key: Any = None, **values: Any) -> "Rows":
+    def of(cls, count: int, motion: Any = 0, stream: Any = None, **values: Any) -> "Rows":
         """Return rows from numbers and arrays, which are repeated to the count."""
         given = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0} | SIDES_UNTOLD | values
         if set(given) != set(ROWS):
@@ -56,8 +56,8 @@ class Rows:
             raise InvalidValueError(f"rows have {', '.join(ROWS)}; missing or unknown: {', '.join(odd)}")
         try:
             rows = {name: _repeated(given[name], count, np.float64) for name in ROWS}
-            keys = np.arange(count) if key is None else key
-            return cls(rows, _repeated(motion, count, np.int64), _repeated(keys, count, np.int64))
+            streams = np.arange(count) if stream is None else stream
+            return cls(rows, _repeated(motion, count, np.int64), _repeated(streams, count, np.int64))
         except (TypeError, ValueError) as error:
             raise InvalidValueError(f"rows must be numbers, or arrays of {count}: {error}") from error
 
@@ -111,7 +111,7 @@ class Batch:
                 self._one_by_one(piece, out)
             else:
                 done = fast_engine.module().run_batch(
-                    library.handle, {**piece.values, "motion": piece.motion, "key": piece.key}, out,
+                    library.handle, {**piece.values, "motion": piece.motion, "key": piece.stream}, out,
                     order=self.settings.order, threads=threads or self.threads or _processors(), chunk=_CHUNK,
                     **fast_engine.common(self.settings, self.law),
                 )  # fmt: skip
@@ -142,10 +142,10 @@ class Batch:
     def _one_by_one(self, rows: Rows, out: fast_engine.Arrays) -> None:
         for k in range(len(rows)):
             row = {name: float(values[k]) for name, values in rows.values.items()}
-            for name, value in self._one(row, int(rows.motion[k]), int(rows.key[k])).items():
+            for name, value in self._one(row, int(rows.motion[k]), int(rows.stream[k])).items():
                 out[name][k] = value
 
-    def _one(self, row: dict[str, float], motion: int, key: int) -> dict[str, float]:
+    def _one(self, row: dict[str, float], motion: int, stream: int) -> dict[str, float]:
         if not valid_row(row) or not 0 <= motion < len(self.motions):
             bad = dict.fromkeys(fast_engine.RESULTS, np.nan) | {"outcome": Outcome.FAILED.code, "side": 0}
             return bad | {"status": Status.INVALID.code, "impacts": 0, "uplifts": 0, "still_rocking": 0}
@@ -157,7 +157,7 @@ class Batch:
         ]
         reference = Reference(
             RockingParameters(sides[0], sides[1], self.law, ""), self.motions[motion], self.settings,
-            scale=row["scale"], key=key, to_the_ground=False,
+            scale=row["scale"], stream=stream, to_the_ground=False,
         )  # fmt: skip
         run = reference.run(row["rotation"], row["velocity"])
         uplift = next((e.time for e in run.events if e.kind == 0), np.nan)
@@ -194,7 +194,7 @@ def drawn_rows(rows: Rows, law: ImpactLaw) -> Rows:
     drawn = {}
     for foot in FEET:
         where = (foot, rows.values[f"share_{foot}"]) if isinstance(law, DrawnRestitution) and law.truncates else ()
-        drawn[f"r_{foot}"] = rows.values[f"r_{foot}"] * draws(rows.key, *where)
+        drawn[f"r_{foot}"] = rows.values[f"r_{foot}"] * draws(rows.stream, *where)
     return replace(rows, values=rows.values | drawn)
 
 

@@ -45,14 +45,14 @@ class DenseOutput:
 
     @classmethod
     def of(
-        cls, trajectory: Trajectory, segments: Segments, rocker: RockingParameters, settings: Settings, scale: float
+        cls, trajectory: Trajectory, segments: Segments, parameters: RockingParameters, settings: Settings, scale: float
     ) -> "DenseOutput":
         """Return the intervals of a trajectory.
 
         segments: its motion [m/s2]; scale: factor on the motion [-].
         """
         time, before, after = _nodes(trajectory, segments.step)
-        added = Inside(segments, rocker, settings, scale).added(trajectory, time, before, after)
+        added = Inside(segments, parameters, settings, scale).added(trajectory, time, before, after)
         if added:
             rows = np.array(added)
             time = np.concatenate([time, rows[:, 0]])
@@ -69,7 +69,7 @@ class DenseOutput:
         side = np.sign(np.where(size != 0.0, size, velocity[:, 0] - velocity[:, 1]))
         right = side >= 0.0
         alpha, p, radius = (
-            np.where(right, getattr(rocker.right, name), getattr(rocker.left, name))
+            np.where(right, getattr(parameters.right, name), getattr(parameters.left, name))
             for name in ("slenderness_angle", "frequency_parameter", "semi_diagonal")
         )
         stretch = np.clip(((0.5 * (start + end)) / segments.step).astype(np.int64), 0, segments.count - 1)
@@ -95,7 +95,7 @@ class DenseOutput:
         """
         return np.maximum(np.searchsorted(self.end, time * (1.0 + 1e-14), side="right") - 1, 0)
 
-    def inside(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def evaluated(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return rotation and velocity within every interval: the quintic through both ends.
 
         Returns theta [rad] and theta' [rad/s] (shape (n, m)).
@@ -135,7 +135,7 @@ class DenseOutput:
 
         Returns work [J/kg].
         """
-        rotation, velocity = self.inside(_POINTS)
+        rotation, velocity = self.evaluated(_POINTS)
         middle = 0.5 * (self.start + self.end) / self._segments.step
         stretch = np.clip(middle.astype(np.int64), 0, self._segments.count - 1)
         tau = (self.start[:, None] + _POINTS * self.length[:, None]) / self._segments.step - stretch[:, None]

@@ -34,14 +34,14 @@ class ResponseEnergy:
         return float(np.max(np.abs(self.gap))) / max(scale if scale > 1e-9 * fallen else fallen, 1e-300)
 
 
-def energy_of(intervals: DenseOutput, time: FloatArray, mass: float, settings: Settings) -> ResponseEnergy:
+def energy_of(dense_output: DenseOutput, time: FloatArray, mass: float, settings: Settings) -> ResponseEnergy:
     """Return the energy of a response.
 
     time: times of the samples, the first one zero, and of a fall after the last of them [s]; mass: mass of the body
     [kg].
     """
-    kinetic, potential, work, lost = energies(intervals, mass, settings)
-    place = intervals.places(time[1:])
+    kinetic, potential, work, lost = energies(dense_output, mass, settings)
+    place = dense_output.places(time[1:])
 
     def at_samples(values: FloatArray) -> FloatArray:
         return np.append(values[0, 0], values[place, 1])
@@ -56,17 +56,17 @@ def energy_of(intervals: DenseOutput, time: FloatArray, mass: float, settings: S
 
 
 def energies(
-    intervals: DenseOutput, mass: float, settings: Settings
+    dense_output: DenseOutput, mass: float, settings: Settings
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return the energy of a response at both ends of its intervals.
+    """Return the energy of a response at both ends of its dense_output.
 
     mass: mass of the body [kg]. Returns as `ResponseEnergy` has them [J] (shape (n, 2)).
     """
-    unit = (mass * settings.gravity * intervals.semi_diagonal)[:, None]
-    alpha, p = intervals.alpha[:, None], intervals.p[:, None]
-    stored = unit * equations.energy(intervals.rotation, intervals.velocity, alpha, p, linear=settings.linear)
-    kinetic = unit * 0.5 * np.square(intervals.velocity / p)
+    unit = (mass * settings.gravity * dense_output.semi_diagonal)[:, None]
+    alpha, p = dense_output.alpha[:, None], dense_output.p[:, None]
+    stored = unit * equations.energy(dense_output.rotation, dense_output.velocity, alpha, p, linear=settings.linear)
+    kinetic = unit * 0.5 * np.square(dense_output.velocity / p)
     # what one interval ends with and the next one starts without was lost in between
     lost = np.concatenate([[0.0], np.cumsum(stored[:-1, 1] - stored[1:, 0])])
-    work = np.concatenate([[0.0], np.cumsum(mass * intervals.work(settings))])
+    work = np.concatenate([[0.0], np.cumsum(mass * dense_output.work(settings))])
     return kinetic, stored - kinetic, np.stack([work[:-1], work[1:]], axis=1), np.stack([lost, lost], axis=1)

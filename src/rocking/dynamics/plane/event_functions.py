@@ -31,10 +31,10 @@ class Window:
 class RestoringMoments:
     """What holds a body down, stretch by stretch."""
 
-    def __init__(self, rocker: RockingParameters, push: Push, *, linear: bool) -> None:
+    def __init__(self, parameters: RockingParameters, push: Push, *, linear: bool) -> None:
         self.push = push
         self.linear = linear
-        alphas = {sign: rocker.side(sign).slenderness_angle for sign in (1, -1)}
+        alphas = {sign: parameters.side(sign).slenderness_angle for sign in (1, -1)}
         self._sines = {sign: alpha if linear else math.sin(alpha) for sign, alpha in alphas.items()}
         self._cosines = {sign: 1.0 if linear else math.cos(alpha) for sign, alpha in alphas.items()}
         self.moments = {side: self._holding(side) for side in (1, -1)}

@@ -36,9 +36,9 @@ def columns(response: "Response") -> dict[str, FloatArray]:
 
 def provenance(response: "Response") -> dict[str, Any]:
     """Return what was computed from what, as plain values."""
-    motion, rocker = response.motion, response.rocker
+    motion, parameters = response.motion, response.parameters
     sides = {
-        f"{name}_{foot}": getattr(getattr(rocker, foot), name)
+        f"{name}_{foot}": getattr(getattr(parameters, foot), name)
         for foot in ("left", "right")
         for name in ("slenderness_angle", "frequency_parameter", "semi_diagonal", "coefficient")
     }
@@ -54,12 +54,12 @@ def provenance(response: "Response") -> dict[str, Any]:
         **({"overturning_time_s": response.overturning_time} if response.side else {}),
         "body": type(response.body).__name__,
         "mass_kg": response.body.mass,
-        "restitution": rocker.label,
+        "restitution": parameters.label,
         **sides,
         "motion": "none: free rocking" if motion is None else motion.name,
         "motion_provenance": motion_provenance(motion),
         "scale": response.scale,
-        "random_key": response.key,
+        "random_stream": response.stream,
         **{f"setting_{k}": v for k, v in response.settings.stated.items()},
     }
 

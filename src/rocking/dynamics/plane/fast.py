@@ -13,12 +13,12 @@ _OUTCOMES, _STATUSES, _KINDS = list(Outcome), list(Status), {kind.value: kind fo
 
 
 def run_fast(
-    rocker: RockingParameters,
+    parameters: RockingParameters,
     segments: Segments,
     settings: Settings,
     *,
     scale: float = 1.0,
-    key: int = 0,
+    stream: int = 0,
     rotation: float = 0.0,
     velocity: float = 0.0,
 ) -> Trajectory:
@@ -29,18 +29,18 @@ def run_fast(
     """
     library = fast_engine.Library([segments])
     values = {
-        "alpha_right": rocker.right.slenderness_angle, "alpha_left": rocker.left.slenderness_angle,
-        "p_right": rocker.right.frequency_parameter, "p_left": rocker.left.frequency_parameter,
-        "q_right": rocker.right.inertia_ratio, "q_left": rocker.left.inertia_ratio,
-        "r_right": rocker.right.coefficient, "r_left": rocker.left.coefficient,
-        "share_right": rocker.right.share, "share_left": rocker.left.share,
+        "alpha_right": parameters.right.slenderness_angle, "alpha_left": parameters.left.slenderness_angle,
+        "p_right": parameters.right.frequency_parameter, "p_left": parameters.left.frequency_parameter,
+        "q_right": parameters.right.inertia_ratio, "q_left": parameters.left.inertia_ratio,
+        "r_right": parameters.right.coefficient, "r_left": parameters.left.coefficient,
+        "share_right": parameters.right.share, "share_left": parameters.left.share,
         "scale": scale, "rotation": rotation, "velocity": velocity,
     }  # fmt: skip
     rows = {name: np.array([value]) for name, value in values.items()}
-    rows |= {"motion": np.zeros(1, np.int64), "key": np.array([key], np.int64)}
+    rows |= {"motion": np.zeros(1, np.int64), "key": np.array([stream], np.int64)}
     out = fast_engine.empty_results(1)
     rotations, velocities = np.zeros(segments.count + 1), np.zeros(segments.count + 1)
-    arguments = fast_engine.common(settings, rocker.law)
+    arguments = fast_engine.common(settings, parameters.law)
     noted = fast_engine.module().run_single(
         library.handle, rows, out, to_the_ground=True, rotation=rotations, velocity=velocities, **arguments
     )

@@ -72,18 +72,18 @@ class GroundForces:
 
 
 def contact_of(
-    trajectory: Trajectory, intervals: DenseOutput, time: FloatArray, body: Body, settings: Settings
+    trajectory: Trajectory, dense_output: DenseOutput, time: FloatArray, body: Body, settings: Settings
 ) -> GroundForces:
     """Return the forces of the ground on a body during a response.
 
     time: times of the samples, and of a fall after the last of them [s].
     """
-    f_x, f_z, demand = forces(intervals, settings.gravity)
+    f_x, f_z, demand = forces(dense_output, settings.gravity)
     # a body that falls is past all questions of friction; the start counts even for one that is let go beyond the top
-    late = intervals.start >= trajectory.overturning_time - _ROUNDING * intervals.length
+    late = dense_output.start >= trajectory.overturning_time - _ROUNDING * dense_output.length
     standing = np.stack([~late, ~late], axis=1)
     standing[0, 0] = True
-    place = intervals.places(time[1:])
+    place = dense_output.places(time[1:])
     mass = body.mass
     return GroundForces(
         time=time,
@@ -95,20 +95,21 @@ def contact_of(
     )
 
 
-def forces(intervals: DenseOutput, gravity: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def forces(dense_output: DenseOutput, gravity: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the forces of the ground at both ends of the intervals of a response.
 
     gravity: acceleration of gravity [m/s2]. Returns horizontal, vertical: over the mass [N/kg] (shape (n, 2)); demand:
     friction that rocking without slip takes; infinite where the ground would have to pull [-] (shape (n, 2)).
     """
-    side = intervals.side[:, None]
+    side = dense_output.side[:, None]
     f_x, f_z = equations.reactions(
-        intervals.rotation, intervals.velocity, intervals.acceleration, np.where(side == 0.0, 1.0, side),
-        intervals.alpha[:, None], intervals.semi_diagonal[:, None], intervals.push, gravity + intervals.lift,
+        dense_output.rotation, dense_output.velocity, dense_output.acceleration, np.where(side == 0.0, 1.0, side),
+        dense_output.alpha[:, None], dense_output.semi_diagonal[:, None],
+        dense_output.push, gravity + dense_output.lift,
     )  # fmt: skip
     resting = side == 0.0
-    f_x = np.where(resting, intervals.push, f_x)
-    f_z = np.where(resting, gravity + intervals.lift, f_z)
+    f_x = np.where(resting, dense_output.push, f_x)
+    f_z = np.where(resting, gravity + dense_output.lift, f_z)
     with np.errstate(divide="ignore", invalid="ignore"):
         demand = np.where(f_z > 0.0, np.abs(f_x) / f_z, np.where(f_x == 0.0, 0.0, np.inf))  # Eq. 35
     return f_x, f_z, demand

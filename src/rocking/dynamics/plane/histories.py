@@ -30,7 +30,7 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
     scale: float = 1.0,
     duration: float | None = None,
     engine: str = "auto",
-    key: int = 0,
+    stream: int = 0,
 ) -> Response:
     """Return how a plane body rocks without sliding or flying; on ground at rest without a motion.
 
@@ -40,18 +40,25 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
     """
     scale = checks.within("scale", scale, -1e6, 1e6)
     plausibility.warn(plausibility.of_scaled([motion], scale))
-    rocker = RockingParameters.of_body(body, restitution, settings.gravity)
-    rotation, velocity = initial_state(rocker, rotation, angular_velocity)
-    slow, quick = _frequencies(rocker)
+    parameters = RockingParameters.of_body(body, restitution, settings.gravity)
+    rotation, velocity = initial_state(parameters, rotation, angular_velocity)
+    slow, quick = _frequencies(parameters)
     usual = _FREE / slow if motion is None else motion.duration + _AFTER / slow
     length = usual if duration is None else checks.positive("duration", duration, "s")
     segments = _still(_FINE / quick, length) if motion is None else _shaken(motion, length, quick)
     found = run(
-        rocker, segments, settings, engine=engine, scale=scale, key=_key(key), rotation=rotation, velocity=velocity
+        parameters,
+        segments,
+        settings,
+        engine=engine,
+        scale=scale,
+        stream=_stream(stream),
+        rotation=rotation,
+        velocity=velocity,
     )
     if motion is None and duration is None:
         found, segments = _until_rest(found, segments)
-    return Response(body, motion, rocker, settings, segments, scale, key, found)
+    return Response(body, motion, parameters, settings, segments, scale, stream, found)
 
 
 def _still(step: float, length: float) -> Segments:
@@ -67,7 +74,7 @@ def _shaken(motion: Motion, length: float, quick: float) -> Segments:
     return _cut(segments, length).extended(length)
 
 
-def initial_state(rocker: RockingParameters, rotation: float, angular_velocity: float) -> tuple[float, float]:
+def initial_state(parameters: RockingParameters, rotation: float, angular_velocity: float) -> tuple[float, float]:
     """Return checked initial conditions.
 
     rotation, angular_velocity: theta [rad] and theta' [rad/s]. Returns the same, finite and within a quarter turn.
@@ -76,19 +83,19 @@ def initial_state(rocker: RockingParameters, rotation: float, angular_velocity: 
     rotation = checks.within(
         "rotation", rotation, -half_pi, half_pi, unit="rad", open_low=True, open_high=True, hint="degrees?"
     )
-    most = 100.0 * _frequencies(rocker)[1]
+    most = 100.0 * _frequencies(parameters)[1]
     return rotation, checks.within("angular_velocity", angular_velocity, -most, most, unit="rad/s", hint="degrees?")
 
 
-def _frequencies(rocker: RockingParameters) -> tuple[float, float]:
-    both = rocker.right.frequency_parameter, rocker.left.frequency_parameter
+def _frequencies(parameters: RockingParameters) -> tuple[float, float]:
+    both = parameters.right.frequency_parameter, parameters.left.frequency_parameter
     return min(both), max(both)
 
 
-def _key(key: Any) -> int:
-    if isinstance(key, bool) or not isinstance(key, int) or not 0 <= key < 2**63:
-        raise InvalidValueError(f"key must be a whole number in [0, 2^63), got {key!r}")
-    return key
+def _stream(stream: Any) -> int:
+    if isinstance(stream, bool) or not isinstance(stream, int) or not 0 <= stream < 2**63:
+        raise InvalidValueError(f"stream must be a whole number in [0, 2^63), got {stream!r}")
+    return stream
 
 
 def _check_samples(count: float) -> None:

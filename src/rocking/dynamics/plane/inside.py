@@ -39,7 +39,7 @@ class Inside:
     """What moves, and on what."""
 
     segments: Segments  # the motion [m/s2]
-    rocker: RockingParameters  # the body
+    parameters: RockingParameters  # the body
     settings: Settings  # gravity and equations
     scale: float  # factor on the motion [-]
 
@@ -55,7 +55,7 @@ class Inside:
         fall, step = trajectory.overturning_time, self.segments.step
         length, turned = np.diff(time), after[:-1, 0] + before[1:, 0]
         turned = np.where(turned != 0.0, turned, after[:-1, 1] - before[1:, 1])  # from impact to impact
-        quickest = max(self.rocker.right.frequency_parameter, self.rocker.left.frequency_parameter)
+        quickest = max(self.parameters.right.frequency_parameter, self.parameters.left.frequency_parameter)
         falls = (time[:-1] < fall - _ROUNDING * step) & (time[1:] > fall + _ROUNDING * step)
         found: list[tuple[float, float, float]] = []
         for i in np.flatnonzero((turned != 0.0) & (falls | (quickest * length > LONG))).tolist():
@@ -73,7 +73,7 @@ class Inside:
 
     def _states(self, known: Known, fall: float, *, to_the_ground: bool) -> list[tuple[float, float, float]]:
         """Return states so near to each other that quintics join them."""
-        alpha = self.rocker.side(known.side).slenderness_angle
+        alpha = self.parameters.side(known.side).slenderness_angle
         time, u, rate = known.time, alpha - known.side * known.rotation, -known.side * known.velocity
         found: list[tuple[float, float, float]] = []
         shortest = _ROUNDING * self.segments.step
@@ -97,7 +97,7 @@ class Inside:
         if segments.vertical is not None:
             weight = shifted((self.scale / g * segments.vertical[stretch]).tolist(), at, width)
         weight[0] += 1.0
-        kappa = (self.rocker.side(side).frequency_parameter * left) ** 2
+        kappa = (self.parameters.side(side).frequency_parameter * left) ** 2
         linear = self.settings.linear
         return series(u, rate * left, kappa, [side * c for c in push], weight, _ORDER, linear=linear)
 

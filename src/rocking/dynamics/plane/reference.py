@@ -38,12 +38,12 @@ class Reference:
 
     def __init__(
         self,
-        rocker: RockingParameters,
+        parameters: RockingParameters,
         segments: Segments,
         settings: Settings,
         *,
         scale: float = 1.0,
-        key: int = 0,
+        stream: int = 0,
         to_the_ground: bool = True,
     ) -> None:
         over_g = scale / settings.gravity
@@ -53,8 +53,8 @@ class Reference:
                 "ground accelerations must be finite [m/s2], got NaN or infinity; a gap in a record"
             )
         self.push = Push(segments.step, segments.horizontal * over_g, vertical * over_g)
-        self.rocker, self.settings, self.key, self.to_the_ground = rocker, settings, key, to_the_ground
-        self.ground = RestoringMoments(rocker, self.push, linear=settings.linear)
+        self.parameters, self.settings, self.stream, self.to_the_ground = parameters, settings, stream, to_the_ground
+        self.ground = RestoringMoments(parameters, self.push, linear=settings.linear)
         self.count = segments.count
         self.rotations = np.zeros(self.count + 1)
         self.velocities = np.zeros(self.count + 1)
@@ -81,7 +81,7 @@ class Reference:
         return self._trajectory(ended)
 
     def _start(self, rotation: float, velocity: float) -> _Ended | None:
-        turned = self.rocker.side(1 if rotation > 0.0 else -1).slenderness_angle
+        turned = self.parameters.side(1 if rotation > 0.0 else -1).slenderness_angle
         upright = turned - abs(rotation) == turned  # turned by less than the rounding of alpha
         self.side = 1 if rotation > 0.0 or (rotation == 0.0 and velocity > 0.0) else -1
         if upright and abs(velocity) <= NOTHING * self._p * self._alpha:
@@ -162,7 +162,7 @@ class Reference:
         if self.stretch >= self.count:
             return self._conclude()
         args = (self.side, after, self.stretch, self.tau, self.settings.rest_speed)
-        if comes_to_rest(self.rocker, self.ground, *args):
+        if comes_to_rest(self.parameters, self.ground, *args):
             self._note(EventKind.REST, time)
             return self._rest()
         return None
@@ -245,18 +245,18 @@ class Reference:
 
     @property
     def _alpha(self) -> float:
-        return self.rocker.side(self.side).slenderness_angle
+        return self.parameters.side(self.side).slenderness_angle
 
     @property
     def _p(self) -> float:
-        return self.rocker.side(self.side).frequency_parameter
+        return self.parameters.side(self.side).frequency_parameter
 
     @property
     def _now(self) -> float:
         return (self.stretch + self.tau) * self.push.step
 
     def _coefficient(self, speed: float) -> float:
-        return self.rocker.coefficient(self.side, speed, self.key, self.impacts)
+        return self.parameters.coefficient(self.side, speed, self.stream, self.impacts)
 
     def _ground_at(self, stretch: int, tau: float) -> tuple[float, float]:
         """Push towards the side on which it stands, and weight, over gravity."""
@@ -267,7 +267,7 @@ class Reference:
         """Force of the ground over the weight: (1 + a_z / g) + z'' / g upwards, a_x / g + x'' / g along it."""
         sine, cosine = math.sin(u), math.cos(u)
         moment = weight * u + push if self.settings.linear else weight * sine + push * cosine  # u'' / p^2
-        share, spin = self.rocker.side(self.side).inertia_ratio, rate / self._p
+        share, spin = self.parameters.side(self.side).inertia_ratio, rate / self._p
         spin *= spin  # a power would raise where this is infinite
         up = weight - share * (moment * sine + spin * cosine)  # Eq. 33
         along = push - share * (moment * cosine - spin * sine)  # Eq. 34

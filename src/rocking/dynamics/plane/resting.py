@@ -10,7 +10,7 @@ NOTHING = 1e-9
 
 
 def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine
-    rocker: RockingParameters,
+    parameters: RockingParameters,
     ground: RestoringMoments,
     sign: int,
     after: float,
@@ -26,18 +26,18 @@ def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine
     after: speed after the impact [rad/s]; rest_speed: speed over p alpha above which the question is not asked; below
     `NOTHING` it always is [-].
     """
-    side = rocker.side(sign)
+    side = parameters.side(sign)
     unit = side.frequency_parameter * side.slenderness_angle
     held = ground.held(sign, stretch, tau)
     if after <= NOTHING * unit and held > 0.0:
         return True
-    other, across = rocker.side(-sign), ground.held(-sign, stretch, tau)
+    other, across = parameters.side(-sign), ground.held(-sign, stretch, tau)
     if not (after <= rest_speed * unit and held > 0.0 and across > 0.0):
         return False
     # all in units of stretches; the flights under the moments of now, as a guess of the time they take
     step = ground.push.step
     one, two = ((k.frequency_parameter * step) ** 2 for k in (side, other))
-    r, q = rocker.largest(sign), rocker.largest(-sign)
+    r, q = parameters.largest(sign), parameters.largest(-sign)
     speed, lost = after * step, 1.0 - r * q
     flights, rate = 2.0 * speed * (two * across + q * one * held), one * held * (two * across) * lost  # Eq. 37
     if not flights < _LONGEST_WINDOW * rate:

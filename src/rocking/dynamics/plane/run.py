@@ -20,13 +20,13 @@ _ORDER = 8
 
 
 def run(
-    rocker: RockingParameters,
+    parameters: RockingParameters,
     segments: Segments,
     settings: Settings,
     *,
     engine: str = "auto",
     scale: float = 1.0,
-    key: int = 0,
+    stream: int = 0,
     rotation: float = 0.0,
     velocity: float = 0.0,
 ) -> Trajectory:
@@ -35,7 +35,7 @@ def run(
     segments: the motion [m/s2]; scale: factor on the motion [-]; rotation, velocity: theta [rad] and theta' [rad/s] at
     time zero.
     """
-    taken = fast_engine.chosen(engine, rocker.law)
+    taken = fast_engine.chosen(engine, parameters.law)
     if engine != "reference" and settings.order != _ORDER:
         raise InvalidValueError(
             f"order must be {_ORDER} for one history, got {settings.order}: orders 4 and 6 exist only in batches "
@@ -44,11 +44,11 @@ def run(
     if taken == "reference":
         from rocking.dynamics.plane.reference import Reference
 
-        made = Reference(rocker, segments, settings, scale=scale, key=key)
+        made = Reference(parameters, segments, settings, scale=scale, stream=stream)
         return made.run(rotation, velocity)
     from rocking.dynamics.plane.fast import run_fast
 
-    return run_fast(rocker, segments, settings, scale=scale, key=key, rotation=rotation, velocity=velocity)
+    return run_fast(parameters, segments, settings, scale=scale, stream=stream, rotation=rotation, velocity=velocity)
 
 
 def rerun_finer(response: "Response") -> float:
@@ -64,8 +64,8 @@ def rerun_finer(response: "Response") -> float:
         name, settings = "fast", replace(settings, longest_step=half)
     first = response.trajectory
     again = run(
-        response.rocker, response.segments.refined(2), settings, engine=name, scale=response.scale, key=response.key,
-        rotation=float(first.rotation[0]), velocity=float(first.angular_velocity[0]),
+        response.parameters, response.segments.refined(2), settings, engine=name, scale=response.scale,
+        stream=response.stream, rotation=float(first.rotation[0]), velocity=float(first.angular_velocity[0]),
     )  # fmt: skip
     if again.outcome is not first.outcome:
         return math.inf

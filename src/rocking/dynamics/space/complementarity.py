@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.space import contact_mode as stances
+from rocking.dynamics.space import contact_mode
 from rocking.dynamics.space.attitude import cross
 from rocking.dynamics.space.body import SpatialBody
-from rocking.dynamics.space.contact_mode import Stance
+from rocking.dynamics.space.contact_mode import ContactSet
 from rocking.dynamics.space.impact_laws import SpatialImpactLaw, projected
 from rocking.outcome import ContactMode
 from rocking.portable import applied, dot, norm, solution
@@ -36,15 +36,15 @@ class SpatialState:
     # of a body on an edge, from the pivot to the other end of the edge; zero on a vertex [m]; shape (3,)
     along: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(3))
 
-    def nearest(self, stance: Stance) -> FloatArray:
-        """Return the point at rest that is nearest to a new stance: from there laws measure the step.
+    def nearest(self, contact: ContactSet) -> FloatArray:
+        """Return the point at rest that is nearest to a new contact: from there laws measure the step.
 
         Returns the pivot, or a point of the edge, in body axes [m].
         """
         length = float((self.along * self.along).sum())
         if length == 0.0:
             return self.pivot
-        middle = stance.pivot if stance.axis is None else stance.pivot + 0.5 * stance.length * stance.axis
+        middle = contact.pivot if contact.axis is None else contact.pivot + 0.5 * contact.length * contact.axis
         share = float(((middle - self.pivot) * self.along).sum()) / length
         nearest: FloatArray = self.pivot + min(max(share, 0.0), 1.0) * self.along
         return nearest
@@ -54,21 +54,21 @@ class SpatialState:
 class Continuation:
     """What stays, and how the body goes on."""
 
-    stance: Stance  # on what the body stands
+    contact: ContactSet  # on what the body stands
     velocity: FloatArray  # angular velocity, in body axes [rad/s]; shape (3,)
-    supports: FloatArray  # impulses or forces of the ground, as `supports` of the stance has them [N s] or [N]
+    supports: FloatArray  # impulses or forces of the ground, as `supports` of the contact has them [N s] or [N]
 
 
-def candidates(body: SpatialBody, touching: tuple[int, ...]) -> Iterator[Stance]:
+def candidates(body: SpatialBody, touching: tuple[int, ...]) -> Iterator[ContactSet]:
     """Yield the contact sets that can stay, larger ones first."""
     count = len(body.vertices)
     if len(touching) == count:
-        yield stances.face(body)
+        yield contact_mode.face(body)
     for number in touching:
         if (number + 1) % count in touching:
-            yield stances.edge(body, number)
+            yield contact_mode.edge(body, number)
     for number in touching:
-        yield stances.vertex(body, number)
+        yield contact_mode.vertex(body, number)
 
 
 def of_impact(
@@ -77,23 +77,23 @@ def of_impact(
     """Return every contact set that an impact may leave, the largest first."""
     found = []
     scale = float(np.abs(state.velocity).max()) * body.size
-    for stance in candidates(body, touching):
-        plastic = _after(body, state, stance)
-        push = impulses(body, state, stance, plastic)
+    for contact in candidates(body, touching):
+        plastic = _after(body, state, contact)
+        push = impulses(body, state, contact, plastic)
         if push.min() < -_ROUNDING * body.mass * scale:
             continue
         velocity = plastic
-        if stance.contact is not ContactMode.REST:
+        if contact.mode is not ContactMode.REST:
             velocity = law.velocity_after(
-                body, state.nearest(stance), stance.pivot, stance.axis, state.up, state.velocity
+                body, state.nearest(contact), contact.pivot, contact.axis, state.up, state.velocity
             )
-        if _opening(body, stance, velocity, state.up, touching) >= -_ROUNDING * scale:
-            found.append(Continuation(stance, velocity, push))
+        if _opening(body, contact, velocity, state.up, touching) >= -_ROUNDING * scale:
+            found.append(Continuation(contact, velocity, push))
     return found
 
 
 def of_forces(
-    body: SpatialBody, state: SpatialState, touching: tuple[int, ...], first: Stance | None = None
+    body: SpatialBody, state: SpatialState, touching: tuple[int, ...], first: ContactSet | None = None
 ) -> list[Continuation]:
     """Return every contact set that stays when no gap opens with a speed, a preferred one first.
 
@@ -101,78 +101,80 @@ def of_forces(
     """
     found: list[Continuation] = []
     scale = norm(state.field)
-    for stance in [] if first is None else [first]:
-        _try_forces(body, state, stance, touching, scale, found)
-    for stance in candidates(body, touching):
-        if first is None or stance.points != first.points:
-            _try_forces(body, state, stance, touching, scale, found)
+    for contact in [] if first is None else [first]:
+        _try_forces(body, state, contact, touching, scale, found)
+    for contact in candidates(body, touching):
+        if first is None or contact.points != first.points:
+            _try_forces(body, state, contact, touching, scale, found)
     return found
 
 
 def _try_forces(
     body: SpatialBody,
     state: SpatialState,
-    stance: Stance,
+    contact: ContactSet,
     touching: tuple[int, ...],
     scale: float,
     found: list[Continuation],
 ) -> None:
-    velocity = _after(body, state, stance)
-    rate, push = forces(body, stance, velocity, state.up, state.field)
+    velocity = _after(body, state, contact)
+    rate, push = forces(body, contact, velocity, state.up, state.field)
     if push.min() < -_ROUNDING * body.mass * scale:
         return
-    spin = cross(velocity, cross(velocity, body.vertices - stance.pivot))
-    opening = applied(cross(rate, body.vertices - stance.pivot) + spin, state.up)
-    others = [i for i in touching if i not in stance.points]
+    spin = cross(velocity, cross(velocity, body.vertices - contact.pivot))
+    opening = applied(cross(rate, body.vertices - contact.pivot) + spin, state.up)
+    others = [i for i in touching if i not in contact.points]
     if not others or opening[others].min() >= -_ROUNDING * scale:
-        found.append(Continuation(stance, velocity, push))
+        found.append(Continuation(contact, velocity, push))
 
 
-def impulses(body: SpatialBody, state: SpatialState, stance: Stance, velocity: FloatArray) -> FloatArray:
+def impulses(body: SpatialBody, state: SpatialState, contact: ContactSet, velocity: FloatArray) -> FloatArray:
     """Return the impulses of the ground in an impact.
 
-    velocity: angular velocity after, in body axes [rad/s]. Returns as of `supports` of the stance [N s].
+    velocity: angular velocity after, in body axes [rad/s]. Returns as of `supports` of the contact [N s].
     """
-    new = body.centre - stance.pivot
+    new = body.centre - contact.pivot
     push = body.mass * (cross(velocity, new) - cross(state.velocity, body.centre - state.pivot))  # Eq. 90
     moment = applied(body.inertia, velocity - state.velocity) + cross(new, push)  # Eq. 90
-    return stances.supports(body, stance, push, moment, state.up)
+    return contact_mode.supports(body, contact, push, moment, state.up)
 
 
 def forces(
-    body: SpatialBody, stance: Stance, velocity: FloatArray, up: FloatArray, field: FloatArray
+    body: SpatialBody, contact: ContactSet, velocity: FloatArray, up: FloatArray, field: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the angular acceleration on a stance and the forces of the ground.
+    """Return the angular acceleration on a contact and the forces of the ground.
 
     velocity: angular velocity, in body axes [rad/s]; up: vertical in body axes [-]; field: gravity less the
     acceleration of the ground, in body axes [m/s2]. Returns acceleration: Angular, in body axes [rad/s2] (shape (3,));
-    supports: as of `supports` of the stance [N].
+    supports: as of `supports` of the contact [N].
     """
-    arm, inertia = body.centre - stance.pivot, body.inertia_about(stance.pivot)
+    arm, inertia = body.centre - contact.pivot, body.inertia_about(contact.pivot)
     rate: FloatArray
     gyroscopic, weight = cross(velocity, applied(inertia, velocity)), body.mass * cross(arm, field)
-    if stance.contact is ContactMode.REST:
+    if contact.mode is ContactMode.REST:
         rate = np.zeros(3)
-    elif stance.axis is not None:
-        rate = stance.axis * (dot(stance.axis, weight - gyroscopic) / dot(stance.axis, applied(inertia, stance.axis)))
+    elif contact.axis is not None:
+        rate = contact.axis * (
+            dot(contact.axis, weight - gyroscopic) / dot(contact.axis, applied(inertia, contact.axis))
+        )
     else:
         rate = solution(inertia, weight - gyroscopic)
     moment = applied(inertia, rate) + gyroscopic - weight  # Eq. 91
     force = body.mass * (cross(rate, arm) + cross(velocity, cross(velocity, arm)) - field)  # Eq. 91
-    return rate, stances.supports(body, stance, force, moment, up)
+    return rate, contact_mode.supports(body, contact, force, moment, up)
 
 
-def _after(body: SpatialBody, state: SpatialState, stance: Stance) -> FloatArray:
-    if stance.contact is ContactMode.REST:
+def _after(body: SpatialBody, state: SpatialState, contact: ContactSet) -> FloatArray:
+    if contact.mode is ContactMode.REST:
         return np.zeros(3)
-    return projected(body, state.pivot, stance.pivot, stance.axis, state.velocity)
+    return projected(body, state.pivot, contact.pivot, contact.axis, state.velocity)
 
 
 def _opening(
-    body: SpatialBody, stance: Stance, velocity: FloatArray, up: FloatArray, touching: tuple[int, ...]
+    body: SpatialBody, contact: ContactSet, velocity: FloatArray, up: FloatArray, touching: tuple[int, ...]
 ) -> float:
     """Least speed with which a touching point that does not stay leaves the ground."""
-    others = [i for i in touching if i not in stance.points]
+    others = [i for i in touching if i not in contact.points]
     if not others:
         return 0.0
-    return float(applied(cross(velocity, body.vertices[others] - stance.pivot), up).min())
+    return float(applied(cross(velocity, body.vertices[others] - contact.pivot), up).min())

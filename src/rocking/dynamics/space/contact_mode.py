@@ -14,49 +14,51 @@ UP = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
-class Stance:
+class ContactSet:
     """What stays on the ground."""
 
-    contact: ContactMode  # the regime
+    mode: ContactMode  # the regime
     points: tuple[int, ...]  # numbers of the vertices that stay; none for round bases
     pivot: FloatArray  # A point that stays, in body axes [m]; shape (3,)
     axis: FloatArray | None = None  # unit vector along an edge that stays, in body axes [-]; shape (3,)
     length: float = 0.0  # length of that edge [m]
 
 
-def face(body: SpatialBody) -> Stance:
+def face(body: SpatialBody) -> ContactSet:
     """Return standing on the whole base."""
     pivot = np.zeros(3) if body.round else body.vertices[0]
-    return Stance(ContactMode.REST, tuple(range(len(body.vertices))), pivot)
+    return ContactSet(ContactMode.REST, tuple(range(len(body.vertices))), pivot)
 
 
-def edge(body: SpatialBody, number: int) -> Stance:
+def edge(body: SpatialBody, number: int) -> ContactSet:
     """Return standing on an edge."""
     after = (number + 1) % len(body.vertices)
     length = norm(body.vertices[after] - body.vertices[number])
-    return Stance(ContactMode.EDGE, (number, after), body.vertices[number], body.edges[number], length)
+    return ContactSet(ContactMode.EDGE, (number, after), body.vertices[number], body.edges[number], length)
 
 
-def vertex(body: SpatialBody, number: int) -> Stance:
+def vertex(body: SpatialBody, number: int) -> ContactSet:
     """Return standing on a vertex."""
-    return Stance(ContactMode.VERTEX, (number,), body.vertices[number])
+    return ContactSet(ContactMode.VERTEX, (number,), body.vertices[number])
 
 
-def rim(body: SpatialBody, direction: FloatArray) -> Stance:
+def rim(body: SpatialBody, direction: FloatArray) -> ContactSet:
     """Return standing on a point of a round base.
 
     Returns turning about that point: what rolling starts with while the base is nearly flat.
     """
     unit = direction / norm(direction)
-    return Stance(ContactMode.VERTEX, (), np.array([*(body.radius * unit), 0.0]))
+    return ContactSet(ContactMode.VERTEX, (), np.array([*(body.radius * unit), 0.0]))
 
 
-def rolling(stance: Stance) -> Stance:
-    """Return rolling that starts on the point of a stance."""
-    return replace(stance, contact=ContactMode.ROLLING)
+def rolling(contact: ContactSet) -> ContactSet:
+    """Return rolling that starts on the point of a contact."""
+    return replace(contact, mode=ContactMode.ROLLING)
 
 
-def supports(body: SpatialBody, stance: Stance, force: FloatArray, moment: FloatArray, up: FloatArray) -> FloatArray:
+def supports(
+    body: SpatialBody, contact: ContactSet, force: FloatArray, moment: FloatArray, up: FloatArray
+) -> FloatArray:
     """Return what must not be negative for the ground to give a force without pulling.
 
     Horizontal forces are free, since nothing slips; what remains is where the vertical one acts. With M the moment
@@ -68,25 +70,25 @@ def supports(body: SpatialBody, stance: Stance, force: FloatArray, moment: Float
     distance of its centre of pressure from each edge over the size of the body [N].
     """
     normal = dot(force, up)
-    if stance.axis is not None:
-        second = dot(cross(up, moment), stance.axis) / stance.length  # Eq. 92
+    if contact.axis is not None:
+        second = dot(cross(up, moment), contact.axis) / contact.length  # Eq. 92
         return np.array([normal - second, second])
-    if stance.contact is not ContactMode.REST:
+    if contact.mode is not ContactMode.REST:
         return np.array([normal])
-    pressure = cross(up, moment)[:2] + normal * stance.pivot[:2]  # Eq. 93
+    pressure = cross(up, moment)[:2] + normal * contact.pivot[:2]  # Eq. 93
     if body.round:
         return np.array([normal * body.radius - norm(pressure)]) / body.size
     inside = ((pressure - normal * body.vertices[:, :2]) * body.inward).sum(axis=1)
     return np.append(inside / body.size, normal)
 
 
-def touching_point(body: SpatialBody, stance: Stance, up: FloatArray) -> FloatArray:
+def touching_point(body: SpatialBody, contact: ContactSet, up: FloatArray) -> FloatArray:
     """Return the point of the body that is on the ground.
 
     up: vertical in body axes [-]. Returns the pivot; of a rolling body the lowest point of its rim, in body axes [m].
     """
-    if stance.contact is not ContactMode.ROLLING:
-        return stance.pivot
+    if contact.mode is not ContactMode.ROLLING:
+        return contact.pivot
     level = up[:2] / norm(up[:2])
     return np.array([-body.radius * level[0], -body.radius * level[1], 0.0])
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.space.body import SpatialBody
-from rocking.dynamics.space.contact_mode import Stance
+from rocking.dynamics.space.contact_mode import ContactSet
 from rocking.dynamics.space.polynomials import NOTHING, first_zero
 from rocking.outcome import ContactMode
 from rocking.portable import applied, norm
@@ -30,32 +30,34 @@ class Step:
     up: FloatArray  # vertical in body axes [-]; shape (order + 1, 3)
     # gravity less the acceleration of the ground, in axes of the ground [m/s2]; shape (3, degree + 1)
     field: FloatArray
-    heading: FloatArray  # where the edge of the stance points on the ground; zero without an edge [-]; shape (3,)
+    heading: FloatArray  # where the edge of the contact points on the ground; zero without an edge [-]; shape (3,)
 
 
-def watched(body: SpatialBody, stance: Stance) -> tuple[int, ...]:
+def watched(body: SpatialBody, contact: ContactSet) -> tuple[int, ...]:
     """Return the vertices whose gaps must be watched: the base is convex, so no other one closes before them.
 
     Returns both neighbours of a vertex; the vertex farthest from an edge.
     """
     count = len(body.vertices)
-    if stance.contact is ContactMode.VERTEX and stance.points:
-        return ((stance.points[0] - 1) % count, (stance.points[0] + 1) % count)
-    if stance.contact is ContactMode.EDGE:
-        distance = applied(body.vertices[:, :2] - stance.pivot[:2], body.inward[stance.points[0]])
+    if contact.mode is ContactMode.VERTEX and contact.points:
+        return ((contact.points[0] - 1) % count, (contact.points[0] + 1) % count)
+    if contact.mode is ContactMode.EDGE:
+        distance = applied(body.vertices[:, :2] - contact.pivot[:2], body.inward[contact.points[0]])
         return (int(np.argmax(distance)),)
     return ()
 
 
-def first_contact(body: SpatialBody, stance: Stance, step: Step, touching: tuple[int, ...]) -> tuple[float, int] | None:
+def first_contact(
+    body: SpatialBody, contact: ContactSet, step: Step, touching: tuple[int, ...]
+) -> tuple[float, int] | None:
     """Return when a gap first closes.
 
     Returns vertex: Which; None instead of both if no gap closes.
     """
     found: list[tuple[float, int]] = []
     floor = 0.5 * SLOW_OPENING * norm(step.field[:, 0]) * step.length**2
-    for number in watched(body, stance):
-        gap = applied(step.up, body.vertices[number] - stance.pivot)
+    for number in watched(body, contact):
+        gap = applied(step.up, body.vertices[number] - contact.pivot)
         closes = first_zero(gap, started=number in touching, floor=floor)
         if closes is not None:
             found.append((closes, number))
@@ -78,14 +80,14 @@ def nearly_flat(body: SpatialBody, up: FloatArray) -> bool:
     return body.round and bool(math.hypot(up[0], up[1]) * float(body.centre[2]) < NEARLY_FLAT * body.radius)
 
 
-def rim_events(body: SpatialBody, stance: Stance, step: Step) -> float | None:
+def rim_events(body: SpatialBody, contact: ContactSet, step: Step) -> float | None:
     """Return when a round base begins to roll, or lies flat."""
-    if stance.contact is ContactMode.ROLLING:
+    if contact.mode is ContactMode.ROLLING:
         first = step.up[0, :2]
         sine = applied(step.up[:, :2], first) / norm(first)
         sine[0] -= STOP_ROLLING
         return first_zero(sine, started=False)
-    lean = applied(step.up[:, :2], stance.pivot[:2]) / -body.radius  # sine of the tilt away from the point
+    lean = applied(step.up[:, :2], contact.pivot[:2]) / -body.radius  # sine of the tilt away from the point
     flat, steep = lean.copy(), -lean
     steep[0] += START_ROLLING
     # lifted from rest it leans with the cube of time: what rounding leaves of lower powers decides nothing

@@ -51,7 +51,7 @@ def response_in_space(
     engine = SpatialReference(made, ground, law_of(restitution, made), settings)
     found = engine.run(start.quaternion, start.body_velocity, length)
     last = found.pieces[-1]
-    rests = not shaken and duration is None and last.stance.contact is ContactMode.REST
+    rests = not shaken and duration is None and last.contact.mode is ContactMode.REST
     end = min(length, last.start + _FINE / p if rests else last.end)
     steps = [motion.time_step for motion in shaken if isinstance(motion, GroundMotion)]
     time = _samples(min(steps, default=_FINE / p), end)

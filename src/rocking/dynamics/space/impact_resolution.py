@@ -3,7 +3,7 @@
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.space import contact_mode as stances
+from rocking.dynamics.space import contact_mode
 from rocking.dynamics.space.attitude import cross
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.complementarity import (
@@ -15,7 +15,7 @@ from rocking.dynamics.space.complementarity import (
     of_forces,
     of_impact,
 )
-from rocking.dynamics.space.contact_mode import Stance
+from rocking.dynamics.space.contact_mode import ContactSet
 from rocking.dynamics.space.event_functions import START_ROLLING, STOP_ROLLING
 from rocking.dynamics.space.impact_laws import SpatialImpactLaw, projected
 from rocking.outcome import ContactMode
@@ -39,16 +39,16 @@ def landed(body: SpatialBody, state: SpatialState, touching: tuple[int, ...], la
 
 def _least_pull(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> Continuation:
     best: Continuation | None = None
-    for stance in candidates(body, touching):
+    for contact in candidates(body, touching):
         velocity = np.zeros(3)
-        if stance.contact is not ContactMode.REST:
-            velocity = projected(body, state.pivot, stance.pivot, stance.axis, state.velocity)
-        opening = applied(cross(velocity, body.vertices[list(touching)] - stance.pivot), state.up)
+        if contact.mode is not ContactMode.REST:
+            velocity = projected(body, state.pivot, contact.pivot, contact.axis, state.velocity)
+        opening = applied(cross(velocity, body.vertices[list(touching)] - contact.pivot), state.up)
         if opening.min() < -1e-9 * float(np.abs(velocity).max()) * body.size:
             continue
-        push = impulses(body, state, stance, velocity)
+        push = impulses(body, state, contact, velocity)
         if best is None or push.min() > best.supports.min():
-            best = Continuation(stance, velocity, push)
+            best = Continuation(contact, velocity, push)
     assert best is not None  # an edge or a face opens no gap
     return best
 
@@ -61,11 +61,11 @@ def stuck(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> 
 
     Returns edge or face, after a plastic impact.
     """
-    stance = next(candidates(body, touching))
+    contact = next(candidates(body, touching))
     velocity = np.zeros(3)
-    if stance.contact is not ContactMode.REST:
-        velocity = projected(body, state.pivot, stance.pivot, stance.axis, state.velocity)
-    return Continuation(stance, velocity, impulses(body, state, stance, velocity))
+    if contact.mode is not ContactMode.REST:
+        velocity = projected(body, state.pivot, contact.pivot, contact.axis, state.velocity)
+    return Continuation(contact, velocity, impulses(body, state, contact, velocity))
 
 
 def laid_down(body: SpatialBody, state: SpatialState) -> Continuation | None:
@@ -73,7 +73,7 @@ def laid_down(body: SpatialBody, state: SpatialState) -> Continuation | None:
 
     Returns at rest; None where it would be lifted at once.
     """
-    flat, still = stances.face(body), np.zeros(3)
+    flat, still = contact_mode.face(body), np.zeros(3)
     holds = forces(body, flat, still, state.up, state.field)[1].min() > 0.0
     return Continuation(flat, still, impulses(body, state, flat, still)) if holds else None
 
@@ -83,14 +83,14 @@ def rim_landed(body: SpatialBody, state: SpatialState, law: SpatialImpactLaw) ->
 
     Returns what stays, and the angular velocity after.
     """
-    far = stances.rim(body, -state.pivot[:2])
+    far = contact_mode.rim(body, -state.pivot[:2])
     plastic = projected(body, state.pivot, far.pivot, None, state.velocity)
     push = impulses(body, state, far, plastic)
     velocity = law.velocity_after(body, state.pivot, far.pivot, None, state.up, state.velocity)
     opens = dot(cross(velocity, state.pivot - far.pivot), state.up) > 0.0
     if opens and push.min() >= 0.0:
         return Continuation(far, velocity, push)
-    flat = stances.face(body)
+    flat = contact_mode.face(body)
     return Continuation(flat, np.zeros(3), impulses(body, state, flat, np.zeros(3)))
 
 
@@ -99,25 +99,25 @@ def settled(
 ) -> Continuation:
     """Return what a body stands on once points that would fall back at once are taken to stay.
 
-    slow: speed below which a point that leaves the ground counts as staying [m/s]. Returns the same stance where forces
-    hold it.
+    slow: speed below which a point that leaves the ground counts as staying [m/s]. Returns the same contact where
+    forces hold it.
     """
     if body.round:
-        push = forces(body, stances.face(body), np.zeros(3), state.up, state.field)[1]
-        rests = (weak or choice.stance.contact is ContactMode.REST) and push.min() >= 0.0
-        return Continuation(stances.face(body), np.zeros(3), choice.supports) if rests else choice
-    opening = applied(cross(choice.velocity, body.vertices - choice.stance.pivot), state.up)
+        push = forces(body, contact_mode.face(body), np.zeros(3), state.up, state.field)[1]
+        rests = (weak or choice.contact.mode is ContactMode.REST) and push.min() >= 0.0
+        return Continuation(contact_mode.face(body), np.zeros(3), choice.supports) if rests else choice
+    opening = applied(cross(choice.velocity, body.vertices - choice.contact.pivot), state.up)
     every = range(len(body.vertices)) if weak else touching
-    near = tuple(i for i in every if weak or i in choice.stance.points or opening[i] <= slow)
-    found = of_forces(body, state, near, choice.stance)
-    return Continuation(found[0].stance, found[0].velocity, choice.supports) if found else choice
+    near = tuple(i for i in every if weak or i in choice.contact.points or opening[i] <= slow)
+    found = of_forces(body, state, near, choice.contact)
+    return Continuation(found[0].contact, found[0].velocity, choice.supports) if found else choice
 
 
-def started(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> tuple[Stance, tuple[int, ...]]:
-    """Return the stance that initial conditions imply: the lowest of the touching points stay where they are.
+def started(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> tuple[ContactSet, tuple[int, ...]]:
+    """Return the contact that initial conditions imply: the lowest of the touching points stay where they are.
 
-    velocity: angular velocity in body axes [rad/s]; up: vertical in body axes [-]. Returns stance: Edge, vertex or rim;
-    the face for a body that stands still on it.
+    velocity: angular velocity in body axes [rad/s]; up: vertical in body axes [-]. Returns edge, vertex or
+    rim; the face for a body that stands still on it.
     """
     if body.round:
         return _started_round(body, velocity, up), ()
@@ -125,21 +125,21 @@ def started(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> tuple[St
     touching = tuple(np.flatnonzero(height - height.min() <= CLOSED * body.size).tolist())
     size = float(np.abs(velocity).max())
     if size == 0.0 and len(touching) == len(body.vertices):
-        return stances.face(body), touching
+        return contact_mode.face(body), touching
     rates = applied(cross(velocity, body.vertices), up)
     low = [i for i in touching if rates[i] <= min(rates[list(touching)]) + CLOSED * size * body.size]
     for number in low:
         along = body.edges[number]
         alone = float(np.abs(velocity - along * dot(along, velocity)).max()) <= CLOSED * size
         if (number + 1) % len(body.vertices) in low and alone:
-            return stances.edge(body, number), touching
-    return stances.vertex(body, low[0]), touching
+            return contact_mode.edge(body, number), touching
+    return contact_mode.vertex(body, low[0]), touching
 
 
-def _started_round(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> Stance:
+def _started_round(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> ContactSet:
     sine = norm(up[:2])
     lean = up[:2] if sine > STOP_ROLLING else np.array([-velocity[1], velocity[0]])
     if not np.any(lean):
-        return stances.face(body)
-    stance = stances.rim(body, -lean)
-    return stances.rolling(stance) if sine > START_ROLLING else stance
+        return contact_mode.face(body)
+    contact = contact_mode.rim(body, -lean)
+    return contact_mode.rolling(contact) if sine > START_ROLLING else contact

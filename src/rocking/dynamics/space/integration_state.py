@@ -6,10 +6,9 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.space import attitude
-from rocking.dynamics.space import contact_mode as stances
+from rocking.dynamics.space import attitude, contact_mode
 from rocking.dynamics.space.body import SpatialBody
-from rocking.dynamics.space.contact_mode import Stance
+from rocking.dynamics.space.contact_mode import ContactSet
 from rocking.dynamics.space.trajectory import SpatialEvent, SpatialEventKind, SpatialTrajectory, StepPiece
 from rocking.dynamics.taylor import slope, turning_points
 from rocking.outcome import Outcome, Status
@@ -28,13 +27,13 @@ class IntegrationState:
         self.peak, self.peak_time = 0.0, 0.0
         self.held = 0.0
         self.over_time = math.nan
-        self.over: Stance | None = None
+        self.over: ContactSet | None = None
 
     def note(
         self,
         time: float,
         kind: SpatialEventKind,
-        stance: Stance,
+        contact: ContactSet,
         before: float,
         after: float,
         impulses: FloatArray | None = None,
@@ -44,7 +43,7 @@ class IntegrationState:
         time: when [s]; before, after: kinetic energies [J]; impulses: of an impact [N s].
         """
         self.events.append(
-            SpatialEvent(time, kind, stance, before, after, np.zeros(0) if impulses is None else impulses)
+            SpatialEvent(time, kind, contact, before, after, np.zeros(0) if impulses is None else impulses)
         )
 
     def add(
@@ -58,7 +57,13 @@ class IntegrationState:
         if until > 0.0 or not self.pieces:
             self.pieces.append(
                 StepPiece(
-                    piece.start, piece.length, until, piece.quaternions, piece.velocities, piece.places, piece.stance
+                    piece.start,
+                    piece.length,
+                    until,
+                    piece.quaternions,
+                    piece.velocities,
+                    piece.places,
+                    piece.contact,
                 )
             )
         if vertical is None:
@@ -68,7 +73,7 @@ class IntegrationState:
         if not beyond > 0.0:
             self.over_time, self.over = math.nan, None
         elif math.isnan(self.over_time):
-            self.over_time, self.over = self._passing(piece, until), piece.stance
+            self.over_time, self.over = self._passing(piece, until), piece.contact
 
     def ended(
         self, time: float, quaternion: FloatArray, velocity: FloatArray, pivot: FloatArray, final: bool | None
@@ -86,7 +91,7 @@ class IntegrationState:
         if final is False:
             return None
         body, settings = self.body, self.settings
-        energy = body.kinetic(pivot, velocity) + body.mass * settings.gravity * stances.rise(body, pivot, up)
+        energy = body.kinetic(pivot, velocity) + body.mass * settings.gravity * contact_mode.rise(body, pivot, up)
         inside = not _leaning_over(body, up, pivot) > 0.0
         if final is None or (inside and energy < body.mass * settings.gravity * body.lift):
             return Outcome.ROCKED, Status.GOOD
@@ -136,7 +141,7 @@ class IntegrationState:
         for _ in range(_HALVINGS):
             middle = 0.5 * (low + high)
             up = attitude.matrix(piece.at(np.array([middle]))[0][0])[2]
-            beyond = _leaning_over(self.body, up, stances.touching_point(self.body, piece.stance, up)) > 0.0
+            beyond = _leaning_over(self.body, up, contact_mode.touching_point(self.body, piece.contact, up)) > 0.0
             low, high = (low, middle) if beyond else (middle, high)
         return piece.start + high * piece.length
 

@@ -6,12 +6,11 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.space import attitude, event_functions, loss_of_contact, pivot_motion, resting
-from rocking.dynamics.space import contact_mode as stances
+from rocking.dynamics.space import attitude, contact_mode, event_functions, loss_of_contact, pivot_motion, resting
 from rocking.dynamics.space.attitude import cross
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.complementarity import Continuation, SpatialState, of_forces
-from rocking.dynamics.space.contact_mode import Stance
+from rocking.dynamics.space.contact_mode import ContactSet
 from rocking.dynamics.space.event_functions import Step
 from rocking.dynamics.space.ground import SpatialGround
 from rocking.dynamics.space.impact_laws import SpatialImpactLaw
@@ -55,25 +54,25 @@ class SpatialReference:
         [s].
         """
         self.horizon = horizon
-        self.course = IntegrationState(self.body, self.settings)
+        self.integration_state = IntegrationState(self.body, self.settings)
         self.quaternion, self.velocity = attitude.normalised(quaternion), velocity
         ended = self._start()
         while ended is None:
-            ended = self._rest() if self.stance.contact is ContactMode.REST else self._move()
-        return self.course.trajectory(*ended)
+            ended = self._rest() if self.contact.mode is ContactMode.REST else self._move()
+        return self.integration_state.trajectory(*ended)
 
     def _start(self) -> tuple[Outcome, Status] | None:
-        stance, touching = started(self.body, self.velocity, self._up)
-        self.stance = stance
+        contact, touching = started(self.body, self.velocity, self._up)
+        self.contact = contact
         # the base lies with its origin at the origin of the ground, and the body leans from there
-        self.place = applied(attitude.matrix(attitude.flat(self.quaternion)), stance.pivot)[:2]
-        if stance.contact is ContactMode.REST or len(touching) == len(self.body.vertices) > 0:
+        self.place = applied(attitude.matrix(attitude.flat(self.quaternion)), contact.pivot)[:2]
+        if contact.mode is ContactMode.REST or len(touching) == len(self.body.vertices) > 0:
             self.quaternion = attitude.flat(self.quaternion)
-        self.touching = tuple(i for i in touching if i not in stance.points)
+        self.touching = tuple(i for i in touching if i not in contact.points)
         if self.touching and not np.any(self.velocity):
             self._decide(touching)
-        if self.stance.contact is not ContactMode.REST:
-            self.course.note(self.time, SpatialEventKind.UPLIFT, self.stance, 0.0, self._kinetic())
+        if self.contact.mode is not ContactMode.REST:
+            self.integration_state.note(self.time, SpatialEventKind.UPLIFT, self.contact, 0.0, self._kinetic())
         return None
 
     def _rest(self) -> tuple[Outcome, Status] | None:
@@ -87,7 +86,7 @@ class SpatialReference:
         found = resting.next_uplift(self.body, self.ground, rotation, self.settings.gravity, (self.stretch, tau))
         if found is None:
             self._add_rest(max(self.horizon, self.ground.end, self.time))
-            return self.course.calm(), Status.GOOD
+            return self.integration_state.calm(), Status.GOOD
         self.stretch, tau, edges = found
         begin, end = self.ground.times[self.stretch : self.stretch + 2]
         self._add_rest(max(float(begin + tau * (end - begin)), self.time))
@@ -96,7 +95,7 @@ class SpatialReference:
             return Outcome.FAILED, Status.LOST_CONTACT
         self._stand(lifted)
         self.touching = tuple(i for i in range(len(self.body.vertices)) if i not in lifted.points)
-        self.course.note(self.time, SpatialEventKind.UPLIFT, lifted, 0.0, 0.0)
+        self.integration_state.note(self.time, SpatialEventKind.UPLIFT, lifted, 0.0, 0.0)
         return self._guard()
 
     def _move(self) -> tuple[Outcome, Status] | None:
@@ -105,18 +104,18 @@ class SpatialReference:
         self.late += self._final is not False
         if step is None or piece is None:
             return Outcome.FAILED, Status.NOT_FINITE
-        contact = event_functions.first_contact(self.body, self.stance, step, self.touching)
-        letting = loss_of_contact.first_release(self.body, self.stance, step)
-        rim = event_functions.rim_events(self.body, self.stance, step) if self.body.round else None
+        landing = event_functions.first_contact(self.body, self.contact, step, self.touching)
+        letting = loss_of_contact.first_release(self.body, self.contact, step)
+        rim = event_functions.rim_events(self.body, self.contact, step) if self.body.round else None
         held = letting is not None and self._held_down(letting, step)
         letting = None if held else letting
         self.sticks &= held
-        at = min([1.0, *(e[0] for e in (contact, letting) if e is not None), *([] if rim is None else [rim])])
+        at = min([1.0, *(e[0] for e in (landing, letting) if e is not None), *([] if rim is None else [rim])])
         self._arrive(piece, at, step.up[:, 2], whole=whole and at == 1.0)
         if self._up[2] <= 0.0:  # it lies before anything else happens
-            return self.course.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
-        if contact is not None and contact[0] == at:
-            return self._impact(contact[1])
+            return self.integration_state.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
+        if landing is not None and landing[0] == at:
+            return self._impact(landing[1])
         if rim is not None and rim == at:
             return self._rim()
         if letting is not None and letting[0] == at:
@@ -125,21 +124,21 @@ class SpatialReference:
 
     def _stepped(self, step: Step, at: float, *, held: bool) -> tuple[Outcome, Status] | None:
         """Look at where a step without event has led."""
-        pulls = self.stance.contact is ContactMode.EDGE
-        pulls = pulls and min(loss_of_contact.end_forces(self.body, self.stance, step, at)) < -self.pull
-        self.course.held += step.length if pulls or held else 0.0
+        pulls = self.contact.mode is ContactMode.EDGE
+        pulls = pulls and min(loss_of_contact.end_forces(self.body, self.contact, step, at)) < -self.pull
+        self.integration_state.held += step.length if pulls or held else 0.0
         self.touching = ()
         if self.body.round and event_functions.nearly_flat(self.body, self._up) and self._weak:
             flat = laid_down(self.body, self._state())
             if flat is not None:
                 return self._land(flat, ())
-        return self.course.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
+        return self.integration_state.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
 
     # ---- a step -----------------------------------------------------------------------------------------------------
 
     def _step(self) -> tuple[Step | None, StepPiece | None, bool]:
         rate = self.p + norm(self.velocity)
-        if self.stance.contact is ContactMode.ROLLING:
+        if self.contact.mode is ContactMode.ROLLING:
             up = self._up
             # at most half of the way to lying flat: there the contact runs round
             rate += 2.0 * norm(cross(up, self.velocity)[:2]) / norm(up[:2])
@@ -153,7 +152,7 @@ class SpatialReference:
         field[2, 0] -= self.settings.gravity
         order = min(max(pivot_motion.terms_needed(1.5 * rate * length, 40), field.shape[1] + 2), self.settings.order)
         places = self.place[None, :]
-        if self.stance.contact is ContactMode.ROLLING:
+        if self.contact.mode is ContactMode.ROLLING:
             state = self.quaternion, self.velocity, self.place
             q, w, up, places = self.rolling.series(state, length, field, order)
         else:
@@ -164,24 +163,24 @@ class SpatialReference:
         q, w, up, places = (pivot_motion.stretched(c, part) for c in (q, w, up, places))
         field = pivot_motion.stretched(field.T, part).T
         heading = (
-            np.zeros(3) if self.stance.axis is None else applied(attitude.matrix(self.quaternion), self.stance.axis)
+            np.zeros(3) if self.contact.axis is None else applied(attitude.matrix(self.quaternion), self.contact.axis)
         )
         step = Step(length * part, w, up, field, heading)
-        return step, StepPiece(self.time, length * part, 1.0, q, w, places, self.stance), last and part == 1.0
+        return step, StepPiece(self.time, length * part, 1.0, q, w, places, self.contact), last and part == 1.0
 
     def _flow(self) -> pivot_motion.PivotFlow:
-        key = self.stance.contact, self.stance.points
-        if not self.stance.points:
-            return pivot_motion.PivotFlow(self.body, self.stance.pivot)
+        key = self.contact.mode, self.contact.points
+        if not self.contact.points:
+            return pivot_motion.PivotFlow(self.body, self.contact.pivot)
         if key not in self.flows:
-            self.flows[key] = pivot_motion.PivotFlow(self.body, self.stance.pivot, self.stance.axis)
+            self.flows[key] = pivot_motion.PivotFlow(self.body, self.contact.pivot, self.contact.axis)
         return self.flows[key]
 
     def _arrive(self, piece: StepPiece, at: float, vertical: FloatArray, *, whole: bool) -> None:
         self.quaternion = attitude.normalised(pivot_motion.value(piece.quaternions, at))
         self.velocity = pivot_motion.value(piece.velocities, at)
         self.place = pivot_motion.value(piece.places, at)
-        self.course.add(piece, at, self._up, self._pivot, vertical)
+        self.integration_state.add(piece, at, self._up, self._pivot, vertical)
         self.time = piece.start + at * piece.length
         if whole:
             self.stretch += 1
@@ -189,16 +188,18 @@ class SpatialReference:
 
     def _add_rest(self, until: float) -> None:
         rows = self.quaternion[None], np.zeros((1, 3)), self.place[None]
-        self.course.add(StepPiece(self.time, until - self.time, 1.0, *rows, self.stance), 1.0, self._up, self._pivot)
+        self.integration_state.add(
+            StepPiece(self.time, until - self.time, 1.0, *rows, self.contact), 1.0, self._up, self._pivot
+        )
         self.time = until
 
     # ---- events -----------------------------------------------------------------------------------------------------
 
     def _impact(self, vertex: int) -> tuple[Outcome, Status] | None:
         body = self.body
-        gaps = applied(body.vertices - self.stance.pivot, self._up)
-        closed = {vertex, *self.stance.points, *np.flatnonzero(gaps <= CLOSED * body.size).tolist()}
-        if self.stance.contact is ContactMode.EDGE or len(closed) > 2:
+        gaps = applied(body.vertices - self.contact.pivot, self._up)
+        closed = {vertex, *self.contact.points, *np.flatnonzero(gaps <= CLOSED * body.size).tolist()}
+        if self.contact.mode is ContactMode.EDGE or len(closed) > 2:
             closed = set(range(len(body.vertices)))
         touching = tuple(sorted(closed))
         if len(touching) == len(body.vertices):
@@ -209,11 +210,11 @@ class SpatialReference:
 
     def _stick(self, touching: tuple[int, ...]) -> tuple[Outcome, Status] | None:
         before, choice = self._kinetic(), stuck(self.body, self._state(), touching)
-        self._stand(choice.stance)
+        self._stand(choice.contact)
         self.velocity, self.touching = choice.velocity, ()
-        self.sticks = choice.stance.contact is ContactMode.EDGE
+        self.sticks = choice.contact.mode is ContactMode.EDGE
         kind = SpatialEventKind.IMPACT
-        self.course.note(self.time, kind, choice.stance, before, self._kinetic(), choice.supports)
+        self.integration_state.note(self.time, kind, choice.contact, before, self._kinetic(), choice.supports)
         return self._guard()
 
     def _held_down(self, letting: tuple[float, int], step: Step) -> bool:
@@ -225,71 +226,71 @@ class SpatialReference:
     def _rim(self) -> tuple[Outcome, Status] | None:
         up = self._up
         if (
-            self.stance.contact is not ContactMode.ROLLING
+            self.contact.mode is not ContactMode.ROLLING
             and math.hypot(up[0], up[1]) > 0.5 * event_functions.START_ROLLING
         ):
-            self.stance = stances.rolling(self.stance)
+            self.contact = contact_mode.rolling(self.contact)
             return self._guard()
         state = self._state()
-        if self.stance.contact is ContactMode.ROLLING:
-            self.stance = stances.rim(self.body, state.pivot[:2])  # so flat that the point of contact is fixed
+        if self.contact.mode is ContactMode.ROLLING:
+            self.contact = contact_mode.rim(self.body, state.pivot[:2])  # so flat that the point of contact is fixed
             return self._guard()
         self.quaternion = attitude.flat(self.quaternion)
         return self._land(rim_landed(self.body, state, self.law), ())
 
     def _land(self, choice: Continuation, touching: tuple[int, ...]) -> tuple[Outcome, Status] | None:
-        before = self._kinetic() + (self._potential() if self.stance.contact is ContactMode.ROLLING else 0.0)
-        self._stand(choice.stance)
+        before = self._kinetic() + (self._potential() if self.contact.mode is ContactMode.ROLLING else 0.0)
+        self._stand(choice.contact)
         self.velocity = choice.velocity
         weak = self._weak
         choice = settled(self.body, self._state(), choice, touching, self.slow, weak=weak)
-        self._stand(choice.stance)
+        self._stand(choice.contact)
         self.velocity = choice.velocity
-        self.touching = tuple(i for i in touching if i not in choice.stance.points)
+        self.touching = tuple(i for i in touching if i not in choice.contact.points)
         kind = SpatialEventKind.IMPACT
-        self.course.note(self.time, kind, choice.stance, before, self._kinetic(), choice.supports)
-        if choice.stance.contact is ContactMode.REST:
-            self.course.note(self.time, SpatialEventKind.REST, choice.stance, 0.0, 0.0)
+        self.integration_state.note(self.time, kind, choice.contact, before, self._kinetic(), choice.supports)
+        if choice.contact.mode is ContactMode.REST:
+            self.integration_state.note(self.time, SpatialEventKind.REST, choice.contact, 0.0, 0.0)
         return self._guard()
 
     def _released(self, which: int) -> tuple[Outcome, Status] | None:
         if which < 0:
-            return self.course.falls(self._pivot, self._up), Status.LOST_CONTACT
-        stays, leaves = self.stance.points[1 - which], self.stance.points[which]
-        self._stand(stances.vertex(self.body, stays))
+            return self.integration_state.falls(self._pivot, self._up), Status.LOST_CONTACT
+        stays, leaves = self.contact.points[1 - which], self.contact.points[which]
+        self._stand(contact_mode.vertex(self.body, stays))
         self.touching = (leaves,)
         energy = self._kinetic()
-        self.course.note(self.time, SpatialEventKind.CHANGE, self.stance, energy, energy)
+        self.integration_state.note(self.time, SpatialEventKind.CHANGE, self.contact, energy, energy)
         return self._guard()
 
     def _decide(self, touching: tuple[int, ...]) -> None:
         """Let forces decide on what a body stands that is let go."""
-        found = of_forces(self.body, self._state(), touching, self.stance)
+        found = of_forces(self.body, self._state(), touching, self.contact)
         if found:
-            self._stand(found[0].stance)
-            self.touching = tuple(i for i in touching if i not in self.stance.points)
+            self._stand(found[0].contact)
+            self.touching = tuple(i for i in touching if i not in self.contact.points)
 
     def _guard(self) -> tuple[Outcome, Status] | None:
         self.at_once = self.at_once + 1 if self.time <= self.moment else 0
         self.moment = self.time
-        if self.at_once > _STUCK or len(self.course.events) > self.settings.most_events:
+        if self.at_once > _STUCK or len(self.integration_state.events) > self.settings.most_events:
             return Outcome.FAILED, Status.TOO_MANY_EVENTS
         # a base of many corners may have no step without an impact; whether it still can fall is asked here too
-        if self._final is False or self.stance.contact is ContactMode.REST:
+        if self._final is False or self.contact.mode is ContactMode.REST:
             return None
-        return self.course.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
+        return self.integration_state.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
 
     # ---- small parts ------------------------------------------------------------------------------------------------
 
-    def _stand(self, stance: Stance) -> None:
+    def _stand(self, contact: ContactSet) -> None:
         """Move the pivot, and take rounding out of the attitude."""
         rotation = attitude.matrix(self.quaternion)
-        self.place = self.place + applied(rotation, stance.pivot - self._pivot)[:2]
-        if stance.contact is ContactMode.REST:
+        self.place = self.place + applied(rotation, contact.pivot - self._pivot)[:2]
+        if contact.mode is ContactMode.REST:
             self.quaternion = attitude.flat(self.quaternion)
-        elif stance.axis is not None:
-            self.quaternion = attitude.levelled(self.quaternion, stance.axis)
-        self.stance = stance
+        elif contact.axis is not None:
+            self.quaternion = attitude.levelled(self.quaternion, contact.axis)
+        self.contact = contact
 
     @property
     def _up(self) -> FloatArray:
@@ -297,7 +298,7 @@ class SpatialReference:
 
     @property
     def _pivot(self) -> FloatArray:
-        return stances.touching_point(self.body, self.stance, self._up)
+        return contact_mode.touching_point(self.body, self.contact, self._up)
 
     @property
     def _final(self) -> bool | None:
@@ -313,15 +314,15 @@ class SpatialReference:
         return applied(attitude.matrix(self.quaternion).T, field)
 
     def _state(self) -> SpatialState:
-        axis = self.stance.axis
-        along = np.zeros(3) if axis is None else self.stance.length * axis
+        axis = self.contact.axis
+        along = np.zeros(3) if axis is None else self.contact.length * axis
         return SpatialState(self._pivot, self.velocity, self._up, self._field_now(), along)
 
     def _kinetic(self) -> float:
         return self.body.kinetic(self._pivot, self.velocity)
 
     def _potential(self) -> float:
-        return self.body.mass * self.settings.gravity * stances.rise(self.body, self._pivot, self._up)
+        return self.body.mass * self.settings.gravity * contact_mode.rise(self.body, self._pivot, self._up)
 
     @property
     def _weak(self) -> bool:

@@ -126,7 +126,7 @@ class SpatialResponse(Exportable):
         for piece in self.trajectory.pieces:
             if found and piece.start >= self.end:
                 break
-            now = piece.stance.contact, piece.stance.points
+            now = piece.contact.mode, piece.contact.points
             if found and found[-1][2:] == now:
                 found[-1] = (found[-1][0], min(piece.end, self.end), *now)
             else:
@@ -140,11 +140,11 @@ class SpatialResponse(Exportable):
         for event in self.trajectory.impacts:
             if event.time > self.end:
                 break
-            stays, push = event.stance, event.impulses
-            total = push.sum() if stays.contact is ContactMode.EDGE else push[-1]
+            stays, push = event.contact, event.impulses
+            total = push.sum() if stays.mode is ContactMode.EDGE else push[-1]
             vertices = "-".join(map(str, stays.points))
             pull = max(0.0, -float(push.min()))
-            rows.append((event.time, event.before, event.after, total, pull, stays.contact.name.lower(), vertices))
+            rows.append((event.time, event.before, event.after, total, pull, stays.mode.name.lower(), vertices))
         return np.array(rows, dtype=SPATIAL_IMPACT)
 
     @property
@@ -183,7 +183,7 @@ class SpatialResponse(Exportable):
             return ""
         if not over.points:
             return "its rim"
-        return f"{over.contact.name.lower()} {'-'.join(map(str, over.points))}"
+        return f"{over.mode.name.lower()} {'-'.join(map(str, over.points))}"
 
     @cached_property
     def still_rocking(self) -> bool:
@@ -246,7 +246,7 @@ class SpatialResponse(Exportable):
                 spin = applied(before.rotation[0].T, before.angular_velocity[0])
                 step = self.body.radius / norm(spin[:2]) * np.array([spin[1], -spin[0], 0.0])
             else:
-                step, axis = event.stance.pivot - old.stance.pivot, event.stance.axis
+                step, axis = event.contact.pivot - old.contact.pivot, event.contact.axis
                 step = step if axis is None else step - dot(step, axis) * axis
             found += cut(solid, step)
         return found
@@ -261,7 +261,7 @@ class SpatialResponse(Exportable):
         """How often a round base rolled through lying nearly flat, below 1 % of its slenderness angle."""
         if not self.body.round:
             return 0
-        rolling = [p for p in self.trajectory.pieces if p.stance.contact is ContactMode.ROLLING and p.start < self.end]
+        rolling = [p for p in self.trajectory.pieces if p.contact.mode is ContactMode.ROLLING and p.start < self.end]
         tilts = attitude.tilt(np.array([p.quaternions[0] for p in rolling]).reshape(-1, 4))
         low = (tilts[1:-1] <= tilts[:-2]) & (tilts[1:-1] < tilts[2:])
         return int((low & (tilts[1:-1] < NEARLY_FLAT * self.body.radius / self.body.centre[2])).sum())

@@ -3,10 +3,10 @@
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.space import contact_mode as stances
+from rocking.dynamics.space import contact_mode
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.complementarity import SpatialState, of_forces
-from rocking.dynamics.space.contact_mode import Stance
+from rocking.dynamics.space.contact_mode import ContactSet
 from rocking.dynamics.space.ground import SpatialGround
 from rocking.dynamics.taylor import first_fall, shifted, value
 from rocking.portable import convolved, times
@@ -40,22 +40,22 @@ def next_uplift(
     return None
 
 
-def lifted(body: SpatialBody, state: SpatialState, edges: tuple[int, ...]) -> Stance | None:
+def lifted(body: SpatialBody, state: SpatialState, edges: tuple[int, ...]) -> ContactSet | None:
     """Return on what a body stands when it is lifted from rest.
 
     Returns none if the ground would have to pull.
     """
     if body.round:
         pressure = -state.field[2] * body.centre[:2] + body.centre[2] * state.field[:2]
-        return stances.rim(body, pressure) if state.field[2] < 0.0 else None
+        return contact_mode.rim(body, pressure) if state.field[2] < 0.0 else None
     count = len(body.vertices)
     if len(edges) == 1:
-        return stances.edge(body, edges[0])
+        return contact_mode.edge(body, edges[0])
     if len(edges) == 2:
         first, second = edges
-        return stances.vertex(body, second if (first + 1) % count == second else first)
+        return contact_mode.vertex(body, second if (first + 1) % count == second else first)
     found = of_forces(body, state, tuple(range(count)))
-    return found[0].stance if found else None
+    return found[0].contact if found else None
 
 
 def _holds(body: SpatialBody, accelerations: FloatArray, rotation: FloatArray, gravity: float) -> FloatArray:

@@ -82,7 +82,7 @@ def states_of(body: SpatialBody, trajectory: SpatialTrajectory, time: FloatArray
     starts = np.array([piece.start for piece in pieces])
     place = np.clip(np.searchsorted(starts, time, side="right") - 1, 0, len(pieces) - 1)
     parts = [np.empty((time.size, k)) for k in (4, 3, 3, 2)]
-    contact = np.empty(time.size, dtype=np.int64)
+    modes = np.empty(time.size, dtype=np.int64)
     for k in np.unique(place):
         rows = np.flatnonzero(place == k) if k else place == 0
         piece = pieces[k]
@@ -92,18 +92,18 @@ def states_of(body: SpatialBody, trajectory: SpatialTrajectory, time: FloatArray
         q, w, where = piece.at(share)
         for target, values in zip(parts, (q, w, pivots(body, piece, q), where), strict=True):
             target[rows] = values
-        contact[rows] = piece.stance.contact.code
-    return States(body, parts[0], parts[1], parts[2], parts[3], contact)
+        modes[rows] = piece.contact.mode.code
+    return States(body, parts[0], parts[1], parts[2], parts[3], modes)
 
 
 def pivots(body: SpatialBody, piece: StepPiece, quaternions: FloatArray) -> FloatArray:
     """Return the points on the ground, in body axes.
 
-    quaternions: attitudes within it [-]. Returns pivot of the stance; of a rolling body the lowest points of its rim
+    quaternions: attitudes within it [-]. Returns pivot of the contact; of a rolling body the lowest points of its rim
     [m].
     """
-    if piece.stance.contact is not ContactMode.ROLLING:
-        return np.broadcast_to(piece.stance.pivot, (len(quaternions), 3))
+    if piece.contact.mode is not ContactMode.ROLLING:
+        return np.broadcast_to(piece.contact.pivot, (len(quaternions), 3))
     level = attitude.matrix(quaternions)[:, 2, :2]
     low = -body.radius * level / np.linalg.norm(level, axis=1)[:, None]
     return np.column_stack([low, np.zeros(len(low))])

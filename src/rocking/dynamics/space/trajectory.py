@@ -6,7 +6,7 @@ from enum import Enum
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.space.contact_mode import Stance
+from rocking.dynamics.space.contact_mode import ContactSet
 from rocking.outcome import ContactMode, Outcome, Status
 from rocking.portable import powers, times
 
@@ -26,7 +26,7 @@ class SpatialEvent:
 
     time: float  # when [s]
     kind: SpatialEventKind  # what
-    stance: Stance  # on what the body stands from then on
+    contact: ContactSet  # on what the body stands from then on
     before: float  # before, after: kinetic energy before and after [J]
     after: float
     # of an impact, vertical: at the vertex, at both ends of the edge, or as `supports` of a face [N s]
@@ -45,7 +45,7 @@ class StepPiece:
     quaternions: FloatArray
     velocities: FloatArray
     places: FloatArray  # place of the pivot or contact on the ground, coefficients by power [m]; shape (n, 2)
-    stance: Stance  # on what the body stands
+    contact: ContactSet  # on what the body stands
 
     @property
     def end(self) -> float:
@@ -76,7 +76,7 @@ class SpatialTrajectory:
     peak_time: float
     # when the centre of mass passed over the contact for the last time; NaN if the body did not overturn [s]
     overturning_time: float
-    fell_over: Stance | None  # the edge or vertex over which it overturned
+    fell_over: ContactSet | None  # the edge or vertex over which it overturned
     # for how long an end of an edge was held down although the ground would have had to pull there, because its
     # friction kept it from opening: there it slips in truth; or a rim nearly flat, which hops [s]
     held: float
@@ -90,4 +90,4 @@ class SpatialTrajectory:
     @property
     def contact(self) -> ContactMode:
         """On what the body stands at the end."""
-        return self.pieces[-1].stance.contact
+        return self.pieces[-1].contact.mode

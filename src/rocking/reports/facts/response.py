@@ -24,7 +24,7 @@ from typing import Any
 
 from rocking import plausibility
 from rocking.conventions import FEET, Assumed
-from rocking.dynamics.contact import PlanarResponse
+from rocking.dynamics.contact import ContactResponse
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.response import Motion, Response
 from rocking.motions.motion import GroundMotion
@@ -39,7 +39,7 @@ def response_facts(response: Response, friction: float, *, error_estimate: bool 
         "body": rocker_facts(response),
         "motion": moved_facts(response.motion, response.scale),
         "initial_rotation_rad": float(response.rotation[0]),
-        "restitution": response.rocker.label,
+        "restitution": response.parameters.label,
         "engine": response.engine,
         "gravity_m_s2": response.settings.gravity,
         "linear": response.settings.linear,
@@ -73,8 +73,8 @@ def credibility_facts(response: Response, friction: float) -> dict[str, Any]:
 
 def rocker_facts(response: Response) -> dict[str, Any]:
     """Return the body as its equations of motion see it."""
-    body, rocker = response.body, response.rocker
-    sides = {foot: rocker.right if foot == "right" else rocker.left for foot in FEET}
+    body, parameters = response.body, response.parameters
+    sides = {foot: parameters.right if foot == "right" else parameters.left for foot in FEET}
     return {
         "kind": type(body).__name__,
         "mass_kg": body.mass,
@@ -121,13 +121,14 @@ def outcome_facts(response: Response) -> dict[str, Any]:
         "overturned_to": {1: "right", -1: "left"}.get(int(run.side)),
         "overturning_time_s": finite(response.overturning_time),
         "peak_rotation_rad": response.peak_rotation,
-        "peak_rotation_over_alpha": response.peak_rotation / response.rocker.side(run.peak_rotation).slenderness_angle,
+        "peak_rotation_over_alpha": response.peak_rotation
+        / response.parameters.side(run.peak_rotation).slenderness_angle,
         "still_rocking": still_rocking_facts(response),
         "lost_contact": response.lost_contact,
     }
 
 
-def still_rocking_facts(response: Response | PlanarResponse) -> dict[str, float | str] | None:
+def still_rocking_facts(response: Response | ContactResponse) -> dict[str, float | str] | None:
     """Return the last state of a body that does not yet rest.
 
     Returns Time, rotation, angular velocity and a sentence; None if it rests or has overturned.
@@ -152,16 +153,16 @@ def other_facts(found: Response | str) -> dict[str, Any]:
     """Return what another model says, in short."""
     if isinstance(found, str):
         return {"error": found}
-    coefficients = coefficients_facts(found.rocker)
+    coefficients = coefficients_facts(found.parameters)
     return {**outcome_facts(found), "impact_count": int(found.impacts.size), "coefficients": coefficients}
 
 
-def coefficients_facts(rocker: RockingParameters) -> dict[str, float]:
+def coefficients_facts(parameters: RockingParameters) -> dict[str, float]:
     """Return the coefficients of restitution of a body.
 
     Returns by the foot on which it lands [-].
     """
-    return {"left": rocker.left.coefficient, "right": rocker.right.coefficient}
+    return {"left": parameters.left.coefficient, "right": parameters.right.coefficient}
 
 
 def finite(value: float) -> float | None:

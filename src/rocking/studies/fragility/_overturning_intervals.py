@@ -196,7 +196,7 @@ def overturning_intervals(
     def outcomes(which: IntArray, level: FloatArray) -> tuple[IntArray, BoolArray]:
         factors = (level / subject.intensities[which]) ** (1.0 / subject.measure.power)
         arrays = results_of(subject.table(which, factors), threads=threads)
-        found = Responses.of(arrays, subject.rocker, which.shape)
+        found = Responses.of(arrays, subject.parameters, which.shape)
         return found.sides, found.good
 
     brackets = brackets_of(motion, levels, sides)

@@ -322,7 +322,7 @@ def cloud_plan(
     histories = subject.product(np.array([factor]))
 
     def finish(arrays: Arrays) -> CloudAnalysis:
-        responses = Responses.of(arrays, subject.rocker, (len(subject.motions),))
+        responses = Responses.of(arrays, subject.parameters, (len(subject.motions),))
         return CloudAnalysis(subject, levels, limits, histories, responses, least)
 
     return histories, finish

@@ -35,7 +35,7 @@ Progress = Callable[[int], None] | None
 class Subject:
     """A body with its restitution, a set of motions, and the measure of their intensity."""
 
-    rocker: RockingParameters  # the body as the equations see it
+    parameters: RockingParameters  # the body as the equations see it
     motions: MotionSet
     measure: IntensityMeasure
     settings: Settings  # how to integrate
@@ -50,14 +50,14 @@ class Subject:
         rest = dict(options)
         engine = rest.pop("engine", "auto")
         settings = settings_of(rest.pop("gravity", conventions.g), rest)
-        rocker = RockingParameters.of_body(body, restitution, settings.gravity)
+        parameters = RockingParameters.of_body(body, restitution, settings.gravity)
         given = motions if isinstance(motions, MotionSet) else MotionList(motions)
-        return cls(rocker, given, measure(measure_name), settings, engine)
+        return cls(parameters, given, measure(measure_name), settings, engine)
 
     @cached_property
     def scale(self) -> RockingScale:
         """What of the body the measures know: of the side that lifts first."""
-        side = min(self.rocker.right, self.rocker.left, key=lambda s: s.slenderness_angle)
+        side = min(self.parameters.right, self.parameters.left, key=lambda s: s.slenderness_angle)
         alpha, gravity = side.slenderness_angle, self.settings.gravity
         tangent = alpha if self.settings.linear else math.tan(alpha)  # Eq. 25
         return RockingScale(gravity * tangent, side.frequency_parameter, gravity)
@@ -75,7 +75,9 @@ class Subject:
         """
         if self.measure.uplift is None:
             return None
-        equal = math.isclose(self.rocker.right.slenderness_angle, self.rocker.left.slenderness_angle, rel_tol=1e-12)
+        equal = math.isclose(
+            self.parameters.right.slenderness_angle, self.parameters.left.slenderness_angle, rel_tol=1e-12
+        )
         return self.measure.uplift(self.scale) if equal and self._are_horizontal else None
 
     @cached_property
@@ -119,7 +121,7 @@ class Subject:
     @property
     def _sides(self) -> dict[str, float]:
         return {
-            f"{short}_{foot}": getattr(getattr(self.rocker, foot), name)
+            f"{short}_{foot}": getattr(getattr(self.parameters, foot), name)
             for short, name in SIDES
             for foot in ("right", "left")
         }
@@ -130,7 +132,9 @@ class Subject:
         factors: factors on the motions [-].
         """
         sides = {name: np.array([[value]]) for name, value in self._sides.items()}
-        return Product(self.motions, sides, factors, law=self.rocker.law, settings=self.settings, engine=self.engine)
+        return Product(
+            self.motions, sides, factors, law=self.parameters.law, settings=self.settings, engine=self.engine
+        )
 
     def table(self, motion: np.ndarray, factors: FloatArray) -> HistoryTable:
         """Return histories given one by one.
@@ -140,7 +144,7 @@ class Subject:
         values = {name: np.array([value]) for name, value in self._sides.items()}
         return HistoryTable(
             self.motions, motion, values | {"scale": factors},
-            law=self.rocker.law, settings=self.settings, engine=self.engine,
+            law=self.parameters.law, settings=self.settings, engine=self.engine,
         )  # fmt: skip
 
     def about(self) -> dict[str, Any]:
@@ -151,7 +155,7 @@ class Subject:
             "measure": self.measure.name,
             "measure_words": self.measure.words,
             "measure_unit": self.measure.unit,
-            "restitution": self.rocker.label,
+            "restitution": self.parameters.label,
             **sides,
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in self.settings.stated.items()},
         }
@@ -246,7 +250,7 @@ class Responses:
     lost: FloatArray | None = None
 
     @classmethod
-    def of(cls, arrays: Arrays, rocker: Any, shape: tuple[int, ...]) -> "Responses":
+    def of(cls, arrays: Arrays, parameters: Any, shape: tuple[int, ...]) -> "Responses":
         """Return the responses of one body from results.
 
         Returns of that shape.
@@ -260,7 +264,7 @@ class Responses:
             )
         outcome = np.asarray(arrays["outcome"], dtype=np.int8).reshape(shape)
         peak = np.asarray(arrays["peak_rotation"], dtype=np.float64).reshape(shape)
-        right, left = rocker.right.slenderness_angle, rocker.left.slenderness_angle
+        right, left = parameters.right.slenderness_angle, parameters.left.slenderness_angle
         over, to_right = outcome == Outcome.OVERTURNED.code, peak > 0.0
         rotation = np.abs(peak)  # there may be ten million of them: no more copies than needed
         rotation /= right if right == left else np.where(to_right, right, left)

@@ -376,7 +376,9 @@ def _shaped(product: Product, results: Arrays) -> Mapping[str, np.ndarray]:
 
 def _sides(pairs: Sequence[Sequence[RockingParameters]]) -> dict[str, FloatArray]:
     return {
-        f"{short}_{foot}": np.array([[getattr(getattr(rocker, foot), name) for rocker in pair] for pair in pairs])
+        f"{short}_{foot}": np.array(
+            [[getattr(getattr(parameters, foot), name) for parameters in pair] for pair in pairs]
+        )
         for short, name in SIDES
         for foot in FEET
     }

@@ -1,4 +1,4 @@
-"""Contact mechanics of the planar engine: footing, impacts, margins, choice of the mode."""
+"""Contact mechanics of the planar engine: base, impacts, margins, choice of the mode."""
 
 import math
 
@@ -7,7 +7,7 @@ import pytest
 
 from rocking.bodies import Block, Section
 from rocking.bodies.region import Region
-from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, Footing
+from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, Base
 from rocking.dynamics.contact.complementarity import NextMode, candidates, choose, weight_of
 from rocking.dynamics.contact.event_functions import Kind, Margin, consistent, first_end, leading, margins
 from rocking.dynamics.contact.ground import GroundSeries
@@ -17,18 +17,18 @@ from rocking.dynamics.contact.mode import FLIGHT, REST, Mode
 from rocking.dynamics.contact.mode_series import course
 from rocking.dynamics.contact.pivot_motion import turning
 from rocking.dynamics.contact.power_series import derivative, integral, value
-from rocking.dynamics.contact.state import PlanarState, along, away, kept, kinetic
+from rocking.dynamics.contact.state import ContactState, along, away, kept, kinetic
 from rocking.outcome import Regime, Status
 
 G = 9.80665
-TALL = Footing.of_body(Block(width=1.0, height=2.0))
+TALL = Base.of_body(Block(width=1.0, height=2.0))
 STILL = GroundSeries([0.0], [G], 0.3)
 
 
 def _tilted(rotation, spin, slip=0.0):
     """A body on its right foot, which slides at a speed."""
     r_x, r_z = TALL.arm(RIGHT, rotation)
-    return PlanarState(0.0, TALL.rise_on(RIGHT, rotation), rotation, slip - r_z * spin, r_x * spin, spin, (RIGHT,))
+    return ContactState(0.0, TALL.rise_on(RIGHT, rotation), rotation, slip - r_z * spin, r_x * spin, spin, (RIGHT,))
 
 
 def test_footing_of_a_block_is_its_half_sizes():
@@ -41,10 +41,10 @@ def test_footing_of_a_block_is_its_half_sizes():
 def test_footing_of_a_section_with_other_feet():
     """Feet at 0.1 and 0.7 m under a centre at 0.5 m."""
     body = Section([Region([(0, 0), (1, 0), (1, 4), (0, 4)], 1.0)], feet=(0.1, 0.7))
-    footing = Footing.of_body(body)
-    assert footing.left == pytest.approx(0.4, rel=1e-14)
-    assert footing.right == pytest.approx(0.2, rel=1e-14)
-    assert footing.base == pytest.approx(0.6, rel=1e-14)
+    base = Base.of_body(body)
+    assert base.left == pytest.approx(0.4, rel=1e-14)
+    assert base.right == pytest.approx(0.2, rel=1e-14)
+    assert base.width == pytest.approx(0.6, rel=1e-14)
 
 
 @pytest.mark.parametrize("rotation", [-0.4, 1e-9, 0.7])
@@ -93,7 +93,7 @@ def test_integral_of_a_product():
 
 def test_impulses_change_the_momenta():
     """Impulses at the feet account for all three momenta; signs of the laws hold; a wrong sign is caught."""
-    state = PlanarState(0.0, 0.0, 0.0, 0.7, -1.0, 0.4, BOTH)
+    state = ContactState(0.0, 0.0, 0.0, 0.7, -1.0, 0.4, BOTH)
     for mu, e in ((0.1, 0.0), (0.5, 0.3), (2.0, 0.6)):
         found = strike(TALL, state, mu, dict.fromkeys(BOTH, e))
         assert isinstance(found, Struck)
@@ -112,7 +112,7 @@ def test_impulses_change_the_momenta():
 def test_newton_and_coulomb_may_create_energy_and_then_there_is_no_result():
     """A fast bounce of a foot under the body, found at random, gains energy: a status; its plastic twin is fine."""
     rotation, spin = 1.3334259860891, -1.8520466144989
-    state = PlanarState(
+    state = ContactState(
         0.0, TALL.rise_on(RIGHT, rotation), rotation, -0.12833044107477, -0.64140325334667, spin, (RIGHT,)
     )
     assert strike(TALL, state, 3.0, {RIGHT: 0.9}) is Status.ENERGY_GAIN
@@ -126,7 +126,7 @@ def test_plastic_impacts_never_create_energy():
     for _ in range(300):
         rotation = float(rng.uniform(0.01, 1.4))
         u, w, spin = rng.uniform(-1.0, 1.0, 3).tolist()
-        state = PlanarState(0.0, TALL.rise_on(RIGHT, rotation), rotation, u, w, spin, (RIGHT,))
+        state = ContactState(0.0, TALL.rise_on(RIGHT, rotation), rotation, u, w, spin, (RIGHT,))
         if away(TALL, state, RIGHT) >= 0.0:
             continue
         found = strike(TALL, state, float(rng.uniform(0.0, 1.3)), {RIGHT: 0.0})
@@ -140,14 +140,14 @@ def test_plastic_impacts_never_create_energy():
 def test_imposed_coefficient_that_presses_the_old_foot_down_is_left_to_complementarity():
     """r = 0 for a slender body with no friction would turn it back: None."""
     height, lever = 1.0, 0.5
-    state = PlanarState(0.0, 0.0, 0.0, height, -lever, 1.0, BOTH)
+    state = ContactState(0.0, 0.0, 0.0, height, -lever, 1.0, BOTH)
     assert isinstance(strike_with(TALL, state, RIGHT, 1e6, 0.0), Struck)
     assert strike_with(TALL, state, RIGHT, 0.0, 0.0) is None
 
 
 def test_imposed_coefficient_sets_the_place_of_the_impulse():
     """r = 1 - 3 k / (2 (1 + lambda^2) ...): the shares of the feet say where the resultant is, by moments."""
-    state = PlanarState(0.0, 0.0, 0.0, 1.0, -0.5, 1.0, BOTH)
+    state = ContactState(0.0, 0.0, 0.0, 1.0, -0.5, 1.0, BOTH)
     found = strike_with(TALL, state, RIGHT, 1e6, 0.85)
     place = 0.5 * (found.normal[RIGHT] - found.normal[LEFT]) / sum(found.normal.values())
     # moments about the centre: j (r - 1) = -h P_t - s P_n with P_t = h (r - 1), P_n = b (r + 1)
@@ -157,23 +157,23 @@ def test_imposed_coefficient_sets_the_place_of_the_impulse():
 
 def test_candidates_are_what_velocities_allow():
     """At rest all nine modes; sliding to the right only those that slide there, and flight."""
-    assert len(candidates(TALL, PlanarState())) == 10
-    assert candidates(TALL, PlanarState(u=1.0)) == [Mode(BOTH, 1), Mode((LEFT,), 1), Mode((RIGHT,), 1), FLIGHT]
-    assert candidates(TALL, PlanarState(rise=1.0, touching=())) == [FLIGHT]
+    assert len(candidates(TALL, ContactState())) == 10
+    assert candidates(TALL, ContactState(u=1.0)) == [Mode(BOTH, 1), Mode((LEFT,), 1), Mode((RIGHT,), 1), FLIGHT]
+    assert candidates(TALL, ContactState(rise=1.0, touching=())) == [FLIGHT]
 
 
 @pytest.mark.parametrize(("rate", "expected"), [(1e-3, Mode((LEFT,))), (-1e-3, REST)])
 def test_next_derivative_decides_at_the_threshold(rate, expected):
     """At a_x = g b / h exactly, the push that grows lifts the body and the one that falls lets it rest."""
-    found = choose(TALL, PlanarState(), GroundSeries([0.5 * G, rate], [G], 0.3), 1.0)
+    found = choose(TALL, ContactState(), GroundSeries([0.5 * G, rate], [G], 0.3), 1.0)
     assert isinstance(found, NextMode)
     assert found.mode == expected
 
 
 def test_a_slide_that_stops_does_not_turn_round_without_a_push():
     """At v_t = 0 on ground at rest the body rests; under a_x = 0.4 g with mu = 0.3 it slides to the left."""
-    assert choose(TALL, PlanarState(), STILL, 0.3).mode == REST
-    assert choose(TALL, PlanarState(), GroundSeries([0.4 * G], [G], 0.3), 0.3).mode == Mode(BOTH, -1)
+    assert choose(TALL, ContactState(), STILL, 0.3).mode == REST
+    assert choose(TALL, ContactState(), GroundSeries([0.4 * G], [G], 0.3), 0.3).mode == Mode(BOTH, -1)
 
 
 def test_margins_start_with_their_first_coefficient_that_is_not_rounding():
@@ -203,20 +203,20 @@ def test_kept_takes_out_rounding_exactly():
     made = kept(TALL, state, (RIGHT,), stick=True)
     assert away(TALL, made, RIGHT) == 0.0
     assert along(TALL, made, RIGHT) == 0.0
-    flat = kept(TALL, PlanarState(rotation=1e-17, spin=1e-17), BOTH, stick=True)
+    flat = kept(TALL, ContactState(rotation=1e-17, spin=1e-17), BOTH, stick=True)
     assert (flat.rotation, flat.spin, flat.w) == (0.0, 0.0, 0.0)
     assert math.copysign(1.0, kept(TALL, state, (), stick=True).u) == 1.0
 
 
 AWAY = GroundSeries([-13.9], [-3.25], 0.3)
-UNEVEN = Footing(1.0, 0.42, 1.0, 0.65, 1.2)
+UNEVEN = Base(1.0, 0.42, 1.0, 0.65, 1.2)
 
 
 def test_two_motions_that_both_obey_coulomb_are_not_chosen_between():
     """On ground that falls faster than g a tilted body at rest may fly; pushed so that its foot sticks instead with
     N > 0 and |T| <= mu N, by the two equations of a foot that does not move, it may do either: that is said."""
     friction, rotation = 2.3, 0.1
-    state = PlanarState(0.0, UNEVEN.rise_on(RIGHT, rotation), rotation, touching=(RIGHT,))
+    state = ContactState(0.0, UNEVEN.rise_on(RIGHT, rotation), rotation, touching=(RIGHT,))
     r_x, r_z = UNEVEN.arm(RIGHT, rotation)
     j = UNEVEN.inertia
     # v_t' = T - a_x + r_z theta'', v_n' = N - (g + a_z) - r_x theta'', j theta'' = T r_z - N r_x
@@ -237,13 +237,13 @@ def test_what_counts_as_rounding_is_the_same_for_similar_bodies_and_steps(mode, 
     carry rounding has the same part of its scale, over any unit of time."""
 
     def measured(size, unit):
-        footing = Footing(1.0, 0.42 * size**2, size, 0.65 * size, 1.2 * size)
-        r_x, r_z = footing.arm(RIGHT, 0.2)
+        base = Base(1.0, 0.42 * size**2, size, 0.65 * size, 1.2 * size)
+        r_x, r_z = base.arm(RIGHT, 0.2)
         spin, slip = -0.5 / math.sqrt(size), mode.slip * 0.4 * math.sqrt(size)
-        rise = footing.rise_on(RIGHT, 0.2) + (0.1 * size if mode == FLIGHT else 0.0)
-        state = PlanarState(0.0, rise, 0.2, slip - r_z * spin, r_x * spin, spin, mode.feet)
-        found = course(footing, state, mode, GroundSeries([1.0], [G + 0.4], unit), 0.3, 12)
-        made = margins(footing, mode, found, 0.3, 12.0)
+        rise = base.rise_on(RIGHT, 0.2) + (0.1 * size if mode == FLIGHT else 0.0)
+        state = ContactState(0.0, rise, 0.2, slip - r_z * spin, r_x * spin, spin, mode.feet)
+        found = course(base, state, mode, GroundSeries([1.0], [G + 0.4], unit), 0.3, 12)
+        made = margins(base, mode, found, 0.3, 12.0)
         return [(margin.kind, margin.series[margin.exact] / margin.scale) for margin in made]
 
     kinds, parts = zip(*measured(size, unit), strict=True)
@@ -259,7 +259,7 @@ def test_impulses_of_an_imposed_coefficient_change_the_momenta(foot, spin, frict
     """Of a body whose feet differ: all three momenta, friction within its cone, the new foot neither leaves nor sinks;
     with enough friction theta' keeps the coefficient, and where it slides it slides against the friction."""
     old = UNEVEN.lever(-foot)
-    state = PlanarState(0.0, 0.0, 0.0, UNEVEN.height * spin, old * spin, spin, BOTH)
+    state = ContactState(0.0, 0.0, 0.0, UNEVEN.height * spin, old * spin, spin, BOTH)
     found = strike_with(UNEVEN, state, foot, friction, 0.6)
     assert isinstance(found, Struck)
     normal, after = found.normal, found.state

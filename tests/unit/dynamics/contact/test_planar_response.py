@@ -18,8 +18,8 @@ from rocking.dynamics.contact import (
     friction_demand,
     regime_at_start,
 )
-from rocking.dynamics.contact.base import Footing
-from rocking.dynamics.contact.engine import Planar
+from rocking.dynamics.contact.base import Base
+from rocking.dynamics.contact.engine import ContactEngine
 from rocking.dynamics.contact.export import SAMPLES
 from rocking.dynamics.contact.ground_contact import GroundContact
 from rocking.dynamics.contact.log import Log
@@ -238,11 +238,11 @@ def test_paradox_at_the_start_leaves_empty_tables():
 
 def test_numbers_that_run_out():
     """Where the series of a motion are no longer finite the history has failed, and not for want of a contact force."""
-    footing, law = Footing.of_body(BODY), GroundContact(0.6)
+    base, law = Base.of_body(BODY), GroundContact(0.6)
     for push in ([0.0, 1e200, 1e200], [0.0, 1e305, -1e305]):
         with np.errstate(all="ignore"):
-            found = Planar(
-                footing, Segments.between_samples(1e80, np.array(push)), law, Settings(mechanics="contact")
+            found = ContactEngine(
+                base, Segments.between_samples(1e80, np.array(push)), law, Settings(mechanics="contact")
             ).run()
         assert found.status is Status.NOT_FINITE
 

@@ -145,11 +145,11 @@ def test_where_nothing_stays_without_a_pull_the_least_pull_is_taken():
                 continue
             none += 1
             found = landed(body, state, every, law)
-            opens = np.cross(found.velocity, body.vertices - found.stance.pivot) @ UP
+            opens = np.cross(found.velocity, body.vertices - found.contact.pivot) @ UP
             assert opens.min() >= -1e-8 * np.abs(velocity).max()
             assert found.supports.min() < 0.0
             assert found.supports.min() >= impulses(body, state, face(body), np.zeros(3)).min()
-            if found.stance.contact is ContactMode.REST:
+            if found.contact.mode is ContactMode.REST:
                 faces += 1
                 np.testing.assert_array_equal(found.velocity, np.zeros(3))
     assert none > 30
@@ -195,9 +195,9 @@ def test_of_two_contact_sets_the_larger_stays():
         found = of_impact(body, state, every, law)
         if len(found) > 1 and np.abs(found[0].velocity - found[1].velocity).max() > 0.01 * np.abs(velocity).max():
             two += 1
-            chosen = landed(body, state, every, law).stance
-            assert len(chosen.points) == max(len(each.stance.points) for each in found)
-            assert len(chosen.points) > min(len(each.stance.points) for each in found)
+            chosen = landed(body, state, every, law).contact
+            assert len(chosen.points) == max(len(each.contact.points) for each in found)
+            assert len(chosen.points) > min(len(each.contact.points) for each in found)
     assert two > 5
 
 
@@ -223,14 +223,14 @@ def test_a_start_that_turns_about_an_edge_stands_on_it(size):
     base = size * np.column_stack([np.cos(angle), 0.8 * np.sin(angle)])
     body = SpatialBody(700.0, size * np.array([0.07, -0.05, 1.1]), size**2 * np.diag([400.0, 450.0, 90.0]), base)
     for number, axis in enumerate(body.edges):
-        stance, touching = started(body, 0.7 * axis, UP)
+        contact, touching = started(body, 0.7 * axis, UP)
         assert touching == (0, 1, 2, 3, 4)
-        assert (stance.contact, stance.points) == (ContactMode.EDGE, (number, (number + 1) % 5))
+        assert (contact.mode, contact.points) == (ContactMode.EDGE, (number, (number + 1) % 5))
         for askew in (1e-3, -1e-3):
-            stance, _ = started(body, 0.7 * axis + askew * np.cross(UP, axis), UP)
+            contact, _ = started(body, 0.7 * axis + askew * np.cross(UP, axis), UP)
             # the turn about the inward normal lowers the far end of the edge, or lifts it
             stays = (number + 1) % 5 if askew > 0.0 else number
-            assert (stance.contact, stance.points) == (ContactMode.VERTEX, (stays,))
+            assert (contact.mode, contact.points) == (ContactMode.VERTEX, (stays,))
 
 
 def test_the_point_at_rest_that_is_nearest_to_a_new_stance():

@@ -30,7 +30,7 @@ def test_under_little_gravity_it_rocks_slower():
     here, there = (rk.free_rocking(BOX, restitution=0.6, start=SpatialStart(0.1), gravity=9.8 * k) for k in (1.0, 1e-4))
     assert here.impacts.size == there.impacts.size > 3
     np.testing.assert_allclose(there.impacts["time"], 100.0 * here.impacts["time"], rtol=1e-9)
-    assert there.trajectory.pieces[-1].stance.contact is ContactMode.REST
+    assert there.trajectory.pieces[-1].contact.mode is ContactMode.REST
 
 
 def test_a_law_of_ones_own_serves():
@@ -151,7 +151,7 @@ def test_energy_closes_where_steps_hold_several_samples():
         start=SpatialStart(0.15, 0.3),
         duration=4.0,
     )
-    starts = np.array([piece.start for piece in run.trajectory.pieces if piece.stance.contact is not ContactMode.REST])
+    starts = np.array([piece.start for piece in run.trajectory.pieces if piece.contact.mode is not ContactMode.REST])
     assert np.bincount(np.searchsorted(starts, run.time[run.time < 4.0], side="right"))[1:].max() > 2
     assert np.abs(run.energy.work).max() > 100.0
     assert run.energy.closure < 1e-9

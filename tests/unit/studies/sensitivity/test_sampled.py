@@ -24,9 +24,9 @@ SEEDS = (0, 1, 7, 2**32, 2**63, 2**64 - 1)
 
 def histories(r=1.0, count=100, **options):
     """Three pulses at many scales, with a coefficient of one that a draw can multiply."""
-    rocker = RockingParameters.of_body(BLOCK, r, conventions.g)
+    parameters = RockingParameters.of_body(BLOCK, r, conventions.g)
     sides = {
-        f"{short}_{foot}": np.array([[getattr(getattr(rocker, foot), name)]])
+        f"{short}_{foot}": np.array([[getattr(getattr(parameters, foot), name)]])
         for short, name in (("alpha", "slenderness_angle"), ("p", "frequency_parameter"), ("r", "coefficient"))
         for foot in ("right", "left")
     }
@@ -189,7 +189,7 @@ class Backwards(Product):
 
     def rows(self, first, last):
         rows = super().rows(first, last)
-        return type(rows)(rows.values, rows.motion[::-1].copy(), rows.key)
+        return type(rows)(rows.values, rows.motion[::-1].copy(), rows.stream)
 
 
 class Halved(SampledRestitution):

@@ -35,11 +35,11 @@ def impacts_table(responses: Mapping[str, Response], about: dict[str, str]) -> T
 def outcomes_table(responses: Mapping[str, Response], about: dict[str, str]) -> Table:
     """Return how every response ended."""
     found = [outcome_facts(response) for response in responses.values()]
-    rockers = [response.rocker for response in responses.values()]
+    all_parameters = [response.parameters for response in responses.values()]
     made = {
         "restitution": column("", list(responses)),
-        "coefficient_onto_left": column("-", [rocker.left.coefficient for rocker in rockers]),
-        "coefficient_onto_right": column("-", [rocker.right.coefficient for rocker in rockers]),
+        "coefficient_onto_left": column("-", [parameters.left.coefficient for parameters in all_parameters]),
+        "coefficient_onto_right": column("-", [parameters.right.coefficient for parameters in all_parameters]),
         "outcome": column("", [one["outcome"] for one in found]),
         "summary": column("", [one["summary"] for one in found]),
         "peak_rotation": column("rad", [one["peak_rotation_rad"] for one in found]),

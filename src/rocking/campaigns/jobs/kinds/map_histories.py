@@ -78,7 +78,7 @@ class MapHistories(Histories):
         return {
             "x": {"axis": plane.x.name, "values": hash_of(plane.x.values)},
             "y": {"axis": plane.y.name, "values": hash_of(plane.y.values)},
-            "restitution": [each.question.rocker.label for each in self.planes],
+            "restitution": [each.question.parameters.label for each in self.planes],
             "rows": [hash_of(table) for table in tables],
         }
 

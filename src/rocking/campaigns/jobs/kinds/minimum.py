@@ -67,11 +67,11 @@ def minimum_study(problem: StudyProblem) -> Study:
     table = problem.document.minimum or MinimumTable()
     motions, settings = _held(problem), problem.settings
     with located("body"):
-        rockers = [
+        all_parameters = [
             [RockingParameters.of_body(b, choice, settings.gravity) for b in problem.bodies]
             for choice in problem.restitutions.values()
         ]
-    sides = [sides_of(row) for row in rockers]
+    sides = [sides_of(row) for row in all_parameters]
     with located("minimum"):
         effort = Effort(table.points, table.levels, table.tolerance)
         cases = Cases.joined([
@@ -81,7 +81,7 @@ def minimum_study(problem: StudyProblem) -> Study:
     shape = (len(motions), len(problem.restitutions), len(problem.bodies))
     names = {"motion": [motions[k].name for k in range(len(motions))], "restitution": list(problem.restitutions)}
     options = {"settings": settings, "engine": problem.document.settings.engine}
-    search = MinimumSearch(cases, effort, motions, shape, rockers[0][0].law, options, names)
+    search = MinimumSearch(cases, effort, motions, shape, all_parameters[0][0].law, options, names)
     dims = dict(zip(("motion", "restitution", "body", "point"), (*shape, effort.points), strict=True))
     scale = cases.grid(effort.points).reshape(*dims.values())
     coordinates = {

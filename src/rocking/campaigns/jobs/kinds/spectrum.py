@@ -69,12 +69,12 @@ def sides_of_choices(bodies: Sequence[Body], problem: StudyProblem) -> tuple[dic
     impact.
     """
     gravity = problem.settings.gravity
-    rockers = [
+    all_parameters = [
         [RockingParameters.of_body(body, choice, gravity) for body in bodies]
         for choice in problem.restitutions.values()
     ]
-    columns = [sides_of(row) for row in rockers]
-    return {name: np.stack([column[name] for column in columns], axis=-1) for name in columns[0]}, rockers[0][0].law
+    columns = [sides_of(row) for row in all_parameters]
+    return {name: np.stack([column[name] for column in columns], axis=-1) for name in columns[0]}, all_parameters[0][0].law
 
 
 def _row(where: str, table: Values, unit: str) -> FloatArray:

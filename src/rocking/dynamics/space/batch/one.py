@@ -24,12 +24,12 @@ def results_of(found: SpatialTrajectory) -> tuple[FloatArray, list[int]]:
     results = np.array(
         [found.peak_tilt, found.peak_time, spin, found.overturning_time, direction, first, last.end, found.held, lost]
     )
-    stance = found.fell_over
-    number = -1 if stance is None or not stance.points else stance.points[0]
+    contact = found.fell_over
+    number = -1 if contact is None or not contact.points else contact.points[0]
     uplifts = sum(event.kind is SpatialEventKind.UPLIFT for event in events)
-    status, contact = found.status.code, -1 if stance is None else stance.contact.code
-    counts = [found.outcome.code, status, contact, number]
-    still = found.outcome is Outcome.ROCKED and last.stance.contact is not ContactMode.REST
+    status, mode = found.status.code, -1 if contact is None else contact.mode.code
+    counts = [found.outcome.code, status, mode, number]
+    still = found.outcome is Outcome.ROCKED and last.contact.mode is not ContactMode.REST
     return results, [*counts, len(found.impacts), uplifts, len(events), len(found.pieces), int(still)]
 
 
