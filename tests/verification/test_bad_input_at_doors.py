@@ -40,7 +40,7 @@ DOORS: dict[str, Callable[..., Any]] = {
 }
 LACKING = {
     "free_rocking": {"scale"},
-    "simulate_many": {"rotation", "angular_velocity", "duration", "key"},
+    "simulate_many": {"rotation", "angular_velocity", "duration", "stream"},
 }
 # what has a meaning there: no duration, usual settings, a linear model, a row of scales, several restitutions
 MEANT = {

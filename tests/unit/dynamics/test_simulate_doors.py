@@ -179,7 +179,7 @@ def test_names(door: Callable[..., Any]) -> None:
 @pytest.mark.parametrize("key", [-1, 2**63, 1.0, None, True, "1", math.nan])
 def test_keys(door: Callable[..., Any], key: Any) -> None:
     """The number of a history is a whole one from 0 to 2^63 - 1."""
-    with pytest.raises(InvalidValueError, match=r"key must be a whole number in \[0, 2\^63\), got"):
+    with pytest.raises(InvalidValueError, match=r"stream must be a whole number in \[0, 2\^63\), got"):
         door(stream=key)
     assert door(stream=2**63 - 1).stream == 2**63 - 1
 
@@ -189,7 +189,7 @@ def test_what_other_mechanics_do_not_know(value: Any) -> None:
     """Numbers of histories with friction and in space, bounces and starts without, are refused whatever they are."""
     solid = rk.Solid(rk.bodies.solid.box(0.5, 0.5, 2.0))
     for more in ({"friction": 0.4, "stream": value}, {"body": solid, "stream": value}, {"bounce": value}):
-        with pytest.raises(InvalidValueError, match=r"(key|bounce) is nothing for a body"):
+        with pytest.raises(InvalidValueError, match=r"(stream|bounce) is nothing for a body"):
             shaken(**more)
     for more in ({"friction": 0.4, "stream": 0}, {"bounce": 0.0, "start": None}):
         assert shaken(**more).outcome is not rk.Outcome.FAILED  # what changes nothing is taken
