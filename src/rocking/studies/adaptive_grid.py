@@ -63,11 +63,11 @@ class Plane:
         return case
 
     def answers(
-        self, x: FloatArray, y: FloatArray, key: Any = None, progress: Callable[[int], None] | None = None
+        self, x: FloatArray, y: FloatArray, stream: Any = None, progress: Callable[[int], None] | None = None
     ) -> tuple[Arrays, dict[str, int]]:
         """Return what happens at some points."""
         case = self.case(x, y)
-        return self.question.run(case.values, case.stretch, key, progress)
+        return self.question.run(case.values, case.stretch, stream, progress)
 
     def mesh(self) -> tuple[FloatArray, FloatArray]:
         """Return the coordinates of all pairs of values, those of x varying fastest.

@@ -163,7 +163,9 @@ def multiple_stripe_plan(
     shape = (len(subject.motions), wanted.size)
 
     def finish(arrays: Arrays) -> MultipleStripeAnalysis:
-        return MultipleStripeAnalysis(subject, wanted, limits, histories, Responses.of(arrays, subject.parameters, shape))
+        return MultipleStripeAnalysis(
+            subject, wanted, limits, histories, Responses.of(arrays, subject.parameters, shape)
+        )
 
     return histories, finish
 
