@@ -74,7 +74,9 @@ def sides_of_choices(bodies: Sequence[Body], problem: StudyProblem) -> tuple[dic
         for choice in problem.restitutions.values()
     ]
     columns = [sides_of(row) for row in all_parameters]
-    return {name: np.stack([column[name] for column in columns], axis=-1) for name in columns[0]}, all_parameters[0][0].law
+    return {name: np.stack([column[name] for column in columns], axis=-1) for name in columns[0]}, all_parameters[0][
+        0
+    ].law
 
 
 def _row(where: str, table: Values, unit: str) -> FloatArray:
