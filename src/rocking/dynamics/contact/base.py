@@ -19,7 +19,7 @@ BOTH = (LEFT, RIGHT)
 
 
 @dataclass(frozen=True)
-class Base:
+class PlaneBase:
     """Where the feet are, seen from the centre of mass."""
 
     mass: float  # mass m [kg]
@@ -29,7 +29,7 @@ class Base:
     right: float
 
     @classmethod
-    def of_body(cls, body: Body) -> "Base":
+    def of_body(cls, body: Body) -> "PlaneBase":
         """Return the base of a body."""
         if not isinstance(body, Body):
             raise InvalidValueError(f"body must be a Block, Section or MassPoints, got {body!r:.60}")

@@ -7,7 +7,7 @@ Lemke's algorithm would find is among them, and unlike it the trial also sees wh
 from itertools import chain, combinations
 from typing import NamedTuple
 
-from rocking.dynamics.contact.base import Base
+from rocking.dynamics.contact.base import PlaneBase
 from rocking.dynamics.contact.event_functions import consistent, margins
 from rocking.dynamics.contact.ground import GroundSeries
 from rocking.dynamics.contact.mode import Mode
@@ -21,7 +21,7 @@ _ORDER = 8
 _SAME = 1e-6
 
 
-def candidates(base: Base, state: ContactState) -> list[Mode]:
+def candidates(base: PlaneBase, state: ContactState) -> list[Mode]:
     """Return the modes that the velocities allow.
 
     Returns modes with most feet first, and those that stick before those that slide.
@@ -44,7 +44,7 @@ class NextMode(NamedTuple):
     tolerance: float  # below it, over their scale, coefficients counted as zero [-]
 
 
-def choose(base: Base, state: ContactState, ground: GroundSeries, friction: float) -> NextMode | Status:
+def choose(base: PlaneBase, state: ContactState, ground: GroundSeries, friction: float) -> NextMode | Status:
     """Return the mode that follows a state.
 
     friction: Coulomb's coefficient [-]. Returns the mode; where there is none, or where two of them move the body

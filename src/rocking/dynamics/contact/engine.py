@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from rocking.dynamics.contact.base import BOTH, Base
+from rocking.dynamics.contact.base import BOTH, PlaneBase
 from rocking.dynamics.contact.complementarity import TOLERANCE, NextMode, choose, weight_of
 from rocking.dynamics.contact.event_functions import Kind, consistent, first_end, margins
 from rocking.dynamics.contact.excitation_screening import stirring
@@ -44,7 +44,7 @@ class ContactEngine:
 
     def __init__(
         self,
-        base: Base,
+        base: PlaneBase,
         segments: Segments,
         law: GroundContact,
         settings: Settings,

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.base import BOTH, Base
+from rocking.dynamics.contact.base import BOTH, PlaneBase
 from rocking.dynamics.contact.mode import Mode
 from rocking.dynamics.contact.mode_series import ModeSeries
 from rocking.dynamics.contact.power_series import padded
@@ -41,7 +41,7 @@ class Margin(NamedTuple):
     scale: float  # size that rounding of the others is measured by
 
 
-def margins(base: Base, mode: Mode, course: ModeSeries, friction: float, weight: float) -> list[Margin]:
+def margins(base: PlaneBase, mode: Mode, course: ModeSeries, friction: float, weight: float) -> list[Margin]:
     """Return what must stay above zero in a mode.
 
     friction: Coulomb's coefficient [-]; weight: acceleration that forces are measured by, such as g + |a_x| + |a_z|

@@ -3,7 +3,7 @@
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.base import LEFT, RIGHT, Base
+from rocking.dynamics.contact.base import LEFT, RIGHT, PlaneBase
 from rocking.dynamics.contact.history import History
 from rocking.dynamics.contact.mode import Mode
 
@@ -21,7 +21,7 @@ IMPACT = np.dtype(
 """Fields of `ContactResponse.impacts`: [s], feet that touch, theta' [rad/s] twice, impulses [N s], [J], whether."""
 
 
-def regimes_of(history: History, base: Base) -> np.ndarray:
+def regimes_of(history: History, base: PlaneBase) -> np.ndarray:
     """Return the regimes of a history in order.
 
     Returns of type `REGIME`; intervals of no duration are left out.
@@ -36,7 +36,7 @@ def regimes_of(history: History, base: Base) -> np.ndarray:
     return np.array(rows, dtype=REGIME)
 
 
-def _distance(history: History, base: Base, mode: Mode, start: float, end: float) -> float:
+def _distance(history: History, base: PlaneBase, mode: Mode, start: float, end: float) -> float:
     if not mode.slip:
         return 0.0
     (x_start, _, turned), (x_end, _, turned_on) = places_of(history, np.array([start, end])).tolist()
@@ -44,7 +44,7 @@ def _distance(history: History, base: Base, mode: Mode, start: float, end: float
     return float(x_end + base.arm(foot, turned_on)[0] - x_start - base.arm(foot, turned)[0])
 
 
-def impacts_of(history: History, base: Base) -> np.ndarray:
+def impacts_of(history: History, base: PlaneBase) -> np.ndarray:
     """Return the impacts of a history in order.
 
     Returns of type `IMPACT`. On a flat base only the sum of the impulses along the ground is determined; it is shared

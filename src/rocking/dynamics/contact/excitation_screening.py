@@ -3,10 +3,10 @@
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.base import Base
+from rocking.dynamics.contact.base import PlaneBase
 
 
-def stirring(base: Base, push: FloatArray, lift: FloatArray, friction: float) -> np.ndarray:
+def stirring(base: PlaneBase, push: FloatArray, lift: FloatArray, friction: float) -> np.ndarray:
     """Return the stretches in which a body at rest might be lifted or moved.
 
     push, lift: coefficients of a_x and g + a_z [m/s2]; friction: Coulomb's coefficient [-]. Returns numbers of the

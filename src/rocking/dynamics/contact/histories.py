@@ -5,7 +5,7 @@ from typing import Any
 
 from rocking import checks, conventions, plausibility
 from rocking.bodies import Body
-from rocking.dynamics.contact.base import Base
+from rocking.dynamics.contact.base import PlaneBase
 from rocking.dynamics.contact.engine import ContactEngine
 from rocking.dynamics.contact.ground_contact import GroundContact
 from rocking.dynamics.contact.response import ContactResponse
@@ -40,7 +40,7 @@ def response_with_contact(  # noqa: PLR0913 - what the front door hands on
     restitution: None for impacts by complementarity alone; scale: factor on the motion [-]; duration: how long to
     follow the body [s]; if not given, the motion and 15 sqrt(R / g) after it, 60 sqrt(R / g) on ground at rest.
     """
-    base = Base.of_body(body)
+    base = PlaneBase.of_body(body)
     law = GroundContact(
         friction if isinstance(friction, conventions.Assumed) else checks.number("friction", friction),
         checks.number("bounce", bounce),
@@ -65,7 +65,7 @@ def _imposed(body: Body, restitution: Any, settings: Settings) -> tuple[float, f
     return parameters.left.coefficient, parameters.right.coefficient
 
 
-def _segments(motion: object, base: Base, gravity: float, duration: float | None) -> Segments:
+def _segments(motion: object, base: PlaneBase, gravity: float, duration: float | None) -> Segments:
     slow = math.sqrt(base.size / gravity)
     if motion is None:
         length = _FREE * slow if duration is None else checks.positive("duration", duration, "s")

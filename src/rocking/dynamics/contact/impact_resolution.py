@@ -12,7 +12,7 @@ that only the sum of the ``P_t`` is determined: it is shared as the ``P_n`` are.
 from itertools import combinations
 from typing import NamedTuple
 
-from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, Base
+from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, PlaneBase
 from rocking.dynamics.contact.state import ContactState, along, away, kept, kinetic
 from rocking.outcome import Status
 
@@ -28,7 +28,7 @@ class Struck(NamedTuple):
     slip: int  # direction in which the feet slide while they are struck; 0 if they stick
 
 
-def strike(base: Base, state: ContactState, friction: float, bounce: dict[int, float]) -> Struck | Status:
+def strike(base: PlaneBase, state: ContactState, friction: float, bounce: dict[int, float]) -> Struck | Status:
     """Return what an impact does.
 
     friction: Coulomb's coefficient [-]; bounce: e_N of each foot that touches [-]. Returns the state after it with the
@@ -47,7 +47,7 @@ def strike(base: Base, state: ContactState, friction: float, bounce: dict[int, f
     return good[0]
 
 
-def largest_speed(base: Base, state: ContactState) -> float:
+def largest_speed(base: PlaneBase, state: ContactState) -> float:
     """Return the size of the velocities from which those of the feet are differences.
 
     Returns by which their rounding is measured [m/s].
@@ -55,7 +55,7 @@ def largest_speed(base: Base, state: ContactState) -> float:
     return max(abs(state.u), abs(state.w), base.size * abs(state.spin))
 
 
-def _solutions(base: Base, state: ContactState, friction: float, targets: dict[int, float]) -> list[Struck]:
+def _solutions(base: PlaneBase, state: ContactState, friction: float, targets: dict[int, float]) -> list[Struck]:
     """Every choice of feet that take part and of how they slide, whether or not it is valid."""
     parts = [part for n in range(1, len(targets) + 1) for part in combinations(state.touching, n)]
     tried = (_try(base, state, part, slip, friction, targets) for slip in (0, 1, -1) for part in parts)
@@ -63,7 +63,7 @@ def _solutions(base: Base, state: ContactState, friction: float, targets: dict[i
 
 
 def _try(
-    base: Base, state: ContactState, feet: tuple[int, ...], slip: int, friction: float, targets: dict[int, float]
+    base: PlaneBase, state: ContactState, feet: tuple[int, ...], slip: int, friction: float, targets: dict[int, float]
 ) -> Struck | None:
     pull = slip * friction if slip else 0.0
     if len(feet) == 2:
@@ -73,7 +73,7 @@ def _try(
     return _on_one(base, state, feet[0], targets[feet[0]])
 
 
-def _on_one(base: Base, state: ContactState, foot: int, target: float) -> Struck:
+def _on_one(base: PlaneBase, state: ContactState, foot: int, target: float) -> Struck:
     """Momentum about the foot is kept but for what the bounce takes."""
     r_x, r_z = base.arm(foot, state.rotation)
     j = base.inertia
@@ -82,7 +82,9 @@ def _on_one(base: Base, state: ContactState, foot: int, target: float) -> Struck
     return Struck(after, {foot: after.w - state.w}, after.u - state.u, 0)
 
 
-def _sliding_on_one(base: Base, state: ContactState, foot: int, slip: int, pull: float, target: float) -> Struck | None:
+def _sliding_on_one(
+    base: PlaneBase, state: ContactState, foot: int, slip: int, pull: float, target: float
+) -> Struck | None:
     r_x, r_z = base.arm(foot, state.rotation)
     level = r_x + pull * r_z
     stiff = 1.0 + r_x * level / base.inertia
@@ -94,7 +96,7 @@ def _sliding_on_one(base: Base, state: ContactState, foot: int, slip: int, pull:
     return Struck(after, {foot: normal}, -(pull * normal), slip)
 
 
-def _on_both(base: Base, state: ContactState, slip: int, pull: float, targets: dict[int, float]) -> Struck:
+def _on_both(base: PlaneBase, state: ContactState, slip: int, pull: float, targets: dict[int, float]) -> Struck:
     left, right, width = base.left, base.right, base.width
     spin = (targets[LEFT] - targets[RIGHT]) / width  # Eq. 73
     w = (targets[LEFT] * right + targets[RIGHT] * left) / width
@@ -106,7 +108,7 @@ def _on_both(base: Base, state: ContactState, slip: int, pull: float, targets: d
     return Struck(state._replace(u=u, w=w, spin=spin), normal, tangential, slip)
 
 
-def _valid(base: Base, struck: Struck, friction: float, targets: dict[int, float], speed: float) -> bool:
+def _valid(base: PlaneBase, struck: Struck, friction: float, targets: dict[int, float], speed: float) -> bool:
     slack = _ROUNDING * speed
     if not all(p >= -slack for p in struck.normal.values()):
         return False
@@ -117,12 +119,12 @@ def _valid(base: Base, struck: Struck, friction: float, targets: dict[int, float
     return abs(struck.tangential) <= friction * sum(struck.normal.values()) + slack * (1.0 + friction)
 
 
-def _differ(base: Base, one: ContactState, other: ContactState, speed: float) -> bool:
+def _differ(base: PlaneBase, one: ContactState, other: ContactState, speed: float) -> bool:
     gap = max(abs(one.u - other.u), abs(one.w - other.w), base.height * abs(one.spin - other.spin))
     return gap > 1e-8 * speed
 
 
-def cleaned(base: Base, struck: Struck, stop: float) -> ContactState:
+def cleaned(base: PlaneBase, struck: Struck, stop: float) -> ContactState:
     """Return the state after an impact with rounding taken out of velocities that are zero.
 
     stop: velocities of a foot below this are zero [m/s]. Returns the state; its feet are still those that touched

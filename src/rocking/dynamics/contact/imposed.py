@@ -9,7 +9,7 @@ k b). That place is kept. Where the impact takes more friction than there is, ``
 new foot slides off; with Housner's r this is the complementarity problem's own solution.
 """
 
-from rocking.dynamics.contact.base import LEFT, RIGHT, Base
+from rocking.dynamics.contact.base import LEFT, RIGHT, PlaneBase
 from rocking.dynamics.contact.impact_resolution import Struck
 from rocking.dynamics.contact.state import ContactState, along, away, kinetic
 from rocking.outcome import Status
@@ -17,7 +17,7 @@ from rocking.outcome import Status
 _ROUNDING = 1e-12
 
 
-def strike_with(base: Base, state: ContactState, foot: int, friction: float, r: float) -> Struck | Status | None:
+def strike_with(base: PlaneBase, state: ContactState, foot: int, friction: float, r: float) -> Struck | Status | None:
     """Return what a rocking impact does when its coefficient of restitution is imposed.
 
     friction: Coulomb's coefficient [-]; r: theta_dot_after / theta_dot_before of the impact without slip [-]. Returns
@@ -41,7 +41,7 @@ def strike_with(base: Base, state: ContactState, foot: int, friction: float, r: 
     return Status.ENERGY_GAIN if gained else found
 
 
-def _stuck(base: Base, state: ContactState, foot: int, place: float) -> Struck:
+def _stuck(base: PlaneBase, state: ContactState, foot: int, place: float) -> Struck:
     h, d, j = base.height, base.lever(foot), base.inertia
     spin = (j * state.spin + h * state.u + place * state.w) / (j + h * h + place * d)  # Eq. 74
     if abs(spin) <= _ROUNDING * abs(state.spin):
@@ -50,7 +50,7 @@ def _stuck(base: Base, state: ContactState, foot: int, place: float) -> Struck:
     return Struck(after, _shared(base, place, after.w - state.w), after.u - state.u, 0)
 
 
-def _slid(base: Base, state: ContactState, foot: int, place: float, slip: int, pull: float) -> Struck | None:
+def _slid(base: PlaneBase, state: ContactState, foot: int, place: float, slip: int, pull: float) -> Struck | None:
     d = base.lever(foot)
     turn = (pull * base.height - place) / base.inertia
     stiff = 1.0 - d * turn
@@ -62,7 +62,7 @@ def _slid(base: Base, state: ContactState, foot: int, place: float, slip: int, p
     return Struck(after, _shared(base, place, normal), -(pull * normal), slip)
 
 
-def _shared(base: Base, place: float, normal: float) -> dict[int, float]:
+def _shared(base: PlaneBase, place: float, normal: float) -> dict[int, float]:
     """Both feet's parts of a resultant; beyond a foot the other one pulls."""
     return {
         LEFT: normal * (base.right - place) / base.width,

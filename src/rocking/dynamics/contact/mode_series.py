@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, Base
+from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, PlaneBase
 from rocking.dynamics.contact.ground import GroundSeries
 from rocking.dynamics.contact.mode import Mode
 from rocking.dynamics.contact.pivot_motion import turning
@@ -58,7 +58,7 @@ class ModeSeries:
 
 
 def course(
-    base: Base, state: ContactState, mode: Mode, ground: GroundSeries, friction: float, order: int
+    base: PlaneBase, state: ContactState, mode: Mode, ground: GroundSeries, friction: float, order: int
 ) -> ModeSeries:
     """Return the course of a body in a mode.
 
@@ -71,7 +71,7 @@ def course(
     return _turning(base, state, mode, ground, friction, order)
 
 
-def _flat(base: Base, state: ContactState, mode: Mode, ground: GroundSeries, friction: float) -> ModeSeries:
+def _flat(base: PlaneBase, state: ContactState, mode: Mode, ground: GroundSeries, friction: float) -> ModeSeries:
     """Both feet: the resultant force decides how they share it."""
     size = max(len(ground.push), len(ground.lift)) + 2
     push, weight = padded(ground.push, size), padded(ground.lift, size)
@@ -87,7 +87,7 @@ def _flat(base: Base, state: ContactState, mode: Mode, ground: GroundSeries, fri
     return ModeSeries(ground.unit, still, x, still, tangential, normals, sliding)
 
 
-def _flight(base: Base, state: ContactState, ground: GroundSeries, order: int) -> ModeSeries:
+def _flight(base: PlaneBase, state: ContactState, ground: GroundSeries, order: int) -> ModeSeries:
     """No foot: parabolas above a ground that moves."""
     size = order + 1
     x = twice(-padded(ground.push, size), state.x, state.u, ground.unit)  # Eq. 64
@@ -110,7 +110,7 @@ def _flight(base: Base, state: ContactState, ground: GroundSeries, order: int) -
 
 
 def _turning(
-    base: Base, state: ContactState, mode: Mode, ground: GroundSeries, friction: float, order: int
+    base: PlaneBase, state: ContactState, mode: Mode, ground: GroundSeries, friction: float, order: int
 ) -> ModeSeries:
     """One foot carries: the other one rises as theta does."""
     (foot,) = mode.feet

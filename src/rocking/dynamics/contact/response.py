@@ -9,7 +9,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.contact.base import Base
+from rocking.dynamics.contact.base import PlaneBase
 from rocking.dynamics.contact.energy_balance import ContactEnergy, ContactForces, energy_of, forces_of
 from rocking.dynamics.contact.events import impacts_of, places_of, regimes_of
 from rocking.dynamics.contact.ground_contact import GroundContact
@@ -39,7 +39,7 @@ class ContactResponse(Exportable):
         The body.
     motion : GroundMotion or Pulse, optional
         The motion; None on ground at rest.
-    base : Base
+    base : PlaneBase
         The body as the equations see it.
     law : ContactLaw
         Friction and restitution.
@@ -55,7 +55,7 @@ class ContactResponse(Exportable):
 
     body: Body
     motion: GroundMotion | Pulse | None
-    base: Base
+    base: PlaneBase
     law: GroundContact
     settings: Settings
     segments: Segments = field(repr=False)

@@ -15,7 +15,7 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.contact.base import LEFT, RIGHT, Base
+from rocking.dynamics.contact.base import LEFT, RIGHT, PlaneBase
 from rocking.dynamics.contact.complementarity import NextMode, choose
 from rocking.dynamics.contact.ground import GroundSeries
 from rocking.dynamics.contact.state import ContactState
@@ -50,7 +50,7 @@ def friction_demand(body: Body, acceleration: float) -> float:
     0.30985915493
     """
     push = checks.number("acceleration", acceleration)
-    base = Base.of_body(body)
+    base = PlaneBase.of_body(body)
     lever, height = abs(base.lever(LEFT if push > 0.0 else RIGHT)), base.height
     if not abs(push) * height >= lever:
         raise InvalidValueError(f"acceleration must be at least b / h = {lever / height:g} to lift it, got {push:g}")
@@ -92,7 +92,7 @@ def regime_at_start(
     >>> regime_at_start(Block(width=1.0, height=4.0), 0.5, 0.3).name
     'SLIDE_ROCK'
     """
-    base = Base.of_body(body)
+    base = PlaneBase.of_body(body)
     gravity = checks.positive("gravity", gravity, "m/s2")
     push, lift = checks.number("acceleration", acceleration), checks.number("vertical", vertical)
     mu = checks.within("friction", friction, 0.0, 1e6)
@@ -120,7 +120,7 @@ def analytic_regime(body: Body, acceleration: float, friction: float) -> Regime:
     Regime
         The regime; on a boundary the calmer one.
     """
-    base = Base.of_body(body)
+    base = PlaneBase.of_body(body)
     push = checks.number("acceleration", acceleration)
     slender = abs(base.lever(LEFT if push > 0.0 else RIGHT)) / base.height
     if abs(push) <= min(friction, slender):

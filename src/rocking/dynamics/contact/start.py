@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from rocking import checks
-from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, Base
+from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, PlaneBase
 from rocking.dynamics.contact.state import ContactState
 
 
@@ -53,12 +53,12 @@ class Start:
         checks.within("height", self.height, 0.0, 1e4, unit="m", hint="the ground is at zero")
         checks.within("vertical_velocity", self.vertical_velocity, -1e4, 1e4, unit="m/s")
 
-    def state(self, base: Base) -> ContactState:
+    def state(self, base: PlaneBase) -> ContactState:
         """Return the state of the centre of mass.
 
         Parameters
         ----------
-        base : Base
+        base : PlaneBase
             The body.
 
         Returns

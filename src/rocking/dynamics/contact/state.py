@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from rocking.dynamics.contact.base import BOTH, Base
+from rocking.dynamics.contact.base import BOTH, PlaneBase
 
 
 class ContactState(NamedTuple):
@@ -19,7 +19,7 @@ class ContactState(NamedTuple):
     touching: tuple[int, ...] = BOTH  # feet that touch the ground, exactly
 
 
-def along(base: Base, state: ContactState, foot: int) -> float:
+def along(base: PlaneBase, state: ContactState, foot: int) -> float:
     """Return the velocity of a foot along the ground.
 
     Returns v_t, to the right; exactly zero where the foot was made to stick [m/s].
@@ -27,7 +27,7 @@ def along(base: Base, state: ContactState, foot: int) -> float:
     return state.u + base.arm(foot, state.rotation)[1] * state.spin  # Eq. 60
 
 
-def away(base: Base, state: ContactState, foot: int) -> float:
+def away(base: PlaneBase, state: ContactState, foot: int) -> float:
     """Return the velocity of a foot away from the ground.
 
     Returns v_n, upwards; exactly zero where the foot was put to rest [m/s].
@@ -35,7 +35,7 @@ def away(base: Base, state: ContactState, foot: int) -> float:
     return state.w - base.arm(foot, state.rotation)[0] * state.spin  # Eq. 61
 
 
-def kept(base: Base, state: ContactState, feet: tuple[int, ...], *, stick: bool) -> ContactState:
+def kept(base: PlaneBase, state: ContactState, feet: tuple[int, ...], *, stick: bool) -> ContactState:
     """Return the state with rounding taken out of what the contacts fix.
 
     Returns with ``v_n = 0``, and ``v_t = 0`` if they stick, exactly.
@@ -51,7 +51,7 @@ def kept(base: Base, state: ContactState, feet: tuple[int, ...], *, stick: bool)
     return state._replace(rise=base.rise_on(foot, state.rotation), u=u, w=r_x * state.spin)
 
 
-def kinetic(base: Base, state: ContactState) -> float:
+def kinetic(base: PlaneBase, state: ContactState) -> float:
     """Return the kinetic energy in the frame of the ground, per unit of mass.
 
     Returns ``(x'^2 + z'^2 + (I_C / m) theta'^2) / 2`` [J/kg].

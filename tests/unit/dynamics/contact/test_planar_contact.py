@@ -7,7 +7,7 @@ import pytest
 
 from rocking.bodies import Block, Section
 from rocking.bodies.region import Region
-from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, Base
+from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, PlaneBase
 from rocking.dynamics.contact.complementarity import NextMode, candidates, choose, weight_of
 from rocking.dynamics.contact.event_functions import Kind, Margin, consistent, first_end, leading, margins
 from rocking.dynamics.contact.ground import GroundSeries
@@ -21,7 +21,7 @@ from rocking.dynamics.contact.state import ContactState, along, away, kept, kine
 from rocking.outcome import Regime, Status
 
 G = 9.80665
-TALL = Base.of_body(Block(width=1.0, height=2.0))
+TALL = PlaneBase.of_body(Block(width=1.0, height=2.0))
 STILL = GroundSeries([0.0], [G], 0.3)
 
 
@@ -41,7 +41,7 @@ def test_footing_of_a_block_is_its_half_sizes():
 def test_footing_of_a_section_with_other_feet():
     """Feet at 0.1 and 0.7 m under a centre at 0.5 m."""
     body = Section([Region([(0, 0), (1, 0), (1, 4), (0, 4)], 1.0)], feet=(0.1, 0.7))
-    base = Base.of_body(body)
+    base = PlaneBase.of_body(body)
     assert base.left == pytest.approx(0.4, rel=1e-14)
     assert base.right == pytest.approx(0.2, rel=1e-14)
     assert base.width == pytest.approx(0.6, rel=1e-14)
@@ -209,7 +209,7 @@ def test_kept_takes_out_rounding_exactly():
 
 
 AWAY = GroundSeries([-13.9], [-3.25], 0.3)
-UNEVEN = Base(1.0, 0.42, 1.0, 0.65, 1.2)
+UNEVEN = PlaneBase(1.0, 0.42, 1.0, 0.65, 1.2)
 
 
 def test_two_motions_that_both_obey_coulomb_are_not_chosen_between():
@@ -237,7 +237,7 @@ def test_what_counts_as_rounding_is_the_same_for_similar_bodies_and_steps(mode, 
     carry rounding has the same part of its scale, over any unit of time."""
 
     def measured(size, unit):
-        base = Base(1.0, 0.42 * size**2, size, 0.65 * size, 1.2 * size)
+        base = PlaneBase(1.0, 0.42 * size**2, size, 0.65 * size, 1.2 * size)
         r_x, r_z = base.arm(RIGHT, 0.2)
         spin, slip = -0.5 / math.sqrt(size), mode.slip * 0.4 * math.sqrt(size)
         rise = base.rise_on(RIGHT, 0.2) + (0.1 * size if mode == FLIGHT else 0.0)

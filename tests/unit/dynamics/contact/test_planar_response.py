@@ -18,7 +18,7 @@ from rocking.dynamics.contact import (
     friction_demand,
     regime_at_start,
 )
-from rocking.dynamics.contact.base import Base
+from rocking.dynamics.contact.base import PlaneBase
 from rocking.dynamics.contact.engine import ContactEngine
 from rocking.dynamics.contact.export import SAMPLES
 from rocking.dynamics.contact.ground_contact import GroundContact
@@ -238,7 +238,7 @@ def test_paradox_at_the_start_leaves_empty_tables():
 
 def test_numbers_that_run_out():
     """Where the series of a motion are no longer finite the history has failed, and not for want of a contact force."""
-    base, law = Base.of_body(BODY), GroundContact(0.6)
+    base, law = PlaneBase.of_body(BODY), GroundContact(0.6)
     for push in ([0.0, 1e200, 1e200], [0.0, 1e305, -1e305]):
         with np.errstate(all="ignore"):
             found = ContactEngine(
