@@ -13,7 +13,7 @@ from rocking.evidence.measurements import GROUPS, datasets
 from rocking.plots.curves import points, slenderness_axis
 from rocking.plots.outline import draw_body
 from rocking.plots.overview import band
-from rocking.plots.style import DOUBLE, GREY, INK, MODEL_STYLE, PALE, SINGLE, in_journal_style, new_figure
+from rocking.plots.style import DOUBLE, GREY, INK, PALE, SINGLE, in_journal_style, model_styles, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -108,7 +108,7 @@ def _rows(axes: "Axes", tables: Mapping[Foot, Sequence[CoefficientRow]]) -> None
 def _color(row: CoefficientRow) -> str:
     if row.name == CALIBRATED:
         return INK
-    look = MODEL_STYLE.get(row.name.rpartition("*")[2].partition(":")[0])
+    look = model_styles().get(row.name.rpartition("*")[2].partition(":")[0])
     return str(look["color"]) if look else GREY
 
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking.evidence.measurements import DataSet
-from rocking.plots.style import GROUP_STYLE, INK, MODEL_STYLE
+from rocking.plots.style import GROUP_STYLE, INK, model_styles
 from rocking.restitution import RestitutionModel, model
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ def curve(axes: "Axes", name: str, low: float, high: float, which: RestitutionMo
     low, high: range of h/b [-].
     """
     ratio = np.linspace(low, high, 400)
-    axes.plot(ratio, (which or model(name)).of_slenderness(ratio), **MODEL_STYLE[name])
+    axes.plot(ratio, (which or model(name)).of_slenderness(ratio), **model_styles()[name])
 
 
 def points(axes: "Axes", data: DataSet, style: str, *, filled: bool = False, label: str | None = None) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.plots.style import DOUBLE, GREY, INK, MODEL_STYLE, in_journal_style, new_figure
+from rocking.plots.style import DOUBLE, GREY, INK, in_journal_style, model_styles, new_figure
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,7 +77,7 @@ def falling_picture(results: "xr.Dataset", azimuths: Any, base: Any = None) -> "
 def _look(results: "xr.Dataset", number: int) -> tuple[str, Any, str]:
     """Colour, line and label of a restitution."""
     name = str(results["restitution"].values[number])
-    style = MODEL_STYLE.get(name.removesuffix("-3d"), {"color": INK, "linestyle": "-", "label": f"r = {name}"})
+    style = model_styles().get(name.removesuffix("-3d"), {"color": INK, "linestyle": "-", "label": f"r = {name}"})
     return style["color"], style["linestyle"], style["label"]
 
 

@@ -9,7 +9,7 @@ from rocking.evidence._league import LeagueRow
 from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration
 from rocking.evidence.measurements import GROUPS, DataSet, datasets
 from rocking.plots.curves import curve, points, slenderness_axis
-from rocking.plots.style import DOUBLE, GREY, GROUP_STYLE, INK, MODEL_STYLE, PALE, in_journal_style, new_figure
+from rocking.plots.style import DOUBLE, GREY, GROUP_STYLE, INK, PALE, in_journal_style, model_styles, new_figure
 from rocking.restitution import model
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def models_and_measurements(calibration: Calibration) -> "Figure":
     """
     figure, (left, right) = new_figure(DOUBLE, 3.3, columns=2)
     band(left, calibration)
-    for name in MODEL_STYLE:
+    for name in model_styles():
         curve(left, name, _LOW, _HIGH)
     for group in GROUPS:
         points(left, datasets()[group], group)
@@ -64,7 +64,7 @@ def league_figure(rows: Sequence[LeagueRow]) -> "Figure":
     figure, (left, right) = new_figure(DOUBLE, 0.9 + 0.19 * len(rows), columns=2, sharey=True)
     place = np.arange(len(rows))[::-1]
     for y, row in zip(place.tolist(), rows, strict=True):
-        color = MODEL_STYLE[row.name]["color"] if row.name in ("ked", "housner") else INK
+        color = model_styles()[row.name]["color"] if row.name in ("ked", "housner") else INK
         left.plot([row.rmse_low, row.rmse_high], [y, y], color=color, linewidth=1.0)
         left.plot([row.rmse], [y], marker="o", color=color, markerfacecolor="white" if row.parameters else color)
     left.set_yticks(place, [f"{row.name}  {row.fitted}".strip() for row in rows])
@@ -136,7 +136,7 @@ def band(axes: "Axes", calibration: Calibration, low: float = _LOW, high: float 
 
 def _losses(axes: "Axes") -> None:
     ratio = np.linspace(_LOW, _HIGH, 400)
-    for name, look in MODEL_STYLE.items():
+    for name, look in model_styles().items():
         axes.plot(ratio, 1.0 - model(name).of_slenderness(ratio) ** 2, **{**look, "label": None})
     for group in GROUPS:
         _loss_points(axes, datasets()[group], group)

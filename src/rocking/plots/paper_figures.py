@@ -7,7 +7,7 @@ import numpy as np
 from rocking.evidence.agreement import relative_error
 from rocking.evidence.measurements import DataSet, datasets
 from rocking.plots.curves import curve, slenderness_axis
-from rocking.plots.style import DOUBLE, GREY, GROUP_STYLE, INK, MODEL_STYLE, SINGLE, in_journal_style, new_figure
+from rocking.plots.style import DOUBLE, GREY, GROUP_STYLE, INK, SINGLE, in_journal_style, model_styles, new_figure
 from rocking.restitution import model
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ def figure_8() -> "Figure":
         for group in ("S", "M", "L"):
             data = datasets()[group]
             error = sign * (model(name).of_slenderness(data.slenderness) - data.coefficient)
-            color = MODEL_STYLE[name]["color"]
+            color = model_styles()[name]["color"]
             axes.plot(
                 data.mass,
                 error,
@@ -158,7 +158,7 @@ def figure_9() -> "Figure":
         for group in ("S", "M", "L"):
             data = datasets()[group]
             error = 100.0 * relative_error(model(name).of_slenderness(data.slenderness), data.coefficient)
-            look = MODEL_STYLE[name]
+            look = model_styles()[name]
             axes.plot(
                 data.slenderness,
                 error,
@@ -184,7 +184,7 @@ def _zoned(axes: "Axes", data: DataSet) -> None:
     _zone_name(axes, "III", 7.0)
     for name in _PAIR:
         error = 100.0 * relative_error(model(name).of_slenderness(data.slenderness), data.coefficient)
-        look = MODEL_STYLE[name]
+        look = model_styles()[name]
         axes.plot(
             data.slenderness,
             error,

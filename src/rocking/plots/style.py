@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from rocking.errors import MissingExtraError, RockingError, how_to_install
+from rocking.restitution import models
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,17 +20,6 @@ SINGLE, DOUBLE = 90.0 / 25.4, 190.0 / 25.4
 """Widths of one and of two journal columns [in]."""
 
 INK, GREY, PALE = "#222222", "#8a8a8a", "#e6e6e6"
-
-MODEL_STYLE: dict[str, dict[str, Any]] = {
-    "housner": {"color": "#0072B2", "linestyle": "--", "label": "Housner"},
-    "ked": {"color": "#D55E00", "linestyle": "-", "label": "KED"},
-    "horizontal-momentum": {"color": "#009E73", "linestyle": "-.", "label": r"cos$^2\,\alpha$"},
-    "shifted-impulse": {"color": "#CC79A7", "linestyle": ":", "label": "shifted impulse, k = 2/3"},
-    "distributed-impulse": {"color": "#56B4E9", "linestyle": (0, (5, 1, 1, 1, 1, 1)), "label": "distributed, q = 1"},
-    "plastic-winkler": {"color": "#E69F00", "linestyle": (0, (6, 2)), "label": "plastic Winkler"},
-    "contact-bed": {"color": "#8C6BB1", "linestyle": (0, (4, 2)), "label": "contact bed"},
-}
-"""Okabe and Ito's colours, each with its own line so that grey print keeps them apart."""
 
 GROUP_STYLE: dict[str, dict[str, Any]] = {
     "table1": {"marker": "s", "label": "Table 1"},
@@ -59,6 +49,15 @@ _SETTINGS: Any = {
     "mathtext.default": "regular",
     "savefig.dpi": 300,
 }
+
+
+def model_styles() -> dict[str, dict[str, Any]]:
+    """Return colour, line and legend of every restitution model that has a colour (Okabe and Ito's), by its name."""
+    return {
+        name: {"color": kind.colour, "linestyle": kind.linestyle, "label": kind.legend or kind.short_name}
+        for name, kind in models().items()
+        if kind.colour
+    }
 
 
 def in_journal_style(draw: Callable[P, T]) -> Callable[P, T]:

@@ -81,6 +81,8 @@ class ContactBedModel(InertiaModel):
     allowed_error: float = 0.01
 
     name = "contact-bed"
+    short_name = "contact bed"
+    colour, linestyle = "#8C6BB1", (0, (4, 2))
     title = "what emerges from an impact resolved in time on springs and dashpots along the base"
     reference = (
         "derived in this project (the contact bed of rocking.restitution.bed); beds of two springs and of Winkler "

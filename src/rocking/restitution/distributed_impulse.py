@@ -44,6 +44,9 @@ class DistributedImpulse(InertiaModel):
     q: float = 1.0
 
     name = "distributed-impulse"
+    short_name = "distributed impulse"
+    colour, linestyle = "#56B4E9", (0, (5, 1, 1, 1, 1, 1))
+    legend = "distributed, q = 1"
     title = "contact pressure over the flat base follows the downward speed to the power q"
     reference = "derived in this project (theory, section 5); no publication yet"
     assumptions = (

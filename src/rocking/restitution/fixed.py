@@ -34,6 +34,7 @@ class Fixed(RestitutionModel):
     r: float
 
     name = "fixed"
+    short_name = "given value"
     title = "a coefficient given by hand"
     reference = "the user's own value"
     assumptions = ("the value was measured on this body or one like it",)

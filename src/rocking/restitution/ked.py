@@ -29,6 +29,8 @@ class Ked(RestitutionModel):
 
     name = "ked"
     can_stop = False
+    short_name = "KED"
+    colour, linestyle = "#D55E00", "-"
     title = "kinetic energy distribution over the mass points (the paper)"
     reference = "Mao, Deng, Shen & Wang 2024, Buildings 14(7) 2119, doi:10.3390/buildings14072119"
     assumptions = (

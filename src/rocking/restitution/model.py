@@ -57,6 +57,12 @@ class RestitutionModel(ABC):
         Name in the registry and on the command line.
     title : str
         The model in one line.
+    short_name, legend : str
+        What people call it in a sentence, and in the legend of a picture if that is another; the name if empty.
+    colour : str
+        Of its curves; a model without one is not drawn among the others.
+    linestyle : str or tuple
+        Of its curves, as matplotlib takes it, so that grey print keeps them apart.
     reference : str
         Publication with DOI, or the derivation in this project.
     assumptions, known_defects : tuple of str
@@ -82,6 +88,10 @@ class RestitutionModel(ABC):
 
     name: ClassVar[str]
     title: ClassVar[str] = ""
+    short_name: ClassVar[str] = ""
+    legend: ClassVar[str] = ""
+    colour: ClassVar[str] = ""
+    linestyle: ClassVar[str | tuple[int, tuple[int, ...]]] = "-"
     reference: ClassVar[str] = "not stated"
     assumptions: ClassVar[tuple[str, ...]] = ()
     domain: ClassVar[str] = "not stated"

@@ -32,6 +32,8 @@ class PlasticWinkler(InertiaModel):
     """
 
     name = "plastic-winkler"
+    short_name = "plastic Winkler"
+    colour, linestyle = "#E69F00", (0, (6, 2))
     title = "flat base on a bed of plastic springs that do not push back"
     reference = "derived in this project (theory, section 6); no publication yet"
     assumptions = (

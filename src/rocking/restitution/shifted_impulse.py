@@ -38,6 +38,9 @@ class ShiftedImpulse(InertiaModel):
     k: float = 2.0 / 3.0
 
     name = "shifted-impulse"
+    short_name = "shifted impulse"
+    colour, linestyle = "#CC79A7", ":"
+    legend = "shifted impulse, k = 2/3"
     title = "the impulse acts inside the base, at k times the half base"
     reference = (
         "after Kalliontzis, Sritharan & Schultz 2016, J. Struct. Eng. 142(12) 06016002; "

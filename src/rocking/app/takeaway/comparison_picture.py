@@ -10,7 +10,7 @@ from rocking.app.takeaway.plain_text import plain_line
 from rocking.dynamics.response import Response
 from rocking.outcome import Outcome
 from rocking.plots.response_curves import ground_curve, motion_curves, over_slenderness, shown_until
-from rocking.plots.style import DOUBLE, GREY, INK, MODEL_STYLE, PALE, in_journal_style, new_figure
+from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, model_styles, new_figure
 from rocking.reports.facts.verdict import ModelAgreement
 from rocking.reports.facts.words import restitution_words
 
@@ -116,11 +116,12 @@ def _looks(labels: list[str]) -> dict[str, dict[str, object]]:
     """Return colour and dash of each: that of a model everywhere, of its family once, and others of their own."""
     found: dict[str, dict[str, object]] = {}
     taken: set[str] = set()
+    styles = model_styles()
     for label in labels:
         family = label.rpartition("*")[2].partition(":")[0]
-        if family in MODEL_STYLE and family not in taken:
+        if family in styles and family not in taken:
             taken.add(family)
-            found[label] = {"color": MODEL_STYLE[family]["color"], "linestyle": MODEL_STYLE[family]["linestyle"]}
+            found[label] = {key: styles[family][key] for key in ("color", "linestyle")}
         else:
             k = len(found) - len(taken)
             found[label] = {"color": _SPARE[k % len(_SPARE)], "linestyle": _DASHES[k % len(_DASHES)]}

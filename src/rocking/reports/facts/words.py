@@ -1,16 +1,7 @@
-"""What a restitution is called where people read it: the short names of the pages."""
+"""What a restitution is called where people read it: the short names of the models."""
 
-_NAMES = {
-    "housner": "Housner",
-    "ked": "KED",
-    "horizontal-momentum": "horizontal momentum (cos\N{SUPERSCRIPT TWO}\N{GREEK SMALL LETTER ALPHA})",
-    "shifted-impulse": "shifted impulse",
-    "distributed-impulse": "distributed impulse",
-    "plastic-winkler": "plastic Winkler",
-    "contact-bed": "contact bed",
-    "calibrated": "calibrated",
-    "fixed": "given value",
-}
+from rocking.restitution import models
+
 _EQUALS = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
 
 
@@ -26,8 +17,8 @@ def restitution_words(label: str) -> str:
     """
     factor, _, model = label.rpartition("*")
     name, _, parameters = model.partition(":")
-    if name in _NAMES:
-        told = [_NAMES[name], *(one.strip().replace("=", _EQUALS) for one in parameters.split(",") if one)]
+    if name in (kinds := models()) and kinds[name].short_name:
+        told = [kinds[name].short_name, *(one.strip().replace("=", _EQUALS) for one in parameters.split(",") if one)]
         times = f"{factor}\N{NO-BREAK SPACE}\N{MULTIPLICATION SIGN}\N{NO-BREAK SPACE}" if factor else ""
         return times + ", ".join(told)
     if label.startswith("left "):

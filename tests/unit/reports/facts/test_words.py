@@ -7,6 +7,7 @@ import pytest
 
 from rocking import app
 from rocking.evidence._coefficient_table import CALIBRATED, default_models
+from rocking.plots.style import model_styles
 from rocking.reports.facts.words import restitution_words
 from rocking.restitution import models
 
@@ -26,6 +27,14 @@ def test_paper_and_pages_agree() -> None:
     pages = words_of_the_pages()
     assert set(pages) == {*models(), CALIBRATED}
     assert {name: restitution_words(name) for name in pages} == pages
+
+
+def test_curves_have_the_same_colour_on_paper_and_on_pages() -> None:
+    """The colour of a model stands with the model; the table of the pages repeats it."""
+    rows = re.findall(r'"?([a-z-]+)"?: { colour: "(#[0-9A-F]{6})"', PALETTE.read_text("utf-8"))
+    styles = {name: style["color"] for name, style in model_styles().items()}
+    assert len(styles) == 7
+    assert {name: colour for name, colour in rows if name != CALIBRATED} == styles
 
 
 def test_no_model_is_called_by_its_key() -> None:
