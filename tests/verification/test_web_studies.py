@@ -20,9 +20,7 @@ import numpy as np
 import pytest
 import websockets
 
-from rocking.campaigns.jobs import Job, JobFolder
-from rocking.campaigns.jobs.results import Results
-from rocking.tables import to_netcdf
+from rocking.campaigns.jobs import Job, JobFolder, export
 
 Tables = dict[str, Any]
 
@@ -168,11 +166,9 @@ def _same_as_alone(folder: Path, table: bytes) -> None:
     """Compute the job without a server and without interruption, and compare every byte of every value."""
     import h5netcdf
 
-    from rocking.campaigns.jobs import export
-
     alone = JobFolder.create(folder / "alone", Job.read(folder / "job.toml"))
     alone.run(workers=1)
-    to_netcdf(Results(alone.job.study, alone.campaign, alone.job.provenance).grid, folder / "alone.nc")
+    export(alone, folder / "alone.nc")
     with h5netcdf.File(folder / "server.nc") as mine, h5netcdf.File(folder / "alone.nc") as theirs:
         assert set(mine.variables) == set(theirs.variables)
         for name in theirs.variables:

@@ -12,6 +12,9 @@ from rocking.campaigns.status import NOISE, CampaignStatus, Estimate
 from rocking.dynamics.plane.fast_engine import RESULTS
 from rocking.studies.histories import Histories
 
+BYTES = sum(np.dtype(kind).itemsize for kind in RESULTS.values())
+"""Results of one history [bytes]."""
+
 _BESIDE = 8192
 _WARM = 4
 _RUN = 2048
@@ -45,7 +48,7 @@ def forecast(status: CampaignStatus, plan: Plan, histories: Histories) -> Foreca
     """Compute a sample of the histories, and compare the room on the disk with what is needed."""
     left, chunks = status.histories - status.histories_done, status.chunks - status.chunks_done
     work = trial(histories).at(1.0 / left) if left else Estimate(0.0, 0.0, 0.0)
-    needed = left * sum(np.dtype(kind).itemsize for kind in RESULTS.values()) + chunks * _BESIDE
+    needed = left * BYTES + chunks * _BESIDE
     free = shutil.disk_usage(status.folder).free
     if free < needed:
         raise CampaignStorageError(

@@ -10,7 +10,7 @@ from typing import Any
 from rocking.campaigns import CampaignStorageError, Progress, disk, jobs
 from rocking.campaigns.jobs import JobFolder, assessment, exports_of
 from rocking.campaigns.jobs.exporting import write_provenance
-from rocking.campaigns.jobs.round_status import finished_rounds
+from rocking.campaigns.jobs.rounds import finished_rounds
 from rocking.cli.campaign_output import bar
 from rocking.errors import InvalidValueError, RockingError
 

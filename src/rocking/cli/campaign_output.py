@@ -22,7 +22,7 @@ from rocking.campaigns import (
 )
 from rocking.campaigns.jobs import Job, JobFolder, JobStatus, forecast, status_of, verified
 from rocking.campaigns.jobs.folder import JOB
-from rocking.campaigns.jobs.round_status import resume
+from rocking.campaigns.jobs.rounds import resume
 from rocking.errors import InvalidValueError
 
 INTERRUPTED, STORAGE, BUSY, DAMAGED = 3, 4, 5, 6

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from rocking.campaigns.jobs import JobFolder
-    from rocking.campaigns.jobs.answer import AdaptiveResult
+    from rocking.campaigns.jobs.adaptive import AdaptiveResult
 
 _HELD = 256 * 2**20
 _ANSWERS = 64 * 2**20

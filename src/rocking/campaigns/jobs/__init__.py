@@ -1,12 +1,10 @@
 """Jobs: a TOML file says what a campaign computes; its results become files with their provenance."""
 
-from rocking.campaigns.jobs.comparison import comparison
 from rocking.campaigns.jobs.exporting import export, exports_of
-from rocking.campaigns.jobs.findings import analyses, answer, assessment
+from rocking.campaigns.jobs.findings import analyses, answer, assessment, comparison, measure_comparison
 from rocking.campaigns.jobs.folder import JobFolder, JobStatus, status_of, verified
 from rocking.campaigns.jobs.forecasting import JobForecast, forecast
 from rocking.campaigns.jobs.job import Job
-from rocking.campaigns.jobs.measures import measure_comparison
 
 __all__ = [
     "Job",

@@ -1,29 +1,43 @@
-"""Finished campaigns as files: every history, or the fragility that they make."""
+"""Finished campaigns as files: every history, or what the study makes of them, with their provenance."""
 
 import json
 import os
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from rocking import checks
 from rocking.campaigns import disk
-from rocking.campaigns.jobs.comparison import COMPARED, comparable, comparison, comparison_table
-from rocking.campaigns.jobs.findings import answer, refuse_unfinished
+from rocking.campaigns.jobs.findings import (
+    analyses,
+    answer,
+    comparable,
+    comparison,
+    label_of,
+    measure_comparison,
+    refuse_unfinished,
+)
 from rocking.campaigns.jobs.folder import JobFolder
-from rocking.campaigns.jobs.fragility_export import ANALYSES, fragility_model, write_fragility
-from rocking.campaigns.jobs.measures import MEASURES, measure_comparison, measures_table, told_of
-from rocking.campaigns.jobs.results import Results
-from rocking.campaigns.jobs.round_status import finished_rounds
+from rocking.campaigns.jobs.kinds.fragility import ANALYSES, MEASURES
+from rocking.campaigns.jobs.rounds import finished_rounds
+from rocking.campaigns.jobs.study import TYPES, pieces_of
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.statistics.goodness import FEWEST
-from rocking.studies.fragility.curves import Crossing, check_crossing
+from rocking.studies.fragility.curves import Crossing, check_crossing, nested
+from rocking.studies.fragility.measure_comparison import MeasureComparison
+from rocking.studies.sensitivity.comparison import Sensitivity
 from rocking.tables import (
+    Column,
     Grid,
     Table,
     add_to_netcdf,
     target_of,
+    text_array,
     to_csv,
     to_excel,
     to_mat,
@@ -31,10 +45,14 @@ from rocking.tables import (
     to_parquet,
 )
 
+if TYPE_CHECKING:
+    from rocking.studies.fragility.curves import FragilityModel
+
 MOST_REPETITIONS = 100_000
 """Most repetitions of a bootstrap."""
 
-Progress = Callable[[int], None] | None
+COMPARED = ("flips", "differences")
+"""Tables of a comparison."""
 
 FORMATS: dict[str, Callable[[Grid, Path], object]] = {
     ".nc": to_netcdf,
@@ -53,19 +71,35 @@ TABLE_FORMATS: dict[str, Callable[[Table, Path], object]] = {
 }
 """What writes a table, by the end of the file's name."""
 
-SPECIAL: dict[str, tuple[str, ...]] = {
-    **ANALYSES,
+ENDINGS: dict[str, tuple[str, ...]] = {
+    "histories": tuple(FORMATS),
+    "fragility": (".nc", ".csv", ".mat", ".xlsx", ".xml"),
+    "fragility-points": (".csv",),
+    "fema-p58": (".csv",),
     "refined": tuple(TABLE_FORMATS),
     "boundary": tuple(TABLE_FORMATS),
-    "crossings": (".nc", *TABLE_FORMATS),
-    "minima": (".nc", *TABLE_FORMATS),
-    **dict.fromkeys(COMPARED, (".nc", *TABLE_FORMATS)),
-    MEASURES: (".nc", *TABLE_FORMATS),
+    **dict.fromkeys(("crossings", "minima", *COMPARED, MEASURES), (".nc", *TABLE_FORMATS)),
 }
-"""What can be exported of some kinds beside their histories, and how."""
+"""What can be exported of campaigns, and how."""
 
 _OF_ONE = (*ANALYSES, MEASURES)
-"""What each restitution has of its own."""
+_WHY = {
+    MEASURES: ", which are compared over the motions of a cloud as they are",
+    **dict.fromkeys(COMPARED, " without several restitutions to compare"),
+}
+_MAIN = ("software", "campaign", "kind", "engine", "histories_key")
+_CURVES = {"fragility": "parameters", "fragility-points": "points", "fema-p58": "fema-p58"}
+_RANKED = {
+    "efficiency": "scatter of ln(theta/alpha) about its line over the ln of the measure",
+    "slope": "slope of that line",
+    "proficiency": "efficiency over the size of the slope",
+    "determination": "R squared of that line",
+    "overturning_dispersion": "dispersion of the lognormal curve of overturning",
+    "overturning_verdict": "what can be said of that curve",
+    "rocked": "histories that the line rests on",
+    "overturned": "histories that overturned",
+    "barely_lifted": "histories that rocked too little for the line",
+}
 
 
 def exports_of(folder: JobFolder) -> list[str]:
@@ -81,21 +115,12 @@ def exports_of(folder: JobFolder) -> list[str]:
     list of str
         The first is what is written unless something else is asked for.
     """
-    study = folder.job.study
-    compared = COMPARED if comparable(folder) else ()
-    if study.finish is not None:
-        ranked = (MEASURES,) if folder.job.document.campaign.kind == "cloud" else ()
-        return ["histories", *ANALYSES, *ranked, *compared]
-    if study.search is None:
-        return ["histories", *compared]
-    if folder.job.document.map is not None:
-        return ["histories", "refined", "boundary"]
-    return ["crossings", "minima", "histories"]
+    return [*folder.job.study.exports, *(COMPARED if comparable(folder) else ())]
 
 
 def export(
     folder: JobFolder, path: str | os.PathLike[str], what: str | None = None, *, restitution: str | None = None,
-    crossing: Crossing | None = None, bootstrap: int | None = None, progress: Progress = None,
+    crossing: Crossing | None = None, bootstrap: int | None = None, progress: Callable[[int], None] | None = None,
 ) -> Path:  # fmt: skip
     """Write a finished campaign into a file, which is there as a whole or not at all.
 
@@ -142,19 +167,23 @@ def export(
     _check_what(what, target.suffix.lower(), restitution, crossing, folder)
     _check_bootstrap(what, bootstrap)
     refuse_unfinished(folder)
-    results = Results(folder.job.study, folder.campaign, provenance_of(folder), progress)
+    provenance = provenance_of(folder)
     unfinished = target.with_name(f".{target.stem}.{os.getpid()}.part{target.suffix}")
     with disk.guarded(target.parent, lambda: "the campaign itself is safe"):
         try:
             if what == MEASURES:
-                results = _measures(results, unfinished, restitution, folder)
+                ranking = measure_comparison(folder, restitution, progress)
+                provenance |= {"measures_left_out": dict(ranking.left_out), "least_rotation_over_alpha": ranking.least}
+                provenance |= {} if restitution is None else {"restitution": restitution}
+                _write_table(measures_table(ranking), unfinished, _attributes(folder, provenance))
             elif what in ANALYSES:
-                model = fragility_model(folder, restitution, crossing, bootstrap)
-                write_fragility(model, unfinished, what, results.provenance)
+                _write_fragility(_fragility(folder, restitution, crossing, bootstrap), unfinished, what, provenance)
+            elif what in COMPARED:
+                _write_table(comparison_table(comparison(folder), what), unfinished, _attributes(folder, provenance))
             else:
-                _tables(results, unfinished, what, folder)
+                _write_histories(folder, unfinished, what, _attributes(folder, provenance), progress)
             if target.suffix.lower() in {".csv", ".xml"}:  # neither has room for it
-                write_provenance(results.provenance, target)
+                write_provenance(provenance, target)
             unfinished.replace(target)
         finally:
             unfinished.unlink(missing_ok=True)
@@ -162,38 +191,38 @@ def export(
 
 
 def provenance_of(folder: JobFolder) -> dict[str, Any]:
-    """Return where the results of a finished campaign come from.
-
-    Returns that of the job; of an adaptive study also ``rounds`` and ``all_histories``.
-    """
-    if folder.job.study.search is None or (told := finished_rounds(folder.path)) is None:
-        return folder.job.provenance
-    return {**folder.job.provenance, "rounds": told["rounds"], "all_histories": told["histories"]}
+    """Return where the results of a finished campaign come from, of an adaptive study with rounds and all histories."""
+    if folder.job.study.search is None or (noted := finished_rounds(folder.path)) is None:
+        return dict(folder.job.provenance)
+    return {**folder.job.provenance, "rounds": noted["rounds"], "all_histories": noted["histories"]}
 
 
 def write_provenance(provenance: dict[str, Any], beside: Path) -> Path:
-    """Write where a file comes from into another beside it.
-
-    Returns the same name with ``.provenance.json`` behind it.
-    """
+    """Write where a file comes from into another beside it, of the same name with ``.provenance.json`` behind it."""
     path = beside.with_name(f"{beside.name}.provenance.json")
     disk.write_new(path, (json.dumps(provenance, indent=1, sort_keys=True) + "\n").encode())
     return path
 
 
+def _attributes(folder: JobFolder, provenance: dict[str, Any]) -> dict[str, Any]:
+    """Return the provenance as attributes of a file: the main facts each by itself, and all of it as JSON."""
+    about = folder.job.study.attributes
+    plain = {name: int(v) if isinstance(v, bool) else v for name, v in about.items() if v is not None}
+    main = {name: provenance[name] for name in _MAIN}
+    return {**main, **plain, "provenance": json.dumps(provenance, sort_keys=True)}
+
+
 def _check_what(
     what: str, suffix: str, restitution: str | None, crossing: Crossing | None, folder: JobFolder
 ) -> None:  # fmt: skip
-    every = ["histories", *SPECIAL]
-    if what not in every:
-        raise InvalidValueError(f"what must be one of {', '.join(every)}, got {what!r:.60}")
-    allowed = FORMATS if what == "histories" else SPECIAL[what]
+    if what not in ENDINGS:
+        raise InvalidValueError(f"what must be one of {', '.join(ENDINGS)}, got {what!r:.60}")
+    allowed = ENDINGS[what]
     if suffix not in allowed:
         more = "; .xml (NRML) is for the fragility" if suffix == ".xml" and what == "histories" else ""
         if suffix == ".nc" and what in {"refined", "boundary"}:
             more = "; the .nc of the histories (--what histories) holds points and polylines too"
         raise InvalidValueError(f"{what} can be written as {', '.join(allowed)}, got {suffix or 'no ending'!r}{more}")
-    labels = list(folder.job.problem.restitutions)
     if what not in _OF_ONE and restitution is not None:
         raise InvalidValueError("restitution goes with fragility, fema-p58 and measures; every history has its own")
     if what not in ANALYSES and crossing is not None:
@@ -204,7 +233,7 @@ def _check_what(
     if what in ANALYSES:
         check_crossing("refuse" if crossing is None else crossing)
     if what in _OF_ONE:
-        _check_label(what, restitution, labels)
+        label_of(what, restitution, list(folder.job.problem.restitutions))
 
 
 def _check_bootstrap(what: str, bootstrap: int | None) -> None:
@@ -217,38 +246,28 @@ def _check_bootstrap(what: str, bootstrap: int | None) -> None:
         raise InvalidValueError(f"bootstrap must be 0 or a whole number >= {FEWEST}, got {bootstrap!r}")
 
 
-_WHY = {
-    MEASURES: ", which are compared over the motions of a cloud as they are",
-    **dict.fromkeys(COMPARED, " without several restitutions to compare"),
-}
-
-
-def _check_label(what: str, restitution: str | None, labels: list[str]) -> None:
-    if restitution is None and len(labels) > 1:
-        raise InvalidValueError(f"restitution must be one of {', '.join(labels)}: each has a {what} of its own")
-    if restitution is not None and restitution not in labels:
-        raise InvalidValueError(f"restitution must be one of {', '.join(labels)}, got {restitution!r:.60}")
-
-
-def _tables(results: Results, path: Path, what: str, folder: JobFolder) -> None:
-    """Write histories, or the tables of an adaptive study."""
-    suffix, several = path.suffix.lower(), folder.job.study.search is not None
-    if what in COMPARED:
-        _table(comparison_table(comparison(folder), what), path, results.attributes)
-        return
+def _write_histories(
+    folder: JobFolder, path: Path, what: str, attributes: dict[str, Any], progress: Callable[[int], None] | None
+) -> None:
+    """Write histories, or the tables of an adaptive study; a refined map has room for both in one .nc."""
+    study, suffix = folder.job.study, path.suffix.lower()
     if what == "histories":
-        FORMATS[suffix](results.grid, path)
-    if not several or (what == "histories" and (suffix != ".nc" or folder.job.document.map is None)):
-        return
-    found = answer(folder)
-    attributes = results.attributes | found.attributes
+
+        def pieces() -> Iterator[tuple[int, int, Arrays]]:
+            return pieces_of(study, folder.campaign.pieces(), progress)
+
+        FORMATS[suffix](Grid("histories", study.dims, study.coordinates, TYPES, pieces, attributes), path)
+        if suffix != ".nc" or "refined" not in study.exports:
+            return
+    result = answer(folder)
+    attributes = attributes | result.attributes
     if suffix == ".nc":
-        add_to_netcdf(found.tables, path, attributes)
+        add_to_netcdf(result.tables, path, attributes)
     else:
-        _table(found.tables[what], path, attributes)
+        _write_table(result.tables[what], path, attributes)
 
 
-def _table(table: Table, path: Path, attributes: dict[str, Any]) -> None:
+def _write_table(table: Table, path: Path, attributes: dict[str, Any]) -> None:
     suffix = path.suffix.lower()
     if suffix == ".nc":
         add_to_netcdf({table.row: table}, path, attributes)
@@ -256,10 +275,88 @@ def _table(table: Table, path: Path, attributes: dict[str, Any]) -> None:
         TABLE_FORMATS[suffix](replace(table, provenance=attributes), path)
 
 
-def _measures(results: Results, path: Path, restitution: str | None, folder: JobFolder) -> Results:
-    """Write the ranking of measures; return the results, which know what cannot be said in its rows."""
-    found = measure_comparison(folder, restitution, results.progress)
-    about = told_of(found) | ({} if restitution is None else {"restitution": restitution})
-    results = replace(results, provenance=results.provenance | about)
-    _table(measures_table(found), path, results.attributes)
-    return results
+def _fragility(
+    folder: JobFolder, restitution: str | None, crossing: Crossing | None, bootstrap: int | None
+) -> "FragilityModel":
+    """Return the curves of a finished campaign with goodness of fit; all random numbers have its seed."""
+    from rocking.studies.fragility.curves import model_of
+
+    campaign, how = folder.job.document.campaign, folder.job.document.export
+    every = analyses(folder)
+    repetitions = (how.bootstrap if how is not None else 0) if bootstrap is None else bootstrap
+    analysis = every[restitution] if restitution else next(iter(every.values()))
+    model = model_of(analysis, campaign.name, bootstrap=repetitions, seed=campaign.seed)
+    way = (how.crossing if how is not None else "refuse") if crossing is None else crossing
+    return nested(model, way) if way == "common-dispersion" else model
+
+
+def _write_fragility(model: "FragilityModel", path: Path, what: str, provenance: dict[str, Any]) -> None:
+    from rocking.studies.fragility import export as files
+    from rocking.studies.fragility.export import to_nrml
+
+    suffix = path.suffix.lower()
+    if suffix == ".csv":
+        files.to_csv(model, path, _CURVES[what])
+        return
+    if suffix != ".xml":
+        model = replace(model, about={**model.about, "provenance": json.dumps(provenance, sort_keys=True)})
+    writers: dict[str, Callable[[Any, Path], Path]] = {
+        ".nc": files.to_netcdf, ".mat": files.to_mat, ".xlsx": files.to_excel, ".xml": to_nrml,
+    }  # fmt: skip
+    writers[suffix](model, path)
+
+
+def measures_table(ranking: MeasureComparison) -> Table:
+    """Return a ranking of measures as a table, the most efficient first, with ``p(name)`` for each metadata column."""
+    rows = [row | {"unit": "1" if row["unit"] == "-" else row["unit"]} for row in ranking.rows()]
+
+    def meaning(name: str) -> str:
+        return _RANKED.get(name, f"p-value of the residuals over {name[2:-1]}" if name.startswith("p(") else name)
+
+    return _of_rows("rank", rows, meaning)
+
+
+def comparison_table(compared: Sensitivity, what: str) -> Table:
+    """Return the ``flips`` of a comparison, or its ``differences`` cell by cell."""
+    if what == "flips":
+        return _of_rows("choice", compared.summary(), lambda _: "")
+    # analyses call the largest rotation over alpha by its own name
+    peak_name = "peak_ratio" if "peak_ratio" in compared.datasets[compared.baseline] else "rotation"
+    verdict, peak = compared.differences("verdict"), compared.differences(peak_name)
+    columns = {}
+    for k, name in enumerate(verdict.dims):
+        values = np.asarray(verdict[name].values)
+        # words are kept once: written out they would take many times the room of the numbers
+        whole = values if values.dtype.kind in "iufb" else text_array([str(value) for value in values])
+        shape = [-1 if k == axis else 1 for axis in range(verdict.ndim)]
+        columns[str(name)] = Column(np.broadcast_to(whole.reshape(shape), verdict.shape).ravel())
+    columns["verdict"] = Column(verdict.values.ravel(), meaning=str(verdict.attrs["long_name"]))
+    columns["peak_ratio"] = Column(peak.values.ravel(), meaning=str(peak.attrs["long_name"]))
+    return Table("difference", columns)
+
+
+def _of_rows(row: str, rows: list[dict[str, Any]], meaning: Callable[[str], str]) -> Table:
+    """Return rows of any keys as a table; NaN, or no text, where a row has none."""
+    columns: dict[str, Column] = {}
+    for name in dict.fromkeys(name for each in rows for name in each):
+        values = [each.get(name) for each in rows]
+        if any(isinstance(value, str) for value in values):
+            array = text_array(["" if value is None else str(value) for value in values])
+        else:
+            array = np.array([np.nan if value is None else value for value in values])
+        columns[name] = Column(array, meaning=meaning(name), variable=variable_of(name, columns))
+    return Table(row, columns)
+
+
+def variable_of(name: str, taken: Mapping[str, Column]) -> str:
+    """Return a name that MATLAB and netCDF take, and no other column has.
+
+    >>> variable_of("overturned: median ratio", {})
+    'overturned_median_ratio'
+    """
+    variable = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_")
+    others = {each.variable for each in taken.values()}
+    count = 2
+    while (unique := variable if count == 2 and variable not in others else f"{variable}_{count}") in others:
+        count += 1
+    return unique

@@ -1,19 +1,33 @@
-"""What the studies of finished campaigns have found, as the Python calls return it."""
+"""Results of the studies of finished campaigns, as the Python calls return them."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rocking.campaigns import CampaignIncompleteError
-from rocking.campaigns.jobs.answer import AdaptiveResult
+from rocking.campaigns.jobs.adaptive import AdaptiveResult
 from rocking.campaigns.jobs.folder import JobFolder
-from rocking.campaigns.jobs.round_status import resume, status_of_rounds
-from rocking.campaigns.jobs.rounds import replayed
-from rocking.errors import InvalidValueError
+from rocking.campaigns.jobs.kinds.fragility import MEASURES, columns_of, measures_of
+from rocking.campaigns.jobs.rounds import replayed, resume, status_of_rounds
+from rocking.campaigns.jobs.study import TYPES, pieces_of
+from rocking.dynamics.impact_laws import ImpactLaw, RandomRestitution
+from rocking.errors import InvalidValueError, extra
+from rocking.quantities import attributes
+from rocking.studies.fragility.cloud_analysis import clearly_lifted
+from rocking.studies.fragility.measure_comparison import MeasureComparison, compare_measures
+from rocking.studies.sensitivity.comparison import Sensitivity
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from rocking.studies.inventory.assessment import Assessment
 
 READ = ("outcome", "peak_rotation", "least_force")
 """All that analyses and assessments read of a history: 17 bytes."""
+
+_COMPARED = ("outcome", "peak_ratio")
+_NOTHING = "nothing to export because"
 
 
 def refuse_unfinished(folder: JobFolder) -> None:
@@ -25,14 +39,15 @@ def refuse_unfinished(folder: JobFolder) -> None:
     else:
         known, begun, complete = status_of_rounds(path, verify=False)
         status = known or folder.campaign.status(verify=False)
-        share = f"{path} is not finished: {status.chunks_done} of {status.chunks} chunks of {_rounds(max(begun, 1))}"
-        share += " so far, and more rounds may follow"
+        rounds = "one round" if begun <= 1 else f"{begun} rounds"
+        share = f"{path} is not finished: {status.chunks_done} of {status.chunks} chunks of {rounds} so far"
+        share += ", and more rounds may follow"
     if not complete:
-        raise CampaignIncompleteError(f"nothing to export because {share}; go on with: {resume(path)}")
+        raise CampaignIncompleteError(f"{_NOTHING} {share}; go on with: {resume(path)}")
 
 
-def _rounds(count: int) -> str:
-    return "one round" if count == 1 else f"{count} rounds"
+def _refused(folder: JobFolder, what: str) -> InvalidValueError:
+    return InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no {what}')
 
 
 def analyses(folder: JobFolder) -> dict[str, Any]:
@@ -55,12 +70,12 @@ def analyses(folder: JobFolder) -> dict[str, Any]:
     """
     study = folder.job.study
     if study.finish is None:
-        raise InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no fragility')
+        raise _refused(folder, "fragility")
     return study.finish(folder.campaign.results(*READ))
 
 
 def answer(folder: JobFolder) -> AdaptiveResult:
-    """Return what an adaptive study has found, from its rounds on disk.
+    """Return the result of an adaptive study, from its rounds on disk.
 
     Parameters
     ----------
@@ -69,7 +84,7 @@ def answer(folder: JobFolder) -> AdaptiveResult:
 
     Returns
     -------
-    Answer
+    AdaptiveResult
         What the Python call returns, and tables of it.
 
     Raises
@@ -81,7 +96,7 @@ def answer(folder: JobFolder) -> AdaptiveResult:
     """
     search = folder.job.study.search
     if search is None:
-        raise InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no rounds')
+        raise _refused(folder, "rounds")
     return replayed(search, folder.path)
 
 
@@ -105,7 +120,123 @@ def assessment(folder: JobFolder) -> "Assessment":
     """
     assess = folder.job.study.assess
     if assess is None:
-        raise InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no assessment')
+        raise _refused(folder, "assessment")
     refuse_unfinished(folder)
-    found: Assessment = assess(folder.campaign.results(*READ))
-    return found
+    made: Assessment = assess(folder.campaign.results(*READ))
+    return made
+
+
+def comparable(folder: JobFolder) -> bool:
+    """Return whether a campaign has several restitutions that `comparison` can compare."""
+    study = folder.job.study
+    return len(folder.job.problem.restitutions) > 1 and study.search is None and study.assess is None
+
+
+def comparison(folder: JobFolder) -> Sensitivity:
+    """Return how the restitution changes the results of a finished campaign, as the Python calls do.
+
+    Parameters
+    ----------
+    folder : JobFolder
+        The campaign of a job with several restitutions; the first one is what the others are compared with.
+
+    Returns
+    -------
+    Sensitivity
+        What `map_sensitivity`, `spectrum_sensitivity` and `fragility_sensitivity` return.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is only one restitution, or the kind of the campaign has none to compare.
+    CampaignIncompleteError
+        If the campaign is not finished.
+    """
+    if not comparable(folder):
+        raise InvalidValueError("a comparison needs a map, spectra, fragility or histories with several restitutions")
+    refuse_unfinished(folder)
+    choices = folder.job.problem.restitutions
+    results = _datasets(folder) if folder.job.study.finish is None else analyses(folder)
+    drawn = [
+        label for label, law in choices.items() if isinstance(law, ImpactLaw) and law.kind == RandomRestitution.kind
+    ]
+    return Sensitivity(results, baseline=next(iter(choices)), drawn=drawn)
+
+
+def _datasets(folder: JobFolder) -> "dict[str, xr.Dataset]":
+    xarray: Any = extra("xarray", "comparing restitutions")
+    study = folder.job.study
+    flat = {name: np.empty(study.histories.count, TYPES[name]) for name in _COMPARED}
+    for first, last, results in pieces_of(study, folder.campaign.pieces()):
+        for name, values in flat.items():
+            values[first:last] = results[name]
+    axis = list(study.dims).index("restitution")
+    whole = {name: np.moveaxis(values.reshape(study.shape), axis, 0) for name, values in flat.items()}
+    dims = [name for name in study.dims if name != "restitution"]
+    along = {name: study.coordinates[name] for name in dims if name in study.coordinates}
+    coords = {name: each.values for name, each in along.items() if each.dims == (name,)}
+    return {
+        label: xarray.Dataset({name: (dims, whole[name][k], attributes(name)) for name in _COMPARED}, coords)
+        for k, label in enumerate(folder.job.problem.restitutions)
+    }
+
+
+def measure_comparison(
+    folder: JobFolder, restitution: str | None = None, progress: Callable[[int], None] | None = None
+) -> MeasureComparison:
+    """Return the ranking of intensity measures over the histories of a finished cloud campaign.
+
+    Parameters
+    ----------
+    folder : JobFolder
+        The campaign.
+    restitution : str, optional
+        Label of the restitution whose histories are meant, where there are several.
+    progress : callable, optional
+        Called with a number of histories since the last call, all of the campaign in the end.
+
+    Returns
+    -------
+    MeasureComparison
+        What `compare_measures` returns for the same cloud, the measures and columns of the job.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no cloud, there are several restitutions, or nothing can be ranked.
+    CampaignIncompleteError
+        If the campaign is not finished.
+    """
+    document, study = folder.job.document, folder.job.study
+    if MEASURES not in study.exports:
+        raise InvalidValueError(f"{_NOTHING} measures are compared over a cloud, this is {document.campaign.kind!r}")
+    refuse_unfinished(folder)
+    clouds = analyses(folder)
+    cloud = clouds[label_of(MEASURES, restitution, list(clouds))]
+    names, columns = measures_of(document), columns_of(document, folder.job.problem.motions)
+    if document.export is None or document.export.columns is None:
+        rocked = clearly_lifted(cloud.responses, cloud.least)
+        columns = {name: values for name, values in columns.items() if np.unique(values[rocked]).size > 1}
+    total, count, motions = len(folder.job.problem.motions) * len(names), folder.campaign.plan.count, 0
+
+    def measured(more: int) -> None:
+        """Tell of motions, each of which is measured once for each measure, as shares of the histories."""
+        nonlocal motions
+        assert progress is not None
+        before, motions = count * motions // total, motions + more
+        progress(count * motions // total - before)
+
+    try:
+        return compare_measures(cloud, names, columns, progress=None if progress is None else measured)
+    except InvalidValueError as error:
+        raise InvalidValueError(f"{_NOTHING} {error}") from error
+
+
+def label_of(what: str, restitution: str | None, labels: list[str]) -> str:
+    """Return the restitution that is meant, where each has something of its own."""
+    if restitution is None and len(labels) > 1:
+        own = what if what == MEASURES else f"a {what}"
+        raise InvalidValueError(f"restitution must be one of {', '.join(labels)}: each has {own} of its own")
+    if restitution is not None and restitution not in labels:
+        raise InvalidValueError(f"restitution must be one of {', '.join(labels)}, got {restitution!r:.60}")
+    return labels[0] if restitution is None else restitution

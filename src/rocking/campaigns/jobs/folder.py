@@ -25,15 +25,16 @@ from rocking.campaigns import (
 )
 from rocking.campaigns.identity import NAME
 from rocking.campaigns.jobs.job import Job
-from rocking.campaigns.jobs.round_status import (
+from rocking.campaigns.jobs.rounds import (
     finished_rounds,
+    opened,
     resume,
     round_folder,
+    run_rounds,
     status_of_rounds,
     verified_rounds,
     way_out,
 )
-from rocking.campaigns.jobs.rounds import opened, run_rounds
 from rocking.errors import InvalidValueError
 from rocking.spec.reading import InputFiles, document_of, located, refuse_changes
 
@@ -73,12 +74,12 @@ class JobFolder:
             Nothing is computed yet.
         """
         path = Path(folder)
-        content: dict[str, Any] = {
+        content = {
             "job_file": job.name,
             "job_folder": str(job.folder),
             "job_sha256": _sha256(job.text.encode()),
+            "files": job.inputs,
         }
-        content |= {"files": job.inputs}
         with disk.guarded(path, lambda: "nothing was written"):
             _refuse_used(path)
             disk.make_folder(path)

@@ -1,30 +1,19 @@
 """What a job will take: time from a short trial, memory and disk."""
 
-import math
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from rocking.campaigns.forecast import trial
+from rocking.campaigns.forecast import BYTES, trial
 from rocking.campaigns.identity import usual_chunk
 from rocking.campaigns.jobs.job import Job
-from rocking.dynamics.plane.fast_engine import RESULTS
-from rocking.motions.pulse import Pulse
 from rocking.studies.histories import MOTIONS_AT_ONCE
+from rocking.studies.motion_sets import MotionSet
 
-BYTES = sum(np.dtype(kind).itemsize for kind in RESULTS.values())
-"""Results of one history [bytes]."""
-
-_KEPT = 100
-"""What an adaptive study keeps of a history, with what it takes for a moment [bytes]."""
-
-# histories of later rounds over those of the first, and over edges and halvings of a line across a map
-_OF_SEARCHES = {"pulses": (2.0, 10.0), "records": (10.0, 100.0)}
-_EDGES = (2.0, 12.0)
-
-_BASE = 150_000_000
+# what an adaptive study keeps of a history, with what it takes for a moment; memory of a worker without work [bytes]
+_KEPT, _BASE = 100, 150_000_000
 
 
 @dataclass(frozen=True)
@@ -78,61 +67,33 @@ def forecast(job: Job, workers: int = 1, folder: Path | None = None) -> JobForec
 
     Returns
     -------
-    Forecast
+    JobForecast
         Estimates.
     """
-    histories = job.study.histories
-    chunk = min(job.document.campaign.chunk or usual_chunk(histories), histories.count)
-    chunks = -(-histories.count // chunk)
-    each, later = trial(histories), _later(job)
-    work = each.at(workers / histories.count)
+    histories, search = job.study.histories, job.study.search
+    count = histories.count
+    chunk = min(job.document.campaign.chunk or usual_chunk(histories), count)
+    chunks = -(-count // chunk)
+    each, later = trial(histories), None if search is None else search.later(count)
+    work = each.at(workers / count)
+    memory = workers * (_BASE + 4 * BYTES * chunk + _bytes_of(job.problem.motions))
+    if search is not None and later is not None:
+        memory += _KEPT * (count + int(search.kept * later[1]))
     return JobForecast(
-        histories.count,
-        chunks,
-        chunk,
-        1.0 / each.seconds,
-        work.seconds,
-        (work.low, work.high),
-        workers * (_BASE + 4 * BYTES * chunk + _motions(job)) + _held(job, later),
-        BYTES * histories.count + 5000 * chunks,
-        None if folder is None else shutil.disk_usage(_existing(folder)).free,
-        later,
-    )
+        count, chunks, chunk, 1.0 / each.seconds, work.seconds, (work.low, work.high), memory,
+        disk=BYTES * count + 5000 * chunks,
+        free=None if folder is None else shutil.disk_usage(_existing(folder)).free,
+        later=later,
+    )  # fmt: skip
 
 
-def _later(job: Job) -> tuple[int, int] | None:
-    """Return how many histories later rounds usually have: as jobs of many sizes had them."""
-    if job.study.search is None:
-        return None
-    count, table = job.study.histories.count, job.document.map
-    if table is None or table.refine is None:
-        low, high = _OF_SEARCHES["pulses" if job.problem.motions[0].__class__ is Pulse else "records"]
-        return int(low * count), int(high * count)
-    # a line across the map, cut into edges of the finest level, each found, and halved until it is as short as asked
-    edges = math.sqrt(count) * 2.0**table.refine
-    each = edges * (2.0 + max(0.0, -math.log2(table.tolerance * edges)))
-    return int(_EDGES[0] * each), int(_EDGES[1] * each)
-
-
-def _held(job: Job, later: tuple[int, int] | None) -> int:
-    """Return the room of what an adaptive study keeps of its rounds [bytes]."""
-    if later is None:
-        return 0
-    kept = later[1] if job.document.map is None else later[1] // 4  # halvings of edges are forgotten
-    return _KEPT * (job.study.histories.count + kept)
-
-
-def _motions(job: Job) -> int:
+def _bytes_of(motions: MotionSet) -> int:
     """Return the room that motions take which are held in memory [bytes]."""
-    motions = job.problem.motions
     if not motions.in_memory:
         return MOTIONS_AT_ONCE * 8 * 8192
-    samples = sum(np.size(getattr(motions[k], "acceleration", 0)) for k in range(len(motions)))
-    return 3 * 8 * int(samples)
+    return 3 * 8 * int(sum(np.size(getattr(motions[k], "acceleration", 0)) for k in range(len(motions))))
 
 
 def _existing(folder: Path) -> Path:
     path = folder.resolve()
-    while not path.exists():
-        path = path.parent
-    return path
+    return next(each for each in (path, *path.parents) if each.exists())

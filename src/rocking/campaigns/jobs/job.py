@@ -1,11 +1,20 @@
 """A job: a TOML file that says what a campaign computes."""
 
+import hashlib
 import os
+import platform
+import sys
 from dataclasses import dataclass
 from functools import cached_property
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from rocking.campaigns.identity import software
+from rocking.dynamics.plane import fast_engine
+from rocking.restitution import RestitutionModel
 from rocking.spec.reading import document_of, located, read_text
 
 if TYPE_CHECKING:
@@ -106,9 +115,9 @@ class Job:
     @cached_property
     def study(self) -> "Study":
         """Histories, what they are over, and what is read off their results."""
-        from rocking.campaigns.jobs.kinds import KINDS
+        from rocking.campaigns.jobs.kinds import study_of
 
-        return KINDS[self.document.campaign.kind](self.problem)
+        return study_of(self.problem)
 
     @property
     def inputs(self) -> list[dict[str, Any]]:
@@ -117,7 +126,41 @@ class Job:
 
     @cached_property
     def provenance(self) -> dict[str, Any]:
-        """Where its results come from."""
-        from rocking.campaigns.jobs.provenance import provenance
+        """Where its results come from, as plain values; no time and no folder is in it."""
+        histories, campaign, problem = self.study.histories, self.document.campaign, self.problem
+        engine = fast_engine.chosen(histories.engine, histories.law)
+        motions = {name: value for name, value in problem.motions.description().items() if name != "motions"}
+        return {
+            "software": f"rocking {software()}",
+            "campaign": campaign.name,
+            "kind": campaign.kind,
+            "note": campaign.note or "",
+            "job": self.text,
+            "job_sha256": hashlib.sha256(self.text.encode()).hexdigest(),
+            "inputs": self.inputs,
+            "histories": histories.count,
+            "histories_key": histories.key(),
+            "restitution": [_model(label, choice) for label, choice in problem.restitutions.items()],
+            "settings": problem.settings.stated,
+            "engine": f"{engine} ({fast_engine.instruction_set()})" if engine == "fast" else engine,
+            "seeds": {
+                "campaign": campaign.seed,
+                "motions": [table.seed or 0 for table in self.document.motions if table.synthetic is not None],
+                "restitution": [choice.seed for choice in problem.restitutions.values() if hasattr(choice, "seed")],
+            },
+            "motions": motions | {"count": len(problem.motions)},
+            "platform": {
+                "system": platform.system(),
+                "machine": platform.machine(),
+                "byteorder": sys.byteorder,
+                "python": platform.python_version(),
+                "numpy": np.__version__,
+                "scipy": version("scipy"),
+            },
+        }
 
-        return provenance(self)
+
+def _model(label: str, choice: Any) -> dict[str, str]:
+    if not isinstance(choice, RestitutionModel):
+        return {"label": label}
+    return {"label": label, "title": choice.title, "reference": choice.reference}

@@ -1,40 +1,116 @@
 """Rounds of an adaptive study on disk: each is a campaign of its own, and is not computed again by whoever goes on."""
 
 import json
-from collections.abc import Callable, Iterator
+import shlex
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
-
-import numpy as np
+from typing import Any, TypeVar
 
 from rocking.campaigns import (
     Campaign,
     CampaignDamagedError,
     CampaignIncompleteError,
     CampaignInterrupted,
+    CampaignStatus,
     CampaignStorageError,
     Executor,
     Progress,
     Summary,
+    Verification,
     disk,
 )
-from rocking.campaigns.disk import FolderLock
+from rocking.campaigns.disk import FolderLock, holder
 from rocking.campaigns.executors import Interruption, WorkerTask
 from rocking.campaigns.identity import NAME, SHARDS, Identity
-from rocking.campaigns.jobs.answer import AdaptiveResult
-from rocking.campaigns.jobs.asked import Compute, first_round
-from rocking.campaigns.jobs.round_status import FINISHED, finished_rounds, resume, round_folder, way_out
+from rocking.campaigns.jobs.adaptive import AdaptiveResult, Search, first_round
 from rocking.campaigns.processes import chosen
-from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
+from rocking.campaigns.reading import verified
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.studies.histories import Histories
+
+_T = TypeVar("_T")
 
 NEEDED = ("outcome", "status", "side", "peak_rotation", "impacts", "overturning_time", "least_force")
 """What studies decide on: no more of a round is held in memory."""
 
+FINISHED = "finished.json"
+"""Written when a study has asked for its last round: how many there were, and of how many histories."""
 
-Search = Callable[[Compute], AdaptiveResult]
+
+def round_folder(folder: Path, number: int) -> Path:
+    """Return the folder of a round; it may not be there yet."""
+    return folder / f"round-{number:03}"
+
+
+def resume(folder: Path) -> str:
+    """Return the command that goes on with a campaign.
+
+    >>> resume(Path("my study"))
+    "rocking campaign resume 'my study'"
+    """
+    return f"rocking campaign resume {shlex.quote(str(folder))}"
+
+
+@contextmanager
+def way_out(folder: Path, number: int) -> Iterator[None]:
+    """Say of a damaged round what its user can do: rounds are not campaigns that anybody began."""
+    try:
+        yield
+    except CampaignDamagedError as error:
+        path = round_folder(folder, number)
+        if NAME not in str(error):  # a shard or the ledger: whoever goes on makes it anew
+            raise CampaignDamagedError(f"{str(error).split('; run ')[0]}; go on with: {resume(folder)}") from error
+        raise CampaignDamagedError(
+            f"{path / NAME} is damaged; remove {path} and go on with: {resume(folder)}; the other rounds are kept"
+        ) from error
+
+
+def _of_rounds(folder: Path, look: Callable[[Path], _T]) -> list[_T]:
+    """Return what is seen in the folders of the rounds that have begun."""
+    seen: list[_T] = []
+    while ((path := round_folder(folder, len(seen))) / NAME).exists():
+        with way_out(folder, len(seen)):
+            seen.append(look(path))
+    return seen
+
+
+def _summed(each: Sequence[_T], *names: str) -> _T:
+    """Return the first of some reports with numbers summed up, and lists of sentences one after another."""
+    columns = {name: [getattr(one, name) for one in each] for name in names}
+    sums = {name: sum(values, type(values[0])()) for name, values in columns.items()}
+    return replace(each[0], **sums)  # type: ignore[type-var]
+
+
+def status_of_rounds(folder: Path, *, verify: bool = True) -> tuple[CampaignStatus | None, int, bool]:
+    """Return the status of the rounds that have begun, how many they are, and whether all are there and complete."""
+    rounds = _of_rounds(folder, lambda path: Campaign.status_of(path, verify=verify))
+    if not rounds:
+        return None, 0, False
+    sums = _summed(
+        rounds, "histories", "histories_done", "chunks", "chunks_done", "seconds", "retries", "damaged", "broken"
+    )
+    status = replace(sums, folder=folder, running=holder(folder), work=None)
+    finished = finished_rounds(folder)
+    return status, len(rounds), finished is not None and finished["rounds"] == len(rounds) and status.complete
+
+
+def verified_rounds(folder: Path) -> list[Verification]:
+    """Read everything that the rounds have that have begun."""
+    return _of_rounds(folder, verified)
+
+
+def finished_rounds(folder: Path) -> dict[str, int] | None:
+    """Return how many rounds and histories there were, as noted when the last round was through; None before."""
+    try:
+        noted = json.loads((folder / FINISHED).read_bytes())
+        return {name: int(noted[name]) for name in ("rounds", "histories")}
+    except FileNotFoundError:
+        return None
+    except (ValueError, KeyError, TypeError) as error:
+        advice = f"remove it, and go on with: {resume(folder)}"
+        raise CampaignDamagedError(f"{folder / FINISHED} is damaged ({error}); {advice}") from error
 
 
 @dataclass
@@ -45,40 +121,36 @@ class Rounds:
     chunk: int | None = None  # histories of a chunk
     # computes what is missing of a round; without it nothing is computed
     advance: Callable[[Campaign], object] | None = None
-    asked_to_stop: Callable[[], bool] = lambda: False  # whether to stop before the next round
+    stopping: Callable[[], bool] = lambda: False  # whether to stop before the next round
     number: int = field(default=0, init=False)
     histories: int = field(default=0, init=False)
 
     def compute(self, histories: Histories) -> Arrays:
         """Return the results of the next round; as they were, if it was computed before."""
         path = round_folder(self.folder, self.number)
-        if self.asked_to_stop():
+        if self.stopping():
             raise CampaignInterrupted(_stopped(self.folder, self.number))
         if self.advance is None and not (path / NAME).exists():
             raise CampaignIncompleteError(f"{path} is missing; go on with: {resume(self.folder)}")
         with _of_the_job(self.folder, self.number):
-            found = self._results(opened(path, histories, self.chunk))
+            results = self._results(opened(path, histories, self.chunk))
         self.number += 1
         self.histories += histories.count
-        return found
+        return results
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Rounds and histories so far."""
+        return {"rounds": self.number, "histories": self.histories}
 
     def _results(self, campaign: Campaign) -> Arrays:
         if self.advance is None:
-            return _held(campaign)
+            return campaign.results(*NEEDED)
         with suppress(CampaignDamagedError):  # what is damaged is set aside, said, and computed again
             if campaign.status(verify=False).complete:
-                return _held(campaign)
+                return campaign.results(*NEEDED)
         self.advance(campaign)
-        return _held(campaign)
-
-
-def _held(campaign: Campaign) -> Arrays:
-    """Return what is needed of a round, of which one chunk at a time is in memory as a whole."""
-    found = {name: np.empty(campaign.plan.count, dtype=RESULTS[name]) for name in NEEDED}
-    for piece in campaign.pieces():
-        for name, values in found.items():
-            values[piece.first : piece.last] = piece.results[name]
-    return found
+        return campaign.results(*NEEDED)
 
 
 @contextmanager
@@ -104,81 +176,66 @@ def opened(path: Path, histories: Histories, chunk: int | None) -> Campaign:
 
 
 def replayed(search: Search, folder: Path) -> AdaptiveResult:
-    """Return what a finished study has found, from its rounds on disk; nothing is computed."""
-    told = finished_rounds(folder)
-    if told is None:
+    """Return the result of a finished study, from its rounds on disk; nothing is computed."""
+    noted = finished_rounds(folder)
+    if noted is None:
         raise CampaignIncompleteError(f"{folder}: not finished; go on with: {resume(folder)}")
     rounds = Rounds(folder)
-    answer = search(rounds.compute)
-    if told != _facts(rounds):
+    result = search(rounds.compute)
+    if noted != rounds.counts:
         raise CampaignDamagedError(
-            f"{folder / FINISHED} tells of {told}, and there are {_facts(rounds)}; go on with: {resume(folder)}"
+            f"{folder / FINISHED} tells of {noted}, and there are {rounds.counts}; go on with: {resume(folder)}"
         )
-    return replace(
-        answer, attributes={**answer.attributes, "rounds": told["rounds"], "all_histories": told["histories"]}
-    )
+    more = {"rounds": noted["rounds"], "all_histories": noted["histories"]}
+    return replace(result, attributes={**result.attributes, **more})
 
 
 class _RoundsRun:
-    """One run of the rounds that are missing; what it did is summed up."""
+    """One run of the rounds that are missing; Ctrl-C and SIGTERM between them are noted."""
 
-    def __init__(
-        self, who: str | Executor, workers: int | None, progress: Callable[[Progress], object] | None, **options: Any
-    ) -> None:
-        self.who, self.workers, self.progress, self.options = who, workers, progress, options
+    def __init__(self, who: str | Executor, **options: Any) -> None:
+        self.who, self.options = who, options
         self.done: list[Summary] = []
         self.between = Interruption()
 
     def advance(self, campaign: Campaign) -> None:
         # a round of one chunk has work for one only: others would be started for nothing
-        alone = campaign.plan.chunks == 1
-        who, workers = ("serial", 1) if alone else (self.who, self.workers)
-        options = {"order_seed": self.options["order_seed"]} if alone else self.options
+        alone = {"workers": 1, "start_method": None} if campaign.plan.chunks == 1 else {}
         self.between.__exit__()  # within a round Ctrl-C and SIGTERM are its campaign's, which knows how to stop
         if self.between.asked():
             raise CampaignInterrupted("between rounds")  # said in other words by whoever counts them
-        self.done.append(campaign.run(who, workers=workers, progress=self.progress, **options))
+        self.done.append(campaign.run("serial" if alone else self.who, **(self.options | alone)))
         self.between = Interruption().__enter__()
 
-    def asked_to_stop(self) -> bool:
+    def stopping(self) -> bool:
         return self.between.asked()
 
-    @contextmanager
-    def watched(self) -> Iterator[None]:
-        """Note Ctrl-C and SIGTERM that come between the rounds."""
+    def __enter__(self) -> "_RoundsRun":
         self.between.__enter__()
-        try:
-            yield
-        finally:
-            self.between.__exit__()
+        return self
 
-    def summary(self) -> Summary:
-        counts = {name: sum(getattr(each, name) for each in self.done) for name in ("computed", "resumed", "adopted")}
-        set_aside = tuple(word for each in self.done for word in each.set_aside)
-        retries = tuple(word for each in self.done for word in each.retries)
-        return Summary(**counts, set_aside=set_aside, retries=retries, seconds=sum(each.seconds for each in self.done))
+    def __exit__(self, *_: object) -> None:
+        self.between.__exit__()
 
 
 def run_rounds(
     search: Search, folder: Path, chunk: int | None, executor: str | Executor = "serial", *,
     workers: int | None = None, progress: Callable[[Progress], object] | None = None, **options: Any,
 ) -> Summary:  # fmt: skip
-    """Compute what is missing of all rounds; those that are finished are read.
-
-    Returns what was done in the rounds that were not finished before.
-    """
+    """Compute what is missing of all rounds, read the others, and return what was done in the former."""
     _check(executor, workers, search, options.get("start_method"))
-    run = _RoundsRun(executor, workers, progress, **{"order_seed": None, **options})
-    rounds = Rounds(folder, chunk, run.advance, run.asked_to_stop)
+    run = _RoundsRun(executor, workers=workers, progress=progress, **options)
+    rounds = Rounds(folder, chunk, run.advance, run.stopping)
     with ExitStack() as stack:
         with disk.guarded(folder):
             stack.enter_context(FolderLock(folder))
             disk.remove_unfinished(folder)
-        with run.watched():
+        with run:
             search(rounds.compute)
         with disk.guarded(folder):
-            disk.write_new(folder / FINISHED, (json.dumps(_facts(rounds), indent=1) + "\n").encode())
-    return run.summary()
+            disk.write_new(folder / FINISHED, (json.dumps(rounds.counts, indent=1) + "\n").encode())
+    nothing = Summary(0, 0, 0, (), (), 0)
+    return _summed([nothing, *run.done], "computed", "resumed", "adopted", "set_aside", "retries", "seconds")
 
 
 def _check(executor: str | Executor, workers: int | None, search: Search, start_method: str | None) -> None:
@@ -187,15 +244,9 @@ def _check(executor: str | Executor, workers: int | None, search: Search, start_
     if isinstance(executor, Executor):
         histories = first_round(search)
         plan = Identity.of(histories).plan
-        nothing = who.run(
-            WorkerTask(histories, plan.engine, plan.software, Path(SHARDS)), iter(()), bool, lambda *_: None
-        )
-        assert not list(nothing)
+        task = WorkerTask(histories, plan.engine, plan.software, Path(SHARDS))
+        assert not list(who.run(task, iter(()), bool, lambda *_: None))
 
 
 def _stopped(folder: Path, number: int) -> str:
     return f"{folder}: stopped in round {number + 1}; {disk.NOTHING_LOST}; go on with: {resume(folder)}"
-
-
-def _facts(rounds: Rounds) -> dict[str, int]:
-    return {"rounds": rounds.number, "histories": rounds.histories}

@@ -8,8 +8,8 @@ import pytest
 
 import rocking as rk
 from rocking import conventions
-from rocking.campaigns.jobs import Job, JobFolder, export, exports_of
-from rocking.campaigns.jobs.comparison import comparison, comparison_table
+from rocking.campaigns.jobs import Job, JobFolder, comparison, export, exports_of
+from rocking.campaigns.jobs.exporting import comparison_table
 from rocking.errors import InvalidValueError
 from rocking.studies import map_sensitivity
 

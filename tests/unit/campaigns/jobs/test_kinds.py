@@ -7,8 +7,8 @@ import pytest
 
 import rocking as rk
 from rocking.campaigns.jobs import Job, analyses, export
-from rocking.campaigns.jobs.kinds import KINDS
 from rocking.errors import InvalidValueError
+from rocking.spec import document
 from rocking.studies import SyntheticSet, overturning_map, rocking_spectrum
 from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_analysis
 from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
@@ -203,4 +203,4 @@ def test_examples():
         kinds.add(job.document.campaign.kind)
         last = min(job.study.histories.count, 24)
         assert (job.study.histories.run(0, last, threads=1)["outcome"] < 3).all()
-    assert kinds == set(KINDS)
+    assert kinds == set(document.NEEDS)

@@ -7,7 +7,7 @@ import pytest
 
 from rocking import conventions
 from rocking.campaigns.jobs import Job, JobFolder, answer
-from rocking.campaigns.jobs.kinds.minimum_tables import tables_of
+from rocking.campaigns.jobs.kinds.minimum import tables_of
 from rocking.studies.minimum_acceleration import Cases, Effort, Transitions
 from rocking.studies.motion_sets import SyntheticSet
 

@@ -1,24 +1,26 @@
-"""Kinds of campaigns: each makes histories, and the study's result of their results."""
+"""What makes the study of a job, by the table of its document that is its own."""
 
 from collections.abc import Callable
 
 from rocking.campaigns.jobs.kinds.fragility import fragility_study
-from rocking.campaigns.jobs.kinds.histories import product_study
 from rocking.campaigns.jobs.kinds.inventory import inventory_study
+from rocking.campaigns.jobs.kinds.maps import map_study
 from rocking.campaigns.jobs.kinds.minimum import minimum_study
-from rocking.campaigns.jobs.kinds.overturning_map import map_study
-from rocking.campaigns.jobs.kinds.spectrum import spectrum_study
+from rocking.campaigns.jobs.kinds.products import product_study, spectrum_study
 from rocking.campaigns.jobs.study import Study
+from rocking.spec.document import NEEDS
 from rocking.spec.study import StudyProblem
 
-KINDS: dict[str, Callable[[StudyProblem], Study]] = {
-    "overturning-map": map_study,
-    "minimum-acceleration": minimum_study,
-    "rocking-spectrum": spectrum_study,
-    "stripes": fragility_study,
-    "incremental": fragility_study,
-    "cloud": fragility_study,
+STUDIES: dict[str, Callable[[StudyProblem], Study]] = {
+    "map": map_study,
+    "minimum": minimum_study,
+    "spectrum": spectrum_study,
+    "fragility": fragility_study,
     "inventory": inventory_study,
     "histories": product_study,
 }
-"""What makes the study of a job, by its kind."""
+
+
+def study_of(problem: StudyProblem) -> Study:
+    """Return the study of a job."""
+    return STUDIES[NEEDS[problem.document.campaign.kind]](problem)

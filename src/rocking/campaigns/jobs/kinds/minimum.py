@@ -1,29 +1,98 @@
 """Minimum overturning accelerations as campaigns: every motion with every restitution and body, searched together."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from rocking.campaigns.jobs.answer import AdaptiveResult
-from rocking.campaigns.jobs.asked import Compute, NumberedTable, first_round
-from rocking.campaigns.jobs.kinds.minimum_tables import tables_of
-from rocking.campaigns.jobs.kinds.words import along, of_words
-from rocking.campaigns.jobs.study import Study
+from rocking.campaigns.jobs.adaptive import AdaptiveResult, Compute, NumberedTable, first_round
+from rocking.campaigns.jobs.study import Study, along, labels_along
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.fast_engine import Arrays, empty_results
 from rocking.errors import InvalidValueError
+from rocking.motions.pulse import Pulse
 from rocking.spec.construction import MOST_IN_MEMORY
 from rocking.spec.document import MinimumTable
 from rocking.spec.reading import located
 from rocking.spec.study import StudyProblem
-from rocking.studies.minimum_acceleration import Cases, Effort, searched
+from rocking.studies.minimum_acceleration import Cases, Effort, Transitions, searched
 from rocking.studies.motion_sets import MotionList
 from rocking.studies.question import modes_of, peak_ratio, sides_of
 from rocking.studies.sensitivity.restitutions import sampled
-from rocking.tables import Column
+from rocking.tables import Column, Table, text_array
+
+# histories of later rounds over those of the first, by what the motions are
+_LATER = {"pulses": (2.0, 10.0), "records": (10.0, 100.0)}
+_MODE = "not lifted -2, survived -1, n >= 0 overturned after n impacts"
+
+_NUMBERS: dict[str, tuple[str, str]] = {
+    "minimum": ("m/s2", "least peak acceleration that overturns, of those sampled; NaN if none, or the lowest does"),
+    "certain": ("m/s2", "peak acceleration above which all that were sampled overturn; NaN if the highest survives"),
+    "uplift_acceleration": ("m/s2", "ground acceleration that lifts the body"),
+    "lowest": ("m/s2", "where the search began"),
+    "highest": ("m/s2", "where it ended"),
+    "resolution": ("1", "relative spacing of the first samples"),
+    "resolution_below": ("1", "widest relative gap between samples below the minimum; NaN if there is none"),
+}
+_COUNTS = {
+    "crossings": "changes of verdict that were found",
+    "starts_overturned": "1 if the lowest acceleration overturns already",
+    "samples": "histories of the scan",
+    "failed": "histories without a result; if all failed, nothing is known",
+}
+_CROSSING = {
+    "acceleration": ("m/s2", "peak ground acceleration at which the verdict changes"),
+    "ratio": ("1", "the same over the acceleration that lifts the body"),
+    "scale": ("1", "the same as factor on the motion"),
+    "width": ("m/s2", "width of the bracket"),
+}
+
+
+def minimum_study(problem: StudyProblem) -> Study:
+    """Return the study of minimum accelerations: its first samples, over motion, restitution, body and point."""
+    table = problem.document.minimum or MinimumTable()
+    motions, settings = _held(problem), problem.settings
+    with located("body"):
+        parameters = [
+            [RockingParameters.of_body(b, choice, settings.gravity) for b in problem.bodies]
+            for choice in problem.restitutions.values()
+        ]
+    sides = [sides_of(row) for row in parameters]
+    with located("minimum"):
+        effort = Effort(table.points, table.levels, table.tolerance)
+        cases = Cases.joined([
+            Cases.of(motions[k], each, settings, table.lowest, table.highest)
+            for k in range(len(motions)) for each in sides
+        ])  # fmt: skip
+    shape = (len(motions), len(problem.restitutions), len(problem.bodies))
+    names = {"motion": [motions[k].name for k in range(len(motions))], "restitution": list(problem.restitutions)}
+    options = {"settings": settings, "engine": problem.document.settings.engine}
+    search = MinimumSearch(cases, effort, motions, shape, parameters[0][0].law, options, names)
+    dims = dict(zip(("motion", "restitution", "body", "point"), (*shape, effort.points), strict=True))
+    scale = cases.grid(effort.points).reshape(*dims.values())
+    coordinates = {
+        "motion": labels_along("motion", names["motion"], "name of the motion"),
+        "restitution": labels_along("restitution", names["restitution"], "restitution"),
+        "body": along("body", np.arange(len(problem.bodies)), "1", "number of the body in the job"),
+        "scale": Column(scale, "1", "factor on the motion", dims=tuple(dims)),
+    }
+    attributes = {
+        "points": effort.points,
+        "levels": effort.levels,
+        "tolerance": effort.tolerance,
+        "bodies": "; ".join(repr(body) for body in problem.bodies)[:4000],
+    }
+    exports = ("crossings", "minima", "histories")
+    return Study(first_round(search), dims, coordinates, attributes, exports, search=search)
+
+
+def _held(problem: StudyProblem) -> MotionList:
+    if len(problem.motions) > MOST_IN_MEMORY:
+        raise InvalidValueError(f"motions: there may be up to {MOST_IN_MEMORY}, got {len(problem.motions)}")
+    return MotionList([problem.motions[k] for k in range(len(problem.motions))])
 
 
 @dataclass(frozen=True)
@@ -37,65 +106,74 @@ class MinimumSearch:
     law: ImpactLaw  # how the coefficient changes from impact to impact
     options: dict[str, Any]  # settings and engine, as `Histories` takes them
     names: dict[str, list[str]]  # what the motions and the restitutions are called
+    kept: float = field(default=1.0, init=False)
 
     def __call__(self, compute: Compute) -> AdaptiveResult:
-        """Return all crossings.
-
-        Returns A tuple of `Transitions`, None where no history could be computed, and tables of them.
-        """
+        """Return a tuple of `Transitions`, None where no history could be computed, and tables of them."""
         motion, _, body = np.unravel_index(np.arange(self.cases.uplift.size), self.shape)
 
         def run(values: dict[str, FloatArray], case: IntArray) -> Arrays:
             if case.size:
                 # the draws of a body are the same at every amplitude, and those of a call with this motion alone
-                told: dict[str, Any] = {"law": self.law, **self.options}
-                found = compute(sampled(NumberedTable(self.motions, motion[case], values, body[case], **told)))
+                options: dict[str, Any] = {"law": self.law, **self.options}
+                results = compute(sampled(NumberedTable(self.motions, motion[case], values, body[case], **options)))
             else:
-                found = empty_results(0)
-            ratio = peak_ratio(found["peak_rotation"], values["alpha_right"], values["alpha_left"])
-            return {**found, "mode": modes_of(found), "peak_ratio": ratio}
+                results = empty_results(0)
+            ratio = peak_ratio(results["peak_rotation"], values["alpha_right"], values["alpha_left"])
+            return {**results, "mode": modes_of(results), "peak_ratio": ratio}
 
         crossings = searched(self.cases, self.effort, run)
         return AdaptiveResult(crossings, tables_of(crossings, self.cases, self.effort, self.shape, self.names))
 
+    def later(self, first: int) -> tuple[int, int]:
+        """Return how many histories later rounds usually have."""
+        low, high = _LATER["pulses" if type(self.motions[0]) is Pulse else "records"]
+        return int(low * first), int(high * first)
 
-def minimum_study(problem: StudyProblem) -> Study:
-    """Return the study of minimum overturning accelerations.
 
-    Returns of the first samples, over motion, restitution, body and point; its search asks for the others.
-    """
-    table = problem.document.minimum or MinimumTable()
-    motions, settings = _held(problem), problem.settings
-    with located("body"):
-        all_parameters = [
-            [RockingParameters.of_body(b, choice, settings.gravity) for b in problem.bodies]
-            for choice in problem.restitutions.values()
-        ]
-    sides = [sides_of(row) for row in all_parameters]
-    with located("minimum"):
-        effort = Effort(table.points, table.levels, table.tolerance)
-        cases = Cases.joined([
-            Cases.of(motions[k], each, settings, table.lowest, table.highest)
-            for k in range(len(motions)) for each in sides
-        ])  # fmt: skip
-    shape = (len(motions), len(problem.restitutions), len(problem.bodies))
-    names = {"motion": [motions[k].name for k in range(len(motions))], "restitution": list(problem.restitutions)}
-    options = {"settings": settings, "engine": problem.document.settings.engine}
-    search = MinimumSearch(cases, effort, motions, shape, all_parameters[0][0].law, options, names)
-    dims = dict(zip(("motion", "restitution", "body", "point"), (*shape, effort.points), strict=True))
-    scale = cases.grid(effort.points).reshape(*dims.values())
-    coordinates = {
-        "motion": of_words("motion", names["motion"], "name of the motion"),
-        "restitution": of_words("restitution", names["restitution"], "restitution"),
-        "body": along("body", np.arange(len(problem.bodies)), "1", "number of the body in the job"),
-        "scale": Column(scale, "1", "factor on the motion", dims=tuple(dims)),
+def tables_of(
+    crossings: Sequence[Transitions | None], cases: Cases, effort: Effort, shape: tuple[int, int, int],
+    names: Mapping[str, list[str]],
+) -> dict[str, Table]:  # fmt: skip
+    """Return ``minima``, a table with a row for each case, and ``crossings``, with a row for each crossing."""
+    rows = [_row(each, cases, effort, k) for k, each in enumerate(crossings)]
+    numbers = {
+        name: Column(np.array([row[name] for row in rows], np.float64), unit, meaning)
+        for name, (unit, meaning) in _NUMBERS.items()
     }
-    told = {"points": effort.points, "levels": effort.levels, "tolerance": effort.tolerance}
-    bodies = "; ".join(repr(body) for body in problem.bodies)[:4000]
-    return Study(first_round(search), dims, coordinates, {**told, "bodies": bodies}, search=search)
+    counts = {
+        name: Column(np.array([row[name] for row in rows], np.int64), "1", meaning) for name, meaning in _COUNTS.items()
+    }
+    minima = Table("case", _prefixed("case", _places(np.arange(len(crossings)), shape, names) | numbers | counts))
+    known = [(k, each) for k, each in enumerate(crossings) if each is not None and len(each)]
+    case = np.repeat(np.array([k for k, _ in known], np.int64), [len(each) for _, each in known])
+    columns = _places(case, shape, names)
+    for name, (unit, meaning) in _CROSSING.items():
+        columns[name] = Column(np.concatenate([np.empty(0), *(getattr(c, name) for _, c in known)]), unit, meaning)
+    modes = np.concatenate([np.empty((0, 2), np.int64), *(c.modes for _, c in known)])
+    for place, name in enumerate(("mode_below", "mode_above")):
+        columns[name] = Column(modes[:, place], "1", f"just {name[5:]}: {_MODE}")
+    return {"crossings": Table("crossing", _prefixed("crossing", columns)), "minima": minima}
 
 
-def _held(problem: StudyProblem) -> MotionList:
-    if len(problem.motions) > MOST_IN_MEMORY:
-        raise InvalidValueError(f"motions: there may be up to {MOST_IN_MEMORY}, got {len(problem.motions)}")
-    return MotionList([problem.motions[k] for k in range(len(problem.motions))])
+def _row(crossings: Transitions | None, cases: Cases, effort: Effort, k: int) -> dict[str, Any]:
+    if crossings is None:  # nothing but the first samples was tried, and all of them failed
+        limits = {"uplift_acceleration": cases.uplift[k], "lowest": cases.low[k], "highest": cases.high[k]}
+        counts = {"crossings": 0, "starts_overturned": 0, "samples": effort.points, "failed": effort.points}
+        return dict.fromkeys(_NUMBERS, np.nan) | limits | counts
+    row = {name: getattr(crossings, name) for name in (*_NUMBERS, *_COUNTS) if name != "crossings"}
+    return {name: np.nan if value is None else value for name, value in row.items()} | {"crossings": len(crossings)}
+
+
+def _places(case: np.ndarray, shape: tuple[int, int, int], names: Mapping[str, list[str]]) -> dict[str, Column]:
+    motion, choice, body = np.unravel_index(case, shape)
+    return {
+        "motion": Column(text_array([names["motion"][k] for k in motion]), "1", "name of the motion"),
+        "restitution": Column(text_array([names["restitution"][k] for k in choice]), "1", "restitution"),
+        "body": Column(np.asarray(body, np.int64), "1", "number of the body in the job"),
+    }
+
+
+def _prefixed(prefix: str, columns: Mapping[str, Column]) -> dict[str, Column]:
+    """Give the columns names under which both tables fit into one file."""
+    return {name: Column(each.values, each.unit, each.meaning, f"{prefix}_{name}") for name, each in columns.items()}

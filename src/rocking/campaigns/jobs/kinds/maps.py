@@ -1,0 +1,250 @@
+"""Overturning maps as campaigns: their histories piece by piece, and their boundaries in rounds."""
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from rocking.campaigns.jobs.adaptive import AdaptiveResult, Compute, DelegatedQuestion
+from rocking.campaigns.jobs.study import Study, along, labels_along
+from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.plane.batch import Rows
+from rocking.dynamics.plane.fast_engine import Arrays
+from rocking.errors import InvalidValueError
+from rocking.quantities import QUANTITIES
+from rocking.spec.document import MapTable
+from rocking.spec.reading import located
+from rocking.spec.study import StudyProblem, axes_of
+from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, RefinedMap, refine
+from rocking.studies.axis import RestitutionAxis
+from rocking.studies.boundaries import Polyline, checked, outlines
+from rocking.studies.histories import Histories, hash_of
+from rocking.studies.motion_sets import MotionList
+from rocking.studies.question import Question, modes_of, peak_ratio, sides_of
+from rocking.studies.sensitivity.restitutions import sampled
+from rocking.tables import PIECE, Column, Table, text_array
+
+MOST_POINTS = 10_000_000
+"""Points of a map that is refined: they take less than 2 GiB of memory."""
+
+_TIMES = ("peak_time", "overturning_time", "first_uplift")
+_PROBES = 1024
+# later histories over edges and halvings of a line across a map
+_EDGES = (2.0, 12.0)
+
+
+def map_study(problem: StudyProblem) -> Study:
+    """Return the study of an overturning map: over y and x, and the restitution before them where there are several."""
+    table = problem.document.map
+    assert table is not None  # the document refuses to be without
+    if len(problem.motions) != 1:
+        raise InvalidValueError(f"motions: a map is of one motion, got {len(problem.motions)}")
+    axes = x, y = axes_of(table)
+    engine = problem.document.settings.engine
+    with located("map"):
+        questions = [
+            Question(problem.bodies[0], problem.motions[0], choice, problem.settings, None, engine)
+            for choice in problem.restitutions.values()
+        ]
+        if len(questions) > 1 and any(isinstance(axis, RestitutionAxis) for axis in axes):
+            raise InvalidValueError("restitution cannot be an axis where it is what is compared; leave one model")
+        planes = [Plane(question, *axes) for question in questions]
+        histories = MapHistories.of(planes)
+    several = {"restitution": len(planes)} if len(planes) > 1 else {}
+    coordinates = {axis.name: along(axis.name, axis.values, axis.unit, axis.words) for axis in (y, x)}
+    if several:
+        coordinates["restitution"] = labels_along("restitution", problem.restitutions, "restitution")
+    study = Study(
+        sampled(histories),
+        several | {y.name: y.values.size, x.name: x.values.size},
+        coordinates,
+        {"body": repr(problem.bodies[0]), "motion": problem.motions[0].name},
+        rescale=histories.rescaled,
+    )
+    if table.refine is None:
+        return study
+    return replace(study, search=MapSearch.of(study, planes, table), exports=("histories", "refined", "boundary"))
+
+
+@dataclass(frozen=True, eq=False)
+class MapHistories(Histories):
+    """Every restitution over the plane of two axes; the restitution changes slowest, x fastest. No size needs memory.
+
+    The engine runs with the motion as it is, and bodies that are quicker instead of a motion that is slower; `rescaled`
+    turns the times of the results into those of the map.
+    """
+
+    planes: tuple[Plane, ...]  # the same axes, each with another restitution
+
+    @classmethod
+    def of(cls, planes: list[Plane]) -> "MapHistories":
+        """Return the histories of a map."""
+        question = planes[0].question
+        made = cls(
+            MotionList([question.motion]), tuple(planes),
+            law=question.law, settings=question.settings, engine=question.engine,
+        )  # fmt: skip
+        for number, plane in enumerate(planes):
+            # a map none of whose bodies can be made is refused as a whole; single cells of others are not
+            plane.case(*made._points(made._probes(number)))
+        return made
+
+    @property
+    def cells(self) -> int:
+        """Number of points of the plane."""
+        return int(self.planes[0].x.values.size * self.planes[0].y.values.size)
+
+    @property
+    def count(self) -> int:
+        """Number of histories."""
+        return self.cells * len(self.planes)
+
+    def rows(self, first: int, last: int) -> Rows:
+        """Return some of the rows, as the engine takes them; NaN where there is no such body."""
+        numbers = np.arange(first, last, dtype=np.int64)
+        values, stretch = self._values(numbers)
+        quick = {n: v * stretch if n in {"p_right", "p_left"} else v for n, v in values.items()}
+        return Rows.of(last - first, 0, numbers, **quick)
+
+    def rescaled(self, first: int, last: int, results: Arrays) -> Arrays:
+        """Return results with the times [s] and velocities [rad/s] of the stretched motions."""
+        _, stretch = self._values(np.arange(first, last, dtype=np.int64))
+        times = {name: results[name] * stretch for name in _TIMES}
+        return {**results, **times, "peak_velocity": results["peak_velocity"] / stretch}
+
+    def content(self) -> dict[str, Any]:
+        """Return axes, body, restitution, and the hash of rows spread over the map."""
+        plane = self.planes[0]
+        probes = [self._values(self._probes(k)) for k in range(len(self.planes))]
+        tables = [np.stack([*(values[n] for n in sorted(values)), stretch]) for values, stretch in probes]
+        return {
+            "x": {"axis": plane.x.name, "values": hash_of(plane.x.values)},
+            "y": {"axis": plane.y.name, "values": hash_of(plane.y.values)},
+            "restitution": [each.question.parameters.label for each in self.planes],
+            "rows": [hash_of(table) for table in tables],
+        }
+
+    def _probes(self, number: int) -> np.ndarray:
+        spread = np.unique(np.linspace(0, self.cells - 1, min(self.cells, _PROBES), dtype=np.int64))
+        return spread + number * self.cells
+
+    def _points(self, numbers: np.ndarray) -> tuple[FloatArray, FloatArray]:
+        plane = self.planes[0]
+        j, i = np.divmod(numbers % self.cells, plane.x.values.size)
+        return plane.x.values[i], plane.y.values[j]
+
+    def _values(self, numbers: np.ndarray) -> tuple[dict[str, FloatArray], FloatArray]:
+        """Return what the engine takes of histories, and how their motion is stretched."""
+        pieces = [self._of_plane(plane, numbers[numbers // self.cells == k]) for k, plane in enumerate(self.planes)]
+        values = {name: np.concatenate([each[name] for each, _ in pieces]) for name in pieces[0][0]}
+        return values, np.concatenate([stretch for _, stretch in pieces])
+
+    def _of_plane(self, plane: Plane, numbers: np.ndarray) -> tuple[dict[str, FloatArray], FloatArray]:
+        if not numbers.size:
+            sides = {name: values[:0] for name, values in sides_of([None]).items()}
+            return {**sides, "scale": np.empty(0)}, np.empty(0)
+        try:
+            case = plane.case(*self._points(numbers))
+        except InvalidValueError:  # none of these bodies can be made
+            sides = {name: np.full(numbers.size, np.nan) for name in sides_of([None])}
+            return {**sides, "scale": np.ones(numbers.size)}, np.ones(numbers.size)
+        return case.values, case.stretch
+
+
+@dataclass(frozen=True)
+class MapSearch:
+    """A refined map that somebody else computes, round by round: the map, its levels, the bisections of its edges."""
+
+    study: Study  # the map before refinement: the first round
+    plane: Plane  # the question and its axes
+    levels: int  # levels of refinement
+    by: str  # what is outlined
+    tolerance: float  # width of the last brackets over the coordinate [-]
+    kept: float = field(default=0.25, init=False)  # halvings of edges are forgotten
+
+    @classmethod
+    def of(cls, study: Study, planes: list[Plane], table: MapTable) -> "MapSearch":
+        """Return the search that a job asks for, checked."""
+        assert table.refine is not None  # asked before
+        if len(planes) > 1:
+            raise InvalidValueError(
+                "map.refine is for one restitution: each has boundaries of its own; make a job of each"
+            )
+        points = planes[0].x.values.size * planes[0].y.values.size
+        if points > MOST_POINTS:
+            raise InvalidValueError(
+                f"map.refine is for maps of up to {MOST_POINTS} points, which are in memory together, got {points}; "
+                "take fewer points, and one level more: it halves the spacing"
+            )
+        with located("map.refine"):
+            tolerance = checked(planes[0], table.boundary, table.tolerance)
+            AdaptiveGrid(planes[0], table.refine)
+        return cls(study, planes[0], table.refine, table.boundary, tolerance)
+
+    def __call__(self, compute: Compute) -> AdaptiveResult:
+        """Return a pair of `RefinedMap` and a list of `Polyline`, and tables of them."""
+        modes, peaks = self._base(compute(self.study.histories))
+        plane = Plane(DelegatedQuestion.of(self.plane.question, compute), self.plane.x, self.plane.y)
+        lattice = AdaptiveGrid(plane, self.levels)
+        points, cells = refine(lattice, modes, peaks)
+        lines = outlines(lattice, cells, self.by, self.tolerance)
+        tables = {"refined": _points(points, plane), "boundary": _vertices(lines, plane)}
+        attributes = {"refine": self.levels, "boundary": self.by, "boundary_tolerance": self.tolerance}
+        return AdaptiveResult((points, lines), tables, {**attributes, "polylines": len(lines)})
+
+    def later(self, first: int) -> tuple[int, int]:
+        """Return how many histories later rounds usually have.
+
+        A line across the map, cut into edges of the finest level, each found, and halved until it is short enough.
+        """
+        edges = math.sqrt(first) * 2.0**self.levels
+        each = edges * (2.0 + max(0.0, -math.log2(self.tolerance * edges)))
+        return int(_EDGES[0] * each), int(_EDGES[1] * each)
+
+    def _base(self, results: Arrays) -> tuple[IntArray, FloatArray]:
+        """Return modes and relative peaks of the map."""
+        count = self.study.histories.count
+        modes, peaks = np.empty(count, np.int64), np.empty(count)
+        for first in range(0, count, PIECE):
+            last = min(first + PIECE, count)
+            piece = {name: values[first:last] for name, values in results.items()}
+            sides = self.study.histories.rows(first, last).values
+            modes[first:last] = modes_of(piece)
+            peaks[first:last] = peak_ratio(piece["peak_rotation"], sides["alpha_right"], sides["alpha_left"])
+        return modes, peaks
+
+
+def _points(points: RefinedMap, plane: Plane) -> Table:
+    x, y = plane.x, plane.y
+    mode, ratio = QUANTITIES["mode"], QUANTITIES["peak_ratio"]
+    base, meaning = points.base.astype(np.int64), "1 for points of the map itself, 0 for new ones"
+    columns = {
+        x.name: Column(points.x, x.unit, x.words, "refined_x"),
+        y.name: Column(points.y, y.unit, y.words, "refined_y"),
+        "mode": Column(points.modes, mode.unit, mode.meaning, "refined_mode"),
+        "peak_ratio": Column(points.peak_ratio, ratio.unit, ratio.meaning, "refined_peak_ratio"),
+        "base": Column(base, "1", meaning, "refined_base"),
+    }
+    return Table("point", columns)
+
+
+def _vertices(lines: list[Polyline], plane: Plane) -> Table:
+    x, y = plane.x, plane.y
+    sizes = [len(line.points) for line in lines]
+    points = np.concatenate([np.empty((0, 2)), *(line.points for line in lines)])
+    modes = np.concatenate([np.empty((0, 2), np.int64), *(line.modes for line in lines)])
+    number = np.repeat(np.arange(len(lines)), sizes)
+    closed = np.repeat(np.array([line.closed for line in lines], np.int64), sizes)
+    regions = text_array([line.region for line in lines for _ in line.points])
+    unit, meaning = QUANTITIES["mode"].unit, QUANTITIES["mode"].meaning
+    columns = {
+        "line": Column(number, "1", "number of the polyline", "boundary_line"),
+        "region": Column(regions, "1", "what lies inside", "boundary_region"),
+        "closed": Column(closed, "1", "1 if the polyline ends where it starts", "boundary_closed"),
+        x.name: Column(points[:, 0], x.unit, x.words, "boundary_x"),
+        y.name: Column(points[:, 1], y.unit, y.words, "boundary_y"),
+        "mode_outside": Column(modes[:, 0], unit, f"outside: {meaning}", "boundary_mode_outside"),
+        "mode_inside": Column(modes[:, 1], unit, f"inside: {meaning}", "boundary_mode_inside"),
+    }
+    return Table("vertex", columns)
