@@ -7,7 +7,7 @@ import rocking as rk
 from rocking import conventions
 from rocking.campaigns.jobs import Job, JobFolder, answer
 from rocking.plots import write
-from rocking.plots.crossings_of_many import crossings_of_many_picture
+from rocking.plots.transitions import transitions_of_many_picture
 from rocking.studies import SyntheticSet, minimum_overturning_acceleration
 
 COUNT = 12
@@ -51,5 +51,5 @@ for label, each in found.items():
 folder = Path("gallery-output")
 folder.mkdir(exist_ok=True)
 names = [str(k + 1) for k in range(COUNT)]
-picture = crossings_of_many_picture(found, names, words="motion, by the least of housner", until=3.0 * conventions.g)
+picture = transitions_of_many_picture(found, names, words="motion, by the least of housner", until=3.0 * conventions.g)
 write(picture, folder / "crossings_under_many_motions.png")

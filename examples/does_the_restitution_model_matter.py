@@ -7,8 +7,7 @@ import numpy as np
 import rocking as rk
 from rocking import conventions
 from rocking.plots import write
-from rocking.plots.difference_map import difference_map_picture
-from rocking.plots.sensitivity import sensitivity_picture
+from rocking.plots.sensitivity import difference_map_picture, sensitivity_picture
 from rocking.studies import SyntheticSet, fragility_sensitivity, map_sensitivity
 
 folder = Path("gallery-output")

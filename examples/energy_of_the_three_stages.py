@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import rocking as rk
-from rocking.plots import figure_2
+from rocking.plots import energy_stages_picture
 
 outline = rk.bodies.shapes.trapezoid(base=1.0, top=0.5, height=2.5)
 hollow = [(0.4, 0.4), (0.6, 0.4), (0.6, 1.6), (0.4, 1.6)]
@@ -20,4 +20,4 @@ assert abs(shares[2] - shares[3]) < 1e-12
 
 folder = Path("gallery-output")
 folder.mkdir(exist_ok=True)
-figure_2(pedestal).savefig(folder / "energy_of_the_three_stages.png")
+energy_stages_picture(pedestal).savefig(folder / "energy_of_the_three_stages.png")

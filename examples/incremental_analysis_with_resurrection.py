@@ -8,7 +8,7 @@ import numpy as np
 import rocking as rk
 from rocking import conventions
 from rocking.plots import write
-from rocking.plots.incremental import incremental_picture
+from rocking.plots.incremental_dynamic_analysis import incremental_dynamic_analysis_picture
 from rocking.studies import SyntheticSet, incremental_dynamic_analysis
 
 # a full sine of three times the frequency parameter, r = 0.9, slender-linear equations: known in closed form
@@ -39,4 +39,4 @@ assert (passed >= found.fractions - 1e-12).all()  # what stands again has crosse
 
 folder = Path("gallery-output")
 folder.mkdir(exist_ok=True)
-write(incremental_picture(found), folder / "incremental_analysis_with_resurrection.png")
+write(incremental_dynamic_analysis_picture(found), folder / "incremental_analysis_with_resurrection.png")

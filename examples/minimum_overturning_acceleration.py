@@ -6,7 +6,7 @@ from pathlib import Path
 import rocking as rk
 from rocking import conventions
 from rocking.plots import write
-from rocking.plots.crossings import crossings_picture
+from rocking.plots.transitions import transitions_picture
 from rocking.studies import minimum_overturning_acceleration
 
 block = rk.Block(width=0.5, height=2.0)
@@ -29,4 +29,4 @@ assert abs(one.minimum / exact - 1.0) < 1e-10
 
 folder = Path("gallery-output")
 folder.mkdir(exist_ok=True)
-write(crossings_picture(found, block, pulse, 0.85), folder / "minimum_overturning_acceleration.png")
+write(transitions_picture(found, block, pulse, 0.85), folder / "minimum_overturning_acceleration.png")

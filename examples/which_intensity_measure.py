@@ -9,7 +9,7 @@ import rocking as rk
 from rocking import conventions
 from rocking.motions.processing import scaled_to_pga
 from rocking.plots import write
-from rocking.plots.measures import measures_picture
+from rocking.plots.cloud import measures_picture
 from rocking.studies import SyntheticSet, cloud, compare_measures
 
 # far earthquakes, each brought to a PGA from 1.1 to 2.5 times what lifts the body: all of them rock

@@ -14,7 +14,7 @@ from rocking.cli import main
 from rocking.dynamics import ImpactLaw
 from rocking.errors import InvalidValueError
 from rocking.motions import Measure, Pulse, intensity, intensity_measures, measure, measures, pulses, scaled_to
-from rocking.plots.study_words import axis_label, short_name
+from rocking.plots.labels import axis_label, short_name
 from rocking.studies import SyntheticSet
 from rocking.studies.fragility import cloud, compare_measures
 

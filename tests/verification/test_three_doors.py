@@ -23,8 +23,7 @@ with warnings.catch_warnings():  # it says that another client than httpx is com
 
 from rocking.app.application import create_app
 from rocking.app.settings import ServerSettings
-from rocking.plots.animation_scene import DrawnShape
-from rocking.plots.lying import fall_of
+from rocking.plots.animation_scene import DrawnShape, fall_of
 
 STATUE = [[0.0, 0.0], [0.5, 0.0], [0.5, 0.6], [0.4, 0.6], [0.3, 1.9], [0.15, 1.9], [0.1, 0.6], [0.0, 0.6]]
 CABINET = {"units": "cm", "width": 50, "height": 200, "depth": 40, "density": 700}

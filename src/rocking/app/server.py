@@ -134,7 +134,7 @@ def _response() -> None:
 def _picture() -> None:
     from rocking.app.takeaway.drawing import drawn
     from rocking.bodies import Block
-    from rocking.plots._body_picture import body_picture
+    from rocking.plots.body import body_picture
 
     for kind in ("svg", "png"):
         drawn(lambda: body_picture(Block(width=1.0, height=4.0)), kind)

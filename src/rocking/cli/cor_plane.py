@@ -154,9 +154,9 @@ def draw(answer: ImpactAnswer, path: Path) -> None:
 
 def draw_stages(answer: ImpactAnswer, path: Path) -> None:
     """Draw the three stages of KED over the body."""
-    from rocking.plots import figure_2, write
+    from rocking.plots import energy_stages_picture, write
 
-    write(figure_2(answer.body, onto=next(reversed(answer.tables))), path)
+    write(energy_stages_picture(answer.body, onto=next(reversed(answer.tables))), path)
 
 
 def _body_lines(answer: ImpactAnswer, length: str) -> list[str]:

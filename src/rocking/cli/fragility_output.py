@@ -121,7 +121,7 @@ def counted(answer: FragilityAnswer) -> Table:
 
 
 def _draw(answer: FragilityAnswer, path: Path) -> None:
-    from rocking.plots.study_words import axis_label, shown_in
+    from rocking.plots.labels import axis_label, shown_in
     from rocking.plots.style import write
 
     if answer.compared is not None:
@@ -129,9 +129,9 @@ def _draw(answer: FragilityAnswer, path: Path) -> None:
 
         figure = sensitivity_picture(answer.compared, unit=answer.question.unit)
     elif answer.question.analysis == "incremental":
-        from rocking.plots.incremental import incremental_picture
+        from rocking.plots.incremental_dynamic_analysis import incremental_dynamic_analysis_picture
 
-        figure = incremental_picture(answer.found)
+        figure = incremental_dynamic_analysis_picture(answer.found)
     else:
         from rocking.plots.fragility import fragility_picture
 

@@ -176,8 +176,8 @@ def write(answer: MapAnswer, picture: Path | None, csv: Path | None, netcdf: Pat
 
 
 def _draw(answer: MapAnswer, path: Path) -> None:
+    from rocking.plots.labels import shown_in
     from rocking.plots.overturning_map import overturning_map_picture
-    from rocking.plots.study_words import shown_in
     from rocking.plots.style import write as write_picture
     from rocking.studies.boundaries import boundary
 

@@ -170,10 +170,10 @@ def write(answer: MinimumAnswer, picture: Path | None, csv: Path | None) -> list
     """Write what was asked for."""
     found = answer.found
     if picture is not None:
-        from rocking.plots.crossings import crossings_picture
         from rocking.plots.style import write as write_picture
+        from rocking.plots.transitions import transitions_picture
 
-        drawn = crossings_picture(found, answer.body, answer.motion, answer.restitution, **answer.settings)
+        drawn = transitions_picture(found, answer.body, answer.motion, answer.restitution, **answer.settings)
         write_picture(drawn, picture)
     if csv is not None:
         columns = {

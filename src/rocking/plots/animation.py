@@ -1,4 +1,4 @@
-"""A response in motion: one web page that needs nothing else, or a GIF."""
+"""A response in motion: one web page that needs nothing else, or a GIF of the body on its ground."""
 
 import base64
 import hashlib
@@ -7,7 +7,8 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 from string import Template
-from typing import Any
+from textwrap import wrap
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,8 +18,15 @@ from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.motion import GroundMotion
 from rocking.outcome import Outcome
-from rocking.plots.animation_film import film
-from rocking.plots.animation_scene import scene_of, scene_until
+from rocking.plots.animation_scene import DrawnShape, Scene, scene_of, scene_until
+from rocking.plots.body import closed
+from rocking.plots.response import motion_curves, over_slenderness
+from rocking.plots.style import DASHED, GREY, INK, PALE, in_journal_style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+    from matplotlib.transforms import Affine2D
 
 MOST_FRAMES = 500
 """Frames of a GIF: more would make a file that no page wants to carry."""
@@ -29,6 +37,15 @@ _FALLS = (
     "landing on a side is not computed."
 )
 _FOLDER = Path(__file__).parent
+
+_DOTS, _WIDTH, _LINE = 100, 4.8, 80
+"""Dots in an inch of a GIF, its width [in], and the characters that fit into one line of its title."""
+
+_HEAD, _CURVE, _LEAST, _MOST = 0.42, 1.35, 1.4, 3.4
+_HATCHES = 40
+_ROTATION, _IMPACT = "#0072B2", "#D55E00"
+_FLASH = 0.3
+"""How long an impact is seen, in seconds of playing."""
 
 
 def animate_html(response: Response, path: str | Path) -> Path:
@@ -66,8 +83,7 @@ def page(response: Response) -> str:
     """Return the web page of a response.
 
     >>> import rocking as rk
-    >>> block = rk.Block(width=0.5, height=2.0)
-    >>> page(rk.free_rocking(block, rotation=0.1))[:15]
+    >>> page(rk.free_rocking(rk.Block(width=0.5, height=2.0), rotation=0.1))[:15]
     '<!DOCTYPE html>'
     """
     style, form = _part("animation_page.css"), _part("animation_page.html")
@@ -100,9 +116,9 @@ def page(response: Response) -> str:
 
 
 def page_data(response: Response) -> dict[str, Any]:
-    """Return what the page draws: histories as little-endian float32 in base64, events to the last digit.
+    """Return what the page draws, in SI units: histories as little-endian float32 in base64, events to the last digit.
 
-    Returns SI units; `rotation`, `velocity`, `ground` and `acceleration` at equal steps from 0 to `end`, both included.
+    `rotation`, `velocity`, `ground` and `acceleration` are at equal steps from 0 to `end`, both included.
     """
     scene = scene_of(response)
     parameters, fall = response.parameters, response.overturning_time
@@ -175,17 +191,14 @@ def animate_gif(
             f"speed = {slowest_speed(response, fps):.3g} would do, or a web page"
         )
     try:
-        film(response, target, lasts, lasts * speed, progress)
+        _film(response, target, lasts, lasts * speed, progress)
     except OSError as error:
         raise RockingError(f"cannot write {target}: {error.strerror or error}") from error
     return target
 
 
 def slowest_speed(response: Response, fps: float = 25.0) -> float:
-    """Return the slowest speed at which a GIF of a response has few enough frames, at least real speed.
-
-    Returns seconds of the response in a second of playing, rounded up to two digits behind the point [-].
-    """
+    """Return the slowest speed, to two digits, at which a GIF of a response has few enough frames; at least 1 [-]."""
     lasts = round(100.0 / fps) / 100.0
     return max(1.0, float(np.ceil(100.0 * scene_until(response) / (lasts * (MOST_FRAMES - 2)))) / 100.0)
 
@@ -213,3 +226,136 @@ def _short(points: FloatArray) -> list[list[float]]:
     # a tenth of a millionth of the body is below anything that can be seen
     unit = 10.0 ** np.floor(np.log10(np.abs(points).max(initial=0.0) or 1.0) - 6.0)
     return [[float(f"{value:.7g}") for value in row] for row in (np.round(points / unit) * unit).tolist()]
+
+
+@in_journal_style
+def _film(
+    response: Response, path: Path, lasts: float, step: float, progress: Callable[[int, int], object] | None = None
+) -> None:
+    """Write frames that are shown for whole hundredths of a second [s], a step [s] of the response apart."""
+    from matplotlib.animation import PillowWriter
+
+    scene = scene_of(response, step)
+    stage = _Stage(response, scene)
+    # the writer cuts 1000 / fps down to whole milliseconds; it takes any number, though it is declared for whole ones
+    rate: Any = (1.0 - 1e-9) / lasts
+    writer = PillowWriter(fps=rate)
+    with writer.saving(stage.figure, str(path), _DOTS):
+        for k in range(scene.time.size):
+            stage.show(k, _FLASH * step / lasts)
+            writer.grab_frame()
+            if progress is not None:
+                progress(k + 1, scene.time.size)
+
+
+class _Stage:
+    """The figure of a film, and what moves in it."""
+
+    def __init__(self, response: Response, scene: Scene) -> None:
+        from matplotlib.figure import Figure
+        from matplotlib.transforms import Affine2D
+
+        self.response, self.scene = response, scene
+        x0, y0, x1, y1 = scene.window
+        tall = min(max(_WIDTH * (y1 - y0) / (x1 - x0), _LEAST), _MOST)
+        lines = _title(response)
+        whole = _HEAD + 0.125 * max(len(lines) - 2, 0) + tall + _CURVE
+        self.figure = Figure(figsize=(_WIDTH, whole), facecolor="white")
+        self.figure.text(0.02, 1.0 - 0.06 / whole, "\n".join(lines), va="top", fontsize=7.5)
+        self.view = view = self.figure.add_axes((0.0, _CURVE / whole, 1.0, tall / whole))
+        view.set_axis_off()
+        unit = max((x1 - x0) / _WIDTH, (y1 - y0) / tall)  # the scale is the same in both directions
+        wide, high, middle = unit * _WIDTH, unit * tall, 0.5 * (x0 + x1)
+        view.set_xlim(middle - 0.5 * wide, middle + 0.5 * wide)
+        view.set_ylim(y0, y0 + high)
+        self.body, self.ground = Affine2D(), Affine2D()
+        _draw_ground(view, scene, self.ground, wide)
+        _draw_body(view, scene.shape, self.body)
+        curve = self.figure.add_axes((0.11, 0.42 / whole, 0.86, (_CURVE - 0.55) / whole))
+        self.mark = _draw_curve(curve, response, scene)
+        ring: dict[str, Any] = {"markersize": 16, "markerfacecolor": "none", "markeredgewidth": 2, "color": _IMPACT}
+        (self.flash,) = view.plot([], [], marker="o", **ring)
+        corner: dict[str, Any] = {"transform": view.transAxes, "va": "top"}
+        self.words = view.text(0.02, 0.98, "", fontsize=8, family="monospace", **corner)
+        self.coefficient = view.text(0.98, 0.98, "", ha="right", fontsize=9, color=_IMPACT, **corner)
+
+    def show(self, k: int, window: float) -> None:
+        """Show a frame, and an impact that lies within a window before it [s]."""
+        response, scene = self.response, self.scene
+        time, rotation, ground = (float(values[k]) for values in (scene.time, scene.rotation, scene.ground))
+        foot = scene.shape.feet[1] if rotation > 0.0 else scene.shape.feet[0]
+        camera = ground if scene.follows else 0.0
+        self.body.clear().rotate_around(foot, 0.0, -rotation).translate(ground - camera, 0.0)
+        left, right = self.view.get_xlim()
+        # hatches and lines repeat, so that the ground may move as far as it likes
+        period = (right - left) / _HATCHES * (8.0 if scene.follows else 1.0)
+        self.ground.clear().translate(float(np.fmod(-ground if scene.follows else ground, period)), 0.0)
+        ratio = over_slenderness(response, np.array([rotation]))
+        self.mark.set_data([time], ratio)
+        self.words.set_text(f"t = {time:6.2f} s   rotation {np.degrees(rotation):7.2f} deg")
+        times = response.impacts["time"]
+        last = int(np.searchsorted(times, time, side="right")) - 1
+        if last >= 0 and time - times[last] < window:
+            onto = 1 if response.impacts["onto"][last] == "right" else 0
+            self.flash.set_data([scene.shape.feet[onto] + ground - camera], [0.0])
+            self.coefficient.set_text(f"impact, r = {response.impacts['coefficient'][last]:.3f}")
+        else:
+            self.flash.set_data([], [])
+            self.coefficient.set_text("")
+
+
+def _title(response: Response) -> list[str]:
+    title = response.summary[:1].upper() + response.summary[1:]
+    first, _, rest = title.partition(": ")
+    return [first, *wrap(rest, _LINE)] if rest else first.replace(", past", ",\npast").split("\n")
+
+
+def _draw_ground(view: "Axes", scene: Scene, moved: "Affine2D", wide: float) -> None:
+    from matplotlib.collections import LineCollection
+
+    (left, right), gap = view.get_xlim(), wide / _HATCHES
+    view.axhline(0.0, color=INK, linewidth=0.9)
+    feet = np.arange(left - wide, right + wide, gap)
+    strokes = [[(x, 0.0), (x - 0.6 * gap, -0.6 * gap)] for x in feet.tolist()]
+    if scene.follows:
+        # the window moves with the ground, so the world behind it is what moves
+        view.add_collection(LineCollection(strokes, colors=GREY, linewidths=0.7))
+        strokes = [[(x, 0.0), (x, 4.0 * wide)] for x in feet[::8].tolist()]
+    look: dict[str, Any] = {"colors": PALE if scene.follows else GREY, "linewidths": 0.7, "zorder": 0}
+    view.add_collection(LineCollection(strokes, transform=moved + view.transData, **look))
+
+
+def _draw_body(view: "Axes", shape: DrawnShape, turned: "Affine2D") -> None:
+    from matplotlib.patches import PathPatch
+
+    place: Any = turned + view.transData
+    for shade, rings in shape.regions:
+        look: dict[str, Any] = {"facecolor": [1.0 - 0.35 * shade] * 3, "edgecolor": INK, "linewidth": 1.0}
+        view.add_patch(PathPatch(closed(rings), transform=place, zorder=3, **look))
+    if shape.points.size:
+        sizes = 20.0 + 60.0 * shape.points[:, 2]
+        left, right = shape.feet
+        x, y = shape.centre
+        view.plot([left, x, right, left], [0.0, y, 0.0, 0.0], color=GREY, linewidth=0.8, transform=place, zorder=2)
+        view.scatter(shape.points[:, 0], shape.points[:, 1], s=sizes, color=INK, transform=place, zorder=3)
+    view.plot(*([value] for value in shape.centre), "+", color=_ROTATION, markersize=7, transform=place, zorder=4)
+
+
+def _draw_curve(axes: "Axes", response: Response, scene: Scene) -> "Line2D":
+    """Draw the rotation, and return the mark that moves along it."""
+    time, rotation, _ = motion_curves(response)
+    values = over_slenderness(response, rotation)
+    axes.axhline(0.0, color=PALE, linewidth=0.6)
+    for level in (-1.0, 1.0):
+        axes.axhline(level, color=GREY, linewidth=0.7, linestyle=DASHED)
+    axes.plot(time, values, color=_ROTATION, linewidth=1.0)
+    times = response.impacts["time"]
+    axes.plot(times, np.zeros(times.size), ".", color=_IMPACT, markersize=3.5)
+    axes.set_xlim(0.0, float(scene.time[-1]))
+    most = 2.0 if response.outcome is Outcome.OVERTURNED else max(1.0, float(np.abs(values).max()))
+    axes.set_ylim(-1.15 * most, 1.15 * most)
+    axes.set_ylabel("rotation / alpha [-]", fontsize=6)
+    axes.set_xlabel("time [s]", fontsize=7, labelpad=1)
+    axes.tick_params(labelsize=6)
+    (mark,) = axes.plot([], [], marker="o", markersize=5, color=INK, clip_on=True, zorder=5)
+    return mark

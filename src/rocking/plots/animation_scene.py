@@ -1,14 +1,16 @@
-"""What an animation shows: the body about its feet, the ground under it, and both at equal steps of time."""
+"""What an animation shows at equal steps of time: the body about its feet, the ground, and the fall to its end."""
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from rocking.bodies import Block, Body, MassPoints, Section
 from rocking.conventions import FloatArray
+from rocking.dynamics.plane import equations
 from rocking.dynamics.response import Response
-from rocking.plots.lying import Fall, fall_of
-from rocking.plots.response_curves import ground_place, shown_until, velocity_at
+from rocking.outcome import Outcome
+from rocking.plots.response import ground_place, shown_until, velocity_at
 
 FASTEST_RATE, MOST_SAMPLES = 120.0, 60_000
 """Samples in a second, and in all."""
@@ -18,6 +20,11 @@ _FAR = 1.5
 _POSES = 400
 _LEVEL = 1e-9
 """Height of a corner that stands on the ground, over its distance from the foot, to rounding."""
+
+_STEP = 0.01
+"""Step of the integration of a fall, over 1 / p: what the fourth order leaves out is below 1e-8 of the angle."""
+_MOST_STEPS = 20_000
+_HALVINGS = 50
 
 
 @dataclass(frozen=True)
@@ -33,10 +40,7 @@ class DrawnShape:
 
     @classmethod
     def of(cls, body: Body) -> "DrawnShape":
-        """Return the shape of a body.
-
-        Returns moved to the middle between its feet.
-        """
+        """Return the shape of a body, moved to the middle between its feet."""
         left, right = body.local_feet
         middle = 0.5 * (left + right)
         moments = body.local_moments
@@ -73,11 +77,7 @@ class DrawnShape:
         return angles[0], angles[1]
 
     def turned(self, corners: FloatArray, rotation: float) -> FloatArray:
-        """Return points of the body after it has turned about the foot that it stands on.
-
-        corners: points of the body at rest [m]; rotation: theta, positive clockwise about the right foot [rad]. Returns
-        where they are then [m].
-        """
+        """Return where points of the body [m] are after it has turned by theta [rad] about the foot it stands on."""
         pivot = np.array([self.feet[1] if rotation > 0.0 else self.feet[0], 0.0])
         c, s = np.cos(rotation), np.sin(rotation)
         return np.asarray((corners - pivot) @ np.array([[c, -s], [s, c]]) + pivot)
@@ -87,22 +87,20 @@ class DrawnShape:
 class Scene:
     """A response at equal steps of time, and the window through which it is seen."""
 
-    shape: DrawnShape  # the body
-    time: FloatArray = field(repr=False)  # Equal steps from zero to the end of what is shown [s]
-    rotation: FloatArray = field(repr=False)  # rotation, velocity: theta [rad] and theta' [rad/s]
-    velocity: FloatArray = field(repr=False)
-    # ground, acceleration: displacement [m] and acceleration of the ground [m/s2]
-    ground: FloatArray = field(repr=False)
-    acceleration: FloatArray = field(repr=False)
+    shape: DrawnShape
+    time: FloatArray  # from zero to the end of what is shown [s]
+    rotation: FloatArray  # theta [rad]
+    velocity: FloatArray  # theta' [rad/s]
+    ground: FloatArray  # displacement of the ground [m]
+    acceleration: FloatArray  # acceleration of the ground [m/s2]
     follows: bool  # whether the window moves with the ground, since it moves farther than the body is large
     window: tuple[float, float, float, float]  # x_min, y_min, x_max, y_max [m]
 
 
 def scene_of(response: Response, step: float | None = None) -> Scene:
-    """Return the scene of a response.
+    """Return a response from its start to where nothing happens any more, or the body lies.
 
-    step: step of time; if not given, 120 samples a second or fewer [s]. Returns from its start to where nothing happens
-    any more, or to where the body lies.
+    step: step of time [s]; if not given, 120 samples a second or fewer.
     """
     shape = DrawnShape.of(response.body)
     fall = fall_of(response, shape.lying)
@@ -123,11 +121,8 @@ def scene_of(response: Response, step: float | None = None) -> Scene:
     return Scene(shape, time, rotation, velocity, ground, acceleration, follows, window)
 
 
-def scene_until(response: Response, fall: Fall | None = None) -> float:
-    """Return the time up to which a response is shown in motion: to where the body lies, if it falls.
-
-    Returns time [s].
-    """
+def scene_until(response: Response, fall: "Fall | None" = None) -> float:
+    """Return the time up to which a response is shown in motion [s]: to where the body lies, if it falls."""
     fall = fall_of(response, DrawnShape.of(response.body).lying) if fall is None else fall
     return float(fall.time[-1]) if fall.time.size else shown_until(response)
 
@@ -148,3 +143,107 @@ def _window(
         high[0] = max(pose[:, 0].max() + ground[k] for k, pose in zip(poses, turned, strict=True))
     room = _MARGIN * max(high - low)
     return follows, (float(low[0] - room), float(min(low[1], 0.0) - room), float(high[0] + room), float(high[1] + room))
+
+
+@dataclass(frozen=True, eq=False)
+class Fall:
+    """What follows the last state of a response whose body overturned.
+
+    The response ends at a quarter turn, or before it where its motion does and only energy decides. From there the
+    equation of motion goes on, with whatever the ground still does, until a corner of the body meets the ground. There
+    the body is taken to lie: what a hard landing on a side does is not part of the model.
+    """
+
+    time: FloatArray  # from the end of the response; empty if the body does not overturn [s]
+    rotation: FloatArray  # theta [rad]
+    velocity: FloatArray  # theta' [rad/s]
+
+
+def fall_of(response: Response, lying: tuple[float, float]) -> Fall:
+    """Return how the fall of a response goes on after its last state.
+
+    lying: rotations at which the body lies on its left and on its right side [rad].
+
+    >>> import rocking as rk
+    >>> body, quarter = rk.Block(width=0.5, height=2.0), 0.5 * np.pi
+    >>> fall = fall_of(rk.free_rocking(body, rotation=0.25), (-quarter, quarter))
+    >>> bool(abs(fall.rotation[-1] - quarter) < 1e-12)
+    True
+    """
+    if response.outcome is not Outcome.OVERTURNED:
+        return Fall(np.empty(0), np.empty(0), np.empty(0))
+    last = response.dense_output
+    falling = _Falling(response, lying)
+    rows = [(float(last.end[-1]), float(last.rotation[-1, 1]), float(last.velocity[-1, 1]))]
+    side = 1.0 if (rows[0][1] or rows[0][2]) > 0.0 else -1.0
+    while not falling.lies(rows[-1], side) and len(rows) < _MOST_STEPS:
+        side, state = falling.advanced(side, rows[-1])
+        rows.append(state)
+    time, rotation, velocity = np.array(rows).T
+    return Fall(time, np.clip(rotation, *lying), velocity)
+
+
+_State = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class _Falling:
+    """A body on its way: (time, theta, theta') from step to step."""
+
+    response: Response
+    lying: tuple[float, float]
+
+    def lies(self, state: _State, side: float) -> bool:
+        return side * state[1] >= side * self.lying[side > 0.0]
+
+    def advanced(self, side: float, state: _State) -> tuple[float, _State]:
+        """Return side and state after a step, or where the body meets the ground or the other foot within it."""
+        step = _STEP / self.response.parameters.side(side).frequency_parameter
+        after = self._step(side, state, step)
+        lands = side * after[1] < 0.0
+        if not (lands or self.lies(after, side)):
+            return side, after
+        low, high = 0.0, step
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            within = self._step(side, state, middle)
+            beyond = side * within[1] < 0.0 if lands else self.lies(within, side)
+            low, high = (low, middle) if beyond else (middle, high)
+        time, rotation, speed = self._step(side, state, high)
+        if not lands:
+            return side, (time, rotation, speed)
+        return -side, (time, 0.0, self._coefficient(-side, speed) * speed)
+
+    def _coefficient(self, onto: float, speed: float) -> float:
+        parameters, run = self.response.parameters, self.response.trajectory
+        return parameters.coefficient(onto, abs(speed), self.response.stream, run.impacts + 1)
+
+    def _step(self, side: float, state: _State, step: float) -> _State:
+        """Return the state after a step, by the classical method of Runge and Kutta."""
+        time, start = state[0], np.array(state[1:])
+
+        def slope(share: float, y: FloatArray) -> FloatArray:
+            return np.array([y[1], self._acceleration(side, time + share * step, float(y[0]))])
+
+        first = slope(0.0, start)
+        second = slope(0.5, start + 0.5 * step * first)
+        third = slope(0.5, start + 0.5 * step * second)
+        fourth = slope(1.0, start + step * third)
+        end = start + step / 6.0 * (first + 2.0 * second + 2.0 * third + fourth)
+        return time + step, float(end[0]), float(end[1])
+
+    def _acceleration(self, side: float, time: float, rotation: float) -> float:
+        response, segments = self.response, self.response.segments
+        place, k = time / segments.step, math.floor(time / segments.step)
+        push = weight = 0.0
+        if k < segments.count:
+            powers = (place - k) ** np.arange(segments.degree + 1) * response.scale / response.settings.gravity
+            push = float(segments.horizontal[k] @ powers)
+            weight = 0.0 if segments.vertical is None else float(segments.vertical[k] @ powers)
+        on = response.parameters.side(side)
+        return float(
+            equations.angular_acceleration(
+                rotation, side, on.slenderness_angle, on.frequency_parameter, push, 1.0 + weight,
+                linear=response.settings.linear,
+            )
+        )  # fmt: skip

@@ -1,21 +1,28 @@
-"""A cloud analysis: the rotation of every motion over its measure, the line through them, and what overturned."""
+"""Cloud analyses: rotations over the measure, the line through them, what overturned; and which measure serves best."""
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rocking.errors import InvalidValueError
-from rocking.plots.study_words import PEAK, axis_label, plain_log, short_name
-from rocking.plots.style import GREY, INK, SINGLE, in_journal_style, new_figure
+from rocking.plots.fragility import STATES
+from rocking.plots.labels import PEAK, axis_label, plain, plain_log, short_name
+from rocking.plots.style import DASHED, GREY, INK, MARKS, PALE, SINGLE, in_journal_style, new_figure
 from rocking.studies.fragility.cloud_analysis import CloudAnalysis, clearly_lifted
+from rocking.studies.fragility.measure_comparison import MeasureComparison
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-HEIGHT = 4.0
 _ROCKS, _FALLS, _BAND = "#0072B2", "#A8420A", "#D6E6F2"
+
+_COLORS = ("#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#0072B2")
+_LEAST = 1e-4
+"""Smaller p-values are drawn here."""
+
+_ABOVE: dict[str, Any] = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "fontsize": 6.5, "borderaxespad": 0.2}
 
 
 @in_journal_style
@@ -54,7 +61,7 @@ def cloud_picture(analysis: CloudAnalysis) -> "Figure":
         raise InvalidValueError(f"analysis must be of cloud, got {analysis!r:.60}")
     if not analysis.fits["overturned"].exists:
         raise InvalidValueError(f"there is no curve of overturning to draw: {analysis.fits['overturned'].verdict}")
-    figure, (upper, lower) = new_figure(SINGLE, HEIGHT, rows=2, sharex=True, height_ratios=[1.5, 1.0])
+    figure, (upper, lower) = new_figure(SINGLE, 4.0, rows=2, sharex=True, height_ratios=[1.5, 1.0])
     levels = analysis.motion_levels
     acted = (analysis.responses.overturned == 1.0) | clearly_lifted(analysis.responses, analysis.least)
     upper.set_xlim(levels[acted].min() / 1.5, levels.max() * 1.08)
@@ -79,40 +86,23 @@ def _points(axes: "Axes", analysis: CloudAnalysis) -> None:
     axes.fill_between(fine, middle / spread, middle * spread, color=_BAND, linewidth=0, zorder=0)
     axes.plot(fine, middle, color=INK, linewidth=1.0, label="line, and one standard deviation")
     shown = responses.rotation[rocked]
-    axes.plot(
-        levels[rocked],
-        shown,
-        "o",
-        color=_ROCKS,
-        markersize=2.6,
-        markeredgewidth=0,
-        label=f"rocks, stays standing: {int(rocked.sum())}",
-    )
+    label = f"rocks, stays standing: {int(rocked.sum())}"
+    axes.plot(levels[rocked], shown, "o", color=_ROCKS, markersize=2.6, markeredgewidth=0, label=label)
     axes.set_yscale("log")
     axes.set_ylim(0.7 * min(float(shown.min()), analysis.least), 2.2 * max(1.0, float(shown.max())))
     plain_log(axes, "y")
-    axes.axhline(1.0, color=GREY, linewidth=0.7, linestyle=(0, (4, 2)), zorder=0)
+    axes.axhline(1.0, color=GREY, linewidth=0.7, linestyle=DASHED, zorder=0)
     over = responses.overturned == 1.0
     small = responses.good & ~over & ~rocked
     for chosen, height, color, words in (
         (over, 0.97, _FALLS, "overturned"), (small, 0.03, GREY, "barely lifted, or not"),
     ):  # fmt: skip
-        axes.plot(
-            levels[chosen],
-            np.full(int(chosen.sum()), height),
-            "|",
-            color=color,
-            markersize=6.0,
-            transform=axes.get_xaxis_transform(),
-            label=f"{words}: {int(chosen.sum())}",
-            zorder=4,
-        )
+        tick: dict[str, Any] = {"color": color, "markersize": 6.0, "transform": axes.get_xaxis_transform(), "zorder": 4}
+        count = int(chosen.sum())
+        axes.plot(levels[chosen], np.full(count, height), "|", label=f"{words}: {count}", **tick)
     axes.set_ylabel(PEAK)
-    figure = axes.get_figure()
-    assert figure is not None  # it has just been made
-    figure.legend(
-        *axes.get_legend_handles_labels(), loc="outside upper center", ncols=2, fontsize=6.5, handlelength=1.4
-    )
+    place: dict[str, Any] = {"loc": "outside upper center", "ncols": 2, "fontsize": 6.5, "handlelength": 1.4}
+    axes.figure.legend(*axes.get_legend_handles_labels(), **place)
 
 
 def _parts(axes: "Axes", analysis: CloudAnalysis) -> None:
@@ -125,19 +115,92 @@ def _parts(axes: "Axes", analysis: CloudAnalysis) -> None:
         "no rocking": "no rocking", "below": rf"$\theta \leq$ {rotation:g} $\alpha$",
         "exceeded": rf"$\theta >$ {rotation:g} $\alpha$, stands", "overturned": "overturned",
     }  # fmt: skip
-    colors = ("#E3EDF5", "#7FB2D6", "#E69F00", "#7A2E00")
+    colors = (STATES[-1], *STATES[2::-1])
     order = ["overturned", "exceeded", "below", "no rocking"]
-    axes.stackplot(
-        fine, *(parts[name] for name in order), colors=colors[::-1], labels=[words[n] for n in order], linewidth=0
-    )
+    labels = [words[name] for name in order]
+    axes.stackplot(fine, *(parts[name] for name in order), colors=colors, labels=labels, linewidth=0)
     axes.set_ylim(0.0, 1.0)
     axes.set_ylabel("probability [-]")
-    axes.legend(
-        loc="lower center",
-        bbox_to_anchor=(0.5, 1.0),
-        ncols=4,
-        fontsize=6.5,
-        handlelength=1.0,
-        columnspacing=0.9,
-        borderaxespad=0.2,
+    axes.legend(ncols=4, handlelength=1.0, columnspacing=0.9, **_ABOVE)
+
+
+@in_journal_style
+def measures_picture(found: MeasureComparison) -> "Figure":
+    """Draw measures of intensity, the most efficient on top.
+
+    Left: efficiency (scatter of the rotation about its line) and dispersion of the curve of overturning; the less, the
+    better. Right, if there were metadata: p-values of the residuals over each column; below 0.05 the measure leaves
+    out what the column knows.
+
+    Parameters
+    ----------
+    found : MeasureComparison
+        As of `compare_measures`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel or two, one column wide.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no comparison.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> from rocking.studies.fragility.cloud_analysis import cloud
+    >>> from rocking.studies.fragility.measure_comparison import compare_measures
+    >>> pulses = [rk.pulses.sine(a, t) for a in (2.6, 3.0, 3.4) for t in (0.3, 0.4, 0.5)]
+    >>> found = compare_measures(cloud(rk.Block(width=0.4, height=1.6), pulses, restitution=0.9), ["pga", "pgv"])
+    >>> sorted(label.get_text() for label in measures_picture(found).axes[0].get_yticklabels())
+    ['PGA', 'PGV']
+    """
+    if not isinstance(found, MeasureComparison):
+        raise InvalidValueError(f"found must be of compare_measures, got {found!r:.60}")
+    columns = list(found.scores[0].sufficiency)
+    height = 1.25 + 0.19 * len(found.scores)
+    figure, axes = new_figure(
+        SINGLE, height, columns=2 if columns else 1, sharey=True, width_ratios=[1.15, 1.0] if columns else None
     )
+    for panel in axes:
+        for row in range(len(found.scores)):
+            panel.axhline(row, color=PALE, linewidth=0.5, zorder=0)
+        panel.tick_params(axis="y", length=0)
+    _efficiency(axes[0], found)
+    axes[0].set_yticks(range(len(found.scores)), [short_name(score.measure) for score in found.scores])
+    axes[0].set_ylim(len(found.scores) - 0.5, -0.5)
+    if columns:
+        _sufficiency(axes[1], found, columns)
+    return figure
+
+
+def _efficiency(axes: "Axes", found: MeasureComparison) -> None:
+    rows = range(len(found.scores))
+    efficiency = [score.efficiency for score in found.scores]
+    dispersion = [score.overturning_dispersion for score in found.scores]
+    hollow: dict[str, Any] = {"color": "#D55E00", "markerfacecolor": "white", "markersize": 4.0}
+    axes.plot(efficiency, rows, "o", color=INK, markersize=4.0, label=r"efficiency, $\ln\,\theta$")
+    axes.plot(dispersion, rows, "D", label=r"$\beta$ of overturning", **hollow)
+    axes.set_xlim(0.0, 1.1 * max(value for value in efficiency + dispersion if math.isfinite(value)))
+    axes.set_xlabel("dispersion [-]")
+    axes.legend(handletextpad=0.2, **_ABOVE)
+
+
+def _sufficiency(axes: "Axes", found: MeasureComparison, columns: list[str]) -> None:
+    for place, name in enumerate(columns):
+        values = [max(score.sufficiency[name], _LEAST) for score in found.scores]
+        mark: dict[str, Any] = {
+            "marker": MARKS[place % 5],
+            "markersize": 3.6,
+            "color": _COLORS[place % 5],
+            "label": plain(name),
+        }
+        axes.plot(values, range(len(found.scores)), linestyle="none", **mark)
+    axes.axvline(0.05, color=GREY, linewidth=0.8, linestyle=DASHED)
+    axes.set_xlim(0.7 * _LEAST, 1.4)
+    plain_log(axes, "x")
+    axes.set_xticks([_LEAST, 0.05, 1.0], [rf"$\leq${_LEAST:g}", "0.05", "1"])
+    axes.set_xlabel("p of sufficiency [-]")
+    axes.legend(handletextpad=0.2, **_ABOVE)

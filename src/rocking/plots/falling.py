@@ -8,14 +8,13 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.plots.style import DOUBLE, GREY, INK, in_journal_style, model_styles, new_figure
+from rocking.plots.style import DOUBLE, GREY, INK, in_journal_style, model_styles, new_figure, patch
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-HEIGHT = 3.1
 _SECTORS = 36
 _DIMENSIONS = ("body", "motion", "scale", "restitution", "start")
 _BOTH, _NONE, _UNKNOWN = "#BDBDBD", "white", "#222222"
@@ -62,7 +61,7 @@ def falling_picture(results: "xr.Dataset", azimuths: Any, base: Any = None) -> "
             f"results must have one body and start, two restitutions and a motion for each of {angles.size} "
             f"azimuths, got ({', '.join(_DIMENSIONS)}) = {counts}"
         )
-    figure, panels = new_figure(DOUBLE, HEIGHT)
+    figure, panels = new_figure(DOUBLE, 3.1)
     panels[0].remove()
     grid = figure.add_gridspec(1, 3, width_ratios=[1.0, 1.0, 1.25])
     share = figure.add_subplot(grid[0, 0], projection="polar")
@@ -93,6 +92,12 @@ def _compass(axes: "Axes", letter: str, title: str) -> None:
         label.set_zorder(5.0)
 
 
+def _radial(axes: "Axes", top: float) -> None:
+    axes.set_ylim(0.0, top)
+    axes.set_yticks([0.5 * top, top], [f"{0.5 * top:g}", f"{top:g} %"])
+    axes.set_rlabel_position(22.5)  # type: ignore[attr-defined]
+
+
 def _share(axes: "Axes", results: "xr.Dataset", angles: FloatArray) -> None:
     with warnings.catch_warnings():  # a direction without any result has no share
         warnings.simplefilter("ignore", RuntimeWarning)
@@ -103,9 +108,7 @@ def _share(axes: "Axes", results: "xr.Dataset", angles: FloatArray) -> None:
         share = 100.0 * np.append(over[:, k], over[0, k])
         axes.plot(closed, share, linewidth=1.1, color=color, linestyle=line, label=label)
     top = max(10.0, 10.0 * np.ceil(10.0 * np.nanmax(over, initial=0.0)))
-    axes.set_ylim(0.0, top)
-    axes.set_yticks([0.5 * top, top], [f"{0.5 * top:g}", f"{top:g} %"])
-    axes.set_rlabel_position(22.5)  # type: ignore[attr-defined]
+    _radial(axes, top)
     _compass(axes, "a", "Scales that overturn it")
     axes.set_xlabel("by direction of the shaking", labelpad=2.0)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.24), ncols=2, borderaxespad=0.0)
@@ -122,9 +125,7 @@ def _rose(axes: "Axes", results: "xr.Dataset", base: FloatArray | None) -> None:
         axes.stairs(part, edges, fill=False, linewidth=1.1, color=color, linestyle=line)
         tops.append(float(part.max()))
     top = max(5.0, 5.0 * np.ceil(max(tops) / 5.0))
-    axes.set_ylim(0.0, top)
-    axes.set_yticks([0.5 * top, top], [f"{0.5 * top:g}", f"{top:g} %"])
-    axes.set_rlabel_position(22.5)  # type: ignore[attr-defined]
+    _radial(axes, top)
     if base is not None:
         outline = np.vstack([base, base[:1]])
         size = 0.22 * top / float(np.hypot(*outline.T).max())
@@ -140,7 +141,6 @@ def _rose(axes: "Axes", results: "xr.Dataset", base: FloatArray | None) -> None:
 
 def _difference(axes: "Axes", results: "xr.Dataset", angles: FloatArray) -> None:
     from matplotlib.colors import ListedColormap
-    from matplotlib.patches import Patch
 
     over = results["overturned"].values[0, :, :, :, 0]
     classes = np.nan_to_num(over[..., 0] + 2.0 * over[..., 1], nan=4.0)  # one without a result leaves it open
@@ -160,6 +160,6 @@ def _difference(axes: "Axes", results: "xr.Dataset", angles: FloatArray) -> None
     axes.set_title(f"c  Verdicts: {100.0 * differ:.1f} % differ", loc="left", pad=12.0)
     words = ["neither", f"{looks[0][2]} alone", f"{looks[1][2]} alone", "both", "no result"]
     shown = [k for k in range(5) if (classes == k).any() or k in (1, 2)]
-    handles = [Patch(facecolor=colors[k], edgecolor=GREY, linewidth=0.5, label=words[k]) for k in shown]
-    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=3, borderaxespad=0.0,
-                handlelength=1.2, columnspacing=1.0)  # fmt: skip
+    handles = [patch(colors[k], words[k], edgecolor=GREY, linewidth=0.5) for k in shown]
+    place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.22), "borderaxespad": 0.0}
+    axes.legend(handles=handles, ncols=3, handlelength=1.2, columnspacing=1.0, **place)

@@ -7,17 +7,20 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.plots.fragility_words import caption, symbol
-from rocking.plots.study_words import (
+from rocking.plots.labels import axis_label, geometric, plain_log, wrapped
+from rocking.plots.style import (
     COLORS,
-    STATES,
-    axis_label,
-    geometric,
+    INK,
+    MARKS,
+    PALE,
+    SINGLE,
+    in_journal_style,
+    legend_above,
     look,
-    plain_log,
-    wrapped,
+    new_figure,
+    patch,
+    stroke,
 )
-from rocking.plots.style import INK, PALE, SINGLE, in_journal_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,10 +28,12 @@ if TYPE_CHECKING:
 
     from rocking.statistics.lognormal import LognormalFit
 
-HEIGHT = 4.4
 _MOST, _MOST_STRIPES, _OUTCOMES = 12, 24, 8
 """Data of more levels are gathered into groups of neighbouring levels, of as many outcomes at least; stripes stay
 stripes as long as there is room."""
+
+STATES = ("#E3EDF5", "#7FB2D6", "#E69F00", "#CC79A7", "#7A2E00")
+"""From no rocking, light, to overturned, dark: apart in grey too."""
 
 _APART = 2.2
 """Points of different states are drawn side by side, this far apart [pt]."""
@@ -73,7 +78,7 @@ def fragility_picture(analysis: Any, *, level: float = 0.95) -> "Figure":
     level = checks.within("level", level, 0.5, 0.999)
     if not all(hasattr(analysis, name) for name in ("fits", "counts", "trials", "levels", "subject")):
         raise InvalidValueError(f"analysis must be of stripes, cloud or incremental, got {analysis!r:.60}")
-    figure, (upper, lower) = new_figure(SINGLE, HEIGHT, rows=2, sharex=True, height_ratios=[2.0, 1.0])
+    figure, (upper, lower) = new_figure(SINGLE, 4.4, rows=2, sharex=True, height_ratios=[2.0, 1.0])
     levels = np.asarray(analysis.levels)
     fine = _fine(levels)
     for place, name in enumerate(analysis.counts):
@@ -92,9 +97,8 @@ def fragility_picture(analysis: Any, *, level: float = 0.95) -> "Figure":
     if geometric(levels):
         plain_log(lower, "x")
     _legends(upper, lower, analysis)
-    told = caption(analysis)
-    if told:
-        figure.supxlabel(wrapped(told, 80, 7), x=0.01, ha="left", fontsize=6, color=INK)
+    if verdicts := caption(analysis):
+        figure.supxlabel(wrapped(verdicts, 80, 7), x=0.01, ha="left", fontsize=6, color=INK)
     return figure
 
 
@@ -120,10 +124,9 @@ def _fine(levels: FloatArray) -> FloatArray:
 
 
 def gathered(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return counts of neighbouring levels together, where there are too many levels for points.
+    """Return increasing levels with their counts [-], neighbours together where there are too many for points.
 
-    levels: levels, increasing [unit of the measure]; reached, trials: counts at each [-]. Returns geometric mean of the
-    levels of each group, weighted by trials; its counts. Groups without trials are left out.
+    The level of a group is the geometric mean, weighted by trials; groups without trials are left out.
     """
     group = np.arange(levels.size)
     stripes = trials.sum() >= _OUTCOMES * levels.size
@@ -138,6 +141,8 @@ def gathered(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> tup
 
 
 def _points(axes: "Axes", analysis: Any, name: str, place: int, level: float) -> None:
+    from matplotlib.transforms import ScaledTranslation
+
     from rocking.studies.sensitivity.changes import share_interval
 
     counted = (np.asarray(part, dtype=np.float64) for part in (analysis.counts[name], analysis.trials))
@@ -145,12 +150,10 @@ def _points(axes: "Axes", analysis: Any, name: str, place: int, level: float) ->
     share = reached / trials
     ends = np.array([share_interval(s, n, level) for s, n in zip(share.tolist(), trials.tolist(), strict=True)])
     reach = np.abs(ends.T - share) if share.size else np.empty((2, 0))
-    from matplotlib.transforms import ScaledTranslation
-
     figure: Any = axes.figure
     aside = (place - 0.5 * (len(analysis.counts) - 1)) * _APART / 72.0
     axes.errorbar(
-        at, share, reach, fmt="osv^D"[place % 5], markersize=3.0, color=COLORS[place % len(COLORS)],
+        at, share, reach, fmt=MARKS[place % 5], markersize=3.0, color=COLORS[place % len(COLORS)],
         markerfacecolor="white", markeredgewidth=0.8, linestyle="none", elinewidth=0.7, zorder=3,
         transform=axes.transData + ScaledTranslation(aside, 0.0, figure.dpi_scale_trans),
     )  # fmt: skip
@@ -203,16 +206,32 @@ def state_colors(states: int) -> list[str]:
 
 
 def _legends(upper: "Axes", lower: "Axes", analysis: Any) -> None:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
-    names = list(analysis.counts)
-    curves = [
-        Line2D([], [], marker="osv^D"[k % 5], markersize=3.0, markerfacecolor="white", label=symbol(name), **look(k))
-        for k, name in enumerate(names)
-    ]
-    upper.legend(handles=curves, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2, fontsize=6.5)
+    names, options = list(analysis.counts), {"borderaxespad": 0.2, "borderpad": None, "fontsize": 6.5}
+    mark: dict[str, Any] = {"markersize": 3.0, "markerfacecolor": "white"}
+    curves = [stroke(symbol(name), marker=MARKS[k % 5], **mark, **look(k)) for k, name in enumerate(names)]
+    legend_above(upper, 2, handles=curves, **options)
     words = ["no rocking", *(f"{symbol(a)}, not worse" for a in names[:-1]), symbol(names[-1])]
-    patches = [Patch(facecolor=c, label=w) for c, w in zip(state_colors(len(names)), words, strict=True)]
-    place: Any = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.2}
-    lower.legend(handles=patches, ncols=2, fontsize=6.5, handlelength=1.2, **place)
+    patches = [patch(color, each) for color, each in zip(state_colors(len(names)), words, strict=True)]
+    legend_above(lower, 2, handles=patches, handlelength=1.2, **options)
+
+
+def symbol(state: str) -> str:
+    r"""Return the name of a state with its symbols.
+
+    >>> symbol("rotation > 0.5 alpha")
+    '$\\theta > 0.5\\,\\alpha$'
+    """
+    if not state.startswith("rotation > "):
+        return "rocks" if state == "rocking" else state
+    return rf"$\theta > {state.split()[2]}\,\alpha$"
+
+
+def caption(analysis: Any) -> str:
+    """Return what must be said below the picture: the verdicts of states whose outcomes fix no likeliest curve."""
+    odd = {name: fit for name, fit in analysis.fits.items() if fit.separation.name != "OVERLAP"}
+    states: dict[str, list[str]] = {}
+    for name, fit in odd.items():
+        # what the likelihood does not know is said where the intervals are
+        words = fit.verdict.split(" Outcomes of one cluster")[0].split(" Intervals are")[0]
+        states.setdefault(words, []).append(symbol(name))
+    return " ".join(f"{', '.join(names)}: {verdict}" for verdict, names in states.items())

@@ -1,15 +1,34 @@
-"""A ground motion: acceleration, velocity, displacement with their peaks, and the response spectrum."""
+"""Ground motions: histories with their peaks, response spectra, and sets of motions beside one another."""
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking import checks
 from rocking.conventions import FloatArray, g
+from rocking.errors import InvalidValueError
+from rocking.motions import peak_ground_acceleration, peak_ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.spectrum import response_spectrum
-from rocking.plots.style import DOUBLE, GREY, INK, PALE, SINGLE, in_journal_style, new_figure
+from rocking.plots.labels import plain, plain_log
+from rocking.plots.style import (
+    DASHED,
+    DOUBLE,
+    GREY,
+    INK,
+    MARKS,
+    PALE,
+    SINGLE,
+    in_journal_style,
+    legend_above,
+    legend_below,
+    look,
+    new_figure,
+    stroke,
+)  # fmt: skip
 from rocking.plots.traces import Traces, fine_samples, traces
 
 if TYPE_CHECKING:
@@ -21,6 +40,9 @@ _PERIODS = 120
 _SHORTEST, _LONGEST = 0.02, 5.0
 _SHORTEST_IN_STEPS = 0.2
 _LONGEST_TITLE = 70
+_SET_PERIODS = np.geomspace(0.05, 4.0, 60)
+"""Periods of the spectra of sets, unless others are given [s]."""
+
 _ACCELERATION, _VELOCITY, _DISPLACEMENT, _SPECTRUM = "#222222", "#0072B2", "#009E73", "#D55E00"
 
 
@@ -49,7 +71,7 @@ def ground_motion_picture(motion: GroundMotion | Pulse, spectrum: bool = True) -
     width, columns = (DOUBLE, 2) if spectrum else (1.4 * SINGLE, 1)
     ratios = [1.5, 1.0][:columns]
     figure, cells = new_figure(width, 4.3, rows=3, columns=columns, sharex="col", width_ratios=ratios)
-    title = " ".join(motion.name.split()).replace("$", r"\$")
+    title = plain(motion.name)
     if len(title) > _LONGEST_TITLE:
         title = title[: _LONGEST_TITLE - 3] + "..."
     figure.suptitle(title, x=0.01, ha="left", fontsize=9)
@@ -69,20 +91,19 @@ def _histories(stack: "list[Axes]", motion: GroundMotion | Pulse, curves: Traces
     if isinstance(motion, GroundMotion) and motion.vertical is not None:
         top.plot(motion.time, motion.vertical, color=GREY, linewidth=0.5, label="vertical", zorder=1)
         top.plot([], [], color=_ACCELERATION, linewidth=0.8, label="horizontal")
-        # above the panel, where no curve runs
-        top.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0, borderpad=0.2)
+        legend_above(top, 2)
     rows = (
         (top, "acceleration", curves.acceleration, "[m/s$^2$]", "PGA", "m/s$^2$", _ACCELERATION),
         (middle, "velocity", curves.velocity, "[m/s]", "PGV", "m/s", _VELOCITY),
         (bottom, "displacement", curves.displacement, "[m]", "PGD", "m", _DISPLACEMENT),
     )
-    for axes, name, values, unit, short, plain, color in rows:
+    for axes, name, values, unit, short, drawn_unit, color in rows:
         axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
         axes.plot(*_with_ends(curves.time, values, name), color=color, linewidth=0.8)
         at, peak = curves.peaks[name]
         axes.plot([at], [peak], marker="o", markersize=4, markerfacecolor="white", color=color, linestyle="none")
         in_g = f" = {abs(peak) / g:.3g} g" if name == "acceleration" else ""
-        axes.set_title(f"{short} {abs(peak):.3g} {plain}{in_g} at {at:.4g} s", loc="right", fontsize=7)
+        axes.set_title(f"{short} {abs(peak):.3g} {drawn_unit}{in_g} at {at:.4g} s", loc="right", fontsize=7)
         axes.set_ylabel(f"{name}\n{unit}")
         axes.margins(x=0.01)
         axes.locator_params(axis="y", nbins=5)
@@ -102,7 +123,7 @@ def _spectrum(axes: "Axes", motion: GroundMotion, peak: float) -> None:
     high = max(_LONGEST, 2.0 * _slowest(motion), 10.0 * low)
     periods = np.geomspace(low, high, _PERIODS)
     values = response_spectrum(motion, periods, _DAMPING).pseudo_acceleration / g
-    axes.axhline(peak / g, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), label=f"PGA {peak / g:.3g} g")
+    axes.axhline(peak / g, color=GREY, linewidth=0.8, linestyle=DASHED, label=f"PGA {peak / g:.3g} g")
     axes.plot(periods, values, color=_SPECTRUM, label=f"PSA, {100.0 * _DAMPING:g} % damping")
     axes.set_xscale("log")
     axes.set_xlim(low, high)
@@ -114,10 +135,78 @@ def _spectrum(axes: "Axes", motion: GroundMotion, peak: float) -> None:
     axes.grid(color=PALE, linewidth=0.5)
     axes.set_xlabel("period T [s]")
     axes.set_ylabel("pseudo-spectral acceleration PSA [g]", color=INK)
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0, borderpad=0.2)
+    legend_above(axes, 2)
 
 
 def _slowest(motion: GroundMotion) -> float:
     """Return a period that the motion is about as slow as, from its peaks; zero if it does not move [s]."""
     peaks = traces(motion).peaks
     return 2.0 * math.pi * abs(peaks["velocity"][1]) / (abs(peaks["acceleration"][1]) or math.inf)
+
+
+@in_journal_style
+def record_set_picture(sets: Mapping[str, Any], periods: Any = _SET_PERIODS) -> "Figure":
+    """Draw sets of motions: peak velocity over peak acceleration, and their spectra.
+
+    Left: a point a motion. Right: of each set the median of the pseudo-spectral acceleration with 5 % damping, and
+    where the middle 68 % of the motions are.
+
+    Parameters
+    ----------
+    sets : mapping of str to MotionSet or sequence of GroundMotion
+        Up to six sets of at least two motions by what they are called.
+    periods : array_like
+        Periods of the spectra [s].
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Two panels side by side, two columns wide.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no set, or one is not of at least two records.
+
+    Examples
+    --------
+    >>> from rocking.studies import SyntheticSet
+    >>> figure = record_set_picture({"far": SyntheticSet("point-source", 3, seed=1)}, [0.1, 0.5, 1.0])
+    >>> figure.axes[1].get_xlabel()
+    'period [s]'
+    """
+    if not 1 <= len(sets) <= len(MARKS):
+        raise InvalidValueError(f"sets must be 1 to {len(MARKS)}, got {len(sets)}")
+    places = checks.positive_array("periods", periods, "s")
+    figure, (left, right) = new_figure(DOUBLE, 2.9, columns=2)
+    for number, (name, motions) in enumerate(sets.items()):
+        records = [motions[k] for k in range(len(motions))]
+        if len(records) < 2 or not all(isinstance(each, GroundMotion) for each in records):
+            raise InvalidValueError(f"set {name!r:.60} must have two ground motions or more, got {records!r:.60}")
+        _peaks(left, records, number)
+        _set_spectra(right, records, places, number)
+    left.set(xlabel="peak ground acceleration [m/s$^2$]", ylabel="peak ground velocity [m/s]")
+    right.set(xlabel="period [s]", ylabel="spectral acceleration, 5 % [m/s$^2$]")
+    for panel in (left, right):
+        for which in "xy":
+            plain_log(panel, which)
+    handles = [
+        stroke(f"{plain(name)}: {len(sets[name])}", marker=MARKS[number], markersize=3.0, **look(number))
+        for number, name in enumerate(sets)
+    ]
+    legend_below(figure, handles, 3, fontsize=7, handlelength=3.6)
+    return figure
+
+
+def _peaks(axes: "Axes", records: list[GroundMotion], number: int) -> None:
+    pga = [peak_ground_acceleration(each) for each in records]
+    pgv = [peak_ground_velocity(each) for each in records]
+    mark: dict[str, Any] = {"marker": MARKS[number], "markersize": 3.0, "alpha": 0.7, "markeredgewidth": 0}
+    axes.plot(pga, pgv, linestyle="none", color=look(number)["color"], **mark)
+
+
+def _set_spectra(axes: "Axes", records: list[GroundMotion], periods: FloatArray, number: int) -> None:
+    values = np.array([response_spectrum(each, periods).pseudo_acceleration for each in records])
+    low, middle, high = np.quantile(values, [0.16, 0.5, 0.84], axis=0)
+    axes.fill_between(periods, low, high, color=look(number)["color"], alpha=0.15, linewidth=0)
+    axes.plot(periods, middle, linewidth=1.2, **look(number))

@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
-from rocking.plots.study_words import plain, wrapped
-from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, new_figure
+from rocking.plots.labels import plain, wrapped
+from rocking.plots.style import DASHED, DOUBLE, GREY, INK, PALE, in_journal_style, legend_below, new_figure, stroke
 from rocking.studies.inventory.assessment import Assessment, Verdict
 from rocking.studies.inventory.lights import Light
 
@@ -17,6 +17,9 @@ _ROW, _MARGIN = 0.235, 1.05
 _MOST = 60
 _LIGHTS = {Light.RED: ("#B2182B", "s"), Light.AMBER: ("#F4A300", "^"), Light.GREEN: ("#1B7F5C", "o")}
 """Colour and shape: the letter beside it says the same, for who sees no colours."""
+
+_RED: dict[str, Any] = {"color": _LIGHTS[Light.RED][0], "linewidth": 0.7, "linestyle": DASHED}
+_PEAK: dict[str, Any] = {"color": INK, "linewidth": 0.8, "linestyle": (0, (1, 1))}
 
 
 @in_journal_style
@@ -64,20 +67,19 @@ def inventory_picture(assessment: Assessment) -> "Figure":
     for row, verdict in enumerate(verdicts):
         for panel in (left, right):
             panel.axhline(row, color=PALE, linewidth=0.5, zorder=0)
+            panel.tick_params(axis="y", length=0)
         _share(left, row, verdict)
         right.plot(verdict.uplift_acceleration / g, row, "|", color=INK, markersize=7.0, markeredgewidth=1.6)
         right.hlines(row, 0.0, verdict.uplift_acceleration / g, color=GREY, linewidth=1.0)
     left.set_yticks(range(len(verdicts)), [wrapped(plain(each.item.name), 30, 1) for each in verdicts])
-    left.tick_params(axis="y", length=0)
-    right.tick_params(axis="y", length=0)
-    left.set_ylim(len(verdicts) - 0.5, -0.5)
-    left.set_xlim(-0.1, 1.03)
-    left.set_xticks([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
+    left.set(xlim=(-0.1, 1.03), ylim=(len(verdicts) - 0.5, -0.5), xticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
     left.set_xlabel("share of motions that overturn it [-]")
-    left.axvline(
-        assessment.thresholds.overturning_red, color=_LIGHTS[Light.RED][0], linewidth=0.7, linestyle=(0, (4, 2))
-    )
-    _strength(right, assessment)
+    left.axvline(assessment.thresholds.overturning_red, **_RED)
+    right.set_xlim(left=0.0)
+    right.set_xlabel("stays still up to [g]")
+    level = assessment.hazard.level
+    if level is not None and level.kind == "PGA":
+        right.axvline(level.value / g, **_PEAK)
     figure.suptitle(plain(f"{assessment.hazard.words()}; {assessment.hazard.source}"), x=0.01, ha="left", fontsize=7)
     _legend(figure, assessment)
     return figure
@@ -90,26 +92,14 @@ def _share(axes: "Axes", row: int, verdict: Verdict) -> None:
     axes.text(-0.06, row, verdict.light.value, ha="center", va="center", fontsize=7, color=INK, fontweight="bold")
 
 
-def _strength(axes: "Axes", assessment: Assessment) -> None:
-    level = assessment.hazard.level
-    axes.set_xlim(left=0.0)
-    axes.set_xlabel("stays still up to [g]")
-    if level is not None and level.kind == "PGA":
-        axes.axvline(level.value / g, color=INK, linewidth=0.8, linestyle=(0, (1, 1)))
-
-
 def _legend(figure: "Figure", assessment: Assessment) -> None:
-    from matplotlib.lines import Line2D
-
-    counts = assessment.counts()
+    counts, level = assessment.counts(), assessment.hazard.level
+    mark: dict[str, Any] = {"linestyle": "none", "markersize": 4.6}
     handles = [
-        Line2D([], [], linestyle="none", marker=shape, color=color, markersize=4.6,
-               label=f"{light.value}: {light.word}, {counts[light]}")
+        stroke(f"{light.value}: {light.word}, {counts[light]}", marker=shape, color=color, **mark)
         for light, (color, shape) in _LIGHTS.items()
-    ]  # fmt: skip
-    red: dict[str, Any] = {"color": _LIGHTS[Light.RED][0], "linestyle": (0, (4, 2))}
-    handles.append(Line2D([], [], linewidth=0.7, label="red from here", **red))
-    level = assessment.hazard.level
+    ]
+    handles.append(stroke("red from here", **_RED))
     if level is not None and level.kind == "PGA":
-        handles.append(Line2D([], [], color=INK, linewidth=0.8, linestyle=(0, (1, 1)), label="peak of the shaking"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=6.5, handlelength=1.6)
+        handles.append(stroke("peak of the shaking", **_PEAK))
+    legend_below(figure, handles, 5, handlelength=1.6)

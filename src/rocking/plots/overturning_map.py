@@ -1,25 +1,29 @@
-"""An overturning map: what overturns how, where it survives, the boundary, and the peak rotation of what survives."""
+"""Overturning maps: what overturns how, where it survives, the boundary, the peaks; on a grid, or refined along it."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking.conventions import BoolArray, IntArray
+from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
-from rocking.plots.contour_labels import labelled_contours
-from rocking.plots.region_labels import LabelPlace, place_in, rastered
-from rocking.plots.study_words import axis_label, geometric, note, plain, plain_log
-from rocking.plots.style import INK, SINGLE, in_journal_style, new_figure
+from rocking.plots.labels import axis_label, geometric, note, plain, plain_log
+from rocking.plots.map_labels import LabelPlace, labelled_contours, place_in, rastered
+from rocking.plots.style import DOUBLE, INK, SINGLE, in_journal_style, legend_below, new_figure, patch, stroke
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
 
-    from rocking.studies.boundaries import Polyline
+    from rocking.studies import Polyline
+    from rocking.studies.adaptive_grid import RefinedMap
 
-HEIGHT = 3.3
+    Window = tuple[tuple[float, float], tuple[float, float]]
+
+_HEIGHT = 3.3
+_RASTER = 700
 _PANEL = (2.95, 2.55)
 """Width and height of the panel, roughly [in]."""
 
@@ -44,6 +48,7 @@ _LEAST = 4
 """Islands of fewer points are drawn as any survival: a coarse grid cuts a narrow channel into such pieces."""
 
 _CONTOURS = (0.1, 0.25, 0.5, 0.75)
+_BOUNDARY: dict[str, Any] = {"color": INK, "linewidth": 0.9, "zorder": 4, "solid_joinstyle": "round"}
 
 
 @in_journal_style
@@ -84,12 +89,12 @@ def overturning_map_picture(
     odd = next((line.axes for line in boundary if line.axes != names), None)
     if odd is not None:
         raise InvalidValueError(f"boundary must be along {' and '.join(names)}, got {' and '.join(odd)}")
-    figure, (axes,) = new_figure(SINGLE, HEIGHT)
+    figure, (axes,) = new_figure(SINGLE, _HEIGHT)
     kinds = classes_of(found)
     draw_map(axes, found, kinds)
     bands = _contours(axes, found, contours)
     for line in boundary:
-        axes.plot(line.points[:, 0], line.points[:, 1], color=INK, linewidth=0.9, zorder=4, solid_joinstyle="round")
+        axes.plot(*line.points.T, **_BOUNDARY)
     _labels(axes, found, kinds, bands)
     note(axes, f"{plain(found.attrs.get('motion', ''))}; restitution {plain(found.attrs.get('restitution', ''))}")
     return figure
@@ -108,22 +113,37 @@ def classes_of(found: "xr.Dataset") -> IntArray:
     """Return what each point of a map is drawn as."""
     from rocking.studies.islands import safe_islands
 
-    mode = np.asarray(found["mode"].values)
-    kinds = np.select([mode == -3, mode == -2, mode == 0, mode == 1, mode > 1], [0, 1, 4, 5, 6], default=ROCKED)
+    kinds = _kinds(np.asarray(found["mode"].values))
     islands = safe_islands(found)
     wide = [island.label for island in islands.islands if island.cells >= _LEAST]
     kinds[np.isin(islands.labels, wide)] = ISLAND
+    return kinds
+
+
+def _kinds(mode: IntArray) -> IntArray:
+    cases = [mode == -3, mode == -2, mode == 0, mode == 1, mode > 1]
+    kinds = np.select(cases, [FAILED, UNLIFTED, FIRST, SECOND, LATER], default=ROCKED)
     return np.asarray(kinds, dtype=np.int64)
+
+
+def class_patches(kinds: Iterable[IntArray]) -> "list[Patch]":
+    """Return the legend of all classes that some maps have."""
+    present = sorted({int(kind) for each in kinds for kind in np.unique(each)})
+    return [patch(CLASSES[kind][1], CLASSES[kind][0], edgecolor=INK, linewidth=0.5) for kind in present]
+
+
+def _mesh(axes: "Axes", x: FloatArray, y: FloatArray, kinds: IntArray) -> None:
+    from matplotlib.colors import ListedColormap
+
+    colors = ListedColormap([color for _, color in CLASSES.values()])
+    axes.pcolormesh(x, y, kinds, cmap=colors, vmin=-0.5, vmax=len(CLASSES) - 0.5, shading="nearest", rasterized=True)
 
 
 def draw_map(axes: "Axes", found: "xr.Dataset", kinds: IntArray) -> None:
     """Draw the regions of a map, with labelled axes, logarithmic where the values grow by equal ratios."""
-    from matplotlib.colors import ListedColormap
-
     x, y = _axes_of(found)
-    colors = ListedColormap([color for _, color in CLASSES.values()])
     values = [np.asarray(found[name].values) for name in (x, y)]
-    axes.pcolormesh(*values, kinds, cmap=colors, vmin=-0.5, vmax=len(CLASSES) - 0.5, shading="nearest", rasterized=True)
+    _mesh(axes, values[0], values[1], kinds)
     linear = bool(found.attrs.get("setting_linear", 0))
     axes.set_xlabel(axis_label(x, found[x].attrs.get("units", "1"), linear=linear))
     axes.set_ylabel(axis_label(y, found[y].attrs.get("units", "1"), linear=linear))
@@ -149,8 +169,6 @@ def _contours(axes: "Axes", found: "xr.Dataset", levels: Sequence[float]) -> Int
 
 def _labels(axes: "Axes", found: "xr.Dataset", kinds: IntArray, bands: IntArray) -> None:
     """Name every region within it; a legend below names those that are too small for words."""
-    from matplotlib.patches import Patch
-
     x, y = (np.asarray(found[name].values) for name in _axes_of(found))
     x, y = (np.log(part) if geometric(part) else part for part in (x, y))
     fine, band = rastered(kinds, x, y), rastered(bands, x, y)
@@ -161,14 +179,14 @@ def _labels(axes: "Axes", found: "xr.Dataset", kinds: IntArray, bands: IntArray)
         if place is None:
             words, color = CLASSES[kind]
             hatch = "......" if kind == ISLAND else None
-            small.append(Patch(facecolor=color, edgecolor=INK, linewidth=0.5, label=words, hatch=hatch))
+            small.append(patch(color, words, edgecolor=INK, linewidth=0.5, hatch=hatch))
             continue
         axes.text(
             place.x, place.y, place.words, transform=axes.transAxes, ha="center", va="center", fontsize=7, zorder=5,
             color="white" if kind in {FIRST, FAILED} else INK,
         )  # fmt: skip
     if small:
-        axes.figure.legend(handles=small, loc="outside lower center", ncols=2, fontsize=6.5, handlelength=1.2)
+        legend_below(axes.figure, small, 2)  # type: ignore[arg-type]
 
 
 def _place(regions: Sequence[BoolArray], kind: int) -> LabelPlace | None:
@@ -178,3 +196,107 @@ def _place(regions: Sequence[BoolArray], kind: int) -> LabelPlace | None:
         if found:
             return min(found, key=lambda place: place.words.count("\n"))
     return None
+
+
+@in_journal_style
+def refined_map_picture(
+    points: "RefinedMap", boundary: "Sequence[Polyline]", *, window: "Window | None" = None, words: str = ""
+) -> "Figure":
+    r"""Draw a refined map: the regions, the points that were computed in the window, and the boundaries.
+
+    Parameters
+    ----------
+    points : RefinedMap
+        As of `refined_map`.
+    boundary : sequence of Polyline
+        As of `boundary` on the same axes, at least one.
+    window : pair of pairs of float, optional
+        Ends along x and along y of what a second panel shows larger, in the units of the axes.
+    words : str
+        What stands above, such as motion and restitution.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel, one column wide; two panels, two columns wide, with a window.
+
+    Raises
+    ------
+    InvalidValueError
+        If the points are of no refined map, there is no polyline, or the window is empty.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> from rocking.studies import boundary, refined_map
+    >>> block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.6)
+    >>> axes = ("frequency_ratio", [1.0, 2.0, 3.0]), ("amplitude_ratio", [1.0, 2.0, 3.0])
+    >>> made = refined_map(block, pulse, *axes, 0.9, levels=1), boundary(block, pulse, *axes, 0.9, levels=1)
+    >>> refined_map_picture(*made).axes[0].get_xlabel()
+    '$\\omega_p\\,/\\,p$ [-]'
+    """
+    from rocking.studies.adaptive_grid import RefinedMap
+
+    if not isinstance(points, RefinedMap):
+        raise InvalidValueError(f"points must be of refined_map, got {points!r:.60}")
+    if not boundary:
+        raise InvalidValueError("boundary must have at least one polyline; nothing changes over this map")
+    if window is not None and not all(low < high for low, high in window):
+        raise InvalidValueError(f"window must be two increasing pairs, got {window!r:.80}")
+    figure, axes = new_figure(SINGLE if window is None else DOUBLE, 3.2, columns=1 if window is None else 2)
+    whole = [(float(v[points.base].min()), float(v[points.base].max())) for v in (points.x, points.y)]
+    _panel(axes[0], points, boundary, (whole[0], whole[1]), dots=False)
+    new = points.modes.size - int(points.base.sum())
+    counts = f"{int(points.base.sum()):,} points of the map, {new:,} along its boundaries"
+    note(axes[0], f"{plain(words)}; {counts}" if words else counts)
+    if window is not None:
+        _panel(axes[1], points, boundary, window, dots=True)
+        _enlarged(axes, window)
+    handles = [*class_patches([_kinds(points.modes)]), stroke("boundary, bisected", color=INK, linewidth=0.9)]
+    legend_below(figure, handles, 2 if window is None else 3)
+    return figure
+
+
+def _panel(axes: "Axes", points: "RefinedMap", boundary: "Sequence[Polyline]", window: "Window", *, dots: bool) -> None:
+    scales = [geometric(np.unique(values[points.base])) for values in (points.x, points.y)]
+    x, y = (
+        np.asarray((np.geomspace if scale else np.linspace)(*ends, _RASTER))
+        for ends, scale in zip(window, scales, strict=True)
+    )
+    _mesh(axes, x, y, _nearest_kinds(points, x, y, scales))
+    axes.set(xlim=window[0], ylim=window[1])
+    if dots:
+        axes.plot(points.x, points.y, ".", color=INK, markersize=1.3, markeredgewidth=0, rasterized=True)
+    for line in boundary:
+        axes.plot(*line.points.T, **_BOUNDARY)
+    for which, scale, name in zip("xy", scales, boundary[0].axes, strict=True):
+        if scale:
+            plain_log(axes, which)
+        getattr(axes, f"set_{which}label")(axis_label(name))
+    axes.spines[["top", "right"]].set_visible(True)
+
+
+def _nearest_kinds(points: "RefinedMap", x: FloatArray, y: FloatArray, scales: list[bool]) -> IntArray:
+    """Return the class of the nearest point, distances in spacings of the map: cells as fine as the points are."""
+    from scipy.spatial import cKDTree
+
+    known, wanted = [], []
+    for values, at, scale in zip((points.x, points.y), (x, y), scales, strict=True):
+        places, pixels = (np.log(values), np.log(at)) if scale else (values, at)
+        base = np.log(values[points.base]) if scale else values[points.base]
+        spacing = np.diff(np.unique(base)).mean()
+        known.append(places / spacing)
+        wanted.append(pixels / spacing)
+    grid = np.stack(np.meshgrid(*wanted), axis=-1).reshape(-1, 2)
+    _, place = cKDTree(np.stack(known, axis=1)).query(grid)
+    return np.asarray(_kinds(points.modes)[place].reshape(y.size, x.size))
+
+
+def _enlarged(axes: "list[Axes]", window: "Window") -> None:
+    """Show a part of the first panel in the second, and where it is."""
+    from matplotlib.patches import Rectangle
+
+    (left, right), (low, high) = window
+    frame: dict[str, Any] = {"fill": False, "edgecolor": INK, "linewidth": 0.8, "linestyle": (0, (3, 2)), "zorder": 5}
+    axes[0].add_patch(Rectangle((left, low), right - left, high - low, **frame))
+    note(axes[1], "within the dashed frame; dots: points that were computed")

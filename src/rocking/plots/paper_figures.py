@@ -1,59 +1,153 @@
-"""Figures 3 and 5 to 9 of the paper, from the measurements as printed."""
+"""Every figure of `rocking paper`: those of Mao et al. (2024), redrawn from what is printed, and our own."""
 
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking.checks import one_of
+from rocking.conventions import FloatArray
+from rocking.evidence._league import league
 from rocking.evidence.agreement import relative_error
+from rocking.evidence.calibration import calibrate
+from rocking.evidence.explanation import explanation
 from rocking.evidence.measurements import DataSet, datasets
-from rocking.plots.curves import curve, slenderness_axis
-from rocking.plots.style import DOUBLE, GREY, GROUP_STYLE, INK, SINGLE, in_journal_style, model_styles, new_figure
+from rocking.plots import evidence
+from rocking.plots.energy_stages import energy_stages_picture, hero
+from rocking.plots.evidence import GROUP_STYLE, SLENDERNESS, R, curve
+from rocking.plots.style import DOUBLE, GREY, INK, SINGLE, in_journal_style, model_styles, new_figure
 from rocking.restitution import model
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+_B, _H, _THETA = 0.5, 1.25, 0.16
 _PAIR = ("housner", "ked")
 _MARKER = {"housner": "s", "ked": "o"}
 
 
-@in_journal_style
-def figure_3() -> "Figure":
-    """Draw slenderness against r with Table 2; bars are |r_r - r_e|, as in the paper.
+def paper_figure(name: str) -> "Figure":
+    """Draw a figure of `rocking paper`.
+
+    Parameters
+    ----------
+    name : str
+        ``figure_1`` to ``figure_9`` (4 is a photograph), ``league``, ``models_and_measurements``, ``calibration``,
+        ``bed_dependence``, ``explanations``, ``explanation_residuals``, or ``hero``, the picture of the README.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One panel.
+        The figure.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such figure.
+
+    Examples
+    --------
+    >>> paper_figure("figure_3").axes[0].get_xlabel()
+    'slenderness ratio h/b [-]'
     """
+    figures = paper_figures() | {"hero": hero}
+    return figures[one_of("name", name, figures)]()
+
+
+def paper_figures() -> "dict[str, Callable[[], Figure]]":
+    """Return how each figure of the report is drawn, by the name of its file."""
+    return {
+        "figure_1": _figure_1,
+        "figure_2": energy_stages_picture,
+        "figure_3": _figure_3,
+        "figure_5": _figure_5,
+        "figure_6": _figure_6,
+        "figure_7": _figure_7,
+        "figure_8": _figure_8,
+        "figure_9": _figure_9,
+        "league": lambda: evidence.league_figure(league()),
+        "models_and_measurements": lambda: evidence.models_and_measurements(calibrate()),
+        "calibration": lambda: evidence.calibration_figure(calibrate()),
+        "bed_dependence": evidence.bed_dependence_figure,
+        "explanations": lambda: evidence.explanations_figure(explanation()),
+        "explanation_residuals": lambda: evidence.residuals_figure(explanation()),
+    }
+
+
+@in_journal_style
+def _figure_1() -> "Figure":
+    """Draw the classical model, our own drawing: the block, its feet, half sizes, semi-diagonal and angles."""
+    from matplotlib.patches import Arc, Polygon
+
+    figure, (axes,) = new_figure(SINGLE, 3.3)
+    corners = np.array([(0.0, 0.0), (2 * _B, 0.0), (2 * _B, 2 * _H), (0.0, 2 * _H)])
+    foot = corners[1]
+    c, s = math.cos(_THETA), math.sin(_THETA)
+    turned = (corners - foot) @ np.array([[c, s], [-s, c]]).T + foot
+    axes.add_patch(Polygon(corners, closed=True, fill=False, edgecolor=GREY, linestyle=(0, (4, 3)), linewidth=0.8))
+    axes.add_patch(Polygon(turned, closed=True, facecolor="#f2f2f2", edgecolor=INK, linewidth=1.1))
+    axes.plot([-0.7, 1.9], [0.0, 0.0], color=INK, linewidth=0.9)
+    centre = turned.mean(axis=0)
+    axes.plot(*zip(foot, centre, strict=True), color=INK, linewidth=0.9)
+    axes.plot([centre[0]], [centre[1]], marker="o", color=INK, markersize=3.5)
+    _text(axes, "C", centre, (5, 3))
+    _text(axes, "R", 0.55 * centre + 0.45 * foot, (-11, -2))
+    _text(axes, "O", corners[0], (-2, -12))
+    _text(axes, "O'", foot, (2, -12))
+    side = turned[2] - turned[1]
+    up = foot + 1.05 * side / np.linalg.norm(side)
+    axes.plot(*zip(foot, up, strict=True), color=INK, linewidth=0.0)
+    alpha = math.atan2(_B, _H)
+    tilt = 90.0 - math.degrees(_THETA)
+    arc: dict[str, Any] = {"color": INK, "linewidth": 0.8}
+    axes.add_patch(Arc(tuple(foot), 1.5, 1.5, theta1=tilt, theta2=tilt + math.degrees(alpha), **arc))
+    middle = math.radians(tilt + 0.5 * math.degrees(alpha))
+    _text(axes, r"$\alpha$", foot + 0.9 * np.array([math.cos(middle), math.sin(middle)]), (-3, -3))
+    axes.add_patch(Arc(tuple(foot), 3.6, 3.6, theta1=tilt, theta2=90.0, **arc))
+    _text(axes, r"$\theta > 0$", foot + 1.8 * np.array([math.sin(_THETA), math.cos(_THETA)]), (6, -2), align="left")
+    _dimension(axes, turned[3], turned[2], "2b", 0.1, (0, 9))
+    _dimension(axes, turned[3], turned[0], "2h", -0.1, (-17, -3))
+    axes.annotate("", (0.55, -0.3), (0.0, -0.3), arrowprops={"arrowstyle": "-|>", **arc})
+    _text(axes, "ground acceleration > 0", np.array([0.6, -0.3]), (3, -3), align="left")
+    axes.set(xlim=(-0.75, 2.1), ylim=(-0.45, 3.0), aspect="equal")
+    axes.axis("off")
+    return figure
+
+
+def _text(axes: "Axes", words: str, at: FloatArray, shift: tuple[float, float], align: str = "center") -> None:
+    axes.annotate(words, (float(at[0]), float(at[1])), shift, textcoords="offset points", ha=align, fontsize=8)
+
+
+def _dimension(
+    axes: "Axes", a: FloatArray, b: FloatArray, words: str, outward: float, shift: tuple[float, float]
+) -> None:
+    beside = outward * np.array([-(b - a)[1], (b - a)[0]]) / np.linalg.norm(b - a)
+    axes.annotate("", tuple(a + beside), tuple(b + beside), arrowprops={"arrowstyle": "<->", "linewidth": 0.6})
+    _text(axes, words, 0.5 * (a + b) + beside, shift)
+
+
+@in_journal_style
+def _figure_3() -> "Figure":
+    """Draw slenderness against r with Table 2; bars are |r_r - r_e|, as in the paper."""
     figure, (axes,) = new_figure(SINGLE, 2.7)
     for name in _PAIR:
         curve(axes, name, 1.5, 9.0)
     _with_distance_to_ked(axes, datasets()["table2"], "s", "Table 2, means", 0.0)
-    slenderness_axis(axes)
-    axes.set_ylabel("coefficient of restitution r [-]")
     axes.set_ylim(0.55, 1.02)
     axes.legend(loc="lower right")
     return figure
 
 
 @in_journal_style
-def figure_5() -> "Figure":
-    """Draw slenderness against r for the groups S, M and L; bars are |r_r - r_e|, as in Figure 3.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        One panel; S and L are moved sideways a little, so that the bars can be told apart.
-    """
+def _figure_5() -> "Figure":
+    """Draw slenderness against r for S, M and L, S and L a little aside; bars are |r_r - r_e|, as in Figure 3."""
     figure, (axes,) = new_figure(SINGLE, 2.9)
     for name in _PAIR:
         curve(axes, name, 1.3, 10.2)
     for group, aside in (("S", -0.09), ("M", 0.0), ("L", 0.09)):
         _with_distance_to_ked(axes, datasets()[group], str(GROUP_STYLE[group]["marker"]), f"group {group}", aside)
-    slenderness_axis(axes)
-    axes.set_ylabel("coefficient of restitution r [-]")
     axes.legend(loc="lower right")
     return figure
 
@@ -61,30 +155,16 @@ def figure_5() -> "Figure":
 def _with_distance_to_ked(axes: "Axes", data: DataSet, marker: str, label: str, aside: float) -> None:
     reach = np.abs(model("ked").of_slenderness(data.slenderness) - data.coefficient)
     axes.errorbar(
-        data.slenderness + aside,
-        data.coefficient,
-        yerr=reach,
-        linestyle="none",
-        marker=marker,
-        markersize=3.5,
-        color=INK,
-        markerfacecolor=INK if aside == 0.0 else "white",
-        markeredgewidth=0.7,
-        capsize=1.5,
-        elinewidth=0.7,
+        data.slenderness + aside, data.coefficient, yerr=reach, linestyle="none", marker=marker, markersize=3.5,
+        color=INK, markerfacecolor=INK if aside == 0.0 else "white", markeredgewidth=0.7, capsize=1.5, elinewidth=0.7,
         label=label,
-    )
+    )  # fmt: skip
+    axes.set(xlabel=SLENDERNESS, ylabel=R)
 
 
 @in_journal_style
-def figure_6() -> "Figure":
-    """Draw the relative errors of both models for Table 2, with the paper's zones.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        One panel.
-    """
+def _figure_6() -> "Figure":
+    """Draw the relative errors of both models for Table 2, with the paper's zones."""
     figure, (axes,) = new_figure(SINGLE, 2.7)
     _zoned(axes, datasets()["table2"])
     axes.set_ylim(-0.4, 17.0)
@@ -93,16 +173,10 @@ def figure_6() -> "Figure":
 
 
 @in_journal_style
-def figure_7() -> "Figure":
-    """Draw the relative errors of both models for the groups S, M and L.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Three panels.
-    """
+def _figure_7() -> "Figure":
+    """Draw the relative errors of both models for the groups S, M and L."""
     figure, axes = new_figure(DOUBLE, 2.5, columns=3, sharey=True)
-    for panel, letter, group in zip(axes, "abc", ("S", "M", "L"), strict=True):
+    for panel, letter, group in zip(axes, "abc", "SML", strict=True):
         _zoned(panel, datasets()[group])
         panel.set_title(f"({letter}) group {group}")
     axes[0].set_ylim(-0.6, 26.0)
@@ -113,91 +187,54 @@ def figure_7() -> "Figure":
 
 
 @in_journal_style
-def figure_8() -> "Figure":
-    """Draw the absolute errors r_r - r_e and r_e - r_H against mass.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        One panel.
-    """
+def _figure_8() -> "Figure":
+    """Draw the absolute errors r_r - r_e and r_e - r_H against mass."""
     figure, (axes,) = new_figure(SINGLE, 2.9)
     for name, sign, words in (("housner", -1.0, "$r_e - r_H$"), ("ked", 1.0, "$r_r - r_e$")):
-        for group in ("S", "M", "L"):
+        look = {"linestyle": "none", **_filled(name)}
+        for group in "SML":
             data = datasets()[group]
             error = sign * (model(name).of_slenderness(data.slenderness) - data.coefficient)
-            color = model_styles()[name]["color"]
-            axes.plot(
-                data.mass,
-                error,
-                linestyle="none",
-                marker=GROUP_STYLE[group]["marker"],
-                color=color,
-                markerfacecolor="white" if name == "housner" else color,
-                label=f"{words}, {group}",
-            )
+            axes.plot(data.mass, error, marker=GROUP_STYLE[group]["marker"], label=f"{words}, {group}", **look)
     axes.axhline(0.0, color=GREY, linewidth=0.6)
     axes.set_xscale("log")
-    axes.set_xlabel("mass [kg]")
-    axes.set_ylabel("absolute error of r [-]")
+    axes.set(xlabel="mass [kg]", ylabel="absolute error of r [-]")
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, columnspacing=1.2, handletextpad=0.2)
     return figure
 
 
 @in_journal_style
-def figure_9() -> "Figure":
-    """Draw the relative errors at equal slenderness for the three groups and both models.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        One panel.
-    """
+def _figure_9() -> "Figure":
+    """Draw the relative errors at equal slenderness for the three groups and both models."""
     figure, (axes,) = new_figure(SINGLE, 2.9)
     for name in _PAIR:
-        for group in ("S", "M", "L"):
-            data = datasets()[group]
-            error = 100.0 * relative_error(model(name).of_slenderness(data.slenderness), data.coefficient)
-            look = model_styles()[name]
-            axes.plot(
-                data.slenderness,
-                error,
-                color=look["color"],
-                linestyle=look["linestyle"],
-                linewidth=0.9,
-                marker=GROUP_STYLE[group]["marker"],
-                markerfacecolor="white",
-                markersize=3.5,
-                label=f"{look['label']}, {group}",
-            )
-    slenderness_axis(axes)
-    axes.set_ylabel("relative error of r [%]")
+        look = {"linewidth": 0.9, "markerfacecolor": "white", "markersize": 3.5, **model_styles()[name]}
+        for group in "SML":
+            look |= {"marker": GROUP_STYLE[group]["marker"], "label": f"{model_styles()[name]['label']}, {group}"}
+            axes.plot(datasets()[group].slenderness, _relative_error(name, datasets()[group]), **look)
+    axes.set(xlabel=SLENDERNESS, ylabel="relative error of r [%]")
     axes.set_ylim(bottom=0.0)
     axes.legend(loc="upper right", ncols=2, columnspacing=0.8)
     return figure
 
 
+def _relative_error(name: str, data: DataSet) -> FloatArray:
+    """Return the relative errors of a model [%]."""
+    return 100.0 * relative_error(model(name).of_slenderness(data.slenderness), data.coefficient)
+
+
+def _filled(name: str) -> dict[str, Any]:
+    color = model_styles()[name]["color"]
+    return {"color": color, "markerfacecolor": "white" if name == "housner" else color}
+
+
 def _zoned(axes: "Axes", data: DataSet) -> None:
-    for low, high, shade, name in ((0.0, 1.0, "#ececec", "I"), (1.0, 5.0, "#f7f7f7", "II")):
+    for low, high, shade in ((0.0, 1.0, "#ececec"), (1.0, 5.0, "#f7f7f7")):
         axes.axhspan(low, high, color=shade, linewidth=0.0, zorder=0)
-        _zone_name(axes, name, 0.5 * (low + high))
-    _zone_name(axes, "III", 7.0)
+    for zone, height in (("I", 0.5), ("II", 3.0), ("III", 7.0)):
+        place = axes.get_yaxis_transform()
+        axes.text(1.01, height, zone, transform=place, ha="left", va="center", fontsize=7, color=GREY)
     for name in _PAIR:
-        error = 100.0 * relative_error(model(name).of_slenderness(data.slenderness), data.coefficient)
-        look = model_styles()[name]
-        axes.plot(
-            data.slenderness,
-            error,
-            linestyle="none",
-            marker=_MARKER[name],
-            color=look["color"],
-            label=look["label"],
-            markerfacecolor="white" if name == "housner" else look["color"],
-        )
-    slenderness_axis(axes)
-    axes.set_ylabel("relative error of r [%]")
-
-
-def _zone_name(axes: "Axes", name: str, height: float) -> None:
-    place = axes.get_yaxis_transform()
-    axes.text(1.01, height, name, transform=place, ha="left", va="center", fontsize=7, color=GREY)
+        look = {"linestyle": "none", "marker": _MARKER[name], "label": model_styles()[name]["label"], **_filled(name)}
+        axes.plot(data.slenderness, _relative_error(name, data), **look)
+    axes.set(xlabel=SLENDERNESS, ylabel="relative error of r [%]")

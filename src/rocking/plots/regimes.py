@@ -1,6 +1,5 @@
 """Regimes in pictures: Shenton's map, and a planar response with its regimes coloured."""
 
-from textwrap import wrap
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,14 +10,22 @@ from rocking.dynamics.contact.response import ContactResponse
 from rocking.dynamics.contact.shenton import friction_demand, regime_map
 from rocking.errors import InvalidValueError
 from rocking.outcome import Regime
-from rocking.plots.style import DOUBLE, GREY, INK, PALE, SINGLE, in_journal_style, new_figure
+from rocking.plots.style import (
+    DOUBLE,
+    GREY,
+    INK,
+    PALE,
+    SINGLE,
+    headline,
+    in_journal_style,
+    legend_above,
+    new_figure,
+    patch,
+)  # fmt: skip
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-_WIDTH = 88
-"""Characters that fit into one line of the title."""
 
 COLOURS = {
     Regime.REST: "#ffffff",
@@ -133,8 +140,7 @@ def regimes_picture(response: ContactResponse) -> "Figure":
     4
     """
     figure, axes = new_figure(DOUBLE, 5.2, rows=4, sharex=True, height_ratios=[1.5, 1.0, 0.8, 1.2])
-    title = response.summary[:1].upper() + response.summary[1:]
-    figure.suptitle("\n".join(wrap(title, _WIDTH)), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
+    headline(figure, response.summary)
     panels = (
         (np.degrees(response.rotation), "rotation\n[degrees]"),
         (response.displacement, "centre to\nthe right [m]"),
@@ -166,12 +172,10 @@ def _energy(axes: "Axes", response: ContactResponse) -> None:
     for label, values, colour, line in rows:
         axes.plot(energy.time, values, color=colour, linestyle=line, linewidth=0.9, label=label, zorder=3)
     axes.set_ylabel("energy [J]")
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.0, borderpad=0.2)
+    legend_above(axes, 4)
 
 
 def _bands(axes: list["Axes"], response: ContactResponse) -> None:
-    from matplotlib.patches import Patch
-
     regimes = response.regimes
     for regime in Regime:
         mine = regimes[regimes["regime"] == regime.name]
@@ -181,7 +185,4 @@ def _bands(axes: list["Axes"], response: ContactResponse) -> None:
                 spans, (0.0, 1.0), transform=panel.get_xaxis_transform(), color=COLOURS[regime], linewidth=0.0, zorder=0
             )
     seen = [regime for regime in Regime if regime.name in set(regimes["regime"])]
-    patches = [Patch(facecolor=COLOURS[r], edgecolor=GREY, linewidth=0.4, label=_NAMES[r]) for r in seen]
-    axes[0].legend(
-        handles=patches, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=5, borderaxespad=0.0, borderpad=0.2
-    )
+    legend_above(axes[0], 5, handles=[patch(COLOURS[r], _NAMES[r], edgecolor=GREY, linewidth=0.4) for r in seen])

@@ -1,16 +1,15 @@
-"""A response: the ground, the rotation, the velocity, where the energy goes, and the friction that it takes."""
+"""A response: the ground, the rotation, the velocity, where the energy goes, the friction it takes; and its curves."""
 
-from textwrap import wrap
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.dynamics.response import Response
+from rocking.motions.motion import GroundMotion
 from rocking.outcome import Outcome
-from rocking.plots.response_curves import MotionCurves, ground_curve, motion_curves, over_slenderness, shown_until
-from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, new_figure
+from rocking.plots.style import DASHED, DOUBLE, GREY, INK, PALE, headline, in_journal_style, legend_above, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,8 +23,12 @@ _BEYOND = 2.2
 _SMALL = 0.2
 """Below this share of the slenderness angle the rotation fills its panel and +-1 is left out."""
 
-_WIDTH, _LONGEST_LINE = 88, 118
-"""Characters that fit into one line of the title, and of the small print below it."""
+_LONGEST_LINE = 118
+"""Characters that fit into one line of the small print."""
+
+_INSIDE = np.linspace(0.0, 1.0, 5)
+_REST = 0.06
+"""Rest that is shown after the last event, as a share of the time shown."""
 
 
 @in_journal_style
@@ -54,34 +57,32 @@ def response_picture(response: Response, friction: float = 0.5) -> "Figure":
     friction = checks.positive("friction", friction)
     ratios = [0.75, 1.7, 0.9, 1.2, 0.8]
     figure, axes = new_figure(DOUBLE, 7.0, rows=5, sharex=True, height_ratios=ratios)
-    first, *others = _title(response)
-    figure.suptitle("\n".join(wrap(first, _WIDTH)), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
-    axes[0].set_title("\n".join(others), loc="left", fontsize=7.5, color=INK)
-    curves = motion_curves(response)
+    headline(figure, response.summary)
+    axes[0].set_title("\n".join(_small_print(response)), loc="left", fontsize=7.5, color=INK)
+    time, rotation, velocity = motion_curves(response)
     _ground(axes[0], response)
-    _rotation(axes[1], response, curves)
-    _velocity(axes[2], response, curves)
+    _rotation(axes[1], response, time, over_slenderness(response, rotation))
+    _velocity(axes[2], response, time, velocity)
     _energy(axes[3], response)
     _friction(axes[4], response, friction)
     for panel in axes:
         panel.locator_params(axis="y", nbins=5)
         if not np.isnan(response.overturning_time):
-            panel.axvline(response.overturning_time, color=_FALL, linewidth=0.9, linestyle=(0, (4, 2)), zorder=1)
+            panel.axvline(response.overturning_time, color=_FALL, linewidth=0.9, linestyle=DASHED, zorder=1)
     axes[0].set_xlim(0.0, shown_until(response))
     axes[-1].set_xlabel("time [s]")
     figure.align_ylabels(axes)
     return figure
 
 
-def _title(response: Response) -> list[str]:
+def _small_print(response: Response) -> list[str]:
     motion = response.motion
     ground = "free rocking, the ground at rest" if motion is None else " ".join(motion.name.split())
     if response.scale != 1.0:
         ground = f"{response.scale:g} times {ground}"
-    summary = response.summary[:1].upper() + response.summary[1:]
     lines = [ground, f"restitution: {response.parameters.label};  engine: {response.engine}"]
     short = [line if len(line) <= _LONGEST_LINE else line[: _LONGEST_LINE - 3] + "..." for line in lines]
-    return [summary, *(line.replace("$", r"\$") for line in short)]
+    return [line.replace("$", r"\$") for line in short]
 
 
 def _ground(axes: "Axes", response: Response) -> None:
@@ -93,10 +94,9 @@ def _ground(axes: "Axes", response: Response) -> None:
     axes.set_ylabel("ground\nacceleration\n[m/s$^2$]")
 
 
-def _rotation(axes: "Axes", response: Response, curves: MotionCurves) -> None:
-    values = over_slenderness(response, curves.rotation)
+def _rotation(axes: "Axes", response: Response, time: FloatArray, values: FloatArray) -> None:
     axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
-    axes.plot(curves.time, values, color=_ROTATION, linewidth=1.0, zorder=3)
+    axes.plot(time, values, color=_ROTATION, linewidth=1.0, zorder=3)
     times = response.impacts["time"]
     if times.size:
         axes.plot(
@@ -109,12 +109,12 @@ def _rotation(axes: "Axes", response: Response, curves: MotionCurves) -> None:
         axes.set_title(r"the slenderness angle, $\pm$1, lies far outside this panel", loc="right", fontsize=7)
     else:
         for level in (-1.0, 1.0):
-            axes.axhline(level, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
+            axes.axhline(level, color=GREY, linewidth=0.8, linestyle=DASHED, zorder=1)
         axes.set_ylim(*_reach(values, response.outcome is Outcome.OVERTURNED))
     if response.outcome is Outcome.OVERTURNED:
-        axes.plot([], [], color=_FALL, linewidth=0.9, linestyle=(0, (4, 2)), label="past the point of no return")
+        axes.plot([], [], color=_FALL, linewidth=0.9, linestyle=DASHED, label="past the point of no return")
     if times.size or response.outcome is Outcome.OVERTURNED:
-        _legend(axes, 2)
+        legend_above(axes, 2)
     axes.set_ylabel("rotation /\nslenderness\nangle [-]")
 
 
@@ -124,10 +124,10 @@ def _reach(values: FloatArray, falls: bool) -> tuple[float, float]:
     return 1.15 * low, 1.15 * high
 
 
-def _velocity(axes: "Axes", response: Response, curves: MotionCurves) -> None:
+def _velocity(axes: "Axes", response: Response, time: FloatArray, velocity: FloatArray) -> None:
     axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
-    axes.plot(curves.time, curves.velocity, color=_VELOCITY, linewidth=0.9)
-    _limits(axes, response, curves.time, [curves.velocity])
+    axes.plot(time, velocity, color=_VELOCITY, linewidth=0.9)
+    _limits(axes, response, time, [velocity])
     axes.set_ylabel("angular\nvelocity\n[rad/s]")
 
 
@@ -144,7 +144,7 @@ def _energy(axes: "Axes", response: Response) -> None:
     for label, values, color, line in rows:
         axes.plot(energy.time, factor * values, color=color, linestyle=line, linewidth=0.9, label=label)
     _limits(axes, response, energy.time, [factor * values for _, values, _, _ in rows])
-    _legend(axes, 4)
+    legend_above(axes, 4)
     axes.set_ylabel(f"energy\n[{unit}]")
 
 
@@ -168,11 +168,11 @@ def _friction(axes: "Axes", response: Response, friction: float) -> None:
     if response.impacts.size:
         axes.axhline(contact.friction_of_impacts, color=_IMPACT, linewidth=0.9, linestyle="-.", label="at impacts")
         most = max(most, contact.friction_of_impacts)
-    axes.axhline(friction, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)), label=f"friction {friction:g}")
+    axes.axhline(friction, color=GREY, linewidth=0.9, linestyle=DASHED, label=f"friction {friction:g}")
     axes.set_ylim(0.0, 1.15 * min(most, 4.0 * friction + contact.friction_of_impacts))
     if response.lost_contact:
         axes.set_title("the ground would have to pull", loc="right", fontsize=7, color=_IMPACT)
-    _legend(axes, 3)
+    legend_above(axes, 3)
     axes.set_ylabel("friction\ntaken [-]")
 
 
@@ -185,6 +185,68 @@ def _limits(axes: "Axes", response: Response, time: FloatArray, values: list[Flo
     axes.set_ylim(low - room, high + room)
 
 
-def _legend(axes: "Axes", columns: int) -> None:
-    # above the panel, where no curve runs
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.0, borderpad=0.2)
+def motion_curves(response: Response) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return times, an impact twice [s], rotations [rad] and velocities [rad/s] with every jump upright."""
+    dense_output = response.dense_output
+    rotation, velocity = dense_output.evaluated(_INSIDE)
+    time = dense_output.start[:, None] + _INSIDE * dense_output.length[:, None]
+    return time.ravel(), rotation.ravel(), velocity.ravel()
+
+
+def velocity_at(response: Response, time: Any) -> FloatArray:
+    """Return the angular velocity [rad/s] at any times [s] within a response; at an impact the one after it."""
+    dense_output = response.dense_output
+    t = np.clip(np.asarray(time, dtype=np.float64), 0.0, dense_output.end[-1])
+    k = np.clip(np.searchsorted(dense_output.start, t, side="right") - 1, 0, dense_output.start.size - 1)
+    x = (t - dense_output.start[k]) / dense_output.length[k]
+    slopes = dense_output.quintics()[k][..., 1:] * np.arange(1, 6)
+    return np.asarray((slopes * x[..., None] ** np.arange(5)).sum(axis=-1) / dense_output.length[k])
+
+
+def over_slenderness(response: Response, rotation: FloatArray) -> FloatArray:
+    """Return rotations [rad] over the slenderness angle of the side they stand on; from one on past the foot [-]."""
+    parameters = response.parameters
+    return rotation / np.where(rotation > 0.0, parameters.right.slenderness_angle, parameters.left.slenderness_angle)
+
+
+def shown_until(response: Response) -> float:
+    """Return the time up to which there is something to see: the motion, the last event, and a little rest [s]."""
+    end = float(response.time[-1]) or float(response.dense_output.end[-1])  # it may lie before the second sample
+    if response.outcome is Outcome.OVERTURNED or not response.trajectory.events:
+        return end if response.outcome is not Outcome.NO_UPLIFT else min(end, _quiet_end(response))
+    last = max(event.time for event in response.trajectory.events)
+    if np.any(response.rotation[response.time > last] != 0.0):
+        return end
+    motion = 0.0 if response.motion is None else response.motion.duration
+    return min(end, (1.0 + _REST) * max(last, motion))
+
+
+def _quiet_end(response: Response) -> float:
+    return float(response.time[-1]) if response.motion is None else response.motion.duration
+
+
+def ground_curve(response: Response) -> tuple[FloatArray, FloatArray]:
+    """Return times [s] and horizontal accelerations [m/s2] of the ground, jumps at the ends of the motion upright."""
+    segments = response.segments
+    parts = np.arange(1 if isinstance(response.motion, GroundMotion) else 3)
+    tau = np.append(parts / parts.size, 1.0)
+    powers = tau[None, :] ** np.arange(segments.degree + 1)[:, None]
+    time = (np.arange(segments.count)[:, None] + tau) * segments.step
+    values = response.scale * (segments.horizontal @ powers)
+    rise = [0.0]
+    return np.concatenate([rise, time.ravel()]), np.concatenate([rise, values.ravel()])
+
+
+def ground_place(response: Response, time: FloatArray) -> FloatArray:
+    """Return the horizontal displacement of the ground [m] at some times [s], from rest, integrated exactly."""
+    segments = response.segments
+    h, order = segments.step, np.arange(segments.degree + 1)
+    c = response.scale * segments.horizontal
+    faster = h * (c / (order + 1)).sum(axis=1)
+    velocity = np.concatenate([[0.0], np.cumsum(faster)])
+    farther = h * velocity[:-1] + h * h * (c / ((order + 1) * (order + 2))).sum(axis=1)
+    place = np.concatenate([[0.0], np.cumsum(farther)])
+    k = np.clip((time / h).astype(np.int64), 0, segments.count - 1)
+    tau = time / h - k
+    inside = (c[k] / ((order + 1) * (order + 2)) * tau[:, None] ** (order + 2)).sum(axis=1)
+    return np.asarray(place[k] + h * velocity[k] * tau + h * h * inside)

@@ -8,15 +8,14 @@ import numpy as np
 from rocking import conventions
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.plots.study_words import PEAK, geometric, look, plain, plain_log
-from rocking.plots.style import PALE, SINGLE, in_journal_style, new_figure
+from rocking.plots.labels import PEAK, geometric, plain, plain_log
+from rocking.plots.style import PALE, SINGLE, in_journal_style, look, new_figure
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-HEIGHT = 3.4
 _BEYOND = 1e3
 
 
@@ -52,7 +51,7 @@ def rocking_spectrum_picture(found: "xr.Dataset") -> "Figure":
     """
     if not hasattr(found, "data_vars") or set(found.sizes) < {"motion", "slenderness_angle", "period"}:
         raise InvalidValueError(f"found must be of rocking_spectrum, got {found!r:.60}")
-    figure, (upper, lower) = new_figure(SINGLE, HEIGHT, rows=2, sharex=True, height_ratios=[3.2, 1.0])
+    figure, (upper, lower) = new_figure(SINGLE, 3.4, rows=2, sharex=True, height_ratios=[3.2, 1.0])
     for place, alpha in enumerate(found["slenderness_angle"].values.tolist()):
         _curve(upper, found, place, float(alpha))
     upper.set_ylabel(PEAK)

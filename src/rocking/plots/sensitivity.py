@@ -1,4 +1,4 @@
-"""How the choice of a restitution changes a study: maps beside one another, spectra and fragility over one another."""
+"""How the choice of a restitution changes a study: maps and their difference, spectra, fragility curves."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -6,9 +6,11 @@ import numpy as np
 
 from rocking.conventions import percent
 from rocking.errors import InvalidValueError
-from rocking.plots.overturning_map import CLASSES, classes_of, draw_map
-from rocking.plots.study_words import PEAK, axis_label, geometric, look, plain, plain_log
-from rocking.plots.style import DOUBLE, INK, SINGLE, in_journal_style, new_figure
+from rocking.plots.fragility import symbol
+from rocking.plots.labels import PEAK, axis_label, geometric, plain, plain_log
+from rocking.plots.overturning_map import class_patches, classes_of, draw_map
+from rocking.plots.rocking_spectrum import fractiles
+from rocking.plots.style import DOUBLE, INK, MARKS, SINGLE, in_journal_style, legend_below, look, new_figure, patch
 from rocking.studies.sensitivity.comparison import Sensitivity
 
 if TYPE_CHECKING:
@@ -18,6 +20,10 @@ if TYPE_CHECKING:
 
 GAINED, LOST, SAME, UNKNOWN = "#CC79A7", "#0072B2", "#F2F2F2", "#000000"
 """Overturns with the choice only, with the baseline only, the same verdict, one of the two not computed."""
+
+_BOTH = "#BDBDBD"
+_CHANGE = "PuOr_r"
+"""Purple to orange, white between: told apart by every eye, and unlike the colours of flips."""
 
 _PANEL = 2.35
 _MOST = 6
@@ -97,46 +103,35 @@ def _of_maps(found: Sensitivity) -> "Figure":
 
 def _flips(axes: "Axes", found: Sensitivity, label: str) -> None:
     """Draw where the verdict differs from that of the baseline."""
-    from matplotlib.colors import ListedColormap
-
-    made = found.differences("verdict").sel(restitution=label)
-    base = found.datasets[found.baseline]
-    draw_map(axes, base, np.ones(made.shape, dtype=np.int64))
-    y, x = made.dims
-    colors = ListedColormap([LOST, SAME, GAINED, UNKNOWN])
-    axes.pcolormesh(
-        base[x].values, base[y].values, made.values, cmap=colors, vmin=-1.5, vmax=2.5, shading="nearest",
-        rasterized=True,
-    )  # fmt: skip
+    verdict, base = found.differences("verdict").sel(restitution=label), found.datasets[found.baseline]
+    draw_map(axes, base, np.ones(verdict.shape, dtype=np.int64))
+    y, x = (base[name].values for name in verdict.dims)
+    axes.pcolormesh(x, y, verdict.values, **_flip_colors(SAME))
     flips = found.flips_between(found.baseline, label)
     words = f"{flips.count:,} of {flips.compared:,} flip ({percent(flips.share)})"
     axes.set_title(words, loc="left", fontsize=7)
 
 
+def _flip_colors(same: str) -> dict[str, Any]:
+    from matplotlib.colors import ListedColormap
+
+    colors = ListedColormap([LOST, same, GAINED, UNKNOWN])
+    return {"cmap": colors, "vmin": -1.5, "vmax": 2.5, "shading": "nearest", "rasterized": True}
+
+
 def _map_legend(hidden: "Axes", kinds: dict[str, Any]) -> None:
     """Explain the colours where the baseline has no map of differences."""
-    from matplotlib.patches import Patch
-
-    present = sorted({kind for each in kinds.values() for kind in np.unique(each).tolist()})
-    handles = [
-        Patch(facecolor=CLASSES[k][1], edgecolor=INK, linewidth=0.5, label=_short(CLASSES[k][0])) for k in present
-    ]
-    handles += [
-        Patch(facecolor=GAINED, label="flips to overturned"),
-        Patch(facecolor=LOST, label="flips to standing"),
-    ]
+    handles = class_patches(kinds.values())
+    for each in handles:
+        words = str(each.get_label()).replace("rocks, ", "")
+        each.set_label(words.replace("overturns after 2 or more impacts", "overturns after 2 or more"))
+    handles += [patch(GAINED, "flips to overturned"), patch(LOST, "flips to standing")]
     hidden.set_visible(True)
     hidden.axis("off")
     hidden.legend(handles=handles, loc="center left", fontsize=6.5, handlelength=1.2, borderaxespad=0.0)
 
 
-def _short(words: str) -> str:
-    return words.replace("rocks, ", "").replace("overturns after 2 or more impacts", "overturns after 2 or more")
-
-
 def _of_spectra(found: Sensitivity) -> "Figure":
-    from rocking.plots.rocking_spectrum import fractiles
-
     base = found.datasets[found.baseline]
     angles = base["slenderness_angle"].values.tolist()
     figure, axes = new_figure(SINGLE, 0.9 + 1.25 * len(angles), rows=len(angles), sharex=True)
@@ -156,15 +151,13 @@ def _of_spectra(found: Sensitivity) -> "Figure":
 
 def _flipped(found: Sensitivity, place: int) -> str:
     """Return how many verdicts of one slenderness flip with each choice."""
-    made: xr.DataArray = found.differences("verdict").isel(slenderness_angle=place)
-    counts = (np.abs(made) == 1).sum([name for name in made.dims if name != "restitution"])
-    total = made[0].size
+    verdict: xr.DataArray = found.differences("verdict").isel(slenderness_angle=place)
+    counts = (np.abs(verdict) == 1).sum([name for name in verdict.dims if name != "restitution"])
+    total = verdict[0].size
     return "flips " + ", ".join(f"{int(n):,}" for n in counts.values) + f" of {total:,}"
 
 
 def _of_fragility(found: Sensitivity, unit: tuple[str, float] | None) -> "Figure":
-    from rocking.plots.fragility_words import symbol
-
     states = found.states
     figure, axes = new_figure(SINGLE, 1.1 + 1.55 * len(states), rows=len(states), sharex=True)
     results = [found.results[label] for label in found.labels]
@@ -177,8 +170,8 @@ def _of_fragility(found: Sensitivity, unit: tuple[str, float] | None) -> "Figure
             if fit.exists:
                 panel.plot(fine, fit.probability(fine), linewidth=1.0, **look(number))
             share = result.counts[state] / np.maximum(result.trials, 1)
-            panel.plot(levels, share, "osv^D<"[number], markersize=2.6, color=look(number)["color"], alpha=0.8)
-            panel.plot([], [], marker="osv^D<"[number], markersize=2.6, label=words, **look(number))
+            panel.plot(levels, share, MARKS[number], markersize=2.6, color=look(number)["color"], alpha=0.8)
+            panel.plot([], [], marker=MARKS[number], markersize=2.6, label=words, **look(number))
         panel.set_ylim(-0.03, 1.03)
         panel.set_title(f"{symbol(state)}: {_medians(found, state, unit)}", loc="left", fontsize=7)
     figure.supylabel("probability [-]", fontsize=8)
@@ -194,3 +187,81 @@ def _medians(found: Sensitivity, state: str, unit: tuple[str, float] | None) -> 
     name, size = unit or (found.results[found.baseline].subject.measure.unit, 1.0)
     words = ", ".join("none" if value is None else f"{value / size:.3g}" for value in medians)
     return f"medians {words} {name}".removesuffix(" -").replace("m/s2", "m/s$^2$")
+
+
+@in_journal_style
+def difference_map_picture(found: Sensitivity, choice: str | None = None) -> "Figure":
+    r"""Draw the maps of the baseline and of another restitution, and their difference beside them.
+
+    In the map of differences the colour says by how much the peak rotation over alpha is larger with the choice where
+    the body stands with both, and two more colours where the verdict flips.
+
+    Parameters
+    ----------
+    found : Sensitivity
+        As of `map_sensitivity`.
+    choice : str, optional
+        The restitution that is compared with the baseline; the first after it if not given.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three panels, two columns wide.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no comparison of maps, or has no such choice.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> from rocking.studies.sensitivity import map_sensitivity
+    >>> block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.6)
+    >>> axes = ("frequency_ratio", [1.0, 2.0, 3.0, 4.0]), ("amplitude_ratio", [1.0, 2.0, 3.0, 4.0])
+    >>> figure = difference_map_picture(map_sensitivity(block, pulse, *axes, ["housner", "ked"]))
+    >>> [panel.get_title(loc="left") for panel in figure.axes[:3]]
+    ['a  housner', 'b  ked', 'c  ked less housner, 0 of 16 verdicts flip']
+    """
+    known: object = found
+    if not isinstance(known, Sensitivity) or found.datasets[found.baseline].get("mode", np.empty(0)).ndim != 2:
+        raise InvalidValueError(f"found must be a Sensitivity of maps, got {found!r:.60}")
+    others = found.labels[1:]
+    choice = others[0] if choice is None and others else choice
+    if choice not in others:
+        raise InvalidValueError(f"choice must be one of {', '.join(others)}, got {choice!r:.60}")
+    figure, axes = new_figure(DOUBLE, 3.0, columns=3, sharex=True, sharey=True)
+    kinds = {label: classes_of(found.datasets[label]) for label in (found.baseline, choice)}
+    for letter, panel, (label, each) in zip("ab", axes, kinds.items(), strict=False):
+        draw_map(panel, found.datasets[label], each)
+        panel.set_title(f"{letter}  {plain(label)}", loc="left", fontsize=7.5)
+    scale = _differences(axes[2], found, choice)
+    bar = figure.colorbar(scale, ax=axes[2], pad=0.02, aspect=30)
+    bar.set_label(r"change of peak rotation $\theta\,/\,\alpha$ [-]", fontsize=7)
+    bar.outline.set_linewidth(0.6)
+    for panel in axes:
+        panel.label_outer()
+    handles, edge = class_patches(kinds.values()), {"edgecolor": INK, "linewidth": 0.5}
+    verdict = found.differences("verdict").sel(restitution=choice)
+    flips = ((1, GAINED, "overturns with the choice only"), (-1, LOST, "overturns with the baseline only"))
+    handles += [patch(color, words, **edge) for sign, color, words in flips if (verdict == sign).any()]
+    legend_below(figure, [*handles, patch(_BOTH, "overturns with both (c)", **edge)], 4)
+    return figure
+
+
+def _differences(axes: "Axes", found: Sensitivity, choice: str) -> Any:
+    """Draw the change of the peaks, and flips over it; return what the colours mean."""
+    base, verdict = found.datasets[found.baseline], found.differences("verdict").sel(restitution=choice).values
+    change = found.differences("peak_ratio").sel(restitution=choice)
+    draw_map(axes, base, np.ones(verdict.shape, dtype=np.int64))
+    axes.set_facecolor(_BOTH)
+    axes.collections[-1].set_visible(False)
+    y, x = (base[name].values for name in change.dims)
+    stands = np.where(verdict == 0, change.values, np.nan)
+    most = float(np.nanmax(np.abs(stands), initial=0.01))
+    scale = axes.pcolormesh(x, y, stands, cmap=_CHANGE, vmin=-most, vmax=most, shading="nearest", rasterized=True)
+    axes.pcolormesh(x, y, np.where(verdict == 0, np.nan, verdict), **_flip_colors("white"))
+    flips = found.flips_between(found.baseline, choice)
+    words = f"{choice} less {found.baseline}, {flips.count:,} of {flips.compared:,} verdicts flip"
+    axes.set_title(f"c  {plain(words)}", loc="left", fontsize=7)
+    return scale

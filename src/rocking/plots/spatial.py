@@ -1,6 +1,5 @@
 """A response in space: path of the top seen from above, on what the body stands, tilt and direction over time."""
 
-from textwrap import wrap
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -8,7 +7,7 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.dynamics.space.response import SpatialResponse
 from rocking.outcome import ContactMode, Outcome
-from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, new_figure
+from rocking.plots.style import DASHED, DOUBLE, GREY, INK, PALE, headline, in_journal_style, legend_above, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,7 +20,6 @@ _COLOURS = {
     ContactMode.ROLLING: "#009E73",
 }
 _IMPACT, _TOP = "#D55E00", "#0072B2"
-_WIDTH = 88
 _SMALL = 1e-3
 """Below this share of the largest tilt the body leans nowhere in particular."""
 
@@ -54,8 +52,7 @@ def spatial_picture(response: SpatialResponse) -> "Figure":
     tilt = figure.add_subplot(grid[0, 1])
     direction = figure.add_subplot(grid[1, 1], sharex=tilt)
     contact = figure.add_subplot(grid[2, 1], sharex=tilt)
-    words = response.summary[:1].upper() + response.summary[1:]
-    figure.suptitle("\n".join(wrap(words, _WIDTH)), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
+    headline(figure, response.summary)
     _plan(plan, response)
     _tilt(tilt, response)
     _direction(direction, response)
@@ -75,9 +72,8 @@ def _plan(axes: "Axes", response: SpatialResponse) -> None:
     axes.plot(top[:1, 0], top[:1, 1], marker="o", markersize=3.5, color=INK, linestyle="none", label="start")
     axes.plot(top[-1:, 0], top[-1:, 1], marker="s", markersize=3.5, color=_IMPACT, linestyle="none", label="end")
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel("x [m]")
-    axes.set_ylabel("y [m]")
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0, borderpad=0.2)
+    axes.set(xlabel="x [m]", ylabel="y [m]")
+    legend_above(axes, 2)
 
 
 def _outline(response: SpatialResponse) -> FloatArray:
@@ -102,19 +98,17 @@ def _tilt(axes: "Axes", response: SpatialResponse) -> None:
         )  # fmt: skip
     reach = float(np.degrees(np.arctan2(response.body.reach, response.body.centre[2])))
     if response.outcome is Outcome.OVERTURNED or np.degrees(response.tilt).max() > 0.3 * reach:
-        axes.axhline(reach, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), label="least slenderness angle")
+        axes.axhline(reach, color=GREY, linewidth=0.8, linestyle=DASHED, label="least slenderness angle")
     axes.set_ylim(bottom=0.0)
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0, borderpad=0.2)
+        legend_above(axes, 2)
     axes.set_ylabel("tilt\n[degrees]")
 
 
 def _direction(axes: "Axes", response: SpatialResponse) -> None:
     leans = response.tilt > _SMALL * response.tilt.max(initial=0.0)
-    axes.plot(
-        response.time[leans], np.degrees(response.azimuth[leans]), color=_TOP, marker=".", markersize=1.6,
-        linestyle="none",
-    )  # fmt: skip
+    azimuth = np.degrees(response.azimuth[leans])
+    axes.plot(response.time[leans], azimuth, color=_TOP, marker=".", markersize=1.6, linestyle="none")
     axes.set_ylim(-190.0, 190.0)
     axes.set_yticks([-180, -90, 0, 90, 180])
     axes.grid(axis="y", color=PALE, linewidth=0.5)
@@ -130,8 +124,5 @@ def _contact(axes: "Axes", response: SpatialResponse) -> None:
         label = None if contact in seen else contact.name.lower()
         seen.add(contact)
         axes.barh(0.0, last - start, left=start, height=0.8, color=_COLOURS[contact], linewidth=0.0, label=label)
-    axes.set_yticks([])
-    axes.set_ylim(-0.5, 0.5)
-    axes.set_ylabel("contact")
-    axes.set_xlabel("time [s]")
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.0, borderpad=0.2)
+    axes.set(yticks=[], ylim=(-0.5, 0.5), xlabel="time [s]", ylabel="contact")
+    legend_above(axes, 4)

@@ -1,17 +1,20 @@
 """One journal style for every picture: sizes, colours, and files that come out the same every time."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from functools import wraps
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
-from rocking.errors import MissingExtraError, RockingError, how_to_install
+from rocking.errors import RockingError, extra
 from rocking.restitution import models
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -21,12 +24,13 @@ SINGLE, DOUBLE = 90.0 / 25.4, 190.0 / 25.4
 
 INK, GREY, PALE = "#222222", "#8a8a8a", "#e6e6e6"
 
-GROUP_STYLE: dict[str, dict[str, Any]] = {
-    "table1": {"marker": "s", "label": "Table 1"},
-    "S": {"marker": "v", "label": "S"},
-    "M": {"marker": "o", "label": "M"},
-    "L": {"marker": "^", "label": "L"},
-}
+COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (6, 2)))
+MARKS = "osv^D<"
+"""Okabe and Ito's colours, with a line and a mark for each so that grey print keeps them apart."""
+
+DASHED = (0, (4, 2))
+"""How limits are drawn."""
 
 _SETTINGS: Any = {
     "font.family": "sans-serif",
@@ -61,10 +65,7 @@ def model_styles() -> dict[str, dict[str, Any]]:
 
 
 def in_journal_style(draw: Callable[P, T]) -> Callable[P, T]:
-    """Let a drawing function run in the journal style.
-
-    Returns the same, refusing with `MissingExtraError` if matplotlib is not installed.
-    """
+    """Let a drawing function run in the journal style, refusing with `MissingExtraError` without matplotlib."""
 
     @wraps(draw)
     def styled(*args: P.args, **options: P.kwargs) -> T:
@@ -76,25 +77,60 @@ def in_journal_style(draw: Callable[P, T]) -> Callable[P, T]:
 
 
 def _style() -> AbstractContextManager[None]:
-    try:
-        from matplotlib import rc_context
-    except ImportError as error:
-        raise MissingExtraError(how_to_install("drawing", "matplotlib", error)) from error
-    return rc_context(_SETTINGS)
+    context: AbstractContextManager[None] = extra("matplotlib", "drawing").rc_context(_SETTINGS)
+    return context
 
 
 def new_figure(
     width: float, height: float, *, rows: int = 1, columns: int = 1, **options: Any
 ) -> tuple["Figure", list["Axes"]]:
-    """Return a figure in the journal style with its axes.
-
-    width, height: size [in].
-    """
+    """Return a figure of a width and a height [in] in the journal style with its axes."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(width, height), layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False, **options)
     return figure, list(axes.ravel())
+
+
+def look(number: int) -> dict[str, Any]:
+    """Return colour and line of a curve.
+
+    >>> look(0)["color"], look(6)["color"] == look(0)["color"]
+    ('#0072B2', True)
+    """
+    return {"color": COLORS[number % len(COLORS)], "linestyle": LINES[number % len(LINES)]}
+
+
+def patch(color: str, label: str, **options: Any) -> "Patch":
+    """Return an area of a colour, for a legend."""
+    from matplotlib.patches import Patch
+
+    return Patch(facecolor=color, label=label, **options)
+
+
+def stroke(label: str, **options: Any) -> "Line2D":
+    """Return a line or a mark, for a legend."""
+    from matplotlib.lines import Line2D
+
+    return Line2D([], [], label=label, **options)
+
+
+def legend_above(axes: "Axes", columns: int = 1, **options: Any) -> None:
+    """Put the legend of a panel above it, where no curve runs."""
+    place: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.0, "borderpad": 0.2}
+    axes.legend(ncols=columns, **(place | options))
+
+
+def legend_below(figure: "Figure", handles: Sequence[Any], columns: int, **options: Any) -> None:
+    """Put the legend of a whole figure below its panels."""
+    look: dict[str, Any] = {"loc": "outside lower center", "fontsize": 6.5, "handlelength": 1.2}
+    figure.legend(handles=handles, ncols=columns, **(look | options))
+
+
+def headline(figure: "Figure", sentence: str) -> None:
+    """Head a figure with the sentence that says how a response ended."""
+    lines = wrap(sentence[:1].upper() + sentence[1:], 88)
+    figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
 
 
 def save(figure: "Figure", folder: Path, stem: str) -> list[Path]:

@@ -54,7 +54,7 @@ def write_folder(result: Reproduction, folder: Path, step: Step) -> tuple[list[P
 
 def steps() -> int:
     """Return how many steps `write_folder` reports."""
-    from rocking.plots.paper import paper_figures
+    from rocking.plots.paper_figures import paper_figures
 
     return len(paper_figures()) + 3
 
@@ -106,12 +106,12 @@ def _write_html(document: Document, pictures: Path, path: Path) -> None:
 
 
 def _draw(result: Reproduction, folder: Path, step: Step) -> None:
-    from rocking.plots.paper import paper_figures
+    from rocking.plots.paper_figures import paper_figures
     from rocking.plots.style import save
 
     for stem, draw in paper_figures().items():
         step(stem.replace("_", " "))
-        save(draw(result.league, result.calibration), folder, stem)
+        save(draw(), folder, stem)
 
 
 def _write_table(table: ReportTable, path: Path) -> None:

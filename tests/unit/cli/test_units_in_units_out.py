@@ -4,7 +4,7 @@ import pytest
 
 from rocking.bodies.solid import box
 from rocking.cli import main
-from rocking.plots.study_words import shown_in
+from rocking.plots.labels import shown_in
 
 pytest.importorskip("matplotlib")
 SIZE = ("--width", "0.5", "--height", "2", "--density", "500")

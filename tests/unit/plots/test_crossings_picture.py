@@ -9,9 +9,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import rocking as rk
 from rocking.errors import InvalidValueError
-from rocking.plots.crossings import crossings_picture
 from rocking.plots.overturning_map import CLASSES, FIRST, SECOND
 from rocking.plots.style import write
+from rocking.plots.transitions import transitions_picture
 from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
 
 G = 9.80665
@@ -27,7 +27,7 @@ def found():
 @pytest.fixture(scope="module")
 def axes(found):
     """The panel."""
-    return crossings_picture(found, BLOCK, SINE, 0.85).axes[0]
+    return transitions_picture(found, BLOCK, SINE, 0.85).axes[0]
 
 
 def _spans(axes):
@@ -63,7 +63,7 @@ def test_curve_is_single_simulations(axes):
 
 def test_names_are_inside_the_panel_and_apart(found):
     """No name leaves the panel or meets another."""
-    figure = crossings_picture(found, BLOCK, SINE, 0.85)
+    figure = transitions_picture(found, BLOCK, SINE, 0.85)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     axes = figure.axes[0]
@@ -76,7 +76,7 @@ def test_names_are_inside_the_panel_and_apart(found):
 def test_nothing_overturns():
     """Without crossings there is the curve over the whole range and no shade."""
     found = minimum_overturning_acceleration(BLOCK, SINE, 0.85, highest=0.3 * G)
-    axes = crossings_picture(found, BLOCK, SINE, 0.85, points=50).axes[0]
+    axes = transitions_picture(found, BLOCK, SINE, 0.85, points=50).axes[0]
     assert not axes.patches
     assert axes.get_xlim() == pytest.approx((0.25, 0.3), rel=1e-9)
 
@@ -87,7 +87,7 @@ def test_stretches_too_narrow_for_words_have_a_legend():
     row = np.sin(4.5 * time) * np.exp(-(((time - 6.0) / 3.0) ** 2)) + 0.3 * np.sin(12.0 * time)
     record, block = rk.GroundMotion(row, 0.01, name="made up, 5 $"), rk.Block.from_angle(0.2, 1.0)
     found = minimum_overturning_acceleration(block, record, 0.9, points=100, levels=1)
-    figure = crossings_picture(found, block, record, 0.9)
+    figure = transitions_picture(found, block, record, 0.9)
     words = [text.get_text() for text in figure.axes[0].texts]
     assert len(words) == len(set(words))
     told = {text.get_text() for legend in figure.legends for text in legend.get_texts()} | set(words)
@@ -97,15 +97,15 @@ def test_stretches_too_narrow_for_words_have_a_legend():
 
 def test_the_same_bytes_twice(found, tmp_path):
     """A picture is written the same every time."""
-    pair = [write(crossings_picture(found, BLOCK, SINE, 0.85), tmp_path / f"{k}.png").read_bytes() for k in (0, 1)]
+    pair = [write(transitions_picture(found, BLOCK, SINE, 0.85), tmp_path / f"{k}.png").read_bytes() for k in (0, 1)]
     assert pair[0] == pair[1]
 
 
 def test_refusals(found):
     """Something else than crossings, or a number of points that is none, is refused."""
     with pytest.raises(InvalidValueError, match="minimum_overturning_acceleration"):
-        crossings_picture([1.0], BLOCK, SINE)
+        transitions_picture([1.0], BLOCK, SINE)
     with pytest.raises(InvalidValueError, match="points"):
-        crossings_picture(found, BLOCK, SINE, points=1)
+        transitions_picture(found, BLOCK, SINE, points=1)
     with pytest.raises(InvalidValueError, match="motion"):
-        crossings_picture(found, BLOCK, "no-such", 0.85)
+        transitions_picture(found, BLOCK, "no-such", 0.85)

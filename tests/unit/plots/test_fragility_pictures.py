@@ -10,7 +10,7 @@ from matplotlib.colors import to_rgba
 
 import rocking as rk
 from rocking.plots.fragility import fragility_picture, gathered
-from rocking.plots.incremental import incremental_picture
+from rocking.plots.incremental_dynamic_analysis import incremental_dynamic_analysis_picture
 from rocking.plots.sensitivity import sensitivity_picture
 from rocking.plots.style import PALE
 from rocking.studies.fragility import incremental_dynamic_analysis, multiple_stripe_analysis
@@ -86,7 +86,7 @@ def raised():
 def test_lanes_are_the_closed_form(raised):
     """Brown below 3.4847 and above 3.6311 times g alpha, blue between: the published boundaries of both modes."""
     found, unit = raised
-    left = incremental_picture(found).axes[0]
+    left = incremental_dynamic_analysis_picture(found).axes[0]
     fallen, again = (part for part in left.collections if isinstance(part, LineCollection))
     ends = np.array([segment[:, 1] for segment in fallen.get_segments()]) / unit
     np.testing.assert_allclose(ends[0, 1], 3.48466273332249203, rtol=1e-7)
@@ -100,7 +100,7 @@ def test_lanes_are_the_closed_form(raised):
 def test_every_motion_has_a_lane_of_its_own():
     """Lanes stand beside one another by first crossing, inside the panel; no lane without overturning."""
     found = incremental_dynamic_analysis(BLOCK, PULSES, np.arange(2.0, 9.1, 0.5), 0.9)
-    figure = incremental_picture(found)
+    figure = incremental_dynamic_analysis_picture(found)
     left = figure.axes[0]
     (crosses,) = (line for line in left.lines if line.get_marker() == "x")
     places, starts = crosses.get_data()
@@ -113,7 +113,7 @@ def test_every_motion_has_a_lane_of_its_own():
 
 def test_words_of_the_incremental_picture_do_not_overlap(raised):
     """Axis label, name of the lanes and legend keep apart and inside 90 mm."""
-    figure = incremental_picture(raised[0])
+    figure = incremental_dynamic_analysis_picture(raised[0])
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     renderer = canvas.get_renderer()

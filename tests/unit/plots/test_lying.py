@@ -10,8 +10,7 @@ from rocking.bodies.shapes import trapezoid
 from rocking.dynamics import free_rocking, simulate
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import sine
-from rocking.plots.animation_scene import DrawnShape, scene_of
-from rocking.plots.lying import fall_of
+from rocking.plots.animation_scene import DrawnShape, fall_of, scene_of
 
 BODIES = {
     "leaning": Section([Region(trapezoid(0.5, 0.3, 1.8, lean=0.1), 2000.0)]),

@@ -8,18 +8,16 @@ import pytest
 from rocking import Block, MassPoints, Section
 from rocking.errors import RockingError
 from rocking.evidence._coefficient_table import coefficient_table
-from rocking.evidence._league import league
-from rocking.evidence.calibration import calibrate
 from rocking.evidence.measurements import datasets
-from rocking.plots import body_picture, coefficient_picture, figure_2, figure_3, figure_7, figure_8, hero, save, write
-from rocking.plots.paper import paper_figures
+from rocking.plots import body_picture, coefficient_picture, energy_stages_picture, paper_figure, save, write
+from rocking.plots.paper_figures import paper_figures
 from rocking.restitution import Ked, energy_ledger
 
 
 @pytest.mark.parametrize("name", paper_figures())
 def test_every_axis_is_labelled_with_its_unit(name):
     """Each visible axis of each figure of the report has a label that ends in a unit."""
-    figure = paper_figures()[name](league(), calibrate())
+    figure = paper_figures()[name]()
     for axes in figure.axes:
         for label, axis in ((axes.get_xlabel(), axes.xaxis), (axes.get_ylabel(), axes.yaxis)):
             if axes.axison and axis.get_visible() and label:
@@ -31,7 +29,7 @@ def test_every_axis_is_labelled_with_its_unit(name):
 def test_figure_3_draws_the_data():
     """Points of Figure 3 are those of Table 2, and the error bars are |r_r - r_e|, as in the paper."""
     data = datasets()["table2"]
-    container = figure_3().axes[0].containers[0]
+    container = paper_figure("figure_3").axes[0].containers[0]
     x, y = container[0].get_data()
     assert (np.asarray(x) == data.slenderness).all()
     assert (np.asarray(y) == data.coefficient).all()
@@ -43,7 +41,7 @@ def test_figure_3_draws_the_data():
 
 def test_figure_7_and_8_hold_every_block():
     """All 27 blocks appear once per model, none beyond the axes."""
-    for figure, count in ((figure_7(), 9), (figure_8(), 9)):
+    for figure, count in ((paper_figure("figure_7"), 9), (paper_figure("figure_8"), 9)):
         for axes in figure.axes:
             low, high = axes.get_ylim()
             for line in axes.lines:
@@ -56,7 +54,7 @@ def test_figure_2_prints_the_shares():
     """Titles of Figure 2 give the shares of the ledger; landing on the other foot of a block gives the same."""
     block = Block(width=1.0, height=2.0)
     for onto in ("left", "right"):
-        titles = [axes.get_title() for axes in figure_2(block, onto=onto).axes[:4]]
+        titles = [axes.get_title() for axes in energy_stages_picture(block, onto=onto).axes[:4]]
         for title, share in zip(titles, energy_ledger(block, onto=onto).shares.values(), strict=True):
             assert f"{100.0 * share:.1f} %" in title
     assert "80.0 %" in titles[1]  # cos^2 alpha at h/b = 2
@@ -110,7 +108,7 @@ def test_files_come_out_the_same(tmp_path):
     first, second = tmp_path / "a", tmp_path / "b"
     for folder in (first, second):
         folder.mkdir()
-        save(figure_3(), folder, "figure")
+        save(paper_figure("figure_3"), folder, "figure")
     for kind in ("png", "svg"):
         assert (first / f"figure.{kind}").read_bytes() == (second / f"figure.{kind}").read_bytes()
     root = ET.parse(first / "figure.svg").getroot()
@@ -121,11 +119,11 @@ def test_files_come_out_the_same(tmp_path):
 def test_formats_that_are_none(tmp_path):
     """Another suffix, or a folder that does not exist, is refused in our own words."""
     with pytest.raises(RockingError, match=r"\.png, \.svg or \.pdf"):
-        write(figure_3(), tmp_path / "figure.bmp")
+        write(paper_figure("figure_3"), tmp_path / "figure.bmp")
     with pytest.raises(RockingError, match="cannot write"):
-        write(figure_3(), tmp_path / "missing" / "figure.png")
+        write(paper_figure("figure_3"), tmp_path / "missing" / "figure.png")
 
 
 def test_hero():
     """The README's picture builds."""
-    assert len(hero().axes) == 5
+    assert len(paper_figure("hero").axes) == 5

@@ -13,8 +13,7 @@ from rocking.dynamics import free_rocking, simulate
 from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import rectangular, sine
-from rocking.plots.response import response_picture
-from rocking.plots.response_curves import ground_place, shown_until, velocity_at
+from rocking.plots.response import ground_place, response_picture, shown_until, velocity_at
 from rocking.plots.style import write
 
 G = 9.80665

@@ -10,9 +10,9 @@ from scipy import stats
 
 import rocking as rk
 from rocking.errors import InvalidValueError
+from rocking.plots.cloud import measures_picture
 from rocking.plots.fragility import caption, fragility_picture, gathered, state_colors, symbol
-from rocking.plots.incremental import incremental_picture
-from rocking.plots.measures import measures_picture
+from rocking.plots.incremental_dynamic_analysis import incremental_dynamic_analysis_picture
 from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_analysis
 from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
 from rocking.studies.fragility.cloud_analysis import cloud
@@ -153,7 +153,7 @@ def test_names_of_states():
 
 def test_incremental_curves(raised):
     """Grey curves end where overturning starts; crosses are the first crossings; blue points lie above one."""
-    figure = incremental_picture(raised)
+    figure = incremental_dynamic_analysis_picture(raised)
     left, right = figure.axes
     assert left.get_ylabel() == "peak ground acceleration [m/s$^2$]"
     assert left.get_xlabel() == r"peak rotation $\theta\,/\,\alpha$ [-]"
@@ -174,7 +174,7 @@ def test_incremental_curves(raised):
 
 def test_incremental_without_overturning():
     """Levels that overturn nothing give a picture without crosses and without warnings."""
-    figure = incremental_picture(incremental_dynamic_analysis(BLOCK, PULSES[:3], [2.0, 2.2, 2.4], 0.9))
+    figure = incremental_dynamic_analysis_picture(incremental_dynamic_analysis(BLOCK, PULSES[:3], [2.0, 2.2, 2.4], 0.9))
     FigureCanvasAgg(figure).draw()
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     assert not any("stands again" in word for word in words)
@@ -204,7 +204,7 @@ def test_measures_without_metadata(clouded):
     assert len(measures_picture(compare_measures(clouded, ["pga", "pgv"])).axes) == 1
 
 
-@pytest.mark.parametrize("draw", [fragility_picture, incremental_picture, measures_picture])
+@pytest.mark.parametrize("draw", [fragility_picture, incremental_dynamic_analysis_picture, measures_picture])
 def test_refusals(draw):
     """What is no analysis is refused in words."""
     with pytest.raises(InvalidValueError, match="got 'no analysis'"):

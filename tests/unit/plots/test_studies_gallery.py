@@ -12,11 +12,11 @@ import rocking as rk
 from rocking import conventions
 from rocking.errors import InvalidValueError
 from rocking.plots.cloud import cloud_picture
-from rocking.plots.crossings_of_many import crossings_of_many_picture
-from rocking.plots.difference_map import difference_map_picture
+from rocking.plots.ground_motion import record_set_picture
 from rocking.plots.inventory import inventory_picture
-from rocking.plots.record_set import record_set_picture
-from rocking.plots.refined_map import refined_map_picture
+from rocking.plots.overturning_map import refined_map_picture
+from rocking.plots.sensitivity import difference_map_picture
+from rocking.plots.transitions import transitions_of_many_picture
 from rocking.studies import (
     SyntheticSet,
     boundary,
@@ -137,7 +137,7 @@ def test_crossings_of_many():
     """Bars are the overturning stretches in g, lanes are by the least of the first panel, wrong counts are refused."""
     pulses = [rk.pulses.sine(3.0, period) for period in (0.5, 0.8, 0.65)]
     found = {f"r = {r}": [minimum_overturning_acceleration(BLOCK, p, r) for p in pulses] for r in (0.85, 0.95)}
-    figure = drawn(crossings_of_many_picture(found, ["0.5", "0.8", "0.65"], words="period [s]"))
+    figure = drawn(transitions_of_many_picture(found, ["0.5", "0.8", "0.65"], words="period [s]"))
     first = figure.axes[0]
     assert [label.get_text() for label in first.get_yticklabels()] == ["0.8", "0.65", "0.5"]
     assert [panel.get_title(loc="left") for panel in figure.axes] == ["r = 0.85", "r = 0.95"]
@@ -147,11 +147,11 @@ def test_crossings_of_many():
     np.testing.assert_allclose(shown, one.overturning_intervals, rtol=1e-12)
     assert len(shown) == 2  # the block stands again between
     assert first.lines[0].get_xdata()[0] * conventions.g == pytest.approx(one.minimum, rel=1e-12)
-    cut = crossings_of_many_picture(found, ["a", "b", "c"], until=6.0)
+    cut = transitions_of_many_picture(found, ["a", "b", "c"], until=6.0)
     assert cut.axes[0].get_xlim()[1] * conventions.g == pytest.approx(6.0, rel=1e-12)
     for names, words in ((["a"], "must have 1 Transitions"), ([], "1 to 60 lanes")):
         with pytest.raises(InvalidValueError, match=words):
-            crossings_of_many_picture(found, names)
+            transitions_of_many_picture(found, names)
 
 
 def test_difference_map():

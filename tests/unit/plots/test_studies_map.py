@@ -9,9 +9,9 @@ from matplotlib.colors import to_rgb
 
 import rocking as rk
 from rocking.errors import InvalidValueError
+from rocking.plots.labels import axis_label, geometric, plain, wrapped
+from rocking.plots.map_labels import FINE, place_in, rastered
 from rocking.plots.overturning_map import CLASSES, FIRST, ISLAND, ROCKED, SECOND, classes_of, overturning_map_picture
-from rocking.plots.region_labels import FINE, place_in, rastered
-from rocking.plots.study_words import axis_label, geometric, plain, wrapped
 from rocking.plots.style import write
 from rocking.studies._overturning_map import overturning_map
 from rocking.studies.boundaries import Polyline, boundary

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rocking.evidence.explanation import explanation
-from rocking.plots.laboratory import bed_dependence_figure, explanations_figure, residuals_figure
+from rocking.plots.evidence import bed_dependence_figure, explanations_figure, residuals_figure
 from rocking.reports.document import Paragraph, Picture, ReportTable
 from rocking.reports.explanation_blocks import explanation_blocks
 
@@ -23,7 +23,7 @@ def test_numbers_of_the_table():
 
 def test_pictures_of_the_section_are_drawn():
     """Each picture of the section is among the figures of the report."""
-    from rocking.plots.paper import paper_figures
+    from rocking.plots.paper_figures import paper_figures
 
     pictures = [block.stem for block in explanation_blocks(explanation()) if isinstance(block, Picture)]
     assert len(pictures) == 3

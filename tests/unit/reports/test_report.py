@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from rocking.plots import figure_3
+from rocking.plots import paper_figure
 from rocking.reports import folder
 from rocking.reports.document import Document, Paragraph, Picture, ReportSection, ReportTable, cell
 from rocking.reports.html import render_html
@@ -73,10 +73,10 @@ def test_a_missing_package_costs_its_part_alone(missing, kept, said, tmp_path, m
     monkeypatch.setattr(folder, "render_html", lambda content, _: render_html(content, tmp_path))
     monkeypatch.setattr(folder, "render_pdf", lambda content, _, path: render_pdf(content, tmp_path, path))
     figures = SimpleNamespace(paper_figures=dict)
-    monkeypatch.setitem(sys.modules, "rocking.plots.paper", figures)
+    monkeypatch.setitem(sys.modules, "rocking.plots.paper_figures", figures)
     monkeypatch.setitem(sys.modules, missing, None)
     if missing == "matplotlib":
-        figures.paper_figures = lambda: {"three": lambda *_: figure_3()}
+        figures.paper_figures = lambda: {"three": lambda: paper_figure("figure_3")}
     result = SimpleNamespace(league=None, calibration=None)
     written, left_out = folder.write_folder(result, tmp_path / "out", lambda _: None)
     assert [path.name for path in written] == kept

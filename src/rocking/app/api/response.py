@@ -25,8 +25,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions.integrals import ground_displacement
 from rocking.motions.pulse import Pulse
 from rocking.outcome import Outcome
-from rocking.plots.animation_scene import DrawnShape
-from rocking.plots.lying import fall_of
+from rocking.plots.animation_scene import DrawnShape, fall_of
 from rocking.reports.facts.body import body_facts, outline_facts
 from rocking.reports.facts.response import finite, moved_facts, response_facts
 from rocking.reports.facts.verdict import ModelAgreement

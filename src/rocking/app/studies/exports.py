@@ -90,9 +90,9 @@ def _fragility(study: OpenStudy, restitution: int) -> "Figure":
 
 
 def _incremental(study: OpenStudy, restitution: int) -> "Figure":
-    from rocking.plots.incremental import incremental_picture
+    from rocking.plots.incremental_dynamic_analysis import incremental_dynamic_analysis_picture
 
-    return incremental_picture(_analysis(study, restitution))
+    return incremental_dynamic_analysis_picture(_analysis(study, restitution))
 
 
 def _analysis(study: OpenStudy, restitution: int) -> Any:

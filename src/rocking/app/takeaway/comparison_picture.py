@@ -9,7 +9,7 @@ import numpy as np
 from rocking.app.takeaway.plain_text import plain_line
 from rocking.dynamics.response import Response
 from rocking.outcome import Outcome
-from rocking.plots.response_curves import ground_curve, motion_curves, over_slenderness, shown_until
+from rocking.plots.response import ground_curve, motion_curves, over_slenderness, shown_until
 from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, model_styles, new_figure
 from rocking.reports.facts.verdict import ModelAgreement
 from rocking.reports.facts.words import restitution_words
@@ -59,18 +59,17 @@ def drawn_text(text: str, longest: int) -> str:
 
 
 def _response(axes: "list[Axes]", label: str, response: Response, look: dict[str, object]) -> None:
-    curves, energy = motion_curves(response), response.energy
+    (time, rotation, velocity), energy = motion_curves(response), response.energy
     words = drawn_text(f"{restitution_words(label)}: {_SHORT[response.outcome]}", 60)
-    rotation = over_slenderness(response, curves.rotation)
     style = {**look, "linewidth": 1.0}
-    axes[1].plot(curves.time, rotation, label=words, **style)  # type: ignore[arg-type]
-    axes[2].plot(curves.time, curves.velocity, **style)  # type: ignore[arg-type]
+    axes[1].plot(time, over_slenderness(response, rotation), label=words, **style)  # type: ignore[arg-type]
+    axes[2].plot(time, velocity, **style)  # type: ignore[arg-type]
     axes[3].plot(energy.time, energy.lost, drawstyle="steps-post", **style)  # type: ignore[arg-type]
 
 
 def _rotations(axes: "Axes", responses: Mapping[str, Response]) -> None:
     peak = max(
-        float(np.abs(over_slenderness(one, motion_curves(one).rotation)).max(initial=0.0)) for one in responses.values()
+        float(np.abs(over_slenderness(one, motion_curves(one)[1])).max(initial=0.0)) for one in responses.values()
     )
     if 0.0 < peak < _SMALL:
         axes.set_ylim(-1.25 * peak, 1.25 * peak)
@@ -98,8 +97,8 @@ def _reach(responses: Mapping[str, Response]) -> tuple[float, float]:
     """Fit the velocities before a body falls for good."""
     low, high = 0.0, 0.0
     for response in responses.values():
-        curves = motion_curves(response)
-        values = curves.velocity[~(curves.time > response.overturning_time)]
+        time, _, velocity = motion_curves(response)
+        values = velocity[~(time > response.overturning_time)]
         low, high = min(low, float(np.min(values, initial=0.0))), max(high, float(np.max(values, initial=0.0)))
     room = 0.12 * (high - low) or 1.0
     return low - room, high + room

@@ -50,7 +50,7 @@ def gif_of(response: Response) -> bytes:
 
 def _draw(response: Response, path: Path) -> None:
     from rocking.plots.animation import animate_gif
-    from rocking.plots.response_curves import shown_until
+    from rocking.plots.response import shown_until
 
     speed = max(1.0, float(np.ceil(100.0 * shown_until(response) / (_FRAME * (_MOST_FRAMES - 2)))) / 100.0)
     animate_gif(response, path, fps=1.0 / _FRAME, speed=speed)

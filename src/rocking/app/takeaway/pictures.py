@@ -47,8 +47,8 @@ async def picture(
 
 def figure_of(what: str, asked: Evaluation, restitution: int | None = None) -> "Figure":
     """Return a picture."""
-    from rocking.plots._body_picture import body_picture, coefficient_picture
-    from rocking.plots._figure_2 import figure_2
+    from rocking.plots.body import body_picture, coefficient_picture
+    from rocking.plots.energy_stages import energy_stages_picture
     from rocking.plots.ground_motion import ground_motion_picture
 
     if what == "motion":
@@ -59,7 +59,7 @@ def figure_of(what: str, asked: Evaluation, restitution: int | None = None) -> "
         tables = asked.impact.tables
         return in_words(coefficient_picture(asked.body, tables), [row.name for row in tables[asked.foot]])
     if what == "stages":
-        return figure_2(asked.body, onto=asked.foot)
+        return energy_stages_picture(asked.body, onto=asked.foot)
     return body_picture(asked.body)
 
 

@@ -1,6 +1,7 @@
-"""Words, symbols, colours and scales that the pictures of studies share."""
+"""Labels, words and scales of axes that the pictures of studies share."""
 
-from typing import TYPE_CHECKING, Any
+from textwrap import wrap
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -37,22 +38,6 @@ TYPESET = {
 _UNITS = {"1": "-", "m/s2": "m/s$^2$", "": "-"}
 
 PEAK = r"peak rotation $\theta\,/\,\alpha$ [-]"
-
-STATES = ("#E3EDF5", "#7FB2D6", "#E69F00", "#CC79A7", "#7A2E00")
-"""From no rocking, light, to overturned, dark: apart in grey too."""
-
-COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (6, 2)))
-"""Okabe and Ito's colours, and a line for each so that grey print keeps them apart."""
-
-
-def look(place: int) -> dict[str, Any]:
-    """Return colour and line of a curve.
-
-    >>> look(0)["color"], look(6)["color"] == look(0)["color"]
-    ('#0072B2', True)
-    """
-    return {"color": COLORS[place % len(COLORS)], "linestyle": LINES[place % len(LINES)]}
 
 
 def axis_label(name: str, unit: str = "1", *, linear: bool = False) -> str:
@@ -101,8 +86,6 @@ def wrapped(words: str, width: int, most: int = 4) -> str:
     >>> wrapped("one two three four", 9, 2)
     'one two\nthree ...'
     """
-    from textwrap import wrap
-
     return "\n".join(wrap(words, width, max_lines=most, placeholder=" ..."))
 
 

@@ -1,5 +1,6 @@
-"""Peak rotation over the amplitude of a motion, with every stretch of amplitudes that overturns the body."""
+"""Every stretch of amplitudes that overturns a body: of one motion with the peak rotation, of many in lanes."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,9 +12,20 @@ from rocking.conventions import FloatArray, IntArray, g
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError
+from rocking.plots.labels import PEAK, note, plain, plain_log
 from rocking.plots.overturning_map import CLASSES, FIRST, LATER, SECOND
-from rocking.plots.study_words import PEAK, note, plain, plain_log
-from rocking.plots.style import GREY, INK, SINGLE, in_journal_style, new_figure
+from rocking.plots.style import (
+    DASHED,
+    DOUBLE,
+    GREY,
+    INK,
+    SINGLE,
+    in_journal_style,
+    legend_below,
+    new_figure,
+    patch,
+    stroke,
+)  # fmt: skip
 from rocking.studies.minimum_acceleration import Transitions
 from rocking.studies.question import Question, sides_of
 
@@ -21,11 +33,16 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+PGA = "peak ground acceleration [g]"
 _HEIGHT = 2.9
 _ROOM, _LEAST = 1.35, 0.045
 """How far beyond the last crossing is shown, and the share of the width below which a stretch is not named."""
 
 _MOST_POINTS = 100_000
+
+_LANE, _MARGIN = 0.17, 1.25
+_MOST_LANES, _MOST_PANELS = 60, 4
+_FALLS, _STANDS = "#E0812F", "#E4EFF8"
 
 
 @dataclass(frozen=True)
@@ -45,7 +62,7 @@ class _AmplitudeRun:
 
 
 @in_journal_style
-def crossings_picture(
+def transitions_picture(
     found: Transitions,
     body: Body,
     motion: Motion,
@@ -90,7 +107,7 @@ def crossings_picture(
     >>> from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
     >>> block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.8)
     >>> found = minimum_overturning_acceleration(block, pulse, 0.85)
-    >>> crossings_picture(found, block, pulse, 0.85).axes[0].get_xlabel()
+    >>> transitions_picture(found, block, pulse, 0.85).axes[0].get_xlabel()
     'peak ground acceleration [g]'
     """
     if not isinstance(found, Transitions):
@@ -104,7 +121,7 @@ def crossings_picture(
     _shade(axes, found, place, modes)
     standing = np.isin(modes, (-2, -1))
     axes.plot(place / g, np.where(standing, peaks, np.nan), color=INK, linewidth=0.9, zorder=4)
-    axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
+    axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle=DASHED, zorder=1)
     _finish(axes, found, place, peaks[standing])
     note(axes, f"{plain(motion.name)}, scaled; restitution {plain(question.parameters.label)}")
     return figure
@@ -130,14 +147,12 @@ def _curve(question: Question, place: FloatArray) -> tuple[FloatArray, IntArray]
     sides = {name: np.repeat(value, place.size) for name, value in sides_of([question.parameters]).items()}
     # the same random numbers at every amplitude, as in the search
     keys = np.zeros(place.size, dtype=np.int64)
-    made, _ = question.run({**sides, "scale": place / question.motion.peak}, np.ones(place.size), keys)
-    return made["peak_ratio"], made["mode"]
+    results, _ = question.run({**sides, "scale": place / question.motion.peak}, np.ones(place.size), keys)
+    return results["peak_ratio"], results["mode"]
 
 
 def _shade(axes: "Axes", found: Transitions, place: FloatArray, modes: IntArray) -> None:
     """Shade every overturning interval, in the colours of maps, and say how it overturns."""
-    from matplotlib.patches import Patch
-
     last = _shown_until(found)
     widest: dict[str, _AmplitudeRun] = {}
     runs = [run for low, high in found.overturning_intervals for run in _runs(place, modes, low, min(high, last))]
@@ -149,9 +164,9 @@ def _shade(axes: "Axes", found: Transitions, place: FloatArray, modes: IntArray)
     for run in widest.values():
         _name(axes, run)
     unnamed = {run.kind for run in runs} - {run.kind for run in widest.values()}
-    small = [Patch(facecolor=CLASSES[kind][1], label=CLASSES[kind][0]) for kind in sorted(unnamed)]
-    if small:
-        axes.figure.legend(handles=small, loc="outside lower center", ncols=2, fontsize=6.5, handlelength=1.2)
+    if unnamed:
+        handles = [patch(CLASSES[kind][1], CLASSES[kind][0]) for kind in sorted(unnamed)]
+        legend_below(axes.figure, handles, 2)  # type: ignore[arg-type]
 
 
 def _runs(place: FloatArray, modes: IntArray, low: float, high: float) -> list[_AmplitudeRun]:
@@ -184,6 +199,101 @@ def _finish(axes: "Axes", found: Transitions, place: FloatArray, peaks: FloatArr
     plain_log(axes, "x")
     if place[-1] < 20.0 * found.lowest:
         axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 3.0, 4.0, 6.0, 8.0)))
-    axes.set_xlabel("peak ground acceleration [g]")
-    axes.set_ylabel(PEAK)
+    axes.set(xlabel=PGA, ylabel=PEAK)
     axes.spines[["top", "right"]].set_visible(True)
+
+
+@in_journal_style
+def transitions_of_many_picture(
+    found: Mapping[str, Sequence[Transitions]],
+    names: Sequence[str],
+    *,
+    words: str = "motion",
+    until: float | None = None,
+) -> "Figure":
+    """Draw every stretch of amplitudes that overturns a body, a lane for each motion, a panel for each restitution.
+
+    Lanes are in the order of the least acceleration that overturns in the first panel, which is marked; what lies
+    between two stretches of a lane is a stronger motion under which the body stands again.
+
+    Parameters
+    ----------
+    found : mapping of str to sequence of Transitions
+        For each restitution what was found for each motion.
+    names : sequence of str
+        What the motions are called, or short marks of them.
+    words : str
+        What the lanes are.
+    until : float, optional
+        Largest acceleration that is shown; a third beyond the last crossing if not given [m/s2].
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One column wide for one panel, else two.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is nothing to draw, too much, or the lanes are not as many as the names.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> from rocking.studies import minimum_overturning_acceleration
+    >>> block = rk.Block(width=0.5, height=2.0)
+    >>> pulses = [rk.pulses.sine(3.0, period) for period in (0.6, 0.8)]
+    >>> found = {"0.85": [minimum_overturning_acceleration(block, pulse, 0.85) for pulse in pulses]}
+    >>> transitions_of_many_picture(found, ["0.6 s", "0.8 s"], words="period").axes[0].get_xlabel()
+    'peak ground acceleration [g]'
+    """
+    lanes = [*found.values()]
+    if not 1 <= len(lanes) <= _MOST_PANELS or not 1 <= len(names) <= _MOST_LANES:
+        raise InvalidValueError(
+            f"a picture holds 1 to {_MOST_PANELS} restitutions and 1 to {_MOST_LANES} lanes, got {len(lanes)} and "
+            f"{len(names)}"
+        )
+    for each in lanes:
+        if len(each) != len(names) or not all(isinstance(one, Transitions) for one in each):
+            raise InvalidValueError(f"found must have {len(names)} Transitions for each restitution, got {each!r:.60}")
+    order = np.argsort([one.acceleration[0] if len(one) else np.inf for one in lanes[0]], kind="stable").tolist()
+    width = SINGLE if len(lanes) == 1 else DOUBLE
+    figure, axes = new_figure(width, _MARGIN + _LANE * len(names), columns=len(lanes), sharex=True, sharey=True)
+    ends = _ends([one for each in lanes for one in each])
+    if until is not None:
+        ends = ends[0], checks.within("until", until, ends[0] * g, 1e6, open_low=True) / g
+    for panel, (label, each) in zip(axes, found.items(), strict=True):
+        _lanes(panel, [each[k] for k in order], ends)
+        panel.set_title(plain(label), loc="left", fontsize=7.5)
+        panel.set_xlabel(PGA)
+        panel.tick_params(axis="y", length=0)
+    axes[0].set_yticks(range(len(names)), [plain(names[k]) for k in order])
+    axes[0].set_ylabel(words)
+    axes[0].set_ylim(len(names) - 0.5, -0.5)
+    axes[0].set_xlim(*ends)
+    for panel in axes:
+        plain_log(panel, "x")
+    handles = [
+        patch(_STANDS, "stays standing", edgecolor=INK, linewidth=0.4),
+        patch(_FALLS, "overturns"),
+        stroke("least that overturns", linestyle="none", marker="|", color=INK, markeredgewidth=1.2),
+    ]
+    legend_below(figure, handles, 3)
+    return figure
+
+
+def _ends(found: Sequence[Transitions]) -> tuple[float, float]:
+    """Return how far it is worth showing [g]."""
+    low = min(one.lowest for one in found)
+    last = [1.35 * one.acceleration[-1] for one in found if len(one)]
+    return low / g, max([2.0 * low, *last]) / g
+
+
+def _lanes(axes: "Axes", found: Sequence[Transitions], ends: tuple[float, float]) -> None:
+    for row, one in enumerate(found):
+        lane, shown = (row - 0.36, 0.72), [(one.lowest / g, max(ends[1] - one.lowest / g, 0.0))]
+        axes.broken_barh(shown, lane, color=_STANDS, linewidth=0)
+        stretches = [(low / g, (high - low) / g) for low, high in one.overturning_intervals]
+        axes.broken_barh(stretches, lane, color=_FALLS, linewidth=0, zorder=2)
+        if one.minimum is not None:
+            axes.plot(one.minimum / g, row, "|", color=INK, markersize=6.5, markeredgewidth=1.2, zorder=3)

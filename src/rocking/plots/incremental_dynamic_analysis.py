@@ -1,21 +1,20 @@
 """Incremental curves: how the rotation of each motion grows with its level, where it falls, where it stands again."""
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.plots.study_words import PEAK, axis_label, geometric, plain_log
-from rocking.plots.style import GREY, INK, SINGLE, in_journal_style, new_figure
+from rocking.plots.labels import PEAK, axis_label, geometric, plain_log
+from rocking.plots.style import DASHED, GREY, INK, SINGLE, in_journal_style, legend_below, new_figure, stroke
 from rocking.studies.fragility._incremental_dynamic_analysis import IncrementalDynamicAnalysis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-HEIGHT = 3.6
 _CROSS, _FALLEN, _AGAIN = "#7A2E00", "#DDB7A0", "#0072B2"
 WIDE = 0.01
 """Survivals of less width over their level are not counted: in them the body balances on its corner [-]."""
@@ -28,7 +27,7 @@ _FIRST, _LAST = 1.12, 1.72
 
 
 @in_journal_style
-def incremental_picture(analysis: IncrementalDynamicAnalysis) -> "Figure":
+def incremental_dynamic_analysis_picture(analysis: IncrementalDynamicAnalysis) -> "Figure":
     """Draw an incremental analysis, the measure upwards as is usual.
 
     Left: a grey curve for each motion up to where it first overturns the body; the levels above at which the body
@@ -58,12 +57,12 @@ def incremental_picture(analysis: IncrementalDynamicAnalysis) -> "Figure":
     >>> from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_analysis
     >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.5, 0.7)]
     >>> found = incremental_dynamic_analysis(rk.Block(width=0.4, height=1.6), pulses, [3.0, 6.0, 9.0], restitution=0.9)
-    >>> len(incremental_picture(found).axes)
+    >>> len(incremental_dynamic_analysis_picture(found).axes)
     2
     """
     if not isinstance(analysis, IncrementalDynamicAnalysis):
         raise InvalidValueError(f"analysis must be incremental, got {analysis!r:.60}")
-    figure, (left, right) = new_figure(SINGLE, HEIGHT, columns=2, sharey=True, width_ratios=[2.5, 1.0])
+    figure, (left, right) = new_figure(SINGLE, 3.6, columns=2, sharey=True, width_ratios=[2.5, 1.0])
     for curve in analysis.curves:
         _curve(left, analysis.levels, curve)
     _crossings(left, analysis)
@@ -71,18 +70,10 @@ def incremental_picture(analysis: IncrementalDynamicAnalysis) -> "Figure":
     measure = analysis.subject.measure
     left.set_ylabel(axis_label(measure.name, measure.unit, linear=analysis.subject.settings.linear))
     left.set_xlabel(PEAK, x=0.55 / (_LAST + 0.06))
-    left.set_xlim(-0.03, _LAST + 0.03)
-    left.set_xticks([0.0, 0.5, 1.0])
-    left.axvline(1.0, color=GREY, linewidth=0.6, linestyle=(0, (4, 2)), zorder=0)
-    left.text(
-        0.5 * (_FIRST + _LAST),
-        -0.045,
-        "by motion",
-        transform=left.get_xaxis_transform(),
-        ha="center",
-        va="top",
-        fontsize=7,
-    )
+    left.set(xlim=(-0.03, _LAST + 0.03), xticks=[0.0, 0.5, 1.0])
+    left.axvline(1.0, color=GREY, linewidth=0.6, linestyle=DASHED, zorder=0)
+    below: dict[str, Any] = {"transform": left.get_xaxis_transform(), "ha": "center", "va": "top", "fontsize": 7}
+    left.text(0.5 * (_FIRST + _LAST), -0.045, "by motion", **below)
     left.set_ylim(*_limits(analysis))
     if geometric(analysis.levels) and analysis.levels[-1] / analysis.levels[0] > 3.0:
         plain_log(left, "y")
@@ -105,9 +96,7 @@ def _curve(axes: "Axes", levels: FloatArray, curve: FloatArray) -> None:
     shown = np.where(np.isfinite(curve), np.minimum(curve, _OVER), math.nan)
     axes.plot(shown[:first], levels[:first], color=GREY, linewidth=0.6, alpha=0.8, zorder=1)
     if np.isfinite(curve[first:]).any():
-        axes.plot(
-            shown[first:], levels[first:], color=_AGAIN, linewidth=1.0, zorder=3, marker="o", markersize=1.6,
-        )  # fmt: skip
+        axes.plot(shown[first:], levels[first:], color=_AGAIN, linewidth=1.0, zorder=3, marker="o", markersize=1.6)
 
 
 def _crossings(axes: "Axes", analysis: IncrementalDynamicAnalysis) -> None:
@@ -138,32 +127,15 @@ def _fractions(axes: "Axes", analysis: IncrementalDynamicAnalysis) -> None:
 
 
 def _legend(figure: "Figure", analysis: IncrementalDynamicAnalysis) -> None:
-    from matplotlib.lines import Line2D
-
-    count = int(analysis.complete.sum())
+    count, again = int(analysis.complete.sum()), len(analysis.resurrected(WIDE))
+    lane: dict[str, Any] = {"color": _FALLEN, "linewidth": 2.5, "markersize": 3.5, "markeredgecolor": _CROSS}
+    ring: dict[str, Any] = {"color": _AGAIN, "linewidth": 1.0, "markersize": 3.0, "markerfacecolor": "white"}
+    words = f"stands again: {again} motion{'s' * (again != 1)}"
     rows = [
-        Line2D([], [], color=GREY, linewidth=0.8, label=f"{count} motion{'s' * (count != 1)}"),
-        Line2D(
-            [],
-            [],
-            color=_FALLEN,
-            linewidth=2.5,
-            marker="x",
-            markersize=3.5,
-            markeredgecolor=_CROSS,
-            label="overturns, x: first",
-        ),
+        stroke(f"{count} motion{'s' * (count != 1)}", color=GREY, linewidth=0.8),
+        stroke("overturns, x: first", marker="x", **lane),
+        *([stroke(words, marker="o", **ring)] if again else []),
+        stroke("fraction at the level", color=INK, linewidth=1.2),
+        stroke("first crossing passed", color=_CROSS, linewidth=1.0, linestyle="--"),
     ]
-    again = len(analysis.resurrected(WIDE))
-    if again:
-        rows.append(
-            Line2D(
-                [], [], color=_AGAIN, linewidth=1.0, marker="o", markersize=3.0, markerfacecolor="white",
-                label=f"stands again: {again} motion{'s' * (again != 1)}",
-            )
-        )  # fmt: skip
-    rows += [
-        Line2D([], [], color=INK, linewidth=1.2, label="fraction at the level"),
-        Line2D([], [], color=_CROSS, linewidth=1.0, linestyle="--", label="first crossing passed"),
-    ]
-    figure.legend(handles=rows, loc="outside lower center", ncols=2, fontsize=6.5, handlelength=1.8)
+    legend_below(figure, rows, 2, handlelength=1.8)
