@@ -14,7 +14,7 @@ from rocking.dynamics import RockingParameters, RockingSide
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
 from rocking.dynamics.plane import batch, fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
-from rocking.dynamics.plane.fast import run_fast
+from rocking.dynamics.plane.fast_engine import run_fast
 from rocking.dynamics.settings import Settings
 from rocking.motions.segments import Segments
 

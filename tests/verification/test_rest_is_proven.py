@@ -7,7 +7,7 @@ from rocking.conventions import g
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.parameters import RockingParameters, RockingSide
 from rocking.dynamics.plane import fast_engine, reference
-from rocking.dynamics.plane.fast import run_fast
+from rocking.dynamics.plane.fast_engine import run_fast
 from rocking.dynamics.plane.reference import Reference
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.dynamics.settings import Settings

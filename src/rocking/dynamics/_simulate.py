@@ -248,9 +248,9 @@ def _response(  # noqa: PLR0917 - what the two questions have in common
     if start is not None and any(np.any(value) for value in state.values()):
         raise InvalidValueError("give either start or rotation and angular_velocity, got both")
     if in_space(body):
+        from rocking.dynamics.space.attitude import SpatialStart
         from rocking.dynamics.space.body import SpatialBody
         from rocking.dynamics.space.histories import response_in_space
-        from rocking.dynamics.space.start import SpatialStart
 
         body = SpatialBody.of(body)
         _refuse("a body in space", {**contact, "engine": alone["engine"], "stream": alone["stream"]})
@@ -268,8 +268,8 @@ def _response(  # noqa: PLR0917 - what the two questions have in common
         for sentence in response.doubts():
             errors.warn(sentence, PureRockingWarning)
         return response
+    from rocking.dynamics.contact.base import Start
     from rocking.dynamics.contact.histories import response_with_contact
-    from rocking.dynamics.contact.start import Start
 
     _refuse("a body with friction", {"engine": alone["engine"], "stream": alone["stream"]})
     return response_with_contact(

@@ -23,8 +23,7 @@ from rocking.outcome import Outcome, Status
 if TYPE_CHECKING:
     from rocking.dynamics.contact import ContactResponse
     from rocking.dynamics.plane.dense_output import DenseOutput
-    from rocking.dynamics.plane.energy_balance import ResponseEnergy
-    from rocking.dynamics.plane.ground_forces import GroundForces
+    from rocking.dynamics.plane.energy_balance import GroundForces, ResponseEnergy
     from rocking.tables import Table
 
 Motion = GroundMotion | Pulse
@@ -174,8 +173,8 @@ class Response(Exportable):
         InvalidValueError
             If the coefficient of restitution changes from impact to impact.
         """
+        from rocking.dynamics.contact.base import Start
         from rocking.dynamics.contact.histories import response_with_contact
-        from rocking.dynamics.contact.start import Start
 
         parameters, run = self.parameters, self.trajectory
         if parameters.law.kind:
@@ -212,7 +211,7 @@ class Response(Exportable):
         return told if friction is None else [*told, *self.contact.slips(friction)]
 
     def _flown(self, friction: float | None) -> str:
-        from rocking.dynamics.plane.ground_forces import LEAVES
+        from rocking.dynamics.plane.energy_balance import LEAVES
 
         lost = (
             f"the ground would have to pull, with up to {-self.least_force:.2g} of the weight: {LEAVES}; "
@@ -293,7 +292,7 @@ class Response(Exportable):
     @cached_property
     def contact(self) -> "GroundForces":
         """Forces of the ground, friction demand and loss of contact."""
-        from rocking.dynamics.plane.ground_forces import contact_of
+        from rocking.dynamics.plane.energy_balance import contact_of
 
         return contact_of(self.trajectory, self.dense_output, self._covered, self.body, self.settings)
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import rocking as rk
-from rocking.dynamics.plane import fast_engine, inside
+from rocking.dynamics.plane import dense_output, fast_engine
 
 # What limits the closure is the ledger, not the engines: the work integrates the quintic through both ends of every
 # interval, whose error grows with the sixth power of its length and with the slope of the record. Intervals up to
@@ -49,7 +49,7 @@ def test_closes(shared_records: Path, name: str, engine: str) -> None:
 @pytest.mark.parametrize("name", STRONGEST)
 def test_long_intervals_limit_it(shared_records: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut to a fifth, the intervals close to 1e-10: the same history, so the engine is not what was open."""
-    monkeypatch.setattr(inside, "LONG", 0.02)
+    monkeypatch.setattr(dense_output, "LONG", 0.02)
     assert rocked(shared_records, name, "auto").energy.closure < SHORT
 
 

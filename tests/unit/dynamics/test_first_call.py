@@ -9,7 +9,7 @@ from rocking.dynamics.plane import fast_engine
 
 NOT_NEEDED = {
     "csv", "json", "scipy", "shapely", "pydantic", "pandas", "xarray", "matplotlib", "rocking.evidence",
-    "rocking.dynamics.plane.reference", "rocking.dynamics.plane.batch", "rocking.dynamics.plane.ground_forces",
+    "rocking.dynamics.plane.reference", "rocking.dynamics.plane.batch", "rocking.dynamics.plane.energy_balance",
     "rocking.tables",
     "rocking.restitution.plastic_winkler", "rocking.restitution.ledger",
 }  # fmt: skip
@@ -36,4 +36,4 @@ def test_the_first_response_loads_what_it_needs() -> None:
     found = loaded()
     assert {"rocking.dynamics._engine", "rocking.restitution.housner"} <= found
     assert not found & NOT_NEEDED
-    assert "rocking.dynamics.plane.ground_forces" in loaded("response.contact")
+    assert "rocking.dynamics.plane.energy_balance" in loaded("response.contact")

@@ -11,10 +11,9 @@ from rocking.conventions import g
 from rocking.dynamics import Outcome, RockingParameters, RockingSide
 from rocking.dynamics.impact_laws import ConstantRestitution, SpeedRestitution
 from rocking.dynamics.plane import fast_engine
-from rocking.dynamics.plane.event_functions import Push, RestoringMoments
-from rocking.dynamics.plane.fast import run_fast
+from rocking.dynamics.plane.event_functions import Push, RestoringMoments, comes_to_rest
+from rocking.dynamics.plane.fast_engine import run_fast
 from rocking.dynamics.plane.reference import Reference
-from rocking.dynamics.plane.resting import comes_to_rest
 from rocking.dynamics.settings import Settings
 from rocking.motions.segments import Segments
 

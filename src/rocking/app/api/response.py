@@ -18,8 +18,7 @@ from rocking.app.settings import state_of
 from rocking.app.work import heavy
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.plane.dense_output import DenseOutput
-from rocking.dynamics.plane.energy_balance import energies
-from rocking.dynamics.plane.ground_forces import forces
+from rocking.dynamics.plane.energy_balance import energies, forces
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
 from rocking.motions.integrals import ground_displacement

@@ -10,9 +10,12 @@ and moves with ``v_t = x' + r_z theta'`` along the ground and ``v_n = z' - r_x t
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
+from rocking import checks
 from rocking.bodies import Body
 from rocking.errors import InvalidValueError
+from rocking.outcome import Regime
 
 LEFT, RIGHT = -1, 1
 BOTH = (LEFT, RIGHT)
@@ -75,3 +78,158 @@ class PlaneBase:
         rotation: theta [rad]. Returns ``d sin(theta) - 2 h sin(theta / 2)^2``, exactly zero at theta = 0 [m].
         """
         return self.lever(foot) * math.sin(rotation) - 2.0 * self.height * math.sin(0.5 * rotation) ** 2  # Eq. 59
+
+
+class Mode(NamedTuple):
+    """One smooth piece of the motion."""
+
+    feet: tuple[int, ...]  # feet that carry: none, -1 (left), +1 (right) or both
+    slip: int = 0  # direction in which they slide: -1, 0 (they stick) or +1
+
+    @property
+    def regime(self) -> Regime:
+        """What the body does."""
+        if not self.feet:
+            return Regime.FLIGHT
+        if len(self.feet) == 2:
+            return Regime.SLIDE if self.slip else Regime.REST
+        return Regime.SLIDE_ROCK if self.slip else Regime.ROCK
+
+    @property
+    def carrier(self) -> str:
+        """Feet in words: ``"none"``, ``"left"``, ``"right"`` or ``"both"``."""
+        return {(): "none", (LEFT,): "left", (RIGHT,): "right", BOTH: "both"}[self.feet]
+
+
+REST = Mode(BOTH)
+FLIGHT = Mode(())
+
+
+class ContactState(NamedTuple):
+    """Where the body is and how it moves."""
+
+    # x, rise, rotation: displacement of the centre of mass to the right [m] and upwards [m] from where it stood, and
+    # theta [rad]
+    x: float = 0.0
+    rise: float = 0.0
+    rotation: float = 0.0
+    u: float = 0.0  # u, w, spin: their rates [m/s, m/s, rad/s]
+    w: float = 0.0
+    spin: float = 0.0
+    touching: tuple[int, ...] = BOTH  # feet that touch the ground, exactly
+
+
+def along(base: PlaneBase, state: ContactState, foot: int) -> float:
+    """Return the velocity of a foot along the ground.
+
+    Returns v_t, to the right; exactly zero where the foot was made to stick [m/s].
+    """
+    return state.u + base.arm(foot, state.rotation)[1] * state.spin  # Eq. 60
+
+
+def away(base: PlaneBase, state: ContactState, foot: int) -> float:
+    """Return the velocity of a foot away from the ground.
+
+    Returns v_n, upwards; exactly zero where the foot was put to rest [m/s].
+    """
+    return state.w - base.arm(foot, state.rotation)[0] * state.spin  # Eq. 61
+
+
+def kept(base: PlaneBase, state: ContactState, feet: tuple[int, ...], *, stick: bool) -> ContactState:
+    """Return the state with rounding taken out of what the contacts fix.
+
+    Returns with ``v_n = 0``, and ``v_t = 0`` if they stick, exactly.
+    """
+    if not feet:
+        return state
+    if len(feet) == 2:
+        u = 0.0 if stick else along(base, state, feet[0])
+        return ContactState(state.x, 0.0, 0.0, u, 0.0, 0.0, feet)
+    (foot,) = feet
+    r_x, r_z = base.arm(foot, state.rotation)
+    u = -(r_z * state.spin) if stick else state.u
+    return state._replace(rise=base.rise_on(foot, state.rotation), u=u, w=r_x * state.spin)
+
+
+def kinetic(base: PlaneBase, state: ContactState) -> float:
+    """Return the kinetic energy in the frame of the ground, per unit of mass.
+
+    Returns ``(x'^2 + z'^2 + (I_C / m) theta'^2) / 2`` [J/kg].
+    """
+    return 0.5 * (state.u**2 + state.w**2 + base.inertia * state.spin**2)  # Eq. 62
+
+
+@dataclass(frozen=True)
+class Start:
+    """Position and velocity at time zero, relative to the ground.
+
+    Parameters
+    ----------
+    rotation : float
+        theta, within a quarter turn; the body stands on the lower foot [rad].
+    angular_velocity : float
+        theta' [rad/s].
+    horizontal_velocity : float
+        Of the lower foot, to the right [m/s].
+    height : float
+        Of the lower foot above the ground [m].
+    vertical_velocity : float
+        Of the lower foot, upwards [m/s].
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is not finite, the rotation is beyond a quarter turn, or the height is negative.
+
+    Examples
+    --------
+    >>> Start(rotation=0.1).height
+    0.0
+    """
+
+    rotation: float = 0.0
+    angular_velocity: float = 0.0
+    horizontal_velocity: float = 0.0
+    height: float = 0.0
+    vertical_velocity: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check every value."""
+        half = 0.5 * math.pi
+        checks.within(
+            "rotation", self.rotation, -half, half, unit="rad", open_low=True, open_high=True, hint="degrees?"
+        )
+        checks.within("angular_velocity", self.angular_velocity, -1e4, 1e4, unit="rad/s", hint="degrees?")
+        checks.within("horizontal_velocity", self.horizontal_velocity, -1e4, 1e4, unit="m/s")
+        checks.within("height", self.height, 0.0, 1e4, unit="m", hint="the ground is at zero")
+        checks.within("vertical_velocity", self.vertical_velocity, -1e4, 1e4, unit="m/s")
+
+    def state(self, base: PlaneBase) -> ContactState:
+        """Return the state of the centre of mass.
+
+        Parameters
+        ----------
+        base : PlaneBase
+            The body.
+
+        Returns
+        -------
+        State
+            Its state; x is zero where the body would stand upright on the same foot.
+        """
+        turned = self.rotation or self.angular_velocity
+        foot = RIGHT if turned > 0.0 else LEFT
+        r_x, r_z = base.arm(foot, self.rotation)
+        touching: tuple[int, ...] = ()
+        if self.height == 0.0:
+            touching = BOTH if self.rotation == 0.0 else (foot,)
+        spin = self.angular_velocity
+        return ContactState(
+            base.lever(foot) - r_x,
+            base.rise_on(foot, self.rotation) + self.height,
+            self.rotation,
+            self.horizontal_velocity - r_z * spin,
+            self.vertical_velocity + r_x * spin,
+            spin,
+            touching,
+        )

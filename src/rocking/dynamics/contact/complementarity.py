@@ -7,12 +7,9 @@ Lemke's algorithm would find is among them, and unlike it the trial also sees wh
 from itertools import chain, combinations
 from typing import NamedTuple
 
-from rocking.dynamics.contact.base import PlaneBase
+from rocking.dynamics.contact.base import ContactState, Mode, PlaneBase, along, away
 from rocking.dynamics.contact.event_functions import consistent, margins
-from rocking.dynamics.contact.ground import GroundSeries
-from rocking.dynamics.contact.mode import Mode
-from rocking.dynamics.contact.mode_series import ModeSeries, course
-from rocking.dynamics.contact.state import ContactState, along, away
+from rocking.dynamics.contact.mode_series import GroundSeries, ModeSeries, course
 from rocking.outcome import Status
 
 TOLERANCE = 1e-12

@@ -10,20 +10,19 @@ import math
 
 import numpy as np
 
-from rocking.dynamics.contact.base import BOTH, PlaneBase
+from rocking.dynamics.contact.base import BOTH, FLIGHT, REST, ContactState, Mode, PlaneBase, away, kept, kinetic
 from rocking.dynamics.contact.complementarity import TOLERANCE, NextMode, choose, weight_of
-from rocking.dynamics.contact.event_functions import Kind, consistent, first_end, margins
-from rocking.dynamics.contact.excitation_screening import stirring
-from rocking.dynamics.contact.ground import GroundSeries
-from rocking.dynamics.contact.ground_contact import GroundContact
-from rocking.dynamics.contact.history import History
-from rocking.dynamics.contact.impact_resolution import Struck, cleaned, largest_speed, strike
-from rocking.dynamics.contact.imposed import strike_with
-from rocking.dynamics.contact.log import Blow, Log
-from rocking.dynamics.contact.mode import FLIGHT, REST, Mode
-from rocking.dynamics.contact.mode_series import ModeSeries, course
-from rocking.dynamics.contact.power_series import value
-from rocking.dynamics.contact.state import ContactState, away, kept, kinetic
+from rocking.dynamics.contact.event_functions import Kind, consistent, first_end, margins, stirring
+from rocking.dynamics.contact.history import Blow, History, Log
+from rocking.dynamics.contact.impact_resolution import (
+    GroundContact,
+    Struck,
+    cleaned,
+    largest_speed,
+    strike,
+    strike_with,
+)
+from rocking.dynamics.contact.mode_series import GroundSeries, ModeSeries, course, value
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import first_fall, shifted
 from rocking.motions.segments import Segments

@@ -12,10 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.base import BOTH, PlaneBase
-from rocking.dynamics.contact.mode import Mode
-from rocking.dynamics.contact.mode_series import ModeSeries
-from rocking.dynamics.contact.power_series import padded
+from rocking.dynamics.contact.base import BOTH, Mode, PlaneBase
+from rocking.dynamics.contact.mode_series import ModeSeries, padded
 from rocking.dynamics.taylor import first_fall
 
 _DEPTH = 7
@@ -109,3 +107,16 @@ def first_end(found: list[Margin], stretch: float, tolerance: float) -> tuple[fl
 def _trimmed(series: FloatArray) -> list[float]:
     kept = np.flatnonzero(series)
     return series[: kept[-1] + 1].tolist() if kept.size else [0.0]
+
+
+def stirring(base: PlaneBase, push: FloatArray, lift: FloatArray, friction: float) -> np.ndarray:
+    """Return the stretches in which a body at rest might be lifted or moved.
+
+    push, lift: coefficients of a_x and g + a_z [m/s2]; friction: Coulomb's coefficient [-]. Returns numbers of the
+    stretches; in all others every margin stays above zero.
+    """
+    turn = push * base.height
+    # Eq. 69
+    held = [lift * base.right + turn, lift * base.left - turn, friction * lift - push, friction * lift + push]
+    low = [m[:, 0] + np.minimum(m[:, 1:], 0.0).sum(axis=1) for m in held]
+    return np.flatnonzero(np.min(low, axis=0) <= 0.0)

@@ -5,11 +5,10 @@ from typing import Any
 
 from rocking import checks, conventions, plausibility
 from rocking.bodies import Body
-from rocking.dynamics.contact.base import PlaneBase
+from rocking.dynamics.contact.base import PlaneBase, Start
 from rocking.dynamics.contact.engine import ContactEngine
-from rocking.dynamics.contact.ground_contact import GroundContact
+from rocking.dynamics.contact.impact_resolution import GroundContact
 from rocking.dynamics.contact.response import ContactResponse
-from rocking.dynamics.contact.start import Start
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.settings import Settings

@@ -1,9 +1,118 @@
-"""What the planar engine returns."""
+"""What is written down while a history runs, and its regimes, impacts and positions as arrays."""
 
+import math
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from rocking.dynamics.contact.log import Log
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.contact.base import LEFT, RIGHT, ContactState, Mode, PlaneBase
+from rocking.dynamics.contact.impact_resolution import Struck
+from rocking.dynamics.contact.mode_series import GroundSeries, ModeSeries, derivative, integral, value
+from rocking.dynamics.taylor import turning_points
 from rocking.outcome import Status
+
+SAMPLED = (
+    "x", "rise", "rotation", "u", "w", "spin", "tangential", "normal_left", "normal_right", "work", "friction_loss",
+    "impact_loss", "slid", "regime",
+)  # fmt: skip
+
+
+class SmoothPiece(NamedTuple):
+    """A smooth piece of the history."""
+
+    start: float  # start, duration: when it starts and how long it lasts [s]
+    duration: float
+    course: ModeSeries  # its series
+    at: float  # where it ends within the series, in (0, 1]
+
+
+class Blow(NamedTuple):
+    """An impact."""
+
+    time: float  # when [s]
+    before: ContactState  # the state before it
+    struck: Struck  # impulses and state after it
+    after: ContactState  # the state from which the history goes on
+    loss: float  # energy lost, per unit of mass [J/kg]
+
+
+@dataclass
+class Log:
+    """The record of a history, per unit of mass."""
+
+    count: int  # number of stretches of the motion; there is one sample more
+    gravity: float  # acceleration of gravity [m/s2]
+    work: float = 0.0
+    friction_loss: float = 0.0
+    impact_loss: float = 0.0
+    slid: float = 0.0
+    usage: float = 0.0
+    peak: float = 0.0
+    pieces: list[SmoothPiece] = field(default_factory=list)
+    blows: list[Blow] = field(default_factory=list)
+    changes: list[tuple[float, Mode]] = field(default_factory=list)
+    samples: FloatArray = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Make room for the samples."""
+        self.samples = np.full((self.count + 1, len(SAMPLED)), math.nan)
+
+    def pass_through(self, start: float, course: ModeSeries, ground: GroundSeries, at: float, friction: float) -> None:
+        """Add a piece to the books.
+
+        start: when it starts [s]; friction: Coulomb's coefficient [-].
+        """
+        self.pieces.append(SmoothPiece(start, at * course.unit, course, at))
+        lift = np.array(ground.lift)
+        lift[0] -= self.gravity
+        along = integral(np.array(ground.push), derivative(course.x), at)
+        up = integral(lift, derivative(course.rise), at)
+        self.work -= along + up  # Eq. 46
+        if course.sliding is not None and course.sliding.any():
+            self.friction_loss -= course.unit * integral(course.tangential, course.sliding, at)
+            self.slid += abs(course.unit * integral(np.ones(1), course.sliding, at))
+        self._raise_peak(course.rotation, at)
+        self._use(course, at, friction)
+
+    def _raise_peak(self, rotation: FloatArray, at: float) -> None:
+        turns = derivative(rotation)
+        inside = turning_points(rotation.tolist(), at) if value(turns, 0.0) * value(turns, at) < 0.0 else []
+        self.peak = max(self.peak, *(abs(value(rotation, instant)) for instant in (0.0, at, *inside)))
+
+    def _use(self, course: ModeSeries, at: float, friction: float) -> None:
+        for instant in (0.0, at):
+            normal = sum(value(c, instant) for c in course.normals.values())
+            tangential = abs(value(course.tangential, instant))
+            if tangential > 0.0 and normal > 0.0:
+                self.usage = max(self.usage, tangential / normal / friction if friction else 1.0)  # Eq. 78
+
+    def sample(self, row: int, state: ContactState, mode: Mode, course: ModeSeries | None, at: float) -> None:
+        """Write a sample."""
+        if row > self.count:
+            return
+        forces = [0.0, 0.0, 0.0]
+        if course is not None:
+            normals = [value(course.normals[f], at) if f in course.normals else 0.0 for f in (LEFT, RIGHT)]
+            forces = [value(course.tangential, at), *normals]
+        books = (self.work, self.friction_loss, self.impact_loss, self.slid)
+        self.samples[row] = (*state[:6], *forces, *books, mode.regime.code)
+
+    def strike(self, blow: Blow) -> None:
+        """Add an impact to the books."""
+        self.blows.append(blow)
+        self.impact_loss += blow.loss
+
+    def change(self, time: float, mode: Mode) -> None:
+        """Note that another mode starts.
+
+        time: when [s].
+        """
+        if self.changes and self.changes[-1][0] == time:
+            self.changes.pop()
+        if not self.changes or self.changes[-1][1] != mode:
+            self.changes.append((time, mode))
 
 
 class History(NamedTuple):
@@ -14,3 +123,78 @@ class History(NamedTuple):
     lies: bool  # whether the body fell over
     passed: float  # when the centre last passed over a foot; NaN if it never did or came back [s]
     end: float  # when the history ends [s]
+
+
+REGIME = np.dtype(
+    [("start", "f8"), ("end", "f8"), ("regime", "U10"), ("feet", "U5"), ("slip", "i1"), ("distance", "f8")]
+)
+"""Fields of `ContactResponse.regimes`: [s], [s], name of a `Regime`, feet that carry, direction, [m] to the right."""
+
+IMPACT = np.dtype(
+    [
+        ("time", "f8"), ("feet", "U5"), ("velocity_before", "f8"), ("velocity_after", "f8"), ("normal_left", "f8"),
+        ("normal_right", "f8"), ("tangential_left", "f8"), ("tangential_right", "f8"), ("lost", "f8"), ("slips", "?"),
+    ]
+)  # fmt: skip
+"""Fields of `ContactResponse.impacts`: [s], feet that touch, theta' [rad/s] twice, impulses [N s], [J], whether."""
+
+
+def regimes_of(history: History, base: PlaneBase) -> np.ndarray:
+    """Return the regimes of a history in order.
+
+    Returns of type `REGIME`; intervals of no duration are left out.
+    """
+    changes = history.log.changes
+    ends = [*(time for time, _ in changes[1:]), history.end][: len(changes)]
+    rows = [
+        (start, end, mode.regime.name, mode.carrier, mode.slip, _distance(history, base, mode, start, end))
+        for (start, mode), end in zip(changes, ends, strict=True)
+        if end > start
+    ]
+    return np.array(rows, dtype=REGIME)
+
+
+def _distance(history: History, base: PlaneBase, mode: Mode, start: float, end: float) -> float:
+    if not mode.slip:
+        return 0.0
+    (x_start, _, turned), (x_end, _, turned_on) = places_of(history, np.array([start, end])).tolist()
+    foot = mode.feet[0]
+    return float(x_end + base.arm(foot, turned_on)[0] - x_start - base.arm(foot, turned)[0])
+
+
+def impacts_of(history: History, base: PlaneBase) -> np.ndarray:
+    """Return the impacts of a history in order.
+
+    Returns of type `IMPACT`. On a flat base only the sum of the impulses along the ground is determined; it is shared
+    as the vertical impulses are.
+    """
+    rows = []
+    for blow in history.log.blows:
+        normal = {foot: blow.struck.normal.get(foot, 0.0) for foot in (LEFT, RIGHT)}
+        total = sum(normal.values())
+        part = {foot: blow.struck.tangential * n / total if total else 0.0 for foot, n in normal.items()}
+        feet = Mode(tuple(sorted(blow.before.touching))).carrier
+        impulses = [base.mass * p for p in (normal[LEFT], normal[RIGHT], part[LEFT], part[RIGHT])]
+        lost = base.mass * blow.loss
+        rows.append((blow.time, feet, blow.before.spin, blow.after.spin, *impulses, lost, blow.struck.slip != 0))
+    return np.array(rows, dtype=IMPACT)
+
+
+def places_of(history: History, time: FloatArray) -> FloatArray:
+    """Return where the body is at some times.
+
+    time: times within it [s]. Returns x [m], rise [m] and theta [rad] along the last axis; at an instant between two
+    pieces the later one counts.
+    """
+    pieces = history.log.pieces
+    if not pieces:
+        return np.zeros((*time.shape, 3))
+    starts = np.array([piece.start for piece in pieces])
+    found = np.empty((*time.shape, 3))
+    numbers = np.clip(np.searchsorted(starts, time, side="right") - 1, 0, len(pieces) - 1)
+    for place, k in np.ndenumerate(numbers):
+        piece = pieces[int(k)]
+        at = min(max((float(time[place]) - piece.start) / piece.course.unit, 0.0), piece.at)
+        series = (piece.course.x, piece.course.rise, piece.course.rotation)
+        found[place] = [np.polynomial.polynomial.polyval(at, c) for c in series]
+    return found

@@ -9,12 +9,46 @@ and for every foot ``0 <= P_n  _|_  v_n(after) + e_N v_n(before) >= 0``, and ``P
 that only the sum of the ``P_t`` is determined: it is shared as the ``P_n`` are.
 """
 
+from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
 
-from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, PlaneBase
-from rocking.dynamics.contact.state import ContactState, along, away, kept, kinetic
+from rocking import checks, plausibility
+from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, ContactState, PlaneBase, along, away, kept, kinetic
 from rocking.outcome import Status
+
+
+@dataclass(frozen=True)
+class GroundContact:
+    """What happens where the feet touch the ground.
+
+    Parameters
+    ----------
+    friction : float
+        Coulomb coefficient mu, the same for sticking and sliding [-].
+    bounce : float
+        Newton's coefficient e_N of normal restitution, 0 for plastic impacts [-].
+    restitution : tuple of float, optional
+        Imposed coefficients theta_dot_after / theta_dot_before for landing left and right, which replace the
+        complementarity problem at rocking impacts [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
+    """
+
+    friction: float
+    bounce: float = 0.0
+    restitution: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        """Check every value."""
+        checks.within("friction", self.friction, 0.0, 1e6, hint="1e6 for feet that never slide")
+        hint = "a ratio of normal velocities; at 1 bounces never end"
+        checks.within("bounce", self.bounce, 0.0, 1.0, open_high=True, hint=hint)
+        plausibility.warn(plausibility.of_friction(self.friction))
+
 
 _ROUNDING = 1e-13
 
@@ -138,3 +172,59 @@ def cleaned(base: PlaneBase, struck: Struck, stop: float) -> ContactState:
     if resting == BOTH:
         return kept(base, state, resting, stick=stick)
     return kept(base, state, resting, stick=stick)._replace(touching=state.touching)
+
+
+_IMPOSED_ROUNDING = 1e-12
+
+
+def strike_with(base: PlaneBase, state: ContactState, foot: int, friction: float, r: float) -> Struck | Status | None:
+    """Return what a rocking impact does when its coefficient of restitution is imposed.
+
+    friction: Coulomb's coefficient [-]; r: theta_dot_after / theta_dot_before of the impact without slip [-]. Returns
+    the state after it with the impulses; a status where energy would be created; None where an impulse at that place
+    would pull, or press the old foot into the ground.
+    """
+    place = foot * (1.0 - r) * (base.inertia + base.height**2)
+    place /= abs(base.lever(-foot)) + r * abs(base.lever(foot))  # Eq. 4
+    speed = abs(away(base, state, foot)) + abs(along(base, state, foot))
+    slack = _IMPOSED_ROUNDING * speed
+    found = _stuck(base, state, foot, place)
+    if abs(found.tangential) > friction * sum(found.normal.values()) + slack:
+        tried = [_slid(base, state, foot, place, slip, slip * friction) for slip in (1, -1)]
+        valid = [s for s in tried if s is not None and s.slip * along(base, s.state, foot) >= -slack]
+        if len(valid) != 1:
+            return None
+        found = valid[0]
+    if sum(found.normal.values()) < -slack or away(base, found.state, -foot) < -slack:
+        return None
+    gained = kinetic(base, found.state) > kinetic(base, state) * (1.0 + _IMPOSED_ROUNDING)
+    return Status.ENERGY_GAIN if gained else found
+
+
+def _stuck(base: PlaneBase, state: ContactState, foot: int, place: float) -> Struck:
+    h, d, j = base.height, base.lever(foot), base.inertia
+    spin = (j * state.spin + h * state.u + place * state.w) / (j + h * h + place * d)  # Eq. 74
+    if abs(spin) <= _IMPOSED_ROUNDING * abs(state.spin):
+        spin = 0.0
+    after = state._replace(u=h * spin, w=d * spin, spin=spin)
+    return Struck(after, _shared(base, place, after.w - state.w), after.u - state.u, 0)
+
+
+def _slid(base: PlaneBase, state: ContactState, foot: int, place: float, slip: int, pull: float) -> Struck | None:
+    d = base.lever(foot)
+    turn = (pull * base.height - place) / base.inertia
+    stiff = 1.0 - d * turn
+    if not stiff > 0.0:
+        return None
+    normal = (d * state.spin - state.w) / stiff  # Eq. 75
+    spin = state.spin + turn * normal
+    after = state._replace(u=state.u - pull * normal, w=d * spin, spin=spin)
+    return Struck(after, _shared(base, place, normal), -(pull * normal), slip)
+
+
+def _shared(base: PlaneBase, place: float, normal: float) -> dict[int, float]:
+    """Both feet's parts of a resultant; beyond a foot the other one pulls."""
+    return {
+        LEFT: normal * (base.right - place) / base.width,
+        RIGHT: normal * (base.left + place) / base.width,
+    }

@@ -2,16 +2,70 @@
 
 import math
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, PlaneBase
-from rocking.dynamics.contact.ground import GroundSeries
-from rocking.dynamics.contact.mode import Mode
+from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, ContactState, Mode, PlaneBase, along, away
 from rocking.dynamics.contact.pivot_motion import turning
-from rocking.dynamics.contact.power_series import derivative, padded, twice, value
-from rocking.dynamics.contact.state import ContactState, along, away
+from rocking.portable import convolved
+
+
+def padded(series: list[float] | FloatArray, size: int) -> FloatArray:
+    """Return a series with zeros after it."""
+    made = np.zeros(size)
+    made[: len(series)] = series[:size]
+    return made
+
+
+def derivative(series: FloatArray) -> FloatArray:
+    """Return the derivative of a series, of the same length."""
+    made = np.zeros(series.size)
+    made[:-1] = series[1:] * np.arange(1, series.size)
+    return made
+
+
+def value(series: FloatArray, at: float) -> float:
+    """Return the value of a series."""
+    total = 0.0
+    for c in series[::-1].tolist():
+        total = total * at + c
+    return total
+
+
+def integral(first: FloatArray, second: FloatArray, at: float) -> float:
+    """Return the integral of a product of series from 0 to an instant."""
+    product = convolved(first, second)
+    return at * value(product / np.arange(1, product.size + 1), at)
+
+
+def twice(acceleration: FloatArray, start: float, rate: float, unit: float) -> FloatArray:
+    """Return the position that follows from an acceleration.
+
+    acceleration: coefficients over a unit of time [m/s2]; start, rate: position [m] and velocity [m/s] at the start;
+    unit: the unit of time [s]. Returns coefficients of the position, as many [m].
+    """
+    made = np.zeros(acceleration.size)
+    made[0], made[1] = start, rate * unit
+    k = np.arange(2, acceleration.size)
+    made[2:] = acceleration[:-2] * unit**2 / (k * (k - 1))
+    return made
+
+
+class GroundSeries(NamedTuple):
+    """The ground over a unit of time."""
+
+    push: list[float]  # push, lift: coefficients of a_x and of g + a_z [m/s2]
+    lift: list[float]
+    unit: float  # the unit of time [s]
+
+    def shortened(self, part: float) -> "GroundSeries":
+        """Return the beginning of the same motion."""
+        if part == 1.0:
+            return self
+        push, lift = ([c * part**k for k, c in enumerate(series)] for series in (self.push, self.lift))
+        return GroundSeries(push, lift, self.unit * part)
 
 
 @dataclass(frozen=True)

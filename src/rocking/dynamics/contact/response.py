@@ -1,4 +1,4 @@
-"""The planar response: positions, regimes, impacts, sliding, forces, energy, outcome."""
+"""The response with contact: positions, regimes, impacts, sliding, forces, energy, outcome."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -10,21 +10,91 @@ from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.contact.base import PlaneBase
-from rocking.dynamics.contact.energy_balance import ContactEnergy, ContactForces, energy_of, forces_of
-from rocking.dynamics.contact.events import impacts_of, places_of, regimes_of
-from rocking.dynamics.contact.ground_contact import GroundContact
-from rocking.dynamics.contact.history import History
-from rocking.dynamics.contact.log import SAMPLED
-from rocking.dynamics.exportable import Exportable
+from rocking.dynamics.contact.history import SAMPLED, History, impacts_of, places_of, regimes_of
+from rocking.dynamics.contact.impact_resolution import GroundContact
+from rocking.dynamics.exportable import Exportable, motion_provenance
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, Regime, Status
+from rocking.tables import Column, Table
+from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
     from rocking.tables import Table
+
+
+@dataclass(frozen=True)
+class ContactEnergy:
+    """Energy in the frame of the ground."""
+
+    time: FloatArray  # times of the samples [s]
+    kinetic: FloatArray  # kinetic, potential: of the body; the potential one above where it stands [J]
+    potential: FloatArray
+    work: FloatArray  # done by the ground since the start [J]
+    lost_in_impacts: FloatArray  # lost_in_impacts, lost_in_friction: since the start [J]
+    lost_in_friction: FloatArray
+
+    @property
+    def gap(self) -> FloatArray:
+        """What does not add up: kinetic + potential + lost - work - initial [J]."""
+        stored = self.kinetic + self.potential
+        lost = self.lost_in_impacts + self.lost_in_friction
+        return np.asarray(stored + lost - self.work - (stored[0] + lost[0]), dtype=np.float64)  # Eq. 45
+
+    @property
+    def closure(self) -> float:
+        """Largest gap over the largest energy that was stored, lost, or worked [-]."""
+        parts = (self.kinetic + self.potential, self.lost_in_impacts, self.lost_in_friction, self.work)
+        scale = max(1e-300, *(float(np.abs(part).max()) for part in parts))
+        return float(np.abs(self.gap).max()) / scale
+
+
+@dataclass(frozen=True)
+class ContactForces:
+    """Forces of the ground on the body."""
+
+    time: FloatArray  # times of the samples [s]
+    horizontal: FloatArray  # on both feet together, to the right [N]
+    left: FloatArray  # left, right: vertical force on each foot [N]
+    right: FloatArray
+    usage: FloatArray  # |horizontal| over mu times the vertical force; zero in flight [-]
+
+    @property
+    def vertical(self) -> FloatArray:
+        """Vertical force on both feet together [N]."""
+        return np.asarray(self.left + self.right)
+
+
+def energy_of(response: "ContactResponse") -> ContactEnergy:
+    """Return the energy of a response."""
+    mass, j = response.base.mass, response.base.inertia
+    u, w, spin = response.horizontal_velocity, response.vertical_velocity, response.angular_velocity
+    return ContactEnergy(
+        response.time,
+        0.5 * mass * (u**2 + w**2 + j * spin**2),  # Eq. 62
+        mass * response.settings.gravity * response.rise,
+        mass * response.sampled("work"),
+        mass * response.sampled("impact_loss"),
+        mass * response.sampled("friction_loss"),
+    )
+
+
+def forces_of(response: "ContactResponse") -> ContactForces:
+    """Return the forces of a response.
+
+    Returns at its samples, as limits from before.
+    """
+    mass, friction = response.base.mass, response.law.friction
+    tangential = response.sampled("tangential")
+    left, right = response.sampled("normal_left"), response.sampled("normal_right")
+    most = friction * (left + right)
+    usage = np.zeros(most.size)
+    np.divide(np.abs(tangential), most, out=usage, where=most > 0.0)  # Eq. 78
+    return ContactForces(response.time, mass * tangential, mass * left, mass * right, usage)
+
 
 _ROUNDING = 1e-9
 
@@ -78,7 +148,7 @@ class ContactResponse(Exportable):
         Parameters
         ----------
         name : str
-            Name of the column, of `rocking.dynamics.contact.log.SAMPLED`.
+            Name of the column, of `rocking.dynamics.contact.history.SAMPLED`.
 
         Returns
         -------
@@ -250,6 +320,77 @@ class ContactResponse(Exportable):
         Table
             Samples, impacts, intervals of one regime and provenance, with units.
         """
-        from rocking.dynamics.contact.export import exported
-
         return exported(self)
+
+
+SAMPLES = (
+    "time", "displacement", "rise", "rotation", "horizontal_velocity", "vertical_velocity", "angular_velocity",
+    "regime", "sliding_distance", "horizontal_force", "vertical_force_left", "vertical_force_right", "kinetic_energy",
+    "potential_energy", "work_of_ground", "energy_lost", "lost_in_friction",
+)  # fmt: skip
+"""What is known at every sample."""
+_IMPACTS = (
+    "time", "velocity_before", "velocity_after", "normal_left", "normal_right", "tangential_left", "tangential_right",
+    "lost",
+)  # fmt: skip
+
+
+def columns(response: "ContactResponse") -> dict[str, FloatArray]:
+    """Return the samples of a response by name.
+
+    Returns all of one length, in the order of `SAMPLES`.
+    """
+    energy, forces = response.energy, response.forces
+    values = (
+        response.time, response.displacement, response.rise, response.rotation, response.horizontal_velocity,
+        response.vertical_velocity, response.angular_velocity, response.sampled("regime"), response.sampled("slid"),
+        forces.horizontal, forces.left, forces.right, energy.kinetic, energy.potential, energy.work,
+        energy.lost_in_impacts, energy.lost_in_friction,
+    )  # fmt: skip
+    return dict(zip(SAMPLES, values, strict=True))
+
+
+def provenance(response: "ContactResponse") -> dict[str, Any]:
+    """Return what was computed from what, as plain values."""
+    motion, law, base = response.motion, response.law, response.base
+    imposed = (
+        "none: complementarity" if law.restitution is None else "left {:.9g}, right {:.9g}".format(*law.restitution)
+    )
+    return {
+        "software": SOFTWARE,
+        "engine": "planar: Taylor series with events and complementarity",
+        "outcome": response.outcome.name,
+        "status": response.status.name,
+        "still_rocking": response.still_rocking,
+        "summary": response.summary,
+        "body": type(response.body).__name__,
+        "mass_kg": base.mass,
+        "inertia_kg_m2": base.mass * base.inertia,
+        "centre_height_m": base.height,
+        "half_width_left_m": base.left,
+        "half_width_right_m": base.right,
+        "friction": law.friction,
+        "bounce": law.bounce,
+        "imposed_restitution": imposed,
+        "motion": "none: ground at rest" if motion is None else motion.name,
+        "motion_provenance": motion_provenance(motion),
+        "scale": response.scale,
+        **{f"setting_{k}": v for k, v in response.settings.stated.items()},
+    }
+
+
+def exported(response: "ContactResponse") -> Table:
+    """Return what the files of a response hold.
+
+    Returns Samples, impacts, intervals of one regime, and provenance.
+    """
+    samples = {name: Column.of(name, values) for name, values in columns(response).items()}
+    impacts, regimes = response.impacts, response.regimes
+    blows = {name: Column.of(name, impacts[name]) for name in _IMPACTS}
+    blows["feet"] = Column.of("feet", impacts["feet"])
+    blows["slips"] = Column.of("slips", impacts["slips"].astype(np.int8))
+    intervals = {name: Column.of(name, regimes[name]) for name in ("start", "end", "distance")}
+    intervals["regime"] = Column(regimes["regime"], "", "regime")
+    intervals["feet"] = Column(regimes["feet"], "", "feet that carry")
+    beside = {"impact": Table("impact", blows), "interval": Table("interval", intervals)}
+    return Table("time", samples, provenance(response), beside, no_unit="-")

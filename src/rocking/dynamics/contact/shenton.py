@@ -15,10 +15,9 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.contact.base import LEFT, RIGHT, PlaneBase
+from rocking.dynamics.contact.base import LEFT, RIGHT, ContactState, PlaneBase
 from rocking.dynamics.contact.complementarity import NextMode, choose
-from rocking.dynamics.contact.ground import GroundSeries
-from rocking.dynamics.contact.state import ContactState
+from rocking.dynamics.contact.mode_series import GroundSeries
 from rocking.errors import InvalidValueError
 from rocking.outcome import Regime
 

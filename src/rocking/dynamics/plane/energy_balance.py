@@ -1,12 +1,15 @@
-"""Where the energy goes: work of the ground in, losses at impacts out, the rest kinetic and potential."""
+"""Where the energy goes, and the forces of the ground: whether pure rocking is credible under them."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from rocking.conventions import FloatArray
+from rocking import checks
+from rocking.bodies import Body
+from rocking.conventions import FEET, FloatArray, Foot, opposite
 from rocking.dynamics.plane import equations
 from rocking.dynamics.plane.dense_output import DenseOutput
+from rocking.dynamics.plane.trajectory import EventKind, Trajectory
 from rocking.dynamics.settings import Settings
 
 
@@ -70,3 +73,118 @@ def energies(
     lost = np.concatenate([[0.0], np.cumsum(stored[:-1, 1] - stored[1:, 0])])
     work = np.concatenate([[0.0], np.cumsum(mass * dense_output.work(settings))])
     return kinetic, stored - kinetic, np.stack([work[:-1], work[1:]], axis=1), np.stack([lost, lost], axis=1)
+
+
+_ROUNDING = 1e-9
+
+
+LEAVES = "the body would leave the ground, which pure rocking cannot do"
+_FOLLOWS = "simulate(body, motion, friction=...) follows it"
+
+
+@dataclass(frozen=True)
+class GroundForces:
+    """Forces of the ground at the samples, and the friction that rocking without slip takes."""
+
+    time: FloatArray  # times of the samples, and of the fall if it comes after the last of them [s]
+    horizontal: FloatArray  # horizontal, vertical: force of the ground on the body, to the right and upwards [N]
+    vertical: FloatArray
+    # smallest vertical force until the centre passes over the foot for good; below zero the body would leave the ground
+    # [N]
+    least_vertical: float
+    # largest |horizontal / vertical| until then; infinite where the vertical force vanishes [-]
+    friction_of_motion: float
+    friction_of_impacts: float  # largest ratio of the impulses at an impact [-]
+
+    @property
+    def friction_demand(self) -> float:
+        """Coefficient of friction that the whole response takes [-]."""
+        return max(self.friction_of_motion, self.friction_of_impacts)
+
+    @property
+    def loses_contact(self) -> bool:
+        """Whether the ground would have to pull at these times; `Response.lost_contact` knows of what follows, too."""
+        return self.least_vertical < 0.0
+
+    def warnings(self, friction: float = 0.5) -> list[str]:
+        """Return why pure rocking is not credible, in plain words; empty if it is.
+
+        friction: coefficient of friction between body and ground [-]. Returns loss of contact, and what `slips` says.
+        """
+        slips = self.slips(friction)
+        return [f"the ground would have to pull: {LEAVES}; {_FOLLOWS}", *slips] if self.loses_contact else slips
+
+    def slips(self, friction: float = 0.5) -> list[str]:
+        """Return why feet that do not slip are not credible, in plain words; empty if they are.
+
+        friction: coefficient of friction between body and ground [-].
+        """
+        friction = checks.positive("friction", friction)
+        found = []
+        if not self.loses_contact and self.friction_of_motion > friction:
+            found.append(
+                f"rocking without slip takes a coefficient of friction of {self.friction_of_motion:.2f}; "
+                f"with {friction:g} the body would slide; {_FOLLOWS}"
+            )
+        if self.friction_of_impacts > friction:
+            found.append(
+                f"impacts without slip take a coefficient of friction of {self.friction_of_impacts:.2f}; "
+                f"with {friction:g} the foot would slip and lose more energy; {_FOLLOWS}"
+            )
+        return found
+
+
+def contact_of(
+    trajectory: Trajectory, dense_output: DenseOutput, time: FloatArray, body: Body, settings: Settings
+) -> GroundForces:
+    """Return the forces of the ground on a body during a response.
+
+    time: times of the samples, and of a fall after the last of them [s].
+    """
+    f_x, f_z, demand = forces(dense_output, settings.gravity)
+    # a body that falls is past all questions of friction; the start counts even for one that is let go beyond the top
+    late = dense_output.start >= trajectory.overturning_time - _ROUNDING * dense_output.length
+    standing = np.stack([~late, ~late], axis=1)
+    standing[0, 0] = True
+    place = dense_output.places(time[1:])
+    mass = body.mass
+    return GroundForces(
+        time=time,
+        horizontal=mass * np.concatenate([[f_x[0, 0]], f_x[place, 1]]),
+        vertical=mass * np.concatenate([[f_z[0, 0]], f_z[place, 1]]),
+        least_vertical=mass * float(f_z[standing].min()),
+        friction_of_motion=float(demand[standing].max()),
+        friction_of_impacts=_friction_of_impacts(trajectory, body),
+    )
+
+
+def forces(dense_output: DenseOutput, gravity: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the forces of the ground at both ends of the intervals of a response.
+
+    gravity: acceleration of gravity [m/s2]. Returns horizontal, vertical: over the mass [N/kg] (shape (n, 2)); demand:
+    friction that rocking without slip takes; infinite where the ground would have to pull [-] (shape (n, 2)).
+    """
+    side = dense_output.side[:, None]
+    f_x, f_z = equations.reactions(
+        dense_output.rotation, dense_output.velocity, dense_output.acceleration, np.where(side == 0.0, 1.0, side),
+        dense_output.alpha[:, None], dense_output.semi_diagonal[:, None],
+        dense_output.push, gravity + dense_output.lift,
+    )  # fmt: skip
+    resting = side == 0.0
+    f_x = np.where(resting, dense_output.push, f_x)
+    f_z = np.where(resting, gravity + dense_output.lift, f_z)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        demand = np.where(f_z > 0.0, np.abs(f_x) / f_z, np.where(f_x == 0.0, 0.0, np.inf))  # Eq. 35
+    return f_x, f_z, demand
+
+
+def _friction_of_impacts(trajectory: Trajectory, body: Body) -> float:
+    sides = {foot: body.side(foot) for foot in FEET}
+    most = 0.0
+    for event in trajectory.events:
+        if event.kind is EventKind.IMPACT:
+            onto: Foot = "right" if event.side > 0 else "left"
+            new, old = sides[onto], sides[opposite(onto)]
+            ratio = equations.friction_of_impact(new.centre_height, old.half_width, new.half_width, event.coefficient)
+            most = max(most, abs(float(ratio)))
+    return most

@@ -46,7 +46,7 @@ def run(
 
         made = Reference(parameters, segments, settings, scale=scale, stream=stream)
         return made.run(rotation, velocity)
-    from rocking.dynamics.plane.fast import run_fast
+    from rocking.dynamics.plane.fast_engine import run_fast
 
     return run_fast(parameters, segments, settings, scale=scale, stream=stream, rotation=rotation, velocity=velocity)
 

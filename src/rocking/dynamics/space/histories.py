@@ -9,12 +9,12 @@ import numpy as np
 from rocking import checks, conventions, plausibility
 from rocking.conventions import FloatArray
 from rocking.dynamics.settings import Settings
+from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.ground import Component, ground_of
 from rocking.dynamics.space.impact_laws import law_of
 from rocking.dynamics.space.reference import SpatialReference
 from rocking.dynamics.space.response import SpatialResponse
-from rocking.dynamics.space.start import SpatialStart
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.outcome import ContactMode

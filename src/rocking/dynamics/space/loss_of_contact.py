@@ -1,16 +1,18 @@
-"""Where the ground lets go: forces at a point and at both ends of an edge, as series of the time within a step."""
+"""Where the ground lets go: of a point, of the ends of an edge, of the whole base at rest."""
 
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.dynamics.space import contact_mode
 from rocking.dynamics.space.attitude import cross
 from rocking.dynamics.space.body import SpatialBody
+from rocking.dynamics.space.complementarity import SpatialState, of_forces
 from rocking.dynamics.space.contact_mode import ContactSet
-from rocking.dynamics.space.event_functions import Step
-from rocking.dynamics.space.polynomials import cauchy, dot, first_zero, padded, square_root
-from rocking.dynamics.taylor import value
+from rocking.dynamics.space.event_functions import Step, cauchy, dot, first_zero, padded, square_root
+from rocking.dynamics.space.ground import SpatialGround
+from rocking.dynamics.taylor import first_fall, shifted, value
 from rocking.outcome import ContactMode
-from rocking.portable import applied, inverse, times
+from rocking.portable import applied, convolved, inverse, times
 from rocking.portable import dot as dot_of
 
 
@@ -104,3 +106,91 @@ def _opening(body: SpatialBody, contact: ContactSet, step: Step, which: int) -> 
 def _axis(contact: ContactSet) -> FloatArray:
     assert contact.axis is not None
     return contact.axis
+
+
+_SAME = 1e-11
+_WHOLE = 1.0 - 1e-12
+
+
+def next_uplift(
+    body: SpatialBody, ground: SpatialGround, rotation: FloatArray, gravity: float, since: tuple[int, float]
+) -> tuple[int, float, tuple[int, ...]] | None:
+    """Return when the ground next lifts a body.
+
+    The centre of pressure is at c - h a / (g + a_z); it is inside while (c - v_i) . n_i (g + a_z) - h n_i . a >= 0 for
+    every edge, polynomials of time; for a round base while b^2 (g + a_z)^2 - |c (g + a_z) - h a|^2 >= 0.
+
+    gravity: acceleration of gravity [m/s2]. Returns tau: time within it, in units of its duration; edges: edges that
+    the centre of pressure crosses just then; empty where it jumps out of the base, and for a round base. None instead
+    of all three if it is never lifted.
+    """
+    stretch, tau = since
+    if stretch >= ground.count:
+        return None
+    holds = _holds(body, ground.coefficients[stretch:], rotation, gravity)
+    low = holds[:, :, 0] + np.minimum(holds[:, :, 1:], 0.0).sum(axis=2)
+    low[0] = np.where(tau > 0.0, -np.inf, low[0])
+    for k in np.flatnonzero((low <= 0.0).any(axis=1)):
+        found = _within(holds[k], tau if k == 0 else 0.0, _SAME * gravity * body.size)
+        if found is not None:
+            return stretch + int(k), found[0], () if body.round else found[1]
+    return None
+
+
+def lifted(body: SpatialBody, state: SpatialState, edges: tuple[int, ...]) -> ContactSet | None:
+    """Return on what a body stands when it is lifted from rest.
+
+    Returns none if the ground would have to pull.
+    """
+    if body.round:
+        pressure = -state.field[2] * body.centre[:2] + body.centre[2] * state.field[:2]
+        return contact_mode.rim(body, pressure) if state.field[2] < 0.0 else None
+    count = len(body.vertices)
+    if len(edges) == 1:
+        return contact_mode.edge(body, edges[0])
+    if len(edges) == 2:
+        first, second = edges
+        return contact_mode.vertex(body, second if (first + 1) % count == second else first)
+    found = of_forces(body, state, tuple(range(count)))
+    return found[0].contact if found else None
+
+
+def _holds(body: SpatialBody, accelerations: FloatArray, rotation: FloatArray, gravity: float) -> FloatArray:
+    """Return what must stay above zero, by stretch, edge and power."""
+    level = times(rotation[:2, :2].T, accelerations[:, :2])
+    weight = accelerations[:, 2].copy()
+    weight[:, 0] += gravity
+    if not body.round:
+        inside = ((body.centre[:2] - body.vertices[:, :2]) * body.inward).sum(axis=1)
+        tipping = times(body.inward, level)
+        return np.asarray(inside[None, :, None] * weight[:, None, :] - body.centre[2] * tipping)  # Eq. 94
+    made = np.zeros((len(weight), 2, 2 * weight.shape[1] - 1))
+    made[:, 1, : weight.shape[1]] = weight * body.size  # the ground must push
+    for k, w in enumerate(weight):
+        made[k, 0] = body.radius**2 * convolved(w, w)
+        for axis in range(2):
+            arm = body.centre[axis] * w - body.centre[2] * level[k, axis]
+            made[k, 0] -= convolved(arm, arm)  # Eq. 95
+    return made
+
+
+def _within(holds: FloatArray, tau: float, same: float) -> tuple[float, tuple[int, ...]] | None:
+    """First fall in a stretch, and the edges that share it; none of them where there is no holding at its start."""
+    rows = [shifted(row.tolist(), tau, 1.0 - tau) if tau > 0.0 else row.tolist() for row in holds]
+    if min(row[0] for row in rows) < -same:
+        return tau, ()
+    falls: list[tuple[float, int]] = []
+    for edge, row in enumerate(rows):
+        at = first_fall(row) if row[0] > 0.0 else (0.0 if _falls_at_once(row) else None)
+        if at is not None and at < _WHOLE:  # at the very end the next stretch decides
+            falls.append((at, edge))
+    if not falls:
+        return None
+    first = min(falls)[0]
+    edges = tuple(edge for edge, row in enumerate(rows) if value(row, first) <= same)
+    return tau + (1.0 - tau) * first, edges
+
+
+def _falls_at_once(row: list[float]) -> bool:
+    """Whether a polynomial that starts at zero goes below it from the start."""
+    return next((c for c in row[1:] if c != 0.0), 0.0) < 0.0

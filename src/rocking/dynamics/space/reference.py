@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.space import attitude, contact_mode, event_functions, loss_of_contact, pivot_motion, resting
+from rocking.dynamics.space import attitude, contact_mode, event_functions, loss_of_contact, pivot_motion
 from rocking.dynamics.space.attitude import cross
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.complementarity import Continuation, SpatialState, of_forces
@@ -83,14 +83,15 @@ class SpatialReference:
         if self.stretch < self.ground.count:
             begin, end = self.ground.times[self.stretch : self.stretch + 2]
             tau = (self.time - begin) / (end - begin)
-        found = resting.next_uplift(self.body, self.ground, rotation, self.settings.gravity, (self.stretch, tau))
+        since = self.stretch, tau
+        found = loss_of_contact.next_uplift(self.body, self.ground, rotation, self.settings.gravity, since)
         if found is None:
             self._add_rest(max(self.horizon, self.ground.end, self.time))
             return self.integration_state.calm(), Status.GOOD
         self.stretch, tau, edges = found
         begin, end = self.ground.times[self.stretch : self.stretch + 2]
         self._add_rest(max(float(begin + tau * (end - begin)), self.time))
-        lifted = resting.lifted(self.body, self._state(), edges)
+        lifted = loss_of_contact.lifted(self.body, self._state(), edges)
         if lifted is None:
             return Outcome.FAILED, Status.LOST_CONTACT
         self._stand(lifted)

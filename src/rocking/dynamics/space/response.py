@@ -11,21 +11,75 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.exportable import Exportable
+from rocking.dynamics.plane.energy_balance import ResponseEnergy
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.event_functions import NEARLY_FLAT
 from rocking.dynamics.space.ground import SpatialGround
 from rocking.dynamics.space.impact_laws import SpatialImpactLaw
-from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajectory
+from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajectory, States, StepPiece, pivots
 from rocking.errors import InvalidValueError
 from rocking.outcome import ContactMode, Outcome, Status
-from rocking.portable import applied, dot, norm
+from rocking.portable import applied, dot, gauss_legendre, norm
+from rocking.tables import Column, Table
+from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
     from rocking.dynamics.plane.energy_balance import ResponseEnergy
-    from rocking.dynamics.space.states import States
+    from rocking.dynamics.space.trajectory import States
     from rocking.tables import Table
+
+
+_NODES, _WEIGHTS = gauss_legendre(20)
+
+
+def energy_of(response: "SpatialResponse") -> ResponseEnergy:
+    """Return the energy of a response in space.
+
+    The work of the ground is integrated along the history, -m a_g . v_C by Gauss's rule on every step of the engine;
+    the losses are those of the impacts. Nothing is computed from the balance, so that the balance can be checked.
+    """
+    body, time = response.body, response.time
+    states, impacts = response.states, response.trajectory.impacts
+    lost = np.concatenate([[0.0], np.cumsum([event.before - event.after for event in impacts])])
+    when = np.array([event.time for event in impacts])
+    found = lost[np.searchsorted(when, time, side="right")]
+    return ResponseEnergy(
+        time=time,
+        kinetic=states.kinetic,
+        potential=body.mass * response.settings.gravity * states.rise,
+        work=_work(response),
+        lost=found - found[0],  # an impact at the start comes before the first sample
+    )
+
+
+def _work(response: "SpatialResponse") -> FloatArray:
+    """Work of the ground up to each sample."""
+    made, total = np.zeros(response.time.size), 0.0
+    for piece in response.trajectory.pieces:
+        first, last = np.searchsorted(response.time, [piece.start, piece.end], side="left")
+        stops = np.concatenate([[piece.start], response.time[first:last], [piece.end]])
+        if piece.end > piece.start and len(piece.quaternions) > 1 and piece.start < response.ground.end:
+            parts = _of_piece(response, piece, stops)
+            made[first:last] = total + np.cumsum(parts)[:-1]
+            total += float(parts.sum())
+        else:
+            made[first:last] = total
+    made[response.time >= response.trajectory.pieces[-1].end] = total
+    return made
+
+
+def _of_piece(response: "SpatialResponse", piece: StepPiece, stops: FloatArray) -> FloatArray:
+    """Work between the stops of a step."""
+    half = 0.5 * np.diff(stops)
+    times = (0.5 * (stops[1:] + stops[:-1]))[:, None] + half[:, None] * _NODES
+    q, w, place = piece.at(np.clip((times.ravel() - piece.start) / piece.length, 0.0, piece.until))
+    body = response.body
+    states = States(body, q, w, pivots(body, piece, q), place, np.zeros(len(q), dtype=np.int64))
+    power = -body.mass * (response.ground.at(times.ravel()) * states.centre_velocity).sum(axis=1)  # Eq. 46
+    return applied(power.reshape(times.shape), _WEIGHTS) * half
+
 
 SPATIAL_IMPACT = np.dtype(
     [
@@ -280,8 +334,6 @@ class SpatialResponse(Exportable):
     @cached_property
     def energy(self) -> "ResponseEnergy":
         """Kinetic and potential energy, work of the ground and losses at the samples [J]."""
-        from rocking.dynamics.space.energy import energy_of
-
         return energy_of(self)
 
     def at(self, time: Any) -> "States":
@@ -302,7 +354,7 @@ class SpatialResponse(Exportable):
         InvalidValueError
             If a time is not finite, or before the start or after the end by more than rounding.
         """
-        from rocking.dynamics.space.states import states_of
+        from rocking.dynamics.space.trajectory import states_of
 
         end = self.trajectory.pieces[-1].end
         given = np.atleast_1d(checks.real_array("time", time, "s"))
@@ -319,6 +371,71 @@ class SpatialResponse(Exportable):
         Table
             Samples, impacts, intervals of one contact and provenance, with units.
         """
-        from rocking.dynamics.space.export import exported
-
         return exported(self)
+
+
+_AXES = ("x", "y", "z")
+
+
+def columns(response: "SpatialResponse") -> dict[str, Column]:
+    """Return the samples of a response in space by name."""
+    energy, states = response.energy, response.states
+    ground = response.ground.at(response.time)
+    values = {"time": response.time}
+    values |= {f"quaternion_{axis}": states.quaternion[:, k] for k, axis in enumerate(("s", *_AXES))}
+    values |= _vector("angular_velocity", states.angular_velocity)
+    values |= {"tilt": response.tilt, "azimuth": response.azimuth, "contact": response.contact.astype(np.float64)}
+    values |= _vector("centre", response.centre) | _vector("ground_acceleration", ground)
+    values |= {"kinetic_energy": energy.kinetic, "potential_energy": energy.potential}
+    values |= {"work_of_ground": energy.work, "energy_lost": energy.lost}
+    return {name: Column.of(name, each) for name, each in values.items()}
+
+
+def provenance(response: "SpatialResponse") -> dict[str, Any]:
+    """Return what was computed from what, as plain values.
+
+    Returns Numbers, words and lists of numbers; ``overturning_direction_rad`` only where it overturned.
+    """
+    body, direction = response.body, response.overturning_direction
+    return {
+        "software": SOFTWARE,
+        "engine": response.trajectory.engine,
+        "outcome": response.outcome.name,
+        "status": response.status.name,
+        "still_rocking": response.still_rocking,
+        "summary": response.summary,
+        **({} if math.isnan(direction) else {"overturning_direction_rad": direction}),
+        "mass_kg": body.mass,
+        "centre_m": body.centre.tolist(),
+        "inertia_kg_m2": body.inertia.ravel().tolist(),
+        "base_m": np.ravel(body.base).tolist(),
+        "restitution": response.law.label,
+        **{f"motion_{axis}": name for axis, name in zip(("x", "y", "vertical"), response.names, strict=True)},
+        **{f"setting_{k}": v for k, v in response.settings.stated.items()},
+    }
+
+
+def exported(response: "SpatialResponse") -> Table:
+    """Return what the files of a response in space hold.
+
+    Returns Samples, impacts, intervals of one contact, and provenance.
+    """
+    known = ("time", "energy_before", "energy_after", "impulse", "pull")
+    impacts = {name: Column.of(name, response.impacts[name]) for name in known}
+    impacts["contact"] = Column(response.impacts["contact"], "", "contact that stays")
+    impacts["vertices"] = Column(response.impacts["vertices"], "", "vertices that stay on the ground")
+    rows = response.intervals
+    intervals = {
+        "start": Column.of("start", np.array([start for start, _, _, _ in rows], dtype=np.float64)),
+        "end": Column.of("end", np.array([end for _, end, _, _ in rows], dtype=np.float64)),
+        "contact": Column(np.array([contact.name.lower() for _, _, contact, _ in rows], dtype="U8"), "", "contact"),
+        "vertices": Column.of(
+            "vertices", np.array(["-".join(map(str, points)) for _, _, _, points in rows], dtype="U64")
+        ),
+    }
+    beside = {"impact": Table("impact", impacts), "interval": Table("interval", intervals)}
+    return Table("time", columns(response), provenance(response), beside, no_unit="-")
+
+
+def _vector(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
+    return {f"{name}_{axis}": values[:, k] for k, axis in enumerate(_AXES)}

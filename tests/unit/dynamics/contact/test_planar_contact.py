@@ -7,17 +7,25 @@ import pytest
 
 from rocking.bodies import Block, Section
 from rocking.bodies.region import Region
-from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, PlaneBase
+from rocking.dynamics.contact.base import (
+    BOTH,
+    FLIGHT,
+    LEFT,
+    REST,
+    RIGHT,
+    ContactState,
+    Mode,
+    PlaneBase,
+    along,
+    away,
+    kept,
+    kinetic,
+)
 from rocking.dynamics.contact.complementarity import NextMode, candidates, choose, weight_of
 from rocking.dynamics.contact.event_functions import Kind, Margin, consistent, first_end, leading, margins
-from rocking.dynamics.contact.ground import GroundSeries
-from rocking.dynamics.contact.impact_resolution import Struck, strike
-from rocking.dynamics.contact.imposed import strike_with
-from rocking.dynamics.contact.mode import FLIGHT, REST, Mode
-from rocking.dynamics.contact.mode_series import course
+from rocking.dynamics.contact.impact_resolution import Struck, strike, strike_with
+from rocking.dynamics.contact.mode_series import GroundSeries, course, derivative, integral, value
 from rocking.dynamics.contact.pivot_motion import turning
-from rocking.dynamics.contact.power_series import derivative, integral, value
-from rocking.dynamics.contact.state import ContactState, along, away, kept, kinetic
 from rocking.outcome import Regime, Status
 
 G = 9.80665

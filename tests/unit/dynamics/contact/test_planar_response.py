@@ -18,12 +18,11 @@ from rocking.dynamics.contact import (
     friction_demand,
     regime_at_start,
 )
-from rocking.dynamics.contact.base import PlaneBase
+from rocking.dynamics.contact.base import Mode, PlaneBase
 from rocking.dynamics.contact.engine import ContactEngine
-from rocking.dynamics.contact.export import SAMPLES
-from rocking.dynamics.contact.ground_contact import GroundContact
-from rocking.dynamics.contact.log import Log
-from rocking.dynamics.contact.mode import Mode
+from rocking.dynamics.contact.history import Log
+from rocking.dynamics.contact.impact_resolution import GroundContact
+from rocking.dynamics.contact.response import SAMPLES
 from rocking.dynamics.impact_laws import SpeedRestitution
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError

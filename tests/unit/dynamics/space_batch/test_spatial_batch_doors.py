@@ -11,10 +11,9 @@ from rocking import conventions
 from rocking.dynamics import Settings
 from rocking.dynamics.space import SpatialBody, SpatialStart
 from rocking.dynamics.space.batch import engine, run
-from rocking.dynamics.space.batch.ground import joined
 from rocking.dynamics.space.batch.laws import batch_law
 from rocking.dynamics.space.batch.many import batch_in_space
-from rocking.dynamics.space.ground import ground_of
+from rocking.dynamics.space.ground import ground_of, joined
 from rocking.dynamics.space.impact_laws import FixedSpatial
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning, UnknownModelError
 from rocking.outcome import Status

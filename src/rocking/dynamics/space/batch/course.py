@@ -6,13 +6,13 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.settings import Settings
+from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.batch import tables
 from rocking.dynamics.space.batch.laws import batch_law
 from rocking.dynamics.space.batch.rows import RowTable
 from rocking.dynamics.space.batch.run import limits_of, stock_of
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.ground import SpatialGround
-from rocking.dynamics.space.start import SpatialStart
 
 COURSE = np.dtype(
     [

@@ -7,16 +7,15 @@ import numpy as np
 
 from rocking import checks, plausibility
 from rocking.dynamics.settings import Settings
+from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.batch import engine as engines
-from rocking.dynamics.space.batch.ground import joined
 from rocking.dynamics.space.batch.laws import batch_law
 from rocking.dynamics.space.batch.provenance import provenance
 from rocking.dynamics.space.batch.result import SpatialBatch
 from rocking.dynamics.space.batch.rows import RowTable
 from rocking.dynamics.space.batch.run import run_compiled, run_reference
 from rocking.dynamics.space.body import SpatialBody
-from rocking.dynamics.space.ground import SpatialGround
-from rocking.dynamics.space.start import SpatialStart
+from rocking.dynamics.space.ground import SpatialGround, joined
 from rocking.errors import InvalidValueError, RockingError
 
 _LONG = 300.0

@@ -9,8 +9,8 @@ import numpy as np
 
 from rocking.dynamics.exportable import motion_provenance
 from rocking.dynamics.settings import Settings
+from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.body import SpatialBody
-from rocking.dynamics.space.start import SpatialStart
 
 _FEW = 100
 """Up to so many bodies are spelled out; of more of them the digest alone is kept."""

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.batch.laws import BatchLaw
 from rocking.dynamics.space.batch.tables import ROW
-from rocking.dynamics.space.start import SpatialStart
 
 
 @dataclass(frozen=True, eq=False)
