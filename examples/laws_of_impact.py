@@ -6,7 +6,7 @@ import rocking as rk
 
 block = rk.Block(width=0.5, height=2.0)
 shaking = rk.synthetic.kanai_tajimi_motion(rk.synthetic.KanaiTajimi(density=0.01), seed=7)
-shaking = rk.motions.bandpassed(rk.motions.scaled_to_pga(shaking, 5.0), 0.2, 8.0)
+shaking = rk.motions.bandpassed(rk.motions.scaled_to(shaking, "pga", 5.0), 0.2, 8.0)
 
 by_side = rk.simulate(block, shaking, restitution={"left": 0.80, "right": 0.95})
 print("by side:    ", by_side.summary)

@@ -11,8 +11,7 @@ from rocking.motions import (
     resampled,
     rotated,
     rotd_pga,
-    scaled_to_pgv,
-    scaled_to_sa,
+    scaled_to,
     spectral_acceleration,
     trimmed_to_significant,
 )  # fmt: skip
@@ -26,9 +25,9 @@ assert rotd_pga(east, north, 100.0) >= max(along.peak, across.peak) * (1.0 - 1e-
 clean = bandpassed(demeaned(along), 0.1, 10.0)
 shorter = padded(trimmed_to_significant(clean), before=0.5, after=2.0)
 finer = resampled(shorter, 0.005)
-target = scaled_to_pgv(finer, 0.5)
+target = scaled_to(finer, "pgv", 0.5)
 for line in target.provenance:
     print(" -", line)
 assert abs(intensity_measures(target)["pgv"].value - 0.5) < 1e-12
-stiff = scaled_to_sa(finer, 6.0, period=0.5)
+stiff = scaled_to(finer, "sa(0.5)", 6.0)
 assert abs(spectral_acceleration(stiff, 0.5) - 6.0) < 1e-9

@@ -9,7 +9,7 @@ import numpy as np
 
 import rocking as rk
 from rocking import conventions
-from rocking.motions import intensity_measures, response_spectrum, scaled_to_pga
+from rocking.motions import intensity_measures, response_spectrum, scaled_to
 from rocking.motions.formats import write_motion
 from rocking.plots import ground_motion_picture, write
 
@@ -29,7 +29,7 @@ print(f"  largest Sa {spectrum.pseudo_acceleration.max():.3g} m/s2")
 write(ground_motion_picture(motion), folder / "record.png")
 
 statue = rk.read_body(Path(__file__).parent / "bodies" / "stele.toml")
-response = rk.simulate(statue, scaled_to_pga(motion, 0.4 * conventions.g), restitution="ked")
+response = rk.simulate(statue, scaled_to(motion, "pga", 0.4 * conventions.g), restitution="ked")
 print(response.summary)
 response.to_csv(folder / "response.csv")
 assert len((folder / "response.csv").read_text(encoding="utf-8").splitlines()) > response.time.size

@@ -7,7 +7,7 @@ import numpy as np
 
 import rocking as rk
 from rocking import conventions
-from rocking.motions.processing import scaled_to_pga
+from rocking.motions import scaled_to
 from rocking.plots import write
 from rocking.plots.cloud import measures_picture
 from rocking.studies import SyntheticSet, cloud, compare_measures
@@ -15,7 +15,7 @@ from rocking.studies import SyntheticSet, cloud, compare_measures
 # far earthquakes, each brought to a PGA from 1.1 to 2.5 times what lifts the body: all of them rock
 made = list(SyntheticSet("point-source", count=150, seed=1))
 levels = np.random.default_rng(1).uniform(1.1, 2.5, len(made)) * 0.2 * conventions.g
-motions = [scaled_to_pga(motion, level) for motion, level in zip(made, levels, strict=True)]
+motions = [scaled_to(motion, "pga", level) for motion, level in zip(made, levels, strict=True)]
 metadata = {
     "magnitude": [float(motion.metadata["magnitude"]) for motion in motions],
     "ln distance": [math.log(float(motion.metadata["distance_km"])) for motion in motions],

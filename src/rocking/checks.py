@@ -37,10 +37,7 @@ def positive(name: str, value: Any, unit: str = "-", hint: str = "") -> float:
 
 
 def length(name: str, value: Any) -> float:
-    """Return `value` as a length that a body can have.
-
-    value: what the user gave [m]. Returns the length [m].
-    """
+    """Return `value` as a length that a body can have [m]."""
     result = positive(name, value, "m")
     if not SMALLEST <= result <= LARGEST:
         raise InvalidValueError(f"{name} must be in [{SMALLEST:g}, {LARGEST:g}] m, got {result:g}; wrong unit?")
@@ -48,10 +45,7 @@ def length(name: str, value: Any) -> float:
 
 
 def density(name: str, value: Any) -> float:
-    """Return `value` as a density that a body can have.
-
-    value: what the user gave [kg/m3]. Returns the density [kg/m3].
-    """
+    """Return `value` as a density that a body can have [kg/m3]."""
     result = positive(name, value, "kg/m3")
     within(name, result, 0.0, LARGEST, unit="kg/m3", open_low=True, hint="wrong unit?")
     return value if isinstance(value, Assumed) else result
@@ -81,20 +75,14 @@ def within(
 
 
 def positive_array(name: str, values: Any, unit: str = "-") -> FloatArray:
-    """Return `values` as an array of finite numbers above zero.
-
-    Returns float64, of the same shape; not a copy if it already was one.
-    """
+    """Return `values` as float64 of the same shape, finite and above zero; no copy if they already are."""
     result = real_array(name, values, unit)
     all_positive(name, result, unit)
     return result
 
 
 def real_array(name: str, values: Any, unit: str = "-") -> FloatArray:
-    """Return `values` as an array of float64, finite or not.
-
-    Returns float64, of the same shape; not a copy if it already was one.
-    """
+    """Return `values` as float64 of the same shape, finite or not; no copy if they already are."""
     try:
         given = np.asarray(values)
     except ValueError as error:
@@ -116,10 +104,7 @@ def all_positive(name: str, values: FloatArray, unit: str = "-", whole: FloatArr
 
 
 def all_within(name: str, values: FloatArray, low: float, high: float, whole: FloatArray) -> float:
-    """Refuse an array that holds anything but numbers between two positive ends.
-
-    Returns the least of them, which has been found on the way.
-    """
+    """Refuse an array that holds anything but numbers between two positive ends; return the least of them."""
     if not values.size:
         return high
     least = float(values.min())
@@ -140,8 +125,6 @@ def foot(name: str, value: Any) -> Foot:
 def length_unit(value: Any) -> float:
     """Return the length of a unit in metres.
 
-    Returns its length [m].
-
     >>> length_unit("cm")
     0.01
     """
@@ -149,9 +132,7 @@ def length_unit(value: Any) -> float:
 
 
 def one_of(name: str, value: Any, known: Iterable[str]) -> str:
-    """Return the one of some words that was meant, upper or lower case alike.
-
-    Returns one of `known`, as it is spelt there.
+    """Return the one of some words that was meant, upper or lower case alike, as it is spelt there.
 
     >>> one_of("engine", "Fast", ["auto", "fast"])
     'fast'
@@ -164,10 +145,7 @@ def one_of(name: str, value: Any, known: Iterable[str]) -> str:
 
 
 def spelling(word: Any, known: Iterable[str]) -> Any:
-    """Return a word as it is spelt among some others, if it differs from one of them in capitals alone.
-
-    Returns one of `known`, or what was given.
-    """
+    """Return a word as it is spelt among some others if capitals alone differ; otherwise as it is."""
     if not isinstance(word, str):
         return word
     words = list(known)
@@ -175,9 +153,7 @@ def spelling(word: Any, known: Iterable[str]) -> Any:
 
 
 def nearest(word: Any, known: Iterable[str]) -> str:
-    """Return the end of an error about an unknown word: what was probably meant, if that can be told.
-
-    Returns begins with a semicolon, or is empty.
+    """Return the end of an error about an unknown word: what was probably meant, after a semicolon; else nothing.
 
     >>> nearest("housener", ["housner", "ked"]), nearest("0,9", ["housner", "ked"])
     ("; did you mean 'housner'?", '; numbers have a decimal point: 0.9')
@@ -191,9 +167,7 @@ def nearest(word: Any, known: Iterable[str]) -> str:
 
 
 def decimal_comma(words: str) -> str:
-    """Return the end of an error about words in which a number has a decimal comma.
-
-    Returns begins with a semicolon; empty if there is no such number.
+    """Return the end of an error about words in which a number has a decimal comma; else nothing.
 
     >>> decimal_comma("sine:amplitude=0,5,period=1")
     '; numbers have a decimal point: 0.5'

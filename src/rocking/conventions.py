@@ -45,36 +45,13 @@ DEFAULT_FRICTION: Final = Assumed(0.5)
 
 
 def given_or_assumed(value: float) -> str:
-    """Return how a value is to be spoken of.
-
-    Parameters
-    ----------
-    value : float
-        The value.
-
-    Returns
-    -------
-    {"given", "assumed"}
-        Whether anybody gave it.
-    """
+    """Return "given", or "assumed" of a value that nobody gave."""
     return "assumed" if isinstance(value, Assumed) else "given"
 
 
 def percent(share: float) -> str:
     """Return a share in percent, with as many digits as a reader needs; what is not quite all is not told as 100 %.
 
-    Parameters
-    ----------
-    share : float
-        The share, or a relative change [-].
-
-    Returns
-    -------
-    str
-        With its sign of percent.
-
-    Examples
-    --------
     >>> percent(0.14), percent(0.0078), percent(0.00031), percent(1.0), percent(0.99987)
     ('14 %', '0.78 %', '0.031 %', '100 %', '99.987 %')
     """
@@ -88,18 +65,6 @@ def percent(share: float) -> str:
 def opposite(foot: Foot) -> Foot:
     """Return the other foot.
 
-    Parameters
-    ----------
-    foot : {"left", "right"}
-        One foot of the body.
-
-    Returns
-    -------
-    {"left", "right"}
-        The foot on the other side.
-
-    Examples
-    --------
     >>> opposite("left")
     'right'
     """

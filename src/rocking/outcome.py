@@ -79,9 +79,7 @@ class ContactMode(Enum):
 
 
 def overturned(outcome: Any) -> FloatArray:
-    """Return which histories overturned; no result is neither a fall nor a stand.
-
-    Returns 1 for those that did, 0 for those that did not, NaN for those without a result [-].
+    """Return 1 for histories that overturned, 0 for others; NaN without a result, which is neither a fall nor a stand.
 
     >>> overturned([0, 1, 2, 3]).tolist()
     [0.0, 0.0, 1.0, nan]
@@ -90,8 +88,5 @@ def overturned(outcome: Any) -> FloatArray:
 
 
 def of_results(outcome: Any, flags: Any) -> FloatArray:
-    """Return flags of histories as numbers; no result is neither true nor false.
-
-    Returns 1 and 0, NaN for those without a result [-].
-    """
+    """Return flags of histories as 1 and 0, NaN for those without a result."""
     return np.where(np.asarray(outcome) == Outcome.FAILED.code, np.nan, flags)

@@ -45,11 +45,7 @@ MOST_CUT = 0.05, 0.999
 
 
 def of_body(centre_height: float, slenderness: float, densities: Iterable[float]) -> tuple[str, ...]:
-    """Return the doubts about a body.
-
-    centre_height: height of the centre of mass above the ground [m]; slenderness: height of the centre over half the
-    width of the base [-]; densities: densities of its parts [kg/m3].
-    """
+    """Return the doubts about a body: height of its centre [m], slenderness, densities of its parts [kg/m3]."""
     low, high = CENTRE_HEIGHTS
     found = []
     if centre_height > high:
@@ -76,10 +72,7 @@ def of_body(centre_height: float, slenderness: float, densities: Iterable[float]
 
 
 def of_acceleration(peak: float) -> tuple[str, ...]:
-    """Return the doubt about a peak ground acceleration.
-
-    peak: its modulus [m/s2].
-    """
+    """Return the doubt about a peak ground acceleration [m/s2]."""
     if peak <= LARGEST_PGA:
         return ()
     return (
@@ -89,10 +82,7 @@ def of_acceleration(peak: float) -> tuple[str, ...]:
 
 
 def of_scaled(motions: Iterable[Any], scales: Any) -> tuple[str, ...]:
-    """Return the doubt about motions that are scaled; as they are they were doubted when they were made.
-
-    scales: factors on all of them, or for each its own [-]. Returns one sentence on the largest acceleration, or none.
-    """
+    """Return the doubt about the largest of scaled motions; as they are they were doubted when they were made."""
     factors = np.atleast_1d(np.asarray(scales, dtype=np.float64))
     most = np.where(factors == 1.0, 0.0, np.abs(factors)).max(axis=-1)
     if not most.any():
@@ -102,10 +92,7 @@ def of_scaled(motions: Iterable[Any], scales: Any) -> tuple[str, ...]:
 
 
 def of_gravity(gravity: float) -> tuple[str, ...]:
-    """Return the doubt about an acceleration of gravity.
-
-    gravity: the acceleration [m/s2].
-    """
+    """Return the doubt about an acceleration of gravity [m/s2]."""
     low, high = GRAVITIES
     if low <= gravity <= high:
         return ()
@@ -115,10 +102,7 @@ def of_gravity(gravity: float) -> tuple[str, ...]:
 
 
 def of_friction(coefficient: float) -> tuple[str, ...]:
-    """Return the doubt about a coefficient of friction.
-
-    coefficient: the coefficient [-].
-    """
+    """Return the doubt about a coefficient of friction."""
     low, high = FRICTIONS
     if not low < coefficient < high:
         return ()
@@ -129,10 +113,7 @@ def of_friction(coefficient: float) -> tuple[str, ...]:
 
 
 def of_period(period: float) -> tuple[str, ...]:
-    """Return the doubt about the period of a pulse.
-
-    period: the period [s].
-    """
+    """Return the doubt about the period of a pulse [s]."""
     low, high = PERIODS
     if low <= period <= high:
         return ()
@@ -140,20 +121,14 @@ def of_period(period: float) -> tuple[str, ...]:
 
 
 def of_time_step(step: float) -> tuple[str, ...]:
-    """Return the doubt about the step between samples.
-
-    step: the step [s].
-    """
+    """Return the doubt about the step between samples [s]."""
     if step <= LONGEST_STEP:
         return ()
     return (f"a step of {step:.4g} s between samples is more than {LONGEST_STEP:g} s; is it in ms, or in samples/s?",)
 
 
 def of_coefficient(value: float) -> tuple[str, ...]:
-    """Return the doubt about a coefficient of restitution given by hand.
-
-    value: ratio of velocities; zero means that the body stops, and is no doubt [-].
-    """
+    """Return the doubt about a coefficient of restitution given by hand; zero means that the body stops."""
     if value == 0.0 or value >= LEAST_COEFFICIENT:
         return ()
     return (
@@ -163,10 +138,7 @@ def of_coefficient(value: float) -> tuple[str, ...]:
 
 
 def of_truncation(cut: float, onto: str, most: float) -> tuple[str, ...]:
-    """Return the doubt about a distribution of the coefficient of which much would create energy.
-
-    cut: probability that is cut off [-]; most: the largest coefficient that creates no energy there [-].
-    """
+    """Return the doubt about a distribution of the coefficient of which so much would create energy and is cut off."""
     if not cut <= MOST_CUT[1]:
         raise InvalidValueError(
             f"the coefficient of restitution onto the {onto} foot must be in [0, {most:.6g}], and {percent(cut)} "

@@ -116,10 +116,8 @@ def each(function: Callable[..., float], *values: Any) -> FloatArray:
 def gauss_rule(diagonal: FloatArray, side: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return Gauss's rule of a measure of mass one, given by the recurrence of its orthogonal polynomials.
 
-    Golub and Welsch's eigenvalues tell where the nodes are to eight digits; from there Newton's method goes on alike
-    everywhere, whatever LAPACK left in the last digits.
-
-    Returns exact for polynomials of degree ``2 n - 1`` (shape (n,)).
+    Golub and Welsch's eigenvalues tell where the nodes are to eight digits; from there Newton's method goes on
+    alike everywhere, whatever LAPACK left in the last digits.
     """
     x = np.round(np.linalg.eigvalsh(np.diag(diagonal) + np.diag(side, 1) + np.diag(side, -1)), 8)
     ahead = [*side.tolist(), 1.0]  # the last polynomial may have any scale
@@ -139,9 +137,7 @@ def gauss_rule(diagonal: FloatArray, side: FloatArray) -> tuple[FloatArray, Floa
 
 
 def gauss_legendre(count: int) -> tuple[FloatArray, FloatArray]:
-    """Return Gauss's rule on [-1, 1].
-
-    Returns exact for polynomials of degree ``2 count - 1`` (shape (count,)).
+    """Return Gauss's rule on [-1, 1], exact for polynomials of degree ``2 count - 1``.
 
     >>> nodes, weights = gauss_legendre(3)
     >>> (nodes**2).round(12).tolist(), (9.0 * weights).round(12).tolist()

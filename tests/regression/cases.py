@@ -185,9 +185,9 @@ def _processed() -> Any:
     motion, there = noise(53, 3.0), rk.motions
     made = [
         there.demeaned(motion), there.detrended(motion, 2, "velocity"), there.tapered(motion, 0.1),
-        there.bandpassed(motion, 0.1, 20.0), there.resampled(motion, 0.01), there.scaled_to_pga(motion, 3.0),
-        there.scaled_to_pgv(motion, 0.3), there.scaled_to_sa(motion, 1.0, 2.0), there.trimmed_to_significant(motion),
-        there.rotated(motion, noise(54, 3.0), 0.4),
+        there.bandpassed(motion, 0.1, 20.0), there.resampled(motion, 0.01), there.scaled_to(motion, "pga", 3.0),
+        there.scaled_to(motion, "pgv", 0.3), there.scaled_to(motion, "sa(2.0)", 1.0),
+        there.trimmed_to_significant(motion), there.rotated(motion, noise(54, 3.0), 0.4),
     ]  # fmt: skip
     return [
         [one.acceleration, one.time_step, one.provenance] for each in made

@@ -194,10 +194,10 @@ def python_motion(motion, record):
         return getattr(rk.pulses, name.replace("-", "_"))(**values)
     if "record" in motion:
         return rk.read_motion(record)
-    from rocking.motions.processing import scaled_to_pga
+    from rocking.motions import scaled_to
     from rocking.motions.synthetic.families import family
 
-    return scaled_to_pga(family(motion["synthetic"]).motion(motion["seed"], motion["member"]), motion["pga"])
+    return scaled_to(family(motion["synthetic"]).motion(motion["seed"], motion["member"]), "pga", motion["pga"])
 
 
 def numbers_of(response):

@@ -74,9 +74,7 @@ def logarithm(x: FloatArray) -> FloatArray:
 
 
 def cosine_sine(x: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return cosine and sine, for arguments of up to some thousand turns.
-
-    x: angles [rad].
+    """Return cosine and sine, for arguments of up to some thousand turns [rad].
 
     >>> [round(float(part[0]), 15) for part in cosine_sine(np.array([math.pi / 6.0]))]
     [0.866025403784439, 0.5]
@@ -131,12 +129,10 @@ def resonances(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the sum of impulses into damped oscillators of fixed frequencies, and the sum of squared responses.
 
-    Each impulse goes into one oscillator, or is shared between `NEIGHBOURS` of them by Lagrange's weights.
-
-    noise, omega: impulses, and their factors: the frequency that each is meant for [rad/s]; place: its place between
-    the oscillators, counted from the first one that it feeds plus what is beyond the interval in the middle of its
-    neighbours, from 0 to 1; never falling [-]; nodes: decayed cosine and sine of one step of each oscillator [-].
-    Returns sum of the decayed sines, and twice that of their squares, at every sample.
+    Each impulse, `noise` times the frequency `omega` [rad/s] that it is meant for, goes into one oscillator, or is
+    shared between `NEIGHBOURS` of them by Lagrange's weights. `place` counts from the first one that it feeds, plus
+    what is beyond the interval in the middle of its neighbours, and never falls; `nodes` are decayed cosine and
+    sine of one step. At every sample the decayed sines are summed, and twice their squares.
 
     >>> one = np.ones(1)
     >>> total, squares = resonances(one, one, np.zeros(1), False, (0.8 * one, 0.6 * one), 9.0 * one)
@@ -201,10 +197,7 @@ LEAST_CYCLES = 1e-6
 
 
 def transition(omega: float, damping: float, step: float) -> FloatArray:
-    """Return what free vibration does to displacement and velocity over one step.
-
-    omega: undamped natural frequency [rad/s]; damping: damping ratio, from 0 to 1; 1 is critical [-]; step: duration of
-    the step [s]. Returns matrix that takes displacement and velocity to the end of the step.
+    """Return the matrix that takes displacement and velocity of free vibration over a step [rad/s, -, s].
 
     >>> transition(math.pi, 0.0, 1.0).round(12).tolist()
     [[-1.0, 0.0], [-0.0, -1.0]]
@@ -219,13 +212,10 @@ def transition(omega: float, damping: float, step: float) -> FloatArray:
 
 
 def highpassed(acceleration: FloatArray, time_step: float, frequency: float) -> FloatArray:
-    """Return the acceleration of a critically damped oscillator that a motion drives.
+    """Return the acceleration of a critically damped oscillator that a motion from rest drives [m/s2, s, Hz].
 
-    The response of ``z'' + 2 w z' + w^2 z = a`` is a high pass of the motion: its velocity and displacement come back
-    to zero (Rezaeian & Der Kiureghian 2008). It is exact at the samples for straight lines between them.
-
-    acceleration: motion, from rest [m/s2]; time_step: step between samples [s]; frequency: natural frequency, the
-    corner of the filter [Hz]. Returns ``z''`` at the samples [m/s2].
+    The response of ``z'' + 2 w z' + w^2 z = a`` is a high pass of the motion: its velocity and displacement come
+    back to zero (Rezaeian & Der Kiureghian 2008). It is exact at the samples for straight lines between them.
     """
     low, high = LEAST_CYCLES / time_step, 0.5 / time_step
     w = 2.0 * math.pi * checks.within("corner frequency", frequency, low, high, unit="Hz", open_high=True)

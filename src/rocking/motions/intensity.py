@@ -444,11 +444,6 @@ def measure(name: Any) -> IntensityMeasure:
     IntensityMeasure
         The measure.
 
-    Raises
-    ------
-    InvalidValueError
-        If there is none of that name.
-
     Examples
     --------
     >>> measure("sa(1.0)").words

@@ -57,11 +57,6 @@ def detrended(
     GroundMotion
         The corrected motion.
 
-    Raises
-    ------
-    InvalidValueError
-        If the order or the word is unknown, or there are too few samples for the order.
-
     Examples
     --------
     >>> detrended(GroundMotion([2.0, 2.0, 2.0], 0.1)).peak < 1e-12
@@ -126,11 +121,6 @@ def bandpassed(motion: GroundMotion, low: float, high: float, order: int = 4) ->
     -------
     GroundMotion
         The filtered motion, of the same length.
-
-    Raises
-    ------
-    InvalidValueError
-        If the corners are not in order or the order is outside its range.
     """
     motion = checked_motion(motion)
     from scipy.signal import butter, sosfiltfilt
@@ -257,11 +247,6 @@ def trimmed(motion: GroundMotion, start: float, end: float) -> GroundMotion:
     GroundMotion
         The part.
 
-    Raises
-    ------
-    InvalidValueError
-        If the times are outside the record or not in order.
-
     Examples
     --------
     >>> trimmed(GroundMotion([0.0, 1.0, 2.0, 3.0], 1.0), 1.0, 2.5).acceleration.tolist()
@@ -321,11 +306,6 @@ def padded(motion: GroundMotion, before: float, after: float | None = None) -> G
     -------
     GroundMotion
         The longer motion.
-
-    Raises
-    ------
-    InvalidValueError
-        If a time is negative or far too long.
 
     Examples
     --------
@@ -399,66 +379,3 @@ def scaled_to(motion: GroundMotion, measure: Any, target: float, body: RockingSc
     vertical = None if motion.vertical is None else motion.vertical * factor
     what = f"multiplied by {factor!r} so that {name} is {target:g} {one.unit}"
     return motion.changed(what, acceleration=motion.acceleration * factor, vertical=vertical)
-
-
-def scaled_to_pga(motion: GroundMotion, target: float) -> GroundMotion:
-    """Return the motion scaled to a peak ground acceleration.
-
-    Parameters
-    ----------
-    motion : GroundMotion
-        The motion; both components are multiplied by the factor of the horizontal one.
-    target : float
-        PGA that it shall have [m/s2].
-
-    Returns
-    -------
-    GroundMotion
-        The scaled motion.
-
-    Examples
-    --------
-    >>> scaled_to_pga(GroundMotion([0.0, 1.0, -2.0], 0.1), 3.0).peak
-    3.0
-    """
-    return scaled_to(motion, "pga", target)
-
-
-def scaled_to_pgv(motion: GroundMotion, target: float) -> GroundMotion:
-    """Return the motion scaled to a peak ground velocity.
-
-    Parameters
-    ----------
-    motion : GroundMotion
-        The motion; both components are multiplied by the factor of the horizontal one.
-    target : float
-        PGV that it shall have [m/s].
-
-    Returns
-    -------
-    GroundMotion
-        The scaled motion.
-    """
-    return scaled_to(motion, "pgv", target)
-
-
-def scaled_to_sa(motion: GroundMotion, target: float, period: float, damping: float = 0.05) -> GroundMotion:
-    """Return the motion scaled to a pseudo-spectral acceleration.
-
-    Parameters
-    ----------
-    motion : GroundMotion
-        The motion; both components are multiplied by the factor of the horizontal one.
-    target : float
-        PSA that it shall have at `period` [m/s2].
-    period : float
-        Undamped natural period of the oscillator [s].
-    damping : float
-        Damping ratio, from 0 to below 1 [-].
-
-    Returns
-    -------
-    GroundMotion
-        The scaled motion.
-    """
-    return scaled_to(motion, intensity.spectral_measure(period, damping), target)

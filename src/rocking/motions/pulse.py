@@ -229,10 +229,7 @@ class Sinusoids(Pulse):
         return max(abs(frequency) for _, frequency, _ in self.waves)
 
     def scaled(self, factor: float) -> "Sinusoids":
-        """Return the pulse with its acceleration multiplied by a factor.
-
-        factor: may be negative [-].
-        """
+        """Return the pulse with its acceleration multiplied by a factor."""
         factor = checks.number("factor", factor)
         waves = tuple((factor * amplitude, frequency, phase) for amplitude, frequency, phase in self.waves)
         return replace(self, waves=waves, largest=abs(factor) * self.largest)
@@ -296,10 +293,7 @@ class Ricker(Pulse):
         return 3.0 * math.pi / self.period
 
     def scaled(self, factor: float) -> "Ricker":
-        """Return the pulse with its acceleration multiplied by a factor.
-
-        factor: may be negative [-].
-        """
+        """Return the pulse with its acceleration multiplied by a factor."""
         return replace(self, amplitude=checks.number("factor", factor) * self.amplitude)
 
     def _inside(self, time: FloatArray, derivative: int) -> FloatArray:

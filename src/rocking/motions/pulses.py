@@ -65,10 +65,8 @@ def half_sine(amplitude: float, period: float) -> Sinusoids:
 
     Parameters
     ----------
-    amplitude : float
-        Peak acceleration a_p [m/s2].
-    period : float
-        Period T_p of the whole sine [s].
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p of the whole sine [s].
 
     Returns
     -------
@@ -83,10 +81,8 @@ def sine(amplitude: float, period: float) -> Sinusoids:
 
     Parameters
     ----------
-    amplitude : float
-        Peak acceleration a_p [m/s2].
-    period : float
-        Period T_p [s].
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p [s].
 
     Returns
     -------
@@ -107,10 +103,8 @@ def half_cosine(amplitude: float, period: float) -> Sinusoids:
 
     Parameters
     ----------
-    amplitude : float
-        Peak acceleration a_p [m/s2].
-    period : float
-        Period T_p of the whole cosine [s].
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p of the whole cosine [s].
 
     Returns
     -------
@@ -125,10 +119,8 @@ def cosine(amplitude: float, period: float) -> Sinusoids:
 
     Parameters
     ----------
-    amplitude : float
-        Peak acceleration a_p [m/s2].
-    period : float
-        Period T_p [s].
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p [s].
 
     Returns
     -------
@@ -143,10 +135,8 @@ def type_a(amplitude: float, period: float) -> Sinusoids:
 
     Parameters
     ----------
-    amplitude : float
-        Peak acceleration a_p [m/s2].
-    period : float
-        Period T_p [s].
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p [s].
 
     Returns
     -------
@@ -161,10 +151,8 @@ def type_b(amplitude: float, period: float) -> Sinusoids:
 
     Parameters
     ----------
-    amplitude : float
-        Peak acceleration a_p [m/s2].
-    period : float
-        Period T_p [s].
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p [s].
 
     Returns
     -------
@@ -182,10 +170,8 @@ def type_c(amplitude: float, period: float, n: int = 1) -> Sinusoids:
 
     Parameters
     ----------
-    amplitude : float
-        Peak acceleration a_p [m/s2].
-    period : float
-        Period T_p [s].
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p [s].
     n : int
         Number of cycles, from 1.
 
@@ -193,11 +179,6 @@ def type_c(amplitude: float, period: float, n: int = 1) -> Sinusoids:
     -------
     Sinusoids
         The pulse.
-
-    Raises
-    ------
-    InvalidValueError
-        If n is not a whole number from 1 to 1000.
     """
     given: object = n
     if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= 1000:
@@ -211,10 +192,8 @@ def ricker(amplitude: float, period: float) -> Ricker:
 
     Parameters
     ----------
-    amplitude : float
-        Peak acceleration a_p [m/s2].
-    period : float
-        Period T_p [s].
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p [s].
 
     Returns
     -------
@@ -229,10 +208,8 @@ def antisymmetric_ricker(amplitude: float, period: float) -> Ricker:
 
     Parameters
     ----------
-    amplitude : float
-        Peak acceleration a_p [m/s2].
-    period : float
-        Period T_p [s].
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p [s].
 
     Returns
     -------
@@ -286,10 +263,8 @@ def harmonic(amplitude: float, period: float, cycles: float, phase: float = 0.0)
 
     Parameters
     ----------
-    amplitude : float
-        Peak acceleration a_p [m/s2].
-    period : float
-        Period T_p [s].
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p [s].
     cycles : float
         Number of periods, at least one half [-].
     phase : float

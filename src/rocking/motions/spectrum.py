@@ -121,10 +121,7 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
 
 
 def phi(x: Any) -> tuple[Any, Any]:
-    """Return the first two phi functions of exponential integrators.
-
-    x: rate times step [-]. Returns ``(exp(x) - 1) / x`` and ``(exp(x) - 1 - x) / x^2``, to rounding also near zero; of
-    the shape of `x`.
+    """Return the phi functions ``(exp(x) - 1) / x`` and ``(exp(x) - 1 - x) / x^2``, to rounding also near zero.
 
     >>> [complex(value) for value in phi(0.0)]
     [(1+0j), (0.5+0j)]

@@ -47,11 +47,7 @@ NODES = (-3.0, -1.5, -0.7, 0.0, 0.7, 1.5, 3.0)
 def resample(
     counts: Counts, probability: FloatArray, kind: Resampling, repetitions: int, seed: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return data sets that might have been found instead.
-
-    probability: probability of failure at each level, from the fitted curve [-]. Returns failures and trials, one row a
-    data set, one column a level [-].
-    """
+    """Return failures and trials that might have been found instead, one row a data set, one column a level."""
     checks.within("repetitions", repetitions, 1, 10**7)
     random = np.random.default_rng(seed)
     if kind == "parametric":
@@ -212,10 +208,7 @@ def bootstrap(
 
 
 def curve_probability(curves: FittedCurves, scale: LogScale, levels: FloatArray) -> FloatArray:
-    """Return the probability of failure of the first curve.
-
-    levels: levels, > 0 [any unit]. Returns probabilities [-].
-    """
+    """Return the probability of failure of the first curve at levels."""
     return np.asarray(ndtr(curves.theta[0, 0] + curves.theta[0, 1] * scale.position(levels)))  # Eq. 190
 
 

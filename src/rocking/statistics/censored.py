@@ -65,9 +65,7 @@ class CensoredFit:
 
 
 def fit_moments(levels: FloatArray) -> CensoredFit:
-    """Return mean and standard deviation (n - 1) of the logarithms, of levels that are all known.
-
-    levels: at least two [unit of the measure].
+    """Return mean and standard deviation (n - 1) of the logarithms, of levels that are all known, at least two.
 
     >>> round(fit_moments(np.array([1.0, 4.0])).median, 12)
     2.0
@@ -83,9 +81,8 @@ def fit_moments(levels: FloatArray) -> CensoredFit:
 def fit_censored(levels: FloatArray, censored: BoolArray) -> CensoredFit:
     """Return the lognormal fit of maximum likelihood to levels of which some only have a lower bound.
 
-    levels: the levels, or the bounds [unit of the measure]. Returns the fit. With 1 / sigma and mu / sigma as
-    parameters the likelihood is concave (Olsen 1978, Econometrica 46:1211), so that a vanishing gradient proves the
-    maximum; it is verified.
+    With 1 / sigma and mu / sigma as parameters the likelihood is concave (Olsen 1978, Econometrica 46:1211), so
+    that a vanishing gradient proves the maximum; it is verified.
     """
     logs = np.log(checks.positive_array("levels", levels))
     known, bounds = logs[~censored], logs[censored]

@@ -255,10 +255,7 @@ def _none_above(name: str, part: FloatArray, whole: FloatArray, of: str = "trial
 
 
 def check_spread(levels: FloatArray) -> None:
-    """Refuse levels that differ by rounding only.
-
-    levels: distinct levels, ascending [any unit].
-    """
+    """Refuse ascending levels that differ by rounding only."""
     if levels.size > 1 and levels[-1] <= levels[0] * (1.0 + NARROWEST):
         raise InvalidValueError(
             f"levels must differ by more than {NARROWEST:g} of themselves in all, got {levels[0]:.17g} to"
@@ -277,11 +274,8 @@ def _cluster_numbers(clusters: Iterable[Hashable], size: int) -> IntArray:
 def pooled(levels: FloatArray, good: BoolArray, reached: Sequence[BoolArray], cluster: IntArray) -> list[Counts]:
     """Return the counts of several states of the same histories, as `count_outcomes` would of each.
 
-    Motions at the same levels with the same outcomes are one row and a number, so that ten million histories take no
-    more room than the outcomes they can have.
-
-    levels: level of each history, > 0; the first axis is the motion [unit of the measure]. Returns one a state; by
-    cluster where one has more than one history.
+    Motions, the first axis, at the same levels with the same outcomes are one row and a number, so that ten million
+    histories take no more room than the outcomes they can have; by cluster where one has more than one history.
     """
     size = np.bincount(cluster, good.reshape(cluster.size, -1).sum(axis=1))
     if good.any() and size.max() <= 1.0:

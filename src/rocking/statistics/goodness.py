@@ -133,10 +133,7 @@ def goodness_of(
 
 
 def group_of(trials: FloatArray, groups: int) -> IntArray:
-    """Return the group of each level, so that groups of neighbours hold about equally many trials.
-
-    trials: trials at each level [-]. Returns numbers that never fall from a level to the next; each level has its own
-    where there are no more than groups.
+    """Return the group of each level: groups of neighbours hold about equally many trials.
 
     >>> group_of(np.ones(6), 3)
     array([0, 0, 1, 1, 2, 2])
@@ -180,17 +177,12 @@ class Repeated:
     words: str = ""  # how the study was repeated, or why there is none
 
     def band_at(self, size: int) -> FloatArray:
-        """Return the band, filled with NaN where there is none.
-
-        Returns lower and upper ends [-].
-        """
+        """Return lower and upper ends of the band, filled with NaN where there is none."""
         return np.full((2, size), math.nan) if self.band is None else np.stack(self.band)
 
 
 def ends_of(interval: Ends | None) -> tuple[float, float]:
-    """Return an interval as numbers.
-
-    Returns NaN where an end is open, or there is no interval.
+    """Return an interval as numbers: NaN where an end is open, or there is no interval.
 
     >>> ends_of((0.5, None)), ends_of(None)
     ((0.5, nan), (nan, nan))
@@ -200,11 +192,7 @@ def ends_of(interval: Ends | None) -> tuple[float, float]:
 
 
 def agreement_of(fit: "LognormalFit", seed: int = 0) -> Agreement:
-    """Return how well a curve agrees with its outcomes, where the p-values cost little.
-
-    Returns with 1000 data sets, fewer where there are many levels; without numbers where there are too many, or the
-    data sets cannot be refitted.
-    """
+    """Return how well a curve agrees with its outcomes, where the p-values cost little."""
     levels = fit.counts.levels.size
     repetitions = min(REPETITIONS, MOST_DRAWN // levels)
     if repetitions < FEWEST:
@@ -220,11 +208,7 @@ def agreement_of(fit: "LognormalFit", seed: int = 0) -> Agreement:
 
 
 def repeated_of(fit: "LognormalFit", levels: FloatArray, repetitions: int, seed: int = 0) -> Repeated:
-    """Return intervals of a curve from the bootstrap, as `LognormalFit.interval` and `LognormalFit.band` have them.
-
-    levels: levels of the band [unit of the measure]. Returns without numbers where the clusters are too few to be drawn
-    again, or the levels are too many.
-    """
+    """Return intervals of a curve from the bootstrap, or why there are none."""
     held = repetitions * max(fit.counts.levels.size, levels.size)
     if held > MOST_REPEATED:
         size = fit.counts.levels.size

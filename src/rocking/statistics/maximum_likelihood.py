@@ -37,10 +37,7 @@ class Objective(Protocol):
     """What can be maximised: many functions of the same few coefficients, one a row."""
 
     def derivatives(self, theta: FloatArray) -> Derivatives:
-        """Return the values and derivatives.
-
-        theta: rows of coefficients [-].
-        """
+        """Return the values and derivatives at rows of coefficients."""
 
     def rows(self, index: Any) -> Self:
         """Return some of the functions."""
@@ -58,12 +55,10 @@ class Maximum:
 
 
 def maximise(objective: Objective, start: FloatArray, *, steps: int = STEPS) -> Maximum:
-    """Return the maxima of many functions, each of which must have one.
+    """Return the maxima of many functions, each of which must have one, from rows of coefficients.
 
-    Of a function that grows without end the steps get lost far out, where gradient and curvature vanish alike: that the
-    maximum exists must be known beforehand.
-
-    start: rows of coefficients to start from [-].
+    Of a function that grows without end the steps get lost far out, where gradient and curvature vanish alike: that
+    the maximum exists must be known beforehand.
     """
     theta = np.array(start, dtype=np.float64)
     count, order = theta.shape
@@ -91,10 +86,7 @@ def maximise(objective: Objective, start: FloatArray, *, steps: int = STEPS) -> 
 
 
 def maximise_from(objective: Objective, starts: FloatArray) -> Maximum:
-    """Return the largest of the maxima reached from several starts, for functions that may have more than one.
-
-    starts: coefficients to start from: first axis the starts, second the functions [-].
-    """
+    """Return the largest of the maxima reached from several starts (first axis), of functions that may have several."""
     several, count, order = starts.shape
     rows = objective.rows(np.tile(np.arange(count), several))
     found = maximise(rows, starts.reshape(-1, order), steps=STEPS if several == 1 else SEARCH_STEPS)
@@ -155,17 +147,11 @@ class LogScale:
         return cls(center, float(np.sqrt(np.average((logarithm - center) ** 2, weights=counts.trials))))
 
     def position(self, levels: FloatArray) -> FloatArray:
-        """Return u.
-
-        levels: levels, > 0 [any unit]. Returns their positions [-].
-        """
+        """Return u of levels."""
         return (np.log(levels) - self.center) / self.spread  # Eq. 191
 
     def log_level(self, position: FloatArray) -> FloatArray:
-        """Return the logarithms of levels.
-
-        position: u [-]. Returns ln level [-].
-        """
+        """Return the logarithms of levels at u."""
         return self.center + self.spread * position
 
 
@@ -184,10 +170,7 @@ class FittedCurves:
 def find_curves(
     levels: FloatArray, scale: LogScale, failures: FloatArray, trials: FloatArray, *, penalised: bool = False
 ) -> FittedCurves:
-    """Return the likeliest curves of many data sets; of those with a step, the penalised one.
-
-    levels: distinct levels, ascending [any unit]; failures, trials: one row a data set, one column a level [-].
-    """
+    """Return the likeliest curves of many data sets, one row each; of those with a step, the penalised one."""
     kinds = classify(levels, failures, trials)
     step = np.isin(kinds, [kind.number for kind in Separation if kind.step])
     overlap = kinds == Separation.OVERLAP.number
@@ -214,27 +197,17 @@ def _pieces(rows: IntArray, width: int, held: int = 400_000) -> list[IntArray]:
 
 
 def log_fractile(theta: FloatArray, scale: LogScale, variate: float | FloatArray) -> FloatArray:
-    """Return the logarithm of the level where curves reach a probability.
-
-    theta: rows of a and b [-]; variate: standard normal variate of the probability [-]. Returns ln level [-].
-    """
+    """Return the logarithm of the level where curves reach the probability of a standard normal variate."""
     return scale.log_level((variate - theta[:, 0]) / theta[:, 1])  # Eq. 192
 
 
 def log_dispersion(theta: FloatArray, scale: LogScale) -> FloatArray:
-    """Return the logarithm of the dispersion of curves.
-
-    theta: rows of a and b, b > 0 [-]. Returns ln beta [-].
-    """
+    """Return the logarithm of the dispersion of curves."""
     return np.log(scale.spread / theta[:, 1])  # Eq. 193
 
 
 def standard_errors(theta: FloatArray, curvature: FloatArray, scale: LogScale, variate: float | None) -> FloatArray:
-    """Return the standard errors of a logarithmic fractile or of the logarithmic dispersion.
-
-    theta: rows of a and b [-]; curvature: their observed information [-]; variate: standard normal variate of the
-    fractile; the dispersion without [-]. Returns standard errors [-].
-    """
+    """Return the standard errors of a variate's logarithmic fractile; without one of the logarithmic dispersion."""
     a, b = theta[:, 0], theta[:, 1]
     if variate is None:
         slope = np.stack([np.zeros_like(b), -1.0 / b], axis=1)
@@ -244,11 +217,7 @@ def standard_errors(theta: FloatArray, curvature: FloatArray, scale: LogScale, v
 
 
 def quadratic_error(slope: FloatArray, curvature: FloatArray) -> FloatArray:
-    """Return the standard errors of functions of the coefficients (delta method).
-
-    slope: rows of derivatives with respect to a and b [-]; curvature: observed information, one matrix a row [-].
-    Returns standard errors [-].
-    """
+    """Return the standard errors of functions of the coefficients, from their derivatives (delta method)."""
     h = curvature
     determinant = h[:, 0, 0] * h[:, 1, 1] - h[:, 0, 1] ** 2
     first, second = slope[:, 0], slope[:, 1]
@@ -257,12 +226,10 @@ def quadratic_error(slope: FloatArray, curvature: FloatArray) -> FloatArray:
 
 
 def with_cluster_errors(counts: Counts, scale: LogScale, curves: FittedCurves, drawn: FloatArray) -> FittedCurves:
-    """Return curves whose curvature is the inverse of the covariance between clusters.
+    """Return curves whose curvature is the inverse of the covariance between clusters, drawn so often in each data set.
 
-    The covariance is H^-1 M H^-1, with the information H and the sum M of the squared scores of whole clusters (Liang &
-    Zeger 1986, Biometrika 73:13): that of the likelihood, H^-1, holds for independent outcomes only.
-
-    drawn: how often each distinct cluster is in each data set, one row a data set [-].
+    The covariance is H^-1 M H^-1, with the information H and the sum M of the squared scores of whole clusters
+    (Liang & Zeger 1986, Biometrika 73:13): that of the likelihood, H^-1, holds for independent outcomes only.
     """
     curvature = np.full_like(curves.curvature, np.nan)
     good = np.flatnonzero(curves.found)

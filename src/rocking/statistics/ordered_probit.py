@@ -39,10 +39,7 @@ class OrderedProbit:
         return self
 
     def derivatives(self, theta: FloatArray) -> Derivatives:
-        """Return the value and derivatives.
-
-        theta: one row: the thresholds, and the slope [-].
-        """
+        """Return the value and derivatives at one row: the thresholds, and the slope."""
         thresholds, slope = theta[0, :-1], theta[0, -1]
         if np.any(np.diff(thresholds) >= 0.0):
             order = theta.shape[1]
@@ -77,12 +74,7 @@ class OrderedProbit:
 
 
 def nested_curves(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> list[Curve]:
-    """Return the curves of nested states with one dispersion for all.
-
-    levels: distinct levels, ascending [any unit]; reached: how many trials reached each state or a worse one at each
-    level, from the least state to the worst [-]; trials: all trials at each level [-]. Returns median [unit of the
-    levels] and dispersion [-] of each state.
-    """
+    """Return the curves of nested states with one dispersion, from how many trials reached each or a worse one."""
     fits = [fit_lognormal(levels, counts, trials) for counts in reached]
     same = any(np.array_equal(one, other) for one, other in pairwise(reached))
     if same or any(fit.method != "maximum-likelihood" for fit in fits):
@@ -255,9 +247,7 @@ def _curve(fit: LognormalFit) -> Curve | None:
 
 
 def difference_extremes(first: Curve, second: Curve) -> FloatArray:
-    """Return where the difference of two lognormal curves is extreme: there their densities are equal.
-
-    first, second: median [any unit] and dispersion [-] of each. Returns ln level, of none, one or two places [-].
+    """Return ln level where two lognormal curves differ most, at none, one or two places of equal densities.
 
     >>> difference_extremes((1.0, 0.5), (1.0, 0.25)).round(4).tolist()
     [-0.3399, 0.3399]

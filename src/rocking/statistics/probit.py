@@ -44,10 +44,7 @@ class Tails(NamedTuple):
 
 
 def tails(eta: FloatArray) -> Tails:
-    """Return logarithms, slopes and curvatures of both tails of the normal distribution.
-
-    eta: standard normal variate [-]. Returns relative errors near 1e-15, and near 1e-11 in the curvature of the far
-    tail.
+    """Return logarithms, slopes and curvatures of both normal tails, to 1e-15 (far curvatures to 1e-11).
 
     >>> float(tails(np.array(-1e4)).log_failure)
     -50000010.12927891
@@ -97,17 +94,11 @@ class Probit:
         return type(self)(*(field if field.shape[0] == 1 else field[index] for field in fields))
 
     def eta(self, theta: FloatArray) -> FloatArray:
-        """Return a + b u.
-
-        theta: rows of a and b [-]. Returns rows of standard normal variates [-].
-        """
+        """Return a + b u."""
         return theta[:, :1] + theta[:, 1:2] * self.position  # Eq. 190
 
     def derivatives(self, theta: FloatArray) -> Derivatives:
-        """Return the log likelihood with its gradient and minus its Hessian, the observed information.
-
-        theta: rows of a and b [-].
-        """
+        """Return the log likelihood with its gradient and minus its Hessian, the observed information."""
         if self.position.shape[1] > WIDEST:
             parts = [part.derivatives(theta) for part in self._columns()]
             return Derivatives(*(np.asarray(np.sum(each, axis=0)) for each in zip(*parts, strict=True)))
@@ -127,10 +118,7 @@ class Probit:
             yield type(self)(self.position[:, part], self.failures[:, part], self.survivals[:, part])
 
     def information(self, theta: FloatArray) -> FloatArray:
-        """Return the expected (Fisher) information.
-
-        theta: rows of a and b [-]. Returns one matrix a row [-].
-        """
+        """Return the expected (Fisher) information, one matrix a row."""
         at = tails(self.eta(theta))
         weight = (self.failures + self.survivals) * at.failure_rate * at.survival_rate  # Eq. 197
         return _matrix(self._moments(weight, 3))
@@ -156,19 +144,13 @@ def _matrix(moments: FloatArray) -> FloatArray:
 
 
 def places(position: FloatArray) -> FloatArray:
-    """Return positions, spread evenly over the levels and the gaps between, where a curve may reach one half.
-
-    position: u, ascending [-]. Returns positions [-].
-    """
+    """Return positions, spread evenly over the levels and the gaps between, where a curve may reach one half."""
     known = np.sort(np.concatenate([position, 0.5 * (position[1:] + position[:-1])]))
     return known[np.linspace(0, known.size - 1, PLACES).round().astype(np.int64)]
 
 
 def starts(position: FloatArray) -> FloatArray:
-    """Return coefficients to start from, since the penalised likelihood may have more than one maximum.
-
-    position: u, ascending [-]. Returns rows of a and b [-].
-    """
+    """Return coefficients to start from, since the penalised likelihood may have more than one maximum."""
     place, slope = (part.ravel() for part in np.meshgrid(places(position), SLOPES))
     return np.stack([-slope * place, slope], axis=1)
 
@@ -183,10 +165,7 @@ class PenalisedProbit(Probit):
     concave: ClassVar[bool] = False
 
     def derivatives(self, theta: FloatArray) -> Derivatives:
-        """Return the penalised log likelihood with its gradient and minus its Hessian.
-
-        theta: rows of a and b [-]. Returns one row a data set; minus infinity where the information vanishes.
-        """
+        """Return the same, penalised; minus infinity where the information vanishes."""
         eta = self.eta(theta)
         at = tails(eta)
         plain, penalty = self._of(at), self._penalty(eta, at)

@@ -42,20 +42,14 @@ class OnLine:
         return type(self)(self.model.rows(index), Line(*(part[index] for part in self.line)))
 
     def derivatives(self, theta: FloatArray) -> Derivatives:
-        """Return the values and derivatives with respect to t.
-
-        theta: one t a row [-].
-        """
+        """Return the values and derivatives with respect to t, one a row."""
         full, direction = self.model.derivatives(self.line.origin + theta * self.line.direction), self.line.direction
         bend = np.einsum("si,sij,sj->s", direction, full.curvature, direction)
         return Derivatives(full.value, np.sum(full.gradient * direction, axis=1)[:, None], bend[:, None, None])
 
 
 def flat_line(model: Probit) -> tuple[FloatArray, FloatArray]:
-    """Return the likeliest variates that do not depend on the level, and their log likelihoods.
-
-    Returns variates and log likelihoods, one a row of the likelihood [-].
-    """
+    """Return the likeliest variates that do not depend on the level, and their log likelihoods."""
     one = np.ones((model.failures.shape[0], 2))
     line = Line(0.0 * one, one * [1.0, 0.0], 0.0 * one, 0.0 * one)
     best = maximise(OnLine(model, line), np.zeros((one.shape[0], 1)))
@@ -71,24 +65,14 @@ class Constraint(ABC):
 
     @abstractmethod
     def line(self, value: FloatArray) -> Line:
-        """Return the curves that have the given values of the quantity.
-
-        value: the quantity, one a row [-].
-        """
+        """Return the curves that have the given values of the quantity."""
 
     @abstractmethod
     def limit(self, model: Probit, side: FloatArray) -> FloatArray:
-        """Return what the profile tends to as the quantity goes to the end of its range.
-
-        Returns log likelihoods; minus infinity where it falls without end [-].
-        """
+        """Return the log likelihood that the profile tends to at the end of its range; minus infinity for none."""
 
     def starts(self, model: Probit, value: FloatArray, free: FloatArray) -> FloatArray:
-        """Return free coefficients to start from.
-
-        value: the quantity, one a row [-]; free: A good guess, one a row; it is enough where the likelihood is concave
-        [-]. Returns first axis the starts, second the rows, third of length one [-].
-        """
+        """Return free coefficients to start from (first axis); a good guess is enough where all is concave."""
         others = np.zeros((0, free.size)) if model.concave else self._others(model, value)
         return np.concatenate([free[None], others])[:, :, None]
 
@@ -107,18 +91,12 @@ class FractileConstraint(Constraint):
     variate: FloatArray  # standard normal variate of the probability, one a row [-]
 
     def line(self, value: FloatArray) -> Line:
-        """Return the curves through the probability at given positions.
-
-        value: positions u [-].
-        """
+        """Return the curves through the probability at given positions."""
         none, one = np.zeros_like(value), np.ones_like(value)
         return Line(_pair(self.variate, none), _pair(-value, one), _pair(none, none), _pair(-one, none))
 
     def limit(self, model: Probit, side: FloatArray) -> FloatArray:
-        """Return the likelihood of the likeliest flat line that stays below (above) the probability.
-
-        Returns log likelihoods [-].
-        """
+        """Return the likelihood of the likeliest flat line that stays below (above) the probability."""
         flat = flat_line(model)[0]
         height = np.where(side > 0.0, np.minimum(flat, self.variate), np.maximum(flat, self.variate))
         return model.derivatives(_pair(height, np.zeros_like(side))).value
@@ -131,18 +109,12 @@ class ProbabilityConstraint(Constraint):
     position: FloatArray  # u, one a row [-]
 
     def line(self, value: FloatArray) -> Line:
-        """Return the curves with given variates at the positions.
-
-        value: standard normal variates [-].
-        """
+        """Return the curves with given variates at the positions."""
         none, one = np.zeros_like(value), np.ones_like(value)
         return Line(_pair(value, none), _pair(-self.position, one), _pair(one, none), _pair(none, none))
 
     def limit(self, model: Probit, side: FloatArray) -> FloatArray:
-        """Return minus infinity: no probability that tends to 0 or 1 survives overlapping data.
-
-        Returns log likelihoods [-].
-        """
+        """Return minus infinity: no probability that tends to 0 or 1 survives overlapping data."""
         return np.full_like(side, -np.inf)
 
 
@@ -153,10 +125,7 @@ class SlopeConstraint(Constraint):
     rising = False
 
     def line(self, value: FloatArray) -> Line:
-        """Return the curves with given slopes.
-
-        value: logarithms of b [-].
-        """
+        """Return the curves with given logarithms of slopes."""
         none, one, slope = np.zeros_like(value), np.ones_like(value), np.exp(value)
         return Line(_pair(none, slope), _pair(one, none), _pair(none, slope), _pair(none, none))
 
@@ -164,10 +133,7 @@ class SlopeConstraint(Constraint):
         return -np.exp(value) * places(model.position[0])[:, None]
 
     def limit(self, model: Probit, side: FloatArray) -> FloatArray:
-        """Return the likelihood of the likeliest flat line; a step is refused without end.
-
-        Returns log likelihoods [-].
-        """
+        """Return the likelihood of the likeliest flat line; a step is refused without end."""
         return np.where(side > 0.0, -np.inf, flat_line(model)[1])
 
 
@@ -190,11 +156,7 @@ class Profile:
         return Profile(self.model.rows(index), value, theta, self.quantile)
 
     def ends(self, constraint: Constraint, start: FloatArray, error: FloatArray, side: FloatArray) -> FloatArray:
-        """Return where the profile has fallen by the quantile, one end a row.
-
-        start: its value at the maximum [-]; error: its standard error, for the first step [-]. Returns the ends;
-        infinite where the profile never falls that far.
-        """
+        """Return where the profile has fallen by the quantile, one end a row; infinite where it never does."""
         result = side * np.inf
         closed = np.flatnonzero(self._root(constraint.limit(self.model, side)) > self.quantile)
         if closed.size:

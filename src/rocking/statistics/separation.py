@@ -45,11 +45,7 @@ class Separation(Enum):
 
 
 def classify(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> IntArray:
-    """Return how failures and survivals lie along the levels, of many data sets at once.
-
-    levels: distinct levels, ascending [any unit]; failures, trials: one row a data set, one column a level; a level may
-    have no trials [-].
-    """
+    """Return how failures and survivals lie along ascending levels, of many data sets, one row each, at once."""
     failed, survived = failures > 0.0, trials > failures
     last = levels.size - 1
     first_failed, last_failed = np.argmax(failed, axis=1), last - np.argmax(failed[:, ::-1], axis=1)
@@ -81,10 +77,10 @@ def separation_of(counts: Counts) -> Separation:
 
 
 def median_interval(counts: Counts, separation: Separation) -> tuple[float | None, float | None]:
-    """Return the largest level survived and the smallest failed, where no single median is likeliest.
+    """Return the largest level survived and the smallest failed, where no single median is likeliest; None where open.
 
-    Returns the two levels; None where the data bound nothing on that side. After quasi-complete separation both are the
-    level where the outcomes are mixed, which is where the likelihood's limit lies and not a certainty.
+    After quasi-complete separation both are the level where the outcomes are mixed, which is where the likelihood's
+    limit lies and not a certainty.
     """
     survived, failed = counts.levels[counts.survivals > 0.0], counts.levels[counts.failures > 0.0]
     if separation is Separation.NONE_FAILED:
@@ -103,10 +99,7 @@ def _trend(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> tupl
 
 
 def bound_without_failure(trials: float, level: float = LEVEL) -> float:
-    """Return the largest probability of failure that trials without any failure leave possible.
-
-    trials: number of trials, none of which failed [-]; level: confidence level [-]. Returns One-sided Clopper-Pearson
-    bound, near 3 / trials for 95 % [-].
+    """Return the one-sided Clopper-Pearson bound on a probability of which no trial failed, near 3 / trials for 95 %.
 
     >>> round(bound_without_failure(40), 4)
     0.0722
@@ -115,11 +108,10 @@ def bound_without_failure(trials: float, level: float = LEVEL) -> float:
 
 
 def verdict_of(counts: Counts, separation: Separation, curve: tuple[float, float] | None, rise: float | None) -> str:
-    """Return what the outcomes allow to be said.
+    """Return what the outcomes allow to be said, in a sentence or two, and what the likelihood does not know.
 
-    curve: median [unit of the levels] and dispersion [-], where a curve was fitted; rise: likelihood ratio of the curve
-    against a line that does not depend on the level, as a chi-square of one degree of freedom; None for a penalised fit
-    [-]. Returns one or two sentences, followed by what the likelihood does not know.
+    The curve is median and dispersion; `rise` its likelihood ratio against a line that does not depend on the
+    level, a chi-square of one degree of freedom; None for a penalised fit.
     """
     parts = [_finding(counts, separation, curve, penalised=rise is None)]
     if rise is not None and rise < 3.841:

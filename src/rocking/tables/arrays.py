@@ -125,10 +125,7 @@ def _variable(file: Any, name: str, dims: tuple[str, ...], column: Column) -> No
 
 @contextmanager
 def _netcdf_file(path: Path, mode: str, room: int) -> Iterator[Any]:
-    """Open a netCDF file, if the disk has room for it, that is closed whatever happens.
-
-    room: what will be written into it, at least [bytes].
-    """
+    """Open a netCDF file, if the disk has room for so many bytes, that is closed whatever happens."""
     h5netcdf: Any = extra("h5netcdf", "netCDF")
     # asked before: HDF5 that cannot write tries again when the process ends, and may crash it
     if shutil.disk_usage(path.parent).free < room + _MARGIN:

@@ -299,9 +299,7 @@ class Grid:
 
 
 def blocks(first: int, last: int, shape: tuple[int, ...]) -> Iterator[Block]:
-    """Return the rectangular blocks of an array that some of its entries, numbered row by row, fill.
-
-    Returns where a block is in the array, and where its entries are among those from first to last.
+    """Return the rectangular blocks that entries first to last, numbered row by row, fill: where, and which entries.
 
     >>> for place, part in blocks(1, 8, (3, 3)):
     ...     print([(p.start, p.stop) for p in place], part.start, part.stop)

@@ -83,8 +83,8 @@ def test_parameters_are_drawn_independently(samples, name):
 def test_quantiles_and_shares_are_inverse(distribution):
     """The share below the quantile of a share is that share; the ends are the quantiles of 0 and 1."""
     shares = np.linspace(0.0, 1.0, 21)
-    values = np.array([distribution.value_at(float(share)) for share in shares])
-    assert np.asarray(distribution.share_below(values)) == pytest.approx(shares, abs=1e-12)
+    values = np.array([distribution.quantile(float(share)) for share in shares])
+    assert np.asarray(distribution.cdf(values)) == pytest.approx(shares, abs=1e-12)
     assert (values[0], values[-1]) == (distribution.low, distribution.high)
     assert independent(distribution)(values) == pytest.approx(shares, abs=1e-12)
 
@@ -153,7 +153,7 @@ def test_every_family_says_where_it_comes_from():
     for one in families().values():
         assert "illustrative" in one.origin
         assert "20" in one.generator or "19" in one.generator
-        json.dumps([each.words() for each in one.distributions.values()])
+        json.dumps([str(each) for each in one.distributions.values()])
 
 
 @pytest.mark.parametrize(
@@ -172,8 +172,8 @@ def test_every_family_says_where_it_comes_from():
         (lambda: LogUniform(0.0, 1.0), "low must be > 0"),
         (lambda: Lognormal(1.0, 2.0, median=3.0, deviation=0.1), "median must be in"),
         (lambda: Lognormal(1.0, 2.0, median=1.5, deviation=0.0), "deviation must be > 0"),
-        (lambda: Uniform(0.0, 1.0).value_at(1.5), "share must be in"),
-        (lambda: Uniform(0.0, 1.0).value_at(-0.5), "share must be in"),
+        (lambda: Uniform(0.0, 1.0).quantile(1.5), "share must be in"),
+        (lambda: Uniform(0.0, 1.0).quantile(-0.5), "share must be in"),
     ],
 )
 def test_refusals(call, words):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rocking.errors import InvalidValueError
-from rocking.motions import GroundMotion, scaled_to_pga
+from rocking.motions import GroundMotion, scaled_to
 
 
 def motion_of(samples: Any, step: Any = 0.5, **more: Any) -> GroundMotion:
@@ -146,7 +146,7 @@ def test_scaled() -> None:
             motion.scaled(bad)
     with pytest.raises(InvalidValueError, match="wrong unit"):
         motion.scaled(1e6)
-    assert scaled_to_pga(motion, 6.0).acceleration.tolist() == [0.0, 2.0, -6.0]
+    assert scaled_to(motion, "pga", 6.0).acceleration.tolist() == [0.0, 2.0, -6.0]
 
 
 @pytest.mark.parametrize("vertical", [None, [0.0, 1.0, 5.0]])

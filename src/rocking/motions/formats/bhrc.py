@@ -34,10 +34,7 @@ class Bhrc(RecordFormat):
     )
 
     def recognises(self, source: Source) -> bool:
-        """Return whether the text of a BHRC component stands at the top.
-
-        Returns true if this format should read it.
-        """
+        """Return whether the text of a BHRC component stands at the top."""
         if not source.is_text:
             return False
         top = source.lines[: _TEXTS + 3]
@@ -45,10 +42,7 @@ class Bhrc(RecordFormat):
         return sum(any(re.match(mark, line) for line in top) for mark in marks) >= 4
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the components.
-
-        time_step: if given, it must be the file's [s]. Returns up to three components: L, V and T.
-        """
+        """Return up to three components: L, V and T."""
         components: list[Component] = []
         line = 0
         last = len(source.lines)
@@ -87,13 +81,13 @@ def _component(source: Source, top: int, units: str | None, asked: float | None)
         raise source.error(
             None, f"the header of a component has {_TEXTS + _WHOLES + _REALS} lines, the file ends in it"
         )
-    volume = _match(source, top, _VOLUME)
+    volume = numbers.matched(source, top, _VOLUME)
     if volume[1] != "1":
         raise source.error(top, f"Volume {volume[1]}: only Volume 1 is read, the layout of others was not verified")
-    _match(source, top + 11, "UNITS ARE SECONDS AND G/10")
+    numbers.matched(source, top + 11, "UNITS ARE SECONDS AND G/10")
     unit = headers.acceleration_unit(source, "g/10", units)
-    name = _match(source, top + 6, r"COMP ([LVT])\d?")[1]
-    points = _match(source, top + 10, _POINTS)
+    name = numbers.matched(source, top + 6, r"COMP ([LVT])\d?")[1]
+    points = numbers.matched(source, top + 10, _POINTS)
     count, duration = int(points[1]), float(points[2])
     if count < 2:
         raise source.error(top + 10, f"at least 2 points expected, found {count}")
@@ -110,13 +104,6 @@ def _component(source: Source, top: int, units: str | None, asked: float | None)
         raise source.error(min(line, len(source.lines) - 1), f"{_END} expected after {count} samples")
     azimuth = re.search(rf"Azimuth.*\b{name} +(\d+)", source.lines[top + 7])
     return Component(name, values, unit, step, None, {"azimuth": azimuth[1]} if azimuth else {}), line + 1
-
-
-def _match(source: Source, line: int, form: str) -> re.Match[str]:
-    found = re.fullmatch(form, source.lines[line].strip())
-    if found is None:
-        raise source.error(line, f"cannot be understood: {source.lines[line].strip()[:60]!r}")
-    return found
 
 
 def _written(record: Record, part: Component, values: FloatArray) -> list[str]:

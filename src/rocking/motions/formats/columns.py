@@ -57,10 +57,7 @@ class Columns(RecordFormat):
         return True
 
     def refusal(self, source: Source) -> RecordError | None:
-        """Return the error for a NaN or infinity on the first lines of what would be columns without it.
-
-        Returns the error of `read` for the first such number; None if there is none, or anything else is wrong as well.
-        """
+        """Return the error for a NaN or infinity on the first lines of what would be columns without it."""
         looked = _looked_at(source)
         if looked is None:
             return None
@@ -78,8 +75,8 @@ class Columns(RecordFormat):
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the record, with a component for each column of accelerations.
 
-        time_step: must be given where there is no column of times; refused where it contradicts one [s]. Returns
-        components by their names; without names "acceleration", or "column 2", "column 3", "column 4" after the times.
+        The step must be given where there is no column of times. Without names components are called
+        "acceleration", or "column 2", "column 3", "column 4" after the times.
         """
         if not source.is_text:
             raise source.error(None, "not a text file")
@@ -107,10 +104,7 @@ class Columns(RecordFormat):
         return Record(self.name, parts, "\n".join(header), metadata)
 
     def write(self, record: Record) -> bytes:
-        """Return the content of a file with a column of times and one to three of accelerations, to all digits.
-
-        Returns the content; a comment names the unit, which readers must still be told.
-        """
+        """Return a file with a column of times and one to three of accelerations, to all digits and with the unit."""
         rows = in_unit(record, self.name, None, _MOST_COLUMNS - 1)
         step = record.components[0].time_step
         if len({row.size for row in rows}) > 1 or any(part.time_step != step for part in record.components):

@@ -160,11 +160,7 @@ class Cosmos(RecordFormat):
         return source.is_text and begins_channel(source, 0)
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, with a component for each channel.
-
-        time_step: refused unless it is the header's [s]. Returns components named by their azimuth, or CHAN 1 where
-        azimuths repeat.
-        """
+        """Return the record, with a component for each channel, named by its azimuth, or CHAN 1 where these repeat."""
         first = 0
         channels: list[Channel] = []
         while not channels or begins_channel(source, first):

@@ -53,11 +53,7 @@ class CsmipV1(RecordFormat):
         return re.fullmatch(r"[\s\d-]{5,80}", source.lines[_TEXT_LINES]) is not None
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, with a component for each channel.
-
-        time_step: refused unless it is the file's [s]. Returns components named by their direction, or CHAN 1 where
-        directions repeat.
-        """
+        """Return the record, a component for each channel, named by its direction, or CHAN 1 where these repeat."""
         first = 0
         channels: list[Channel] = []
         while not channels or (first < len(source.lines) and _TITLE.match(source.lines[first])):

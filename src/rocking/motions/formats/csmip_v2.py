@@ -53,11 +53,7 @@ class CsmipV2(RecordFormat):
         return any(_BLOCK.fullmatch(text) for text in source.lines[:100])
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, with a component for each channel.
-
-        time_step: refused unless it is the header's [s]. Returns components named by their direction, such as 90 or UP,
-        or CHAN 1 where directions repeat.
-        """
+        """Return the record, a component for each channel, named by its direction, or CHAN 1 where these repeat."""
         unit = acceleration_unit(source, "cm/s2", units)
         first = 0
         channels: list[Channel] = []
@@ -69,10 +65,7 @@ class CsmipV2(RecordFormat):
         return Record(self.name, distinct_names(channels), header, names_in(channels[0][0][2:]))
 
     def write(self, record: Record) -> bytes:
-        """Return the content of a CSMIP V2 file, in cm/s2 with 3 decimals.
-
-        Returns the content; velocity and displacement are integrated from rest.
-        """
+        """Return a CSMIP V2 file in cm/s2 with 3 decimals; velocity and displacement are integrated from rest."""
         lines: list[str] = []
         for row, values in enumerate(in_unit(record, self.name, "cm/s2", 99)):
             lines += _lines(record, row, values.round(3))

@@ -31,10 +31,7 @@ class Cwa(RecordFormat):
     )
 
     def recognises(self, source: Source) -> bool:
-        """Return whether the file begins with the words of this header.
-
-        Returns true if this format should read it.
-        """
+        """Return whether the file begins with the words of this header."""
         if not source.is_text:
             return False
         top = source.lines[:40]
@@ -42,10 +39,7 @@ class Cwa(RecordFormat):
         return sum(any(line.startswith(mark) for line in top) for mark in marks) >= 4
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the three components.
-
-        time_step: if given, it must be the file's [s].
-        """
+        """Return the three components."""
         first = next((k for k, line in enumerate(source.lines) if line.startswith("#Data:")), None)
         if first is None or not source.is_text:
             raise source.error(None, "the line #Data: is missing")

@@ -84,10 +84,7 @@ class Esm(RecordFormat):
         return "NDATA" in head or "SAMPLING_INTERVAL_S" in head
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, of one component.
-
-        time_step: refused unless it is the header's [s]. Returns component named by its stream, such as HNN.
-        """
+        """Return the record, of one component, named by its stream, such as HNN."""
         keys = _header(source)
         _check_kind(source, keys)
         step = step_between_samples(source, _number(source, keys, "SAMPLING_INTERVAL_S"), time_step)

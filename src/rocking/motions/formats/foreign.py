@@ -25,11 +25,7 @@ _TROUBLE = {"missing", "error", "memory", "died"}
 
 
 class ForeignReader:
-    """A reader in another process, which is kept for the next file.
-
-    seconds: time for one file [s]; memory: memory for one file, beyond that of the loaded reader; kept on Linux alone
-    [bytes].
-    """
+    """A reader in another process, kept for the next file; with limits of time [s] and, on Linux, memory [bytes]."""
 
     def __init__(
         self, script: Path, needs: str, module: str, *, seconds: float = 30.0, memory: int = 4 * 2**30

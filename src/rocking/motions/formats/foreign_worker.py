@@ -97,10 +97,7 @@ def _limit(seconds: float, memory: int) -> None:
 
 
 def main(script: str, seconds: float, memory: int) -> None:
-    """Answer messages until there are no more.
-
-    seconds: time for a file [s]; memory: memory for a file, beyond that of the loaded reader [bytes].
-    """
+    """Answer messages until there are no more; limits of time [s] and of memory beyond the loaded reader's [bytes]."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # what libraries print must not come between the messages
     channels = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")

@@ -39,10 +39,7 @@ class GeonetV2A(RecordFormat):
     )
 
     def recognises(self, source: Source) -> bool:
-        """Return whether the text of a corrected GeoNet component stands at the top.
-
-        Returns true if this format should read it.
-        """
+        """Return whether the text of a corrected GeoNet component stands at the top."""
         if not source.is_text:
             return False
         top = source.lines[: _TEXTS + 3]
@@ -50,10 +47,7 @@ class GeonetV2A(RecordFormat):
         return sum(any(line.startswith(mark) for line in top) for mark in marks) >= 4
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the components.
-
-        time_step: if given, it must be the file's [s].
-        """
+        """Return the components."""
         unit = headers.acceleration_unit(source, "mm/s2", units)
         components: list[Component] = []
         line = 0
@@ -89,11 +83,11 @@ def _component(source: Source, top: int, unit: str, asked: float | None) -> tupl
     text = source.lines[top : top + _TEXTS]
     if len(text) < _TEXTS or not text[0].startswith(_TITLE):
         raise source.error(top, f"a component beginning with {_TITLE!r} expected; one of three missing?")
-    points = _match(source, top + 9, _POINTS)
+    points = numbers.matched(source, top + 9, _POINTS)
     count, duration = int(points[1]), float(points[2])
-    stated = _match(source, top + 10, _STEP)
+    stated = numbers.matched(source, top + 10, _STEP)
     step = headers.step_between_samples(source, float(stated[1]), asked)
-    name = _match(source, top + 12, r"Component +(\S+).*")[1]
+    name = numbers.matched(source, top + 12, r"Component +(\S+).*")[1]
     wholes, line = numbers.fixed(source, top + _TEXTS, _WHOLES * _PER_LINE, _PER_LINE, _WIDTH)
     reals, line = numbers.fixed(source, line, _REALS * _PER_LINE, _PER_LINE, _WIDTH)
     for stated_count in wholes[33:36]:
@@ -106,7 +100,7 @@ def _component(source: Source, top: int, unit: str, asked: float | None) -> tupl
     for k, (what, of, _) in enumerate(_SERIES):
         first = source.lines[line][:_WIDTH] if line < len(source.lines) else ""
         values, line = numbers.fixed(source, line, count, _PER_LINE, _WIDTH)
-        peak = _match(source, top + 13 + k, _PEAK.format(what, of))
+        peak = numbers.matched(source, top + 13 + k, _PEAK.format(what, of))
         # series of large numbers are printed with fewer decimals than their peak
         rounding = max(headers.half_digit(peak[1]), headers.half_digit(first))
         series.append(values)
@@ -115,13 +109,6 @@ def _component(source: Source, top: int, unit: str, asked: float | None) -> tupl
         peaks.append(abs(float(peak[1])))
     about = {"axis": " ".join(text[12].split()[2:]), "filter": text[11].strip()}
     return Component(name, series[0], unit, step, peaks[0], {key: said for key, said in about.items() if said}), line
-
-
-def _match(source: Source, line: int, form: str) -> re.Match[str]:
-    found = re.fullmatch(form, source.lines[line].strip())
-    if found is None:
-        raise source.error(line, f"cannot be understood: {source.lines[line].strip()[:60]!r}")
-    return found
 
 
 def _written(record: Record, name: str, values: FloatArray, step: float) -> list[str]:

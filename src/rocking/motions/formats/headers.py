@@ -24,10 +24,7 @@ def acceleration_unit(source: Source, stated: str | None, asked: str | None) -> 
 
 
 def step_between_samples(source: Source, stated: float | None, asked: float | None) -> float:
-    """Return the step of a file: what it states, or what the user says where it states nothing.
-
-    stated: step by the file [s]; asked: step by the user [s]. Returns the step, between 1e-6 and 10 s [s].
-    """
+    """Return the step of a file: what it states, or what the user says where it states nothing; 1e-6 to 10 s [s]."""
     step = stated if stated is not None else asked
     if step is None:
         raise source.error(None, "the file does not state its time step; say time_step= in seconds")
@@ -58,10 +55,7 @@ def in_unit(record: Record, title: str, unit: str | None, most: int) -> list[Flo
 
 
 def step_of_times(source: Source, times: FloatArray, words: list[str], told: float | None) -> float:
-    """Return the step of a column of times; the told one where it is the same to the digits of the column.
-
-    times: the times [s]; told: what the user says of the step [s]. Returns the step [s].
-    """
+    """Return the step of a column of times [s]; the user's where it is the same to the digits of the column."""
     digit = _last_digit(words)
     step = uniform_step(source, times, digit)
     if told is not None and abs(step - told) * times.size <= 2.0 * digit:
@@ -70,11 +64,7 @@ def step_of_times(source: Source, times: FloatArray, words: list[str], told: flo
 
 
 def uniform_step(source: Source, times: FloatArray, unit: float) -> float:
-    """Return the step of a time column that is uniform to the rounding of its digits.
-
-    times: times as printed [s]; unit: one unit of the last printed digit [s]. Returns the step; the shortest decimal
-    number that fits the column [s].
-    """
+    """Return the step of times uniform to rounding at `unit`, the last digit: the shortest decimal that fits [s]."""
     if times.size < 2:
         raise source.error(None, f"at least 2 samples are needed, found {times.size}")
     steps = times.size - 1
@@ -135,10 +125,7 @@ def check_end(source: Source, first: int) -> None:
 
 
 def check_peak_time(source: Source, stated: float, values: FloatArray, step: float, rounding: float) -> None:
-    """Refuse a file whose largest value is not where its header states it.
-
-    stated: time of the peak by the header, within one step [s]; step: step between samples [s].
-    """
+    """Refuse a file whose largest value is not where its header states it, to a step [s]."""
     largest = np.abs(values)
     at = stated / step
     near = largest[max(0, math.ceil(at - 1.01)) : max(0, math.floor(at + 1.01) + 1)] if 0.0 <= at < 1e9 else largest[:0]
@@ -148,11 +135,7 @@ def check_peak_time(source: Source, stated: float, values: FloatArray, step: flo
 
 
 def check_duration(source: Source, stated: float, count: int, step: float, rounding: float) -> None:
-    """Refuse a file whose stated duration is not that of its samples.
-
-    stated: duration by the header: of all steps, or from the first sample to the last [s]; step: step between samples
-    [s]; rounding: half a unit of the last digit of `stated` [s].
-    """
+    """Refuse a file whose stated duration, of all steps or from first to last sample, is not that of its samples."""
     off = min(abs(stated - samples * step) for samples in (count - 1, count))
     if not off <= 1.001 * rounding + 1e-9:
         raise source.error(
@@ -161,9 +144,7 @@ def check_duration(source: Source, stated: float, count: int, step: float, round
 
 
 def half_digit(word: str) -> float:
-    """Return the largest error that rounding can have left in a printed number: half a unit of its last digit.
-
-    Returns the error, with a millionth to spare for arithmetic in the last place.
+    """Return half a unit of a printed number's last digit, the most that rounding can leave, and a millionth to spare.
 
     >>> f"{half_digit('4.954'):.3g}", f"{half_digit('4.136E+1'):.3g}", f"{half_digit('-12'):.3g}"
     ('0.0005', '0.005', '0.5')

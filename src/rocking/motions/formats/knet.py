@@ -54,10 +54,7 @@ class Knet(RecordFormat):
     )
 
     def recognises(self, source: Source) -> bool:
-        """Return whether most of the words of the K-NET header stand at the top.
-
-        Returns true if this format should read it.
-        """
+        """Return whether most of the words of the K-NET header stand at the top."""
         if not source.is_text:
             return False
         top = source.lines[: len(_KEYS) + 3]
@@ -65,10 +62,7 @@ class Knet(RecordFormat):
         return sum(any(line.startswith(_KEYS[k]) for line in top) for k in (0, 10, 13, 14)) >= 3
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the accelerogram without its mean.
-
-        time_step: if given, it must be the file's [s].
-        """
+        """Return the accelerogram without its mean."""
         said = _header(source)
         unit = headers.acceleration_unit(source, "gal", units)
         rate = _stated(source, 10, r"(\d+(?:\.\d+)?) *Hz", said[10])[0]

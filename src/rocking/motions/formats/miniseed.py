@@ -45,26 +45,17 @@ class MiniSeed(RecordFormat):
 
     @classmethod
     def with_response(cls, stationxml_path: str | Path) -> "MiniSeed":
-        """Return a reader that divides counts by the overall sensitivity of their channel.
-
-        Returns the reader; its records are in m/s2.
-        """
+        """Return a reader that divides counts by the overall sensitivity of their channel: records in m/s2."""
         made = cls()
         made._stations = Source.of_path(Path(stationxml_path))
         return made
 
     def recognises(self, source: Source) -> bool:
-        """Return whether a miniSEED record stands at the beginning.
-
-        Returns true if this format should read it.
-        """
+        """Return whether a miniSEED record stands at the beginning."""
         return re.match(rb"\d{6}[DRQM][ \0]", source.content) is not None
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the channels.
-
-        time_step: if given, it must be the file's [s].
-        """
+        """Return the channels."""
         if not self.recognises(source):
             raise source.error(None, "no miniSEED file of version 2")
         _check_room(source)

@@ -33,11 +33,16 @@ def whole(source: Source, line: int, word: str, what: str, least: int = 0) -> in
     return int(text)
 
 
-def free(source: Source, first: int, last: int, columns: int | None = None) -> FloatArray:
-    """Return the numbers between blanks on some lines.
+def matched(source: Source, line: int, form: str) -> re.Match[str]:
+    """Return a line, of which a pattern must make sense."""
+    found = re.fullmatch(form, source.lines[line].strip())
+    if found is None:
+        raise source.error(line, f"cannot be understood: {source.lines[line].strip()[:60]!r}")
+    return found
 
-    Returns all of them in order, of shape (n,) or (lines, columns).
-    """
+
+def free(source: Source, first: int, last: int, columns: int | None = None) -> FloatArray:
+    """Return the numbers between blanks on some lines, of shape (n,) or (lines, columns)."""
     rows: list[float] = []
     for line in range(first, last):
         words = source.lines[line].split()
@@ -49,10 +54,7 @@ def free(source: Source, first: int, last: int, columns: int | None = None) -> F
 
 
 def fixed(source: Source, first: int, count: int, per_line: int, width: int) -> tuple[FloatArray, int]:
-    """Return `count` numbers in columns of fixed width, which need no blank between them.
-
-    Returns values: the numbers (shape (count,)).
-    """
+    """Return `count` numbers in columns of fixed width, which need no blank between them, and the line after them."""
     values: list[float] = []
     line = first
     while len(values) < count:
@@ -69,8 +71,6 @@ def fixed(source: Source, first: int, count: int, per_line: int, width: int) -> 
 
 def fortran_form(source: Source, line: int, word: str) -> tuple[int, int]:
     """Return how many numbers a line holds and how wide they are, by a Fortran format.
-
-    Returns numbers on a full line and characters of each.
 
     >>> fortran_form(Source("a.v1", b"x"), 0, "(8F10.5)")
     (8, 10)
@@ -102,9 +102,7 @@ def in_width(values: Sequence[float] | FloatArray, per_line: int, width: int, de
 
 
 def one_line(text: object, width: int) -> str:
-    r"""Return text that fits on one line of a header, for writers.
-
-    Returns Latin-1 characters without line ends; others become question marks.
+    r"""Return Latin-1 text that fits on one line of a header, for writers; other letters become question marks.
 
     >>> one_line("El Centro\r\n 1940", 12)
     'El Centro 19'

@@ -22,10 +22,7 @@ def prepare() -> None:
 
 
 def answer(request: dict[str, Any], content: bytes, stations: bytes | None = None) -> tuple[dict[str, Any], list[Any]]:
-    """Return the traces of a file, each with the channels of a StationXML file that are its own.
-
-    Returns descriptions of the traces, and their samples.
-    """
+    """Return descriptions of a file's traces, each with its own channels of a StationXML file, and their samples."""
     obspy = import_module("obspy")
     warnings.simplefilter("error")
     traces = list(obspy.read(io.BytesIO(content), format=request["format"], **request["options"]))

@@ -47,11 +47,7 @@ class Peer(RecordFormat):
         )
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, of one component.
-
-        time_step: refused unless it is the header's [s]. Returns component named by its azimuth or direction, or
-        "acceleration".
-        """
+        """Return the record, of one component, named by its azimuth or direction, or "acceleration"."""
         line = _size_line(source) if source.is_text else None
         if line is None:
             raise source.error(None, "no line with NPTS and DT near the top; not a PEER file")

@@ -38,17 +38,11 @@ class Sac(RecordFormat):
     notes: ClassVar[str] = "SAC states no unit: say units=. Counts are no accelerations. It needs ObsPy."
 
     def recognises(self, source: Source) -> bool:
-        """Return whether the version and the logical fields of a SAC header stand at their places.
-
-        Returns true if this format should read it.
-        """
+        """Return whether the version and the logical fields of a SAC header stand at their places."""
         return _byte_order(source) is not None
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the time series.
-
-        time_step: if given, it must be the file's [s].
-        """
+        """Return the time series."""
         order = _byte_order(source)
         if order is None:
             raise source.error(None, "no SAC file of version 6 or 7")

@@ -48,10 +48,7 @@ class SmcUsgs(RecordFormat):
     _precision: ClassVar[int] = _NO_WHOLE
 
     def recognises(self, source: Source) -> bool:
-        """Return whether the lines of numbers stand where SMC has them, with this variant's mark of precision.
-
-        Returns true if this format should read it.
-        """
+        """Return whether the lines of numbers stand where SMC has them, with this variant's mark of precision."""
         if not source.is_text or not re.match(r" ?\d [A-Z]", source.lines[0]):
             return False
         # a header of which a line is missing is still SMC: read() says what is wrong with it
@@ -62,10 +59,7 @@ class SmcUsgs(RecordFormat):
         return (wholes[-1][60:70].strip() == str(_HIGH_PRECISION)) == (self._precision == _HIGH_PRECISION)
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the accelerogram.
-
-        time_step: if given, it must be the file's [s].
-        """
+        """Return the accelerogram."""
         if not self.recognises(source):
             raise source.error(
                 None, f"no {self.name} file: the 16 lines of numbers after 11 lines of text are not there"

@@ -13,18 +13,7 @@ from rocking.errors import InvalidValueError
 
 @dataclass(frozen=True)
 class Distribution(ABC):
-    """A distribution between two ends.
-
-    Parameters
-    ----------
-    low, high : float
-        The ends, in the unit of the parameter.
-
-    Raises
-    ------
-    InvalidValueError
-        If the ends are not two finite numbers in order.
-    """
+    """A distribution between two ends, in the unit of the parameter; `str` says it in words."""
 
     low: float
     high: float
@@ -36,50 +25,20 @@ class Distribution(ABC):
         if not self.low < self.high:
             raise InvalidValueError(f"low must be below high, got {self.low:g} and {self.high:g}")
 
-    @abstractmethod
-    def words(self) -> str:
-        """Return the distribution in words.
+    def cdf(self, value: FloatArray) -> FloatArray:
+        """Return the cumulative distribution function: 0 at the low end, 1 at the high end [-]."""
+        return np.asarray(self._cdf(np.clip(value, self.low, self.high)))
 
-        Returns
-        -------
-        str
-            Kind and numbers.
-        """
-
-    @abstractmethod
-    def share_below(self, value: FloatArray) -> FloatArray:
-        """Return the cumulative distribution function.
-
-        Parameters
-        ----------
-        value : ndarray
-            Values of the parameter.
-
-        Returns
-        -------
-        ndarray
-            From 0 at the low end to 1 at the high end [-].
-        """
-
-    @abstractmethod
-    def _inverse(self, share: float) -> float:
-        """Return the value of which a share lies below."""
-
-    def value_at(self, share: float) -> float:
-        """Return the quantile function.
-
-        Parameters
-        ----------
-        share : float
-            From 0 to 1; uniform random numbers give values of this distribution [-].
-
-        Returns
-        -------
-        float
-            Value between the ends.
-        """
+    def quantile(self, share: float) -> float:
+        """Return the value of which a share from 0 to 1 lies below: uniform random numbers give this distribution."""
         share = checks.within("share", share, 0.0, 1.0, hint="not a percentage")
-        return min(max(float(self._inverse(share)), self.low), self.high)
+        return min(max(float(self._quantile(share)), self.low), self.high)
+
+    @abstractmethod
+    def _cdf(self, value: FloatArray) -> FloatArray: ...
+
+    @abstractmethod
+    def _quantile(self, share: float) -> float: ...
 
 
 class Uniform(Distribution):
@@ -92,36 +51,18 @@ class Uniform(Distribution):
 
     Examples
     --------
-    >>> Uniform(2.0, 4.0).value_at(0.25), Uniform(2.0, 4.0).words()
+    >>> Uniform(2.0, 4.0).quantile(0.25), str(Uniform(2.0, 4.0))
     (2.5, 'uniform from 2 to 4')
     """
 
-    def words(self) -> str:
-        """Return the distribution in words.
-
-        Returns
-        -------
-        str
-            Kind and ends.
-        """
+    def __str__(self) -> str:
+        """Kind and ends."""
         return f"uniform from {self.low:g} to {self.high:g}"
 
-    def share_below(self, value: FloatArray) -> FloatArray:
-        """Return the cumulative distribution function.
+    def _cdf(self, value: FloatArray) -> FloatArray:
+        return (value - self.low) / (self.high - self.low)
 
-        Parameters
-        ----------
-        value : ndarray
-            Values of the parameter.
-
-        Returns
-        -------
-        ndarray
-            From 0 to 1 [-].
-        """
-        return np.clip((value - self.low) / (self.high - self.low), 0.0, 1.0)
-
-    def _inverse(self, share: float) -> float:
+    def _quantile(self, share: float) -> float:
         return self.low + share * (self.high - self.low)
 
 
@@ -136,7 +77,7 @@ class LogUniform(Distribution):
 
     Examples
     --------
-    >>> round(LogUniform(1.0, 100.0).value_at(0.5), 12)
+    >>> round(LogUniform(1.0, 100.0).quantile(0.5), 12)
     10.0
     """
 
@@ -145,33 +86,14 @@ class LogUniform(Distribution):
         super().__post_init__()
         checks.positive("low", self.low)
 
-    def words(self) -> str:
-        """Return the distribution in words.
-
-        Returns
-        -------
-        str
-            Kind and ends.
-        """
+    def __str__(self) -> str:
+        """Kind and ends."""
         return f"log-uniform from {self.low:g} to {self.high:g}"
 
-    def share_below(self, value: FloatArray) -> FloatArray:
-        """Return the cumulative distribution function.
+    def _cdf(self, value: FloatArray) -> FloatArray:
+        return np.asarray(np.log(value / self.low) / math.log(self.high / self.low))
 
-        Parameters
-        ----------
-        value : ndarray
-            Values of the parameter.
-
-        Returns
-        -------
-        ndarray
-            From 0 to 1 [-].
-        """
-        inside = np.clip(value, self.low, self.high)
-        return np.asarray(np.log(inside / self.low) / math.log(self.high / self.low))
-
-    def _inverse(self, share: float) -> float:
+    def _quantile(self, share: float) -> float:
         return self.low * math.exp(share * math.log(self.high / self.low))
 
 
@@ -188,14 +110,9 @@ class Lognormal(Distribution):
     deviation : float
         Standard deviation of the natural logarithm before it is cut [-].
 
-    Raises
-    ------
-    InvalidValueError
-        If a number is outside its range.
-
     Examples
     --------
-    >>> round(Lognormal(1.0, 9.0, median=3.0, deviation=0.4).value_at(0.5), 12)
+    >>> round(Lognormal(1.0, 9.0, median=3.0, deviation=0.4).quantile(0.5), 12)
     3.0
     """
 
@@ -209,39 +126,21 @@ class Lognormal(Distribution):
         checks.within("median", self.median, self.low, self.high)
         checks.positive("deviation", self.deviation)
 
-    def words(self) -> str:
-        """Return the distribution in words.
-
-        Returns
-        -------
-        str
-            Kind, median, deviation and ends.
-        """
+    def __str__(self) -> str:
+        """Kind, median, deviation and ends."""
         cut = f"between {self.low:g} and {self.high:g}"
         return f"lognormal, median {self.median:g}, deviation of the logarithm {self.deviation:g}, {cut}"
 
-    def share_below(self, value: FloatArray) -> FloatArray:
-        """Return the cumulative distribution function.
-
-        Parameters
-        ----------
-        value : ndarray
-            Values of the parameter.
-
-        Returns
-        -------
-        ndarray
-            From 0 to 1 [-].
-        """
+    def _cdf(self, value: FloatArray) -> FloatArray:
         first, last = self._normal(np.array([self.low, self.high]))
-        return np.asarray((self._normal(np.clip(value, self.low, self.high)) - first) / (last - first))
+        return np.asarray((self._normal(value) - first) / (last - first))
 
     def _normal(self, value: FloatArray) -> FloatArray:
         from scipy.special import ndtr
 
         return np.asarray(ndtr(np.log(value / self.median) / self.deviation))
 
-    def _inverse(self, share: float) -> float:
+    def _quantile(self, share: float) -> float:
         from scipy.special import ndtri
 
         first, last = self._normal(np.array([self.low, self.high]))

@@ -22,6 +22,7 @@ from rocking.motions.pulses import mavroeidis_papageorgiou
 from rocking.motions.synthetic.distributions import Distribution, Lognormal, LogUniform, Uniform
 from rocking.motions.synthetic.kanai_tajimi import Envelope, KanaiTajimi, kanai_tajimi_motion
 from rocking.motions.synthetic.point_source import PointSource, point_source_motion
+from rocking.motions.synthetic.sampling import MOST_SAMPLES
 from rocking.motions.synthetic.stochastic import NonstationaryFilter, modulation_from_intensity, nonstationary_motion
 
 HONESTY = "illustrative ranges chosen by this package: no fit to records, no hazard model"
@@ -70,17 +71,12 @@ class Family:
         -------
         dict of str to float
             Value by parameter.
-
-        Raises
-        ------
-        InvalidValueError
-            If there is not one number for each parameter.
         """
         if np.shape(shares) != (len(self.distributions),):
             raise InvalidValueError(f"shares must be {len(self.distributions)} numbers, got shape {np.shape(shares)}")
         pairs = zip(self.distributions.items(), shares, strict=True)
         # twelve digits: the last ones hang on the C library
-        return {name: float(f"{spread.value_at(float(share)):.12g}") for (name, spread), share in pairs}
+        return {name: float(f"{spread.quantile(float(share)):.12g}") for (name, spread), share in pairs}
 
     def motion(self, seed: int, number: int = 0, time_step: float | None = None) -> GroundMotion:
         """Return one motion of the family.
@@ -101,7 +97,6 @@ class Family:
 
         Examples
         --------
-        >>> from rocking.motions.synthetic.families import family
         >>> motion = family("point-source").motion(seed=7, number=3)
         >>> motion.name, 5.5 <= float(motion.metadata["magnitude"]) <= 7.5
         ('point-source, seed 7, number 3', True)
@@ -131,10 +126,6 @@ def _random(seed: int, number: int, count: int) -> tuple[FloatArray, int]:
     return np.random.Generator(np.random.Philox(parameters)).random(count), low | high << 64
 
 
-MOST_SAMPLES = 10_000_000
-"""No motion made here has more samples: a later arrival is a wrong unit."""
-
-
 def with_pulse(residual: GroundMotion, pulse: Pulse, arrival: float) -> GroundMotion:
     """Return a motion with a pulse added to it.
 
@@ -153,11 +144,6 @@ def with_pulse(residual: GroundMotion, pulse: Pulse, arrival: float) -> GroundMo
     GroundMotion
         The sum; longer than the residual if the pulse ends after it.
 
-    Raises
-    ------
-    InvalidValueError
-        If it is no pulse, or the arrival is outside its range.
-
     Examples
     --------
     >>> from rocking.motions.pulses import mavroeidis_papageorgiou
@@ -167,8 +153,8 @@ def with_pulse(residual: GroundMotion, pulse: Pulse, arrival: float) -> GroundMo
     >>> round(peak_ground_velocity(motion), 3)
     0.5
     """
-    residual, given = checked_motion(residual, "residual"), pulse
-    if not isinstance(given, Pulse):
+    residual = checked_motion(residual, "residual")
+    if not isinstance(pulse, Pulse):
         raise InvalidValueError(f"pulse must be a pulse such as pulses.mavroeidis_papageorgiou(..), got {pulse!r:.60}")
     step, half = residual.time_step, 0.5 * pulse.duration
     arrival = checks.within(
@@ -215,10 +201,6 @@ def family(which: str | Family) -> Family:
     Family
         The family.
 
-    Raises
-    ------
-    InvalidValueError
-        If there is no such family.
     """
     if isinstance(which, Family):
         return which

@@ -32,11 +32,6 @@ class KanaiTajimi:
         Natural frequency of the layer [Hz]; the default 2.5 Hz is the customary 5 pi rad/s of firm ground.
     damping : float
         Damping ratio of the layer, between 0 and 1; the default 0.6 is customary too [-].
-
-    Raises
-    ------
-    InvalidValueError
-        If a parameter is outside its range.
     """
 
     density: float
@@ -86,11 +81,6 @@ class Envelope:
         End of the plateau, not before the rise [s].
     decay : float
         Decay after it; zero for none [1/s].
-
-    Raises
-    ------
-    InvalidValueError
-        If a parameter is outside its range.
 
     Examples
     --------

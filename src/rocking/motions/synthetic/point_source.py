@@ -60,11 +60,6 @@ class PointSource:
     path_duration : float
         Growth of the duration with distance [s/m].
 
-    Raises
-    ------
-    InvalidValueError
-        If a parameter is outside its range.
-
     Examples
     --------
     >>> source = PointSource(magnitude=6.0, distance=20e3)
@@ -222,10 +217,7 @@ def point_source_motion(
 
 
 def window(place: FloatArray) -> FloatArray:
-    """Return the exponential window of Saragoni and Hart, as Boore uses it.
-
-    place: time over the length of the window [-]. Returns zero before the start, 1 at the peak at 0.2, 0.05 at 1, and
-    falling beyond [-].
+    """Return the window of Saragoni and Hart as Boore uses it: 0 before the start, 1 at 0.2 of its length, 0.05 at 1.
 
     >>> window(np.array([0.0, 0.2, 1.0])).round(12).tolist()
     [0.0, 1.0, 0.05]

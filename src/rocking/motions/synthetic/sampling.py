@@ -20,11 +20,9 @@ _GRID = 2.0**32
 
 
 def normals(seed: object, *shape: int) -> FloatArray:
-    """Return the standard normal numbers of a seed, by NumPy's default generator.
+    """Return the standard normal numbers of a seed by NumPy's default generator, with the same bits on every processor.
 
     The last bit of one in 4000 of NumPy's is that of the C library's logarithm; rounding to 2e-10 takes it away.
-
-    seed: the same seed gives the same bits on every processor [-].
     """
     try:
         whole = -1 if isinstance(seed, bool) else operator.index(seed)  # type: ignore[arg-type]
@@ -40,11 +38,7 @@ def normals(seed: object, *shape: int) -> FloatArray:
 
 
 def times(time_step: float, duration: float) -> FloatArray:
-    """Return the times of the samples, from zero to the duration.
-
-    time_step: step [s]; duration: time of the last sample, rounded up to whole steps [s]. Returns at least three times
-    [s].
-    """
+    """Return at least three times of samples, from zero to the duration, rounded up to whole steps [s]."""
     step = checks.within("time_step", time_step, SHORTEST_STEP, LONGEST_STEP, unit="s", hint="in seconds")
     ratio = checks.positive("duration", duration, "s") / step
     if not 1.0 + 1e-6 < ratio < MOST_SAMPLES:

@@ -38,11 +38,6 @@ class GammaModulation:
     a3 : float
         Decay [1/s].
 
-    Raises
-    ------
-    InvalidValueError
-        If a parameter is outside its range.
-
     Examples
     --------
     >>> GammaModulation(a1=math.e, a2=2.0, a3=1.0)(np.array([0.0, 1.0])).round(12).tolist()
@@ -198,11 +193,6 @@ class NonstationaryFilter:
         Damping ratio, between 0 and 1: small is narrow-banded [-].
     lowest : float
         The drift ends where the frequency falls to this [Hz].
-
-    Raises
-    ------
-    InvalidValueError
-        If a parameter is outside its range.
     """
 
     frequency: float = 6.0
