@@ -1,6 +1,5 @@
 """Statistics of outcomes that fail or survive at levels: counts, likelihoods, curves, intervals; no rocking in it."""
 
-from rocking.statistics.bootstrap import BootstrapSample, CapacitySample
 from rocking.statistics.censored import CensoredFit, fit_crossings
 from rocking.statistics.counts import Counts, StateCounts, count_outcomes, count_states
 from rocking.statistics.goodness import Goodness
@@ -10,8 +9,6 @@ from rocking.statistics.ordered_probit import OrderedFit, fit_ordered
 from rocking.statistics.separation import Separation
 
 __all__ = [
-    "BootstrapSample",
-    "CapacitySample",
     "CensoredFit",
     "Counts",
     "Goodness",

@@ -82,59 +82,36 @@ def _drawn_clusters(counts: Counts, repetitions: int, seed: int) -> FloatArray:
 class BootstrapSample:
     """Curves of repeated studies, beside the one of the study itself.
 
-    Repetitions whose outcomes form a step are fitted by the penalised likelihood. Those that no rising curve fits are
-    taken to lie beyond both ends of every interval, so that they can only widen it.
-
-    Parameters
-    ----------
-    curves : FittedCurves
-        The curves of the repetitions.
-    original : FittedCurves
-        The curve of the study: one row.
-    scale : LogScale
-        Scale of the coefficients.
-    kind : {"parametric", "cases", "clusters"}
-        How the repetitions were drawn.
+    Repetitions whose outcomes form a step are fitted by the penalised likelihood. Those that no rising curve fits
+    are taken to lie beyond both ends of every interval, so that they can only widen it.
     """
 
-    curves: FittedCurves
-    original: FittedCurves
-    scale: LogScale
-    kind: Resampling
+    curves: FittedCurves  # the curves of the repetitions
+    original: FittedCurves  # the curve of the study: one row
+    scale: LogScale  # scale of the coefficients
+    kind: Resampling  # how the repetitions were drawn
     ends = "studentised"
 
     @property
     def repetitions(self) -> int:
-        """Number of repeated studies [-]."""
+        """Number of repeated studies."""
         return self.curves.found.size
 
     @property
     def undetermined(self) -> int:
-        """Number of repeated studies that no rising curve fits [-]."""
+        """Number of repeated studies that no rising curve fits."""
         return int(np.sum(~self.curves.found))
 
     @property
     def penalised(self) -> int:
-        """Number of repeated studies fitted by the penalised likelihood [-]."""
+        """Number of repeated studies fitted by the penalised likelihood."""
         return int(np.sum(self.curves.penalised & self.curves.found))
 
     def log_interval(self, variate: float | None, level: float, ends: Ends = "studentised") -> tuple[float, float]:
-        """Return the interval of a logarithmic fractile or of the logarithmic dispersion.
+        """Return both ends of a variate's logarithmic fractile, without one of the logarithmic dispersion.
 
-        Parameters
-        ----------
-        variate : float, optional
-            Standard normal variate of the fractile; the dispersion without [-].
-        level : float
-            Confidence level [-].
-        ends : {"studentised", "percentile", "basic"}
-            How ends follow from the repetitions: by their distances in standard errors, which is second-order
-            accurate; as their percentiles; or mirrored.
-
-        Returns
-        -------
-        tuple of float
-            Lower and upper end, infinite where the repetitions leave it open [-].
+        They follow from the distances of the repetitions in standard errors, which is second-order accurate; as
+        their percentiles; or mirrored; and are infinite where the repetitions leave them open.
         """
         one, many = (
             (
@@ -149,22 +126,7 @@ class BootstrapSample:
     def variate_band(
         self, position: FloatArray, level: float, ends: Ends = "studentised"
     ) -> tuple[FloatArray, FloatArray]:
-        """Return pointwise intervals of the variate a + b u of the probability.
-
-        Parameters
-        ----------
-        position : ndarray
-            u [-].
-        level : float
-            Confidence level [-].
-        ends : {"studentised", "percentile", "basic"}
-            How ends follow from the repetitions.
-
-        Returns
-        -------
-        tuple of ndarray
-            Lower and upper ends [-].
-        """
+        """Return pointwise ends of the variate a + b u of the probability."""
         slope = np.stack([np.ones_like(position), position], axis=1)
         one, many = (
             (
@@ -222,31 +184,19 @@ def _order_statistic(values: FloatArray, share: float) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class CapacitySample:
-    """Studies repeated with capacities drawn from lognormal distributions, one for each record.
+    """Studies repeated with capacities drawn from lognormal distributions, one for each record."""
 
-    Parameters
-    ----------
-    levels : ndarray
-        Levels at which every record is tried [any unit].
-    original : FittedCurves
-        The curve of the study: one row.
-    scale : LogScale
-        Scale of its coefficients.
-    variates : ndarray, shape (repetitions, records)
-        Standard normal variates of the capacities, the same at every value that is tried [-].
-    """
-
-    levels: FloatArray
-    original: FittedCurves
-    scale: LogScale
-    variates: FloatArray
+    levels: FloatArray  # levels at which every record is tried
+    original: FittedCurves  # the curve of the study: one row
+    scale: LogScale  # scale of its coefficients
+    variates: FloatArray  # standard normal variates of the capacities, one row a repetition, for every value tried
     kind = "capacities"
     ends = "inverted"
     undetermined = 0
 
     @property
     def repetitions(self) -> int:
-        """Number of repeated studies [-]."""
+        """Number of repeated studies."""
         return int(self.variates.shape[0])
 
     @cached_property
@@ -256,22 +206,10 @@ class CapacitySample:
         return float(self.scale.log_level(np.array(-a / b))), math.log(self.scale.spread / b)
 
     def rarity(self, variate: float | None, value: float) -> float:
-        """Return how often the study would find less than it did, if a parameter had some value.
+        """Return how often the study would find less than it did, had a logarithmic parameter some value.
 
-        The other parameter is then the likeliest one of capacities that are all known, with records less one for
-        records.
-
-        Parameters
-        ----------
-        variate : float, optional
-            Standard normal variate of a fractile; the dispersion without [-].
-        value : float
-            Logarithm of that level or of the dispersion [-].
-
-        Returns
-        -------
-        float
-            Share of the repetitions that find less, and half of those that find the same [-].
+        The other parameter is then the likeliest one of capacities that are all known, with records less one
+        for records; half of the repetitions that find the same count.
         """
         median, log_dispersion = self._found
         if variate is None:
@@ -287,20 +225,7 @@ class CapacitySample:
         return _below(-(theta[:, 0] + theta[:, 1] * at), -float(self.original.theta[0] @ (1.0, at)))  # Eq. 213
 
     def log_interval(self, variate: float | None, level: float) -> tuple[float, float]:
-        """Return the interval of a logarithmic fractile or of the logarithmic dispersion.
-
-        Parameters
-        ----------
-        variate : float, optional
-            Standard normal variate of the fractile; the dispersion without [-].
-        level : float
-            Confidence level [-].
-
-        Returns
-        -------
-        tuple of float
-            Lower and upper end, infinite where the study leaves it open [-].
-        """
+        """Return both ends of a variate's logarithmic fractile, without one of the logarithmic dispersion."""
         (median, log_dispersion), records = self._found, self.variates.shape[1]
         start = log_dispersion if variate is None else median + variate * math.exp(log_dispersion)
         # about where the ends are: as of known capacities, a little wider
@@ -313,20 +238,7 @@ class CapacitySample:
         return low, _end(lambda value: self.rarity(variate, value), start, step, tail)
 
     def variate_band(self, position: FloatArray, level: float) -> tuple[FloatArray, FloatArray]:
-        """Return pointwise intervals of the variate a + b u of the probability: where fractiles have their ends.
-
-        Parameters
-        ----------
-        position : ndarray
-            u [-].
-        level : float
-            Confidence level [-].
-
-        Returns
-        -------
-        tuple of ndarray
-            Lower and upper ends [-].
-        """
+        """Return pointwise ends of the variate a + b u of the probability: where fractiles have their ends."""
         ends = np.array([self.log_interval(variate, level) for variate in NODES])
         at = self.scale.log_level(position)
         # a level is the upper end of the fractile that is the least probability which it may have

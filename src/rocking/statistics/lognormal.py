@@ -10,19 +10,37 @@ from functools import cached_property
 from typing import Any, Literal, get_args
 
 import numpy as np
-from scipy.special import ndtr
+from scipy.special import ndtr, ndtri
 
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.statistics.bootstrap import BootstrapSample, CapacitySample, Resampling, bootstrap, draw_capacities
-from rocking.statistics.confidence_intervals import INTERVAL_METHODS, ConfidenceIntervals, IntervalMethod
+from rocking.statistics.bootstrap import (
+    BootstrapSample,
+    CapacitySample,
+    Resampling,
+    bootstrap,
+    curve_probability,
+    draw_capacities,
+)
 from rocking.statistics.counts import Counts, count_outcomes
 from rocking.statistics.goodness import Goodness, goodness_of
-from rocking.statistics.maximum_likelihood import FittedCurves, LogScale, find_curves, log_fractile
+from rocking.statistics.maximum_likelihood import (
+    FittedCurves,
+    LogScale,
+    find_curves,
+    log_dispersion,
+    log_fractile,
+    quadratic_error,
+    standard_errors,
+)
+from rocking.statistics.probit import PenalisedProbit, Probit
+from rocking.statistics.profiles import FractileConstraint, ProbabilityConstraint, Profile, SlopeConstraint, flat_line
 from rocking.statistics.separation import Separation, median_interval, separation_of, verdict_of
 
 Method = Literal["auto", "maximum-likelihood", "penalised"]
+IntervalMethod = Literal["profile", "bootstrap", "wald"]
+SIDES = np.array([-1.0, 1.0])
 LARGEST_LOGARITHM = 690.0
 """Beyond this a median is no float64 [-]."""
 
@@ -59,19 +77,28 @@ class LognormalFit:
         return self.curves is not None
 
     @property
+    def curve(self) -> tuple[float, float] | None:
+        """Median [unit of the levels] and dispersion [-]; None where there is no curve."""
+        if self.curves is None or self.scale is None:
+            return None
+        return self.fractile(0.5), float(np.exp(log_dispersion(self.curves.theta, self.scale)[0]))
+
+    @property
     def median(self) -> float | None:
         """Level that half of the trials survive [unit of the levels]."""
-        return self.intervals.fractile(0.5) if self.exists else None
+        return None if self.curve is None else self.curve[0]
 
     @property
     def dispersion(self) -> float | None:
         """Standard deviation of the natural logarithm of the level at failure, beta [-]."""
-        return self.intervals.dispersion if self.exists else None
+        return None if self.curve is None else self.curve[1]
 
     @property
     def log_likelihood(self) -> float | None:
         """Logarithm of the likelihood at the curve, without binomial coefficients and without penalty [-]."""
-        return self.intervals.log_likelihood if self.exists else None
+        if self.curves is None:
+            return None
+        return float(Probit(*self._data).derivatives(self.curves.theta).value[0])
 
     @property
     def observations(self) -> int:
@@ -90,20 +117,27 @@ class LognormalFit:
     @property
     def covariance(self) -> FloatArray | None:
         """Covariance of (ln median, dispersion), from the observed information [-]."""
-        return self.intervals.covariance if self.exists else None
+        if self.curves is None or self.scale is None:
+            return None
+        a, b = self.curves.theta[0]
+        turn = self.scale.spread * np.array([[-1.0 / b, a / b**2], [0.0, -1.0 / b**2]])
+        return np.asarray(turn @ np.linalg.inv(self.curves.curvature[0]) @ turn.T)  # Eq. 207
 
     @property
     def standard_errors(self) -> dict[str, float] | None:
         """Standard errors of `median` [unit of the levels] and `dispersion` [-], by the delta method."""
-        return self.intervals.standard_errors if self.exists else None
+        if self.covariance is None:
+            return None
+        errors = np.sqrt(np.diag(self.covariance))
+        return {"median": float(self.fractile(0.5) * errors[0]), "dispersion": float(errors[1])}
 
     @cached_property
     def verdict(self) -> str:
         """What can be claimed, in plain words."""
-        median, dispersion = self.median, self.dispersion
-        curve = None if median is None or dispersion is None else (median, dispersion)
-        rise = self.intervals.rise if self.exists and self.method == "maximum-likelihood" else None
-        return verdict_of(self.counts, self.separation, curve, rise)
+        rise = None
+        if self.curves is not None and self.method == "maximum-likelihood":
+            rise = float(2.0 * (self.curves.value - flat_line(self._model)[1])[0])  # Eq. 205
+        return verdict_of(self.counts, self.separation, self.curve, rise)
 
     @property
     def interval_method(self) -> IntervalMethod:
@@ -114,18 +148,22 @@ class LognormalFit:
         """
         return "bootstrap" if self.counts.is_clustered and not self.counts.scarcity else "profile"
 
-    @cached_property
-    def intervals(self) -> ConfidenceIntervals:
-        """What the curve's coefficients mean, and how far the data let them move.
-
-        Raises
-        ------
-        InvalidValueError
-            If no curve was fitted.
-        """
+    @property
+    def _fitted(self) -> tuple[LogScale, FittedCurves]:
+        """The curve in its scale, for what cannot do without."""
         if self.curves is None or self.scale is None:
             raise InvalidValueError(f"a fragility curve is needed, got none: {self.verdict}")
-        return ConfidenceIntervals(self.counts, self.scale, self.curves)
+        return self.scale, self.curves
+
+    @property
+    def _data(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        position = self._fitted[0].position(self.counts.levels)
+        return position[None], self.counts.failures[None], self.counts.survivals[None]
+
+    @cached_property
+    def _model(self) -> Probit:
+        """The likelihood that was maximised."""
+        return (PenalisedProbit if self._fitted[1].penalised[0] else Probit)(*self._data)
 
     def probability(self, im: Any) -> FloatArray:
         """Return the probability of failure.
@@ -140,7 +178,11 @@ class LognormalFit:
         ndarray
             Probabilities, of the same shape [-].
         """
-        return self.intervals.probability(im)
+        scale, curves = self._fitted
+        levels, some = levels_of(im)
+        result = np.zeros_like(levels)
+        result[some] = curve_probability(curves, scale, levels[some])
+        return result
 
     def fractile(self, probability: float) -> float:
         """Return the level at which a probability of failure is reached.
@@ -155,7 +197,14 @@ class LognormalFit:
         float
             The level [unit of the levels].
         """
-        return self.intervals.fractile(probability)
+        scale, curves = self._fitted
+        level = float(_exp(log_fractile(curves.theta, scale, _variate(probability)))[0])
+        if not 0.0 < level < np.inf:
+            dispersion = float(np.exp(log_dispersion(curves.theta, scale)[0]))
+            raise InvalidValueError(
+                f"fractile {probability:g} must be a float64, got {level}; the dispersion is {dispersion:.3g}"
+            )
+        return level
 
     def interval(
         self,
@@ -177,10 +226,8 @@ class LognormalFit:
         method : {"profile", "bootstrap", "wald"}, optional
             By the likelihood; by repeating the study as `bootstrap` does unless a kind is given; or from standard
             errors on the logarithmic scale. `interval_method`, if not given.
-        repetitions : int
-            Number of repetitions of the bootstrap.
-        seed : int
-            Seed of the bootstrap.
+        repetitions, seed : int
+            Number of repetitions of the bootstrap, and its seed.
 
         Returns
         -------
@@ -188,7 +235,33 @@ class LognormalFit:
             Both ends [unit of the levels, or - for the dispersion]; 0 or infinite where the data leave it open.
         """
         used, sample = self._how(method, repetitions, seed)
-        return self.intervals.interval(parameter, level, used, sample)
+        scale, curves = self._fitted
+        quantile, variate = _quantile(level), _parameter(parameter)
+        if sample is not None:
+            ends = np.array(sample.log_interval(variate, level))
+        else:
+            error = standard_errors(curves.theta, curves.curvature, scale, variate)[0]
+            if used == "profile":
+                ends = self._profile(variate, quantile, error)
+            else:
+                logs = (
+                    log_dispersion(curves.theta, scale)
+                    if variate is None
+                    else log_fractile(curves.theta, scale, variate)
+                )
+                ends = logs[0] + SIDES * quantile * error  # Eq. 206
+        low, high = _exp(ends)
+        return float(low), float(high)
+
+    def _profile(self, variate: float | None, quantile: float, error: float) -> FloatArray:
+        scale, curves = self._fitted
+        a, b = curves.theta[0]
+        profile = Profile(self._model, curves.value, curves.theta, quantile)
+        if variate is None:
+            ends = profile.ends(SlopeConstraint(), np.full(2, np.log(b)), np.full(2, error), -SIDES)
+            return np.asarray(np.log(scale.spread) - ends)
+        fractile, start = FractileConstraint(np.full(2, variate)), np.full(2, (variate - a) / b)
+        return scale.log_level(profile.ends(fractile, start, np.full(2, error / scale.spread), SIDES))
 
     def band(
         self,
@@ -209,10 +282,8 @@ class LognormalFit:
             Confidence level, between 0 and 1 [-].
         method : {"profile", "bootstrap", "wald"}, optional
             See `interval`.
-        repetitions : int
-            Number of repetitions of the bootstrap.
-        seed : int
-            Seed of the bootstrap.
+        repetitions, seed : int
+            Number of repetitions of the bootstrap, and its seed.
 
         Returns
         -------
@@ -220,13 +291,35 @@ class LognormalFit:
             Lower and upper ends, of the shape of `im` [-].
         """
         used, sample = self._how(method, repetitions, seed)
-        return self.intervals.band(im, level, used, sample)
+        scale, _ = self._fitted
+        quantile, (levels, some) = _quantile(level), levels_of(im)
+        position = scale.position(levels[some])
+        if sample is not None:
+            ends = sample.variate_band(position, level)
+        else:
+            ends = self._variates(position, quantile, profile=used == "profile")
+        result = np.zeros((2, *levels.shape))
+        result[:, some] = ndtr(np.stack(ends))
+        return result[0], result[1]
+
+    def _variates(self, position: FloatArray, quantile: float, *, profile: bool) -> tuple[FloatArray, FloatArray]:
+        _, curves = self._fitted
+        count = position.size
+        middle = curves.theta[0, 0] + curves.theta[0, 1] * position
+        slope = np.stack([np.ones_like(position), position], axis=1)
+        error = quadratic_error(slope, np.broadcast_to(curves.curvature, (count, 2, 2)))
+        if not profile or not count:
+            return middle - quantile * error, middle + quantile * error
+        start = Profile(self._model, curves.value, curves.theta, quantile)
+        both = ProbabilityConstraint(np.tile(position, 2))
+        ends = start.ends(both, np.tile(middle, 2), np.tile(error, 2), np.repeat(SIDES, count))
+        return ends[:count], ends[count:]
 
     def _how(
         self, method: IntervalMethod | None, repetitions: int, seed: int
     ) -> tuple[str, BootstrapSample | CapacitySample | None]:
         """Return the method of an interval, and the bootstrap that it needs."""
-        used = self.interval_method if method is None else checks.one_of("method", method, INTERVAL_METHODS)
+        used = self.interval_method if method is None else checks.one_of("method", method, get_args(IntervalMethod))
         return used, self._sample(repetitions, seed) if used == "bootstrap" else None
 
     @cached_property
@@ -250,10 +343,8 @@ class LognormalFit:
         kind : {"parametric", "cases", "clusters", "capacities"}, optional
             How to draw. By default capacities from the curve where every cluster was tried once at every level and
             fewer than 30 of them, whole clusters where they were named otherwise, else parametric.
-        repetitions : int
-            How many.
-        seed : int
-            Seed of the random numbers.
+        repetitions, seed : int
+            How many, and the seed of the random numbers.
 
         Returns
         -------
@@ -265,11 +356,11 @@ class LognormalFit:
         InvalidValueError
             If the kind is unknown, or the outcomes do not come as it needs them.
         """
-        own, counts = self.intervals, self.counts
+        (scale, curves), counts = self._fitted, self.counts
         if kind == "capacities" or (kind is None and counts.draws_capacities):
-            return draw_capacities(counts, own.curves, own.scale, repetitions, seed)
+            return draw_capacities(counts, curves, scale, repetitions, seed)
         usual: Resampling = "parametric" if counts.cluster_trials is None else "clusters"
-        return bootstrap(counts, own.curves, own.scale, kind or usual, repetitions, seed)
+        return bootstrap(counts, curves, scale, kind or usual, repetitions, seed)
 
     def goodness(self, *, groups: int = 10, repetitions: int = 1000, seed: int = 0) -> Goodness:
         """Return how well the curve agrees with the outcomes.
@@ -278,18 +369,16 @@ class LognormalFit:
         ----------
         groups : int
             Most groups of neighbouring levels that outcomes are gathered in.
-        repetitions : int
-            Number of data sets drawn from the curve and refitted.
-        seed : int
-            Seed of the random numbers.
+        repetitions, seed : int
+            Number of data sets drawn from the curve and refitted, and the seed of the random numbers.
 
         Returns
         -------
         Goodness
             Statistics with their p-values, and observed beside expected failures.
         """
-        own = self.intervals
-        return goodness_of(self.counts, own.curves, own.scale, groups, repetitions, seed)
+        scale, curves = self._fitted
+        return goodness_of(self.counts, curves, scale, groups, repetitions, seed)
 
     def summary(self) -> dict[str, Any]:
         """Return the fit as plain numbers and words.
@@ -410,3 +499,35 @@ def lognormal_probability(level: FloatArray, median: float, dispersion: float) -
     """Return the probability of failure at levels >= 0 [unit of the median]; zero at zero [-]."""
     with np.errstate(divide="ignore"):
         return np.asarray(ndtr(np.log(level / median) / dispersion))  # Eq. 190
+
+
+def levels_of(im: Any) -> tuple[FloatArray, Any]:
+    """Return levels that are finite and >= 0, and which of them are above zero."""
+    levels = checks.real_array("im", im)
+    if not (np.isfinite(levels) & (levels >= 0.0)).all():
+        raise InvalidValueError("im must be finite and >= 0, got a value that is not")
+    return levels, levels > 0.0
+
+
+def _parameter(parameter: str | float) -> float | None:
+    """Return the variate of a fractile, or None for the dispersion."""
+    if isinstance(parameter, str):
+        if parameter not in {"median", "dispersion"}:
+            raise InvalidValueError(
+                f"parameter must be 'median', 'dispersion' or the probability of a fractile, got {parameter!r}"
+            )
+        return 0.0 if parameter == "median" else None
+    return _variate(parameter)
+
+
+def _variate(probability: float) -> float:
+    return float(ndtri(checks.within("probability", probability, 0.0, 1.0, open_low=True, open_high=True)))
+
+
+def _quantile(level: float) -> float:
+    return _variate(0.5 * (1.0 + checks.within("level", level, 0.0, 1.0, open_low=True, open_high=True)))
+
+
+def _exp(logarithm: FloatArray) -> FloatArray:
+    with np.errstate(over="ignore", under="ignore"):
+        return np.asarray(np.exp(logarithm))

@@ -14,9 +14,8 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.statistics.confidence_intervals import levels_of
 from rocking.statistics.counts import StateCounts, count_states
-from rocking.statistics.lognormal import LognormalFit, fit_lognormal, lognormal_probability
+from rocking.statistics.lognormal import LognormalFit, fit_lognormal, levels_of, lognormal_probability
 from rocking.statistics.maximum_likelihood import LogScale, maximise
 from rocking.statistics.probit import Derivatives, tails
 
@@ -92,7 +91,7 @@ def nested_curves(levels: FloatArray, reached: FloatArray, trials: FloatArray) -
 
 
 def _start(fits: list[LognormalFit], scale: LogScale) -> FloatArray:
-    medians, dispersions = zip(*((fit.intervals.fractile(0.5), fit.intervals.dispersion) for fit in fits), strict=True)
+    medians, dispersions = zip(*(fit.curve for fit in fits if fit.curve), strict=True)
     slope = scale.spread / float(np.mean(dispersions))
     start = [-float(scale.position(np.array(median))) * slope for median in medians]
     for k in range(1, len(start)):
@@ -237,13 +236,9 @@ def fit_ordered(
     counts = count_states(levels, rocked, overturned, trials)
     least, worst = (fit_lognormal(counts.levels, z, counts.trials) for z in (counts.rocked, counts.overturned))
     if chosen == "separate":
-        return OrderedFit(counts, (least, worst), chosen, _curve(least), _curve(worst))
+        return OrderedFit(counts, (least, worst), chosen, least.curve, worst.curve)
     curves = nested_curves(counts.levels, np.stack([counts.rocked, counts.overturned]), counts.trials)
     return OrderedFit(counts, (least, worst), chosen, curves[0], curves[1])
-
-
-def _curve(fit: LognormalFit) -> Curve | None:
-    return (fit.intervals.fractile(0.5), fit.intervals.dispersion) if fit.exists else None
 
 
 def difference_extremes(first: Curve, second: Curve) -> FloatArray:

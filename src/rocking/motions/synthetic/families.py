@@ -200,7 +200,6 @@ def family(which: str | Family) -> Family:
     -------
     Family
         The family.
-
     """
     if isinstance(which, Family):
         return which

@@ -6,7 +6,6 @@ from rocking.lazy import exports
 
 if TYPE_CHECKING:
     from rocking.motions.intensity import IntensityMeasure, measure, measures, spectral_measure
-    from rocking.statistics.bootstrap import BootstrapSample, CapacitySample
     from rocking.statistics.counts import Counts, StateCounts, count_outcomes, count_states
     from rocking.statistics.goodness import Goodness
     from rocking.statistics.lognormal import LognormalFit, fit_lognormal
@@ -30,8 +29,6 @@ if TYPE_CHECKING:
     from rocking.studies.fragility.subject import LimitState, limit_states
 
 __all__ = [
-    "BootstrapSample",
-    "CapacitySample",
     "CloudAnalysis",
     "Counts",
     "FragilityCurve",
@@ -75,8 +72,6 @@ __all__ = [
 __getattr__, __dir__ = exports(
     __name__,
     {
-        "BootstrapSample": "rocking.statistics.bootstrap",
-        "CapacitySample": "rocking.statistics.bootstrap",
         "CloudAnalysis": "rocking.studies.fragility.cloud_analysis",
         "Counts": "rocking.statistics.counts",
         "FragilityCurve": "rocking.studies.fragility.curves",
