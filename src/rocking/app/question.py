@@ -8,8 +8,8 @@ from rocking.bodies import Body
 from rocking.bodies.formats.source import blamed
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError, RockingError
-from rocking.spec.construction import body_of
-from rocking.spec.response import ResponseProblem, motion_of, problem_of
+from rocking.spec.construction import body_of, motion_of
+from rocking.spec.response import ResponseProblem, problem_of
 
 if TYPE_CHECKING:
     from rocking.app.records import RecordStore

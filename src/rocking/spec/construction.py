@@ -246,7 +246,7 @@ def _record(name: str, table: "MotionKeys", inputs: InputFiles) -> Motion:
     return read_motion(inputs.file(name), *keys, vertical_path=upright)
 
 
-def motion_of(table: "OneMotionTable", inputs: InputFiles | None) -> Motion:
+def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None) -> Motion:
     """Return one motion, not scaled by `scale`; scaled to `pga` or `pgv`."""
     if table.pulse is not None:
         return pulse(table.pulse)
