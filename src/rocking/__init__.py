@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from rocking.restitution import coefficient_of_restitution
     from rocking.studies._overturning_map import overturning_map
     from rocking.studies._rocking_spectrum import rocking_spectrum
+    from rocking.studies.fragility import fragility
+    from rocking.studies.inventory import inventory
     from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
 
 __all__ = [
@@ -34,7 +36,9 @@ __all__ = [
     "dynamics",
     "errors",
     "evidence",
+    "fragility",
     "free_rocking",
+    "inventory",
     "minimum_overturning_acceleration",
     "motions",
     "overturning_map",
@@ -68,7 +72,9 @@ __getattr__, __dir__ = exports(
         "dynamics": "rocking.dynamics",
         "errors": "rocking.errors",
         "evidence": "rocking.evidence",
+        "fragility": "rocking.studies.fragility",
         "free_rocking": "rocking.dynamics",
+        "inventory": "rocking.studies.inventory",
         "minimum_overturning_acceleration": "rocking.studies",
         "motions": "rocking.motions",
         "overturning_map": "rocking.studies",

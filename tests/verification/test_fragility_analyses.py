@@ -170,7 +170,7 @@ def test_scaled_records():
         incremental_dynamic_analysis(BLOCK, given, levels, restitution=0.9, tolerance=1e-9)
         for given in (motions, [m.scaled(c) for m in motions])
     )
-    assert plain.stripes.counts["overturned"].tolist() == scaled.stripes.counts["overturned"].tolist()
+    assert plain.counts["overturned"].tolist() == scaled.counts["overturned"].tolist()
     finite = np.isfinite(plain.first_crossings)
     assert finite.sum() > 20
     factors = [found.first_crossings[finite] / found.subject.intensities[finite] for found in (plain, scaled)]

@@ -18,14 +18,13 @@ from rocking.outcome import Outcome
 from rocking.studies.histories import HistoryTable
 from rocking.studies.motion_sets import MotionList
 from rocking.studies.sensitivity import (
-    SampledHistories,
     SampledRestitution,
     fragility_sensitivity,
     map_sensitivity,
     spectrum_sensitivity,
 )
 from rocking.studies.sensitivity.changes import curve_change, flips_of
-from rocking.studies.sensitivity.restitutions import uniforms
+from rocking.studies.sensitivity.restitutions import SampledHistories, uniforms
 
 pytest.importorskip("xarray")
 # one false alarm in a million: the draws never change, so a failure is no accident

@@ -174,7 +174,7 @@ def _result(found: Any) -> dict[str, Any]:
         "definition": found.definition,
         "uplift": told["uplift"],
         "failed": told["failed"],
-        "contact": _stripes(found).responses.contact,
+        "contact": found.responses.contact,
         "trials": found.trials.tolist(),
         "reached": {name: counts.tolist() for name, counts in found.counts.items()},
         "curves": {name: fit.summary() for name, fit in found.fits.items()},
@@ -226,7 +226,7 @@ def show(answer: FragilityAnswer, length: str = "m") -> None:
 
 
 def _uplift(answer: FragilityAnswer) -> str:
-    check = _stripes(answer.found).uplift
+    check = answer.found.uplift
     if check.threshold is None:
         return str(check.verdict)
     unit, factor = answer.question.unit
@@ -234,10 +234,6 @@ def _uplift(answer: FragilityAnswer) -> str:
         f"certain above {check.threshold / factor:.4g} {unit}, impossible below; "
         f"{check.contradictions} of {check.checked} histories contradict it"
     )
-
-
-def _stripes(result: Any) -> Any:
-    return result.stripes if isinstance(result, IncrementalDynamicAnalysis) else result
 
 
 def _motions(facts: dict[str, Any]) -> str:
@@ -278,10 +274,10 @@ def _sentences(answer: FragilityAnswer) -> list[str]:
     for label, result in answer.results.items():
         before = f"{label}, " if answer.compared is not None else ""
         told += [f"{before}{words}" for words in _verdicts(answer, result)]
-        failed = _stripes(result).failed
+        failed = result.failed
         if failed:
             told.append(f"! {before}{failed} histories could not be computed; they count at no level")
-        if contact := _stripes(result).responses.contact:
+        if contact := result.responses.contact:
             told.append(f"! {before}{contact}")
     found = answer.found
     if answer.question.analysis == "cloud":

@@ -143,12 +143,12 @@ def gathered(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> tup
 def _points(axes: "Axes", analysis: Any, name: str, place: int, level: float) -> None:
     from matplotlib.transforms import ScaledTranslation
 
-    from rocking.studies.sensitivity.changes import share_interval
+    from rocking.statistics.counts import share_interval
 
     counted = (np.asarray(part, dtype=np.float64) for part in (analysis.counts[name], analysis.trials))
     at, reached, trials = gathered(np.asarray(analysis.levels), *counted)
     share = reached / trials
-    ends = np.array([share_interval(s, n, level) for s, n in zip(share.tolist(), trials.tolist(), strict=True)])
+    ends = np.array([share_interval(s * n, n, level) for s, n in zip(share.tolist(), trials.tolist(), strict=True)])
     reach = np.abs(ends.T - share) if share.size else np.empty((2, 0))
     figure: Any = axes.figure
     aside = (place - 0.5 * (len(analysis.counts) - 1)) * _APART / 72.0

@@ -3,8 +3,9 @@
 from rocking.conventions import g
 from rocking.reports.document import Cell, Document, Paragraph, ReportSection, ReportTable, cell
 from rocking.reports.provenance import made_with
+from rocking.statistics.counts import share_interval
 from rocking.studies.inventory.assessment import Assessment, DirectionResult, Verdict
-from rocking.studies.inventory.lights import Light, percent, share_interval
+from rocking.studies.inventory.lights import Light, percent
 from rocking.studies.inventory.table import LIMITS, SLIDING, advice, model_note, rotation_words, rounded_down, sentence
 
 MARKS = {Light.GREEN: "good", Light.AMBER: "fair", Light.RED: "bad"}

@@ -326,3 +326,42 @@ def _summed(failed: BoolArray, good: BoolArray, cluster: IntArray, motions: IntA
     rows = np.zeros((names.size, 2 * failed.shape[1]))
     np.add.at(rows, number, np.hstack([failed[motions], good[motions]]))
     return rows[rows[:, failed.shape[1] :].any(axis=1)]
+
+
+def share_interval(hits: float, trials: float, level: float = 0.95) -> tuple[float, float]:
+    """Return the exact binomial interval of a share (Clopper & Pearson 1934).
+
+    It covers the true share at least as often as its level says, for any number of trials, which need not be whole.
+
+    Parameters
+    ----------
+    hits, trials : float
+        How many of how many [-].
+    level : float
+        Confidence, equal tails [-].
+
+    Returns
+    -------
+    tuple of float
+        Lower and upper end [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If there are no trials or more hits than trials.
+
+    Examples
+    --------
+    >>> low, high = share_interval(0, 100)
+    >>> low, round(high, 6), round(1.0 - 0.025 ** (1 / 100), 6)
+    (0.0, 0.036217, 0.036217)
+    """
+    from scipy.special import betaincinv
+
+    level = checks.within("level", level, 0.0, 1.0, open_low=True, open_high=True)
+    if not 0 <= hits <= trials or trials < 1:
+        raise InvalidValueError(f"hits must be in [0, count] with a count of at least 1, got {hits} of {trials}")
+    tail = 0.5 * (1.0 - level)
+    low = 0.0 if hits == 0 else float(betaincinv(hits, trials - hits + 1.0, tail))
+    high = 1.0 if hits == trials else float(betaincinv(hits + 1.0, trials - hits, 1.0 - tail))  # Eq. 186
+    return low, high

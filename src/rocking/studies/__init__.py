@@ -1,26 +1,23 @@
-"""Many histories: overturning maps, rocking spectra, sensitivity to the restitution, fragility, campaigns."""
+"""Many histories: overturning maps, rocking spectra, minimum accelerations, fragility, inventories, sensitivity."""
 
 from typing import TYPE_CHECKING
 
 from rocking.lazy import exports
 
 if TYPE_CHECKING:
-    from rocking.campaigns import Campaign
     from rocking.studies._overturning_map import overturning_map
     from rocking.studies._rocking_spectrum import rocking_spectrum
     from rocking.studies.adaptive_grid import RefinedMap, refined_map
     from rocking.studies.axis import Axis, axes
     from rocking.studies.boundaries import Polyline, boundary
     from rocking.studies.fragility import (
-        LognormalFit,
         cloud,
         compare_measures,
-        fit_lognormal,
         incremental_dynamic_analysis,
         multiple_stripe_analysis,
     )
     from rocking.studies.histories import Histories, HistoryTable, Product
-    from rocking.studies.islands import Island, Islands, safe_beyond_overturning, safe_islands
+    from rocking.studies.islands import Islands, safe_beyond_overturning, safe_islands
     from rocking.studies.minimum_acceleration import (
         Transitions,
         minimum_overturning_acceleration,
@@ -28,7 +25,6 @@ if TYPE_CHECKING:
     )
     from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
     from rocking.studies.sensitivity import (
-        SampledHistories,
         SampledRestitution,
         Sensitivity,
         fragility_sensitivity,
@@ -38,18 +34,14 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Axis",
-    "Campaign",
     "Histories",
     "HistoryTable",
-    "Island",
     "Islands",
-    "LognormalFit",
     "MotionList",
     "MotionSet",
     "Polyline",
     "Product",
     "RefinedMap",
-    "SampledHistories",
     "SampledRestitution",
     "Sensitivity",
     "SyntheticSet",
@@ -58,7 +50,6 @@ __all__ = [
     "boundary",
     "cloud",
     "compare_measures",
-    "fit_lognormal",
     "fragility_sensitivity",
     "incremental_dynamic_analysis",
     "map_sensitivity",
@@ -77,27 +68,22 @@ __getattr__, __dir__ = exports(
     __name__,
     {
         "Axis": "rocking.studies.axis",
-        "Campaign": "rocking.campaigns",
-        "Transitions": "rocking.studies.minimum_acceleration",
         "Histories": "rocking.studies.histories",
-        "Island": "rocking.studies.islands",
+        "HistoryTable": "rocking.studies.histories",
         "Islands": "rocking.studies.islands",
-        "LognormalFit": "rocking.studies.fragility",
         "MotionList": "rocking.studies.motion_sets",
         "MotionSet": "rocking.studies.motion_sets",
         "Polyline": "rocking.studies.boundaries",
         "Product": "rocking.studies.histories",
         "RefinedMap": "rocking.studies.adaptive_grid",
-        "SampledHistories": "rocking.studies.sensitivity",
         "SampledRestitution": "rocking.studies.sensitivity",
         "Sensitivity": "rocking.studies.sensitivity",
         "SyntheticSet": "rocking.studies.motion_sets",
-        "HistoryTable": "rocking.studies.histories",
+        "Transitions": "rocking.studies.minimum_acceleration",
         "axes": "rocking.studies.axis",
         "boundary": "rocking.studies.boundaries",
         "cloud": "rocking.studies.fragility",
         "compare_measures": "rocking.studies.fragility",
-        "fit_lognormal": "rocking.studies.fragility",
         "fragility_sensitivity": "rocking.studies.sensitivity",
         "incremental_dynamic_analysis": "rocking.studies.fragility",
         "map_sensitivity": "rocking.studies.sensitivity",

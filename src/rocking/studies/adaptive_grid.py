@@ -38,19 +38,13 @@ class Plane:
 
     @classmethod
     def of(cls, body: Any, motion: Any, x: Any, y: Any, restitution: Any, **options: Any) -> "Plane":
-        """Return a plane from what a user gives.
-
-        **options: gravity [m/s2], threads, engine and fields of `Settings`.
-        """
+        """Return a plane from what a user gives; options: gravity [m/s2], threads, engine and fields of `Settings`."""
         threads, engine = options.pop("threads", None), options.pop("engine", "auto")
         settings = settings_of(options.pop("gravity"), options)
         return cls(Question(body, motion, restitution, settings, threads, engine), axis_of(x), axis_of(y))
 
     def case(self, x: FloatArray, y: FloatArray) -> Case:
-        """Return the variations at some points.
-
-        Returns bodies first, then restitution, time, amplitude and velocity.
-        """
+        """Return the variations at some points: bodies first, then restitution, time, amplitude and velocity."""
         case = Case.of(self.question, x.size)
         steps = sorted([(self.x, x), (self.y, y)], key=lambda step: step[0].stage)
         for axis, values in steps:
@@ -70,10 +64,7 @@ class Plane:
         return self.question.run(case.values, case.stretch, stream, progress)
 
     def mesh(self) -> tuple[FloatArray, FloatArray]:
-        """Return the coordinates of all pairs of values, those of x varying fastest.
-
-        Returns one entry a pair, in the units of the axes.
-        """
+        """Return the coordinates of all pairs of values, those of x varying fastest."""
         x, y = np.meshgrid(self.x.values, self.y.values)
         return x.ravel(), y.ravel()
 
@@ -114,10 +105,7 @@ class AdaptiveGrid:
         return np.asarray(axis.values[whole] + part * (axis.values[above] - axis.values[whole]))
 
     def base(self) -> IntArray:
-        """Return the numbers of the axes' own values, increasing: those of x vary fastest.
-
-        Returns row times the number of columns, plus column.
-        """
+        """Return the numbers (row times columns plus column) of the axes' own values, increasing."""
         i, j = np.arange(0, self.columns, self.step), np.arange(0, self.rows, self.step)
         return np.asarray((j[:, None] * self.columns + i).ravel())
 
@@ -132,10 +120,7 @@ class AdaptiveGrid:
         self.learn(new, found["mode"], found["peak_ratio"])
 
     def learn(self, keys: IntArray, modes: IntArray, peaks: FloatArray) -> None:
-        """Take in what is known of new points.
-
-        peaks: their relative peaks [-].
-        """
+        """Take in the modes and relative peaks [-] of new points."""
         if not self.keys.size:
             self.keys, self.modes, self.peaks = keys, modes, peaks
             return
@@ -145,26 +130,17 @@ class AdaptiveGrid:
         self.peaks = np.insert(self.peaks, places, peaks)
 
     def modes_at(self, i: IntArray, j: IntArray) -> IntArray:
-        """Return the modes of points, computing those that are not known.
-
-        Returns Modes, of the same shape.
-        """
+        """Return the modes of points, computing those that are not known."""
         keys = j * self.columns + i
         self.compute(keys.ravel())
         return np.asarray(self.modes[np.searchsorted(self.keys, keys)])
 
     def corners(self, i: IntArray, j: IntArray, step: int) -> IntArray:
-        """Return the modes at the corners of cells.
-
-        Returns lower left, lower right, upper right, upper left.
-        """
+        """Return the modes at the corners of cells: lower left, lower right, upper right, upper left."""
         return self.modes_at(*_corners(i, j, step))
 
     def finest(self, label: Label) -> tuple[IntArray, IntArray]:
-        """Subdivide cells whose corners differ, level by level, and return those of the last level that differ.
-
-        Returns columns and rows of the lower left corners.
-        """
+        """Subdivide cells whose corners differ, level by level, and return columns and rows of the last that do."""
         self.compute(self.base())
         i, j = self._differing_base(label)
         for level in range(1, self.levels + 1):
@@ -199,7 +175,7 @@ class AdaptiveGrid:
 
 
 def absent(keys: IntArray, known: IntArray) -> IntArray:
-    """Return those of some numbers that are not among others: `numpy.setdiff1d` where the others are sorted already.
+    """Return those numbers that are not among others: `numpy.setdiff1d` where the others are sorted already.
 
     >>> absent(np.array([7, 3, 5, 3, 9]), np.array([1, 5, 7])).tolist()
     [3, 9]
@@ -212,7 +188,7 @@ def absent(keys: IntArray, known: IntArray) -> IntArray:
 
 
 def merged(known: IntArray, new: IntArray) -> IntArray:
-    """Return two sets of numbers as one.
+    """Return two sets of numbers, increasing, as one.
 
     >>> merged(np.array([1, 5, 7]), np.array([3, 9])).tolist()
     [1, 3, 5, 7, 9]
@@ -232,9 +208,7 @@ def differing(labels: Any) -> BoolArray:
 
 
 def verdicts(modes: IntArray) -> BoolArray:
-    """Return whether modes are of overturning.
-
-    Returns true for n >= 0; failed ones are False, and for the caller to set aside.
+    """Return whether modes are of overturning; failed ones are not, and for the caller to set aside.
 
     >>> verdicts(np.array([-3, -2, -1, 0, 2])).tolist()
     [False, False, False, True, True]
@@ -268,19 +242,14 @@ class RefinedMap:
 def refined(
     plane: Plane, modes: IntArray, levels: int, progress: Callable[[int], None] | None = None, peaks: Any = None
 ) -> RefinedMap:
-    """Return a map that is known, refined wherever its modes differ between neighbours.
-
-    peaks: relative peaks of the map; NaN if not given [-]. Returns all points; the map's own first, in its order.
-    """
+    """Return a map that is known, refined wherever its modes differ between neighbours; the map's own points first."""
     return refine(AdaptiveGrid(plane, levels, progress), modes, peaks)[0]
 
 
 def refine(lattice: AdaptiveGrid, modes: IntArray, peaks: Any = None) -> tuple[RefinedMap, tuple[IntArray, IntArray]]:
-    """Return a map that is known, refined on a lattice of which nothing is known yet, and its mixed finest cells.
+    """Return a map that is known, refined on a grid of which nothing is known yet, and its mixed finest cells.
 
-    peaks: relative peaks of the map; NaN if not given [-]. Returns refined: all points; the map's own first, in its
-    order; cells: columns and rows of the finest cells whose corners differ: where `rocking.studies.boundaries.outlines`
-    begins.
+    The map's own points come first, in its order; the cells, whose corners differ, are where `outlines` begins.
     """
     first = lattice.base()
     known = np.full(first.size, np.nan) if peaks is None else np.asarray(peaks, dtype=np.float64).ravel()
@@ -323,22 +292,10 @@ def refined_map(
 
     Parameters
     ----------
-    body : Body
-        The body, as it is where the axes do not change it.
-    motion : GroundMotion or Pulse
-        The motion, as it is where the axes do not change it.
-    x, y : Axis or (str, array_like)
-        Axes, as for `overturning_map`.
-    restitution : as for `simulate`
-        Not one drawn at random.
+    body, motion, x, y, restitution, gravity, progress, **options
+        As for `rocking.overturning_map`; the restitution not one drawn at random.
     levels : int
         Levels of refinement; each halves the spacing [-].
-    gravity : float
-        Acceleration of gravity [m/s2].
-    progress : callable, optional
-        Called with the number of histories done since the last call.
-    **options
-        ``threads``, ``engine`` and fields of `Settings`.
 
     Returns
     -------

@@ -72,10 +72,7 @@ class ScaleBrackets:
         return cls(samples.body[low], ends, np.stack([samples.mode[low], samples.mode[high]], axis=1))
 
     def wide(self, tolerance: float) -> IntArray:
-        """Return which are wider than they shall be.
-
-        tolerance: relative width [-].
-        """
+        """Return which are wider than a relative width [-]."""
         (low, high), middle = self.ends.T, self.ends.mean(axis=1)
         return np.flatnonzero((high - low > tolerance * high) & (middle > low) & (middle < high))  # Eq. 184
 
@@ -86,20 +83,14 @@ class ScaleBrackets:
 
 
 class AmplitudeSearch:
-    """Histories of some bodies, each under a motion of its own or all under one.
-
-    sides: sides of the bodies [rad, rad/s, -]; scales: first factors on the motion, increasing [-].
-    """
+    """Histories of some bodies, each under a motion of its own or all under one, at more and more scales."""
 
     def __init__(self, run: Run, sides: dict[str, FloatArray], scales: FloatArray) -> None:
         self.run, self.sides = run, sides
         self.samples = self.compute(np.repeat(np.arange(len(scales)), scales.shape[1]), scales.ravel())
 
     def compute(self, body: IntArray, scale: FloatArray) -> Samples:
-        """Return histories; the random numbers of a body are the same at every scale.
-
-        scale: factors on the motion [-].
-        """
+        """Return histories at factors on the motion [-]; random numbers of a body are the same at every factor."""
         values = {name: array[body] for name, array in self.sides.items()}
         found = self.run({**values, "scale": scale}, body)
         names = ("mode", "side", "peak_ratio", "overturning_time")
@@ -135,10 +126,9 @@ class AmplitudeSearch:
             pairs.move(rows, 2 * middle.mode + (middle.side > 0) != lower[rows], middle)
 
     def brackets(self, tolerance: float) -> ScaleBrackets:
-        """Return all changes of verdict between neighbouring samples, bisected together.
+        """Return all changes of verdict between neighbouring samples, bisected together to a relative width [-].
 
-        tolerance: relative width of the last brackets [-]. Returns sorted by body and scale; one whose middle failed
-        stays as wide as it was.
+        One whose middle failed stays as wide as it was.
         """
         s = self.samples.good
         found = ScaleBrackets.between(s, s.same_body & (s.falls[1:] != s.falls[:-1]))
@@ -159,8 +149,8 @@ class AmplitudeSearch:
 def suspicious(s: Samples) -> BoolArray:
     """Return in which intervals between neighbouring samples of equal verdict another may hide.
 
-    Returns one entry an interval: where the peak of survivors, carried on as steeply as next to it, passes the top;
-    next to a largest peak of survivors; next to a longest time of overturning.
+    Where the peak of survivors, carried on as steeply as next to it, passes the top; next to a largest peak of
+    survivors; next to a longest time of overturning.
     """
     same = s.same_body
     peak = np.where(s.falls, np.nan, s.peak)

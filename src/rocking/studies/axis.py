@@ -146,9 +146,7 @@ _SAMPLES = 4096
 
 
 def main_period(motion: Motion) -> float:
-    """Return the period T_p of a pulse.
-
-    Returns T_p; of a sum of sinusoids that of the first [s].
+    """Return the period T_p of a pulse; of a sum of sinusoids that of the first [s].
 
     >>> from rocking.motions.pulses import sine
     >>> round(main_period(sine(2.0, 0.5)), 12)
@@ -166,9 +164,7 @@ def main_period(motion: Motion) -> float:
 
 
 def peak_velocity(motion: Motion) -> float:
-    """Return the largest velocity of the ground in either direction.
-
-    Returns largest magnitude during the motion [m/s].
+    """Return the largest velocity of the ground in either direction [m/s].
 
     >>> import math
     >>> from rocking.motions.pulses import sine
@@ -416,7 +412,7 @@ def axes() -> dict[str, type[Axis]]:
 
 
 def axis_of(given: Any) -> Axis:
-    """Return an axis from what a user gives.
+    """Return an axis, or the one of a name and values.
 
     >>> axis_of(("pga", [1.0, 2.0])).unit
     'm/s2'

@@ -85,14 +85,8 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
 
     Parameters
     ----------
-    body : Body
-        The body, as it is where the axes do not change it.
-    motion : GroundMotion or Pulse
-        The motion, as it is where the axes do not change it.
-    x, y : Axis or (str, array_like)
-        Axes, as for `overturning_map`, of at least two values.
-    restitution : as for `simulate`
-        Not one drawn at random.
+    body, motion, x, y, restitution, gravity, progress, **options
+        As for `rocking.overturning_map`; axes of at least two values, a restitution that is not drawn at random.
     by : {"verdict", "mode"}
         Whether to outline all that overturns, or what overturns after each number of impacts for itself; the line
         between two modes then comes twice.
@@ -100,12 +94,6 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
         Levels of refinement before marching; each halves the spacing [-].
     tolerance : float
         Width of the last bracket along an edge, over the coordinate [-].
-    gravity : float
-        Acceleration of gravity [m/s2].
-    progress : callable, optional
-        Called with the number of histories done since the last call.
-    **options
-        ``threads``, ``engine`` and fields of `Settings`.
 
     Returns
     -------
@@ -133,10 +121,7 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
 
 
 def checked(plane: Plane, by: str, tolerance: float) -> float:
-    """Check what a boundary is asked with.
-
-    tolerance: width of the last brackets over the coordinate [-].
-    """
+    """Refuse what a boundary cannot be asked with; return the width of the last brackets over the coordinate [-]."""
     if by not in {"verdict", "mode"}:
         raise InvalidValueError(f'by must be "verdict" or "mode", got {by!r:.60}')
     for axis in (plane.x, plane.y):
@@ -146,10 +131,7 @@ def checked(plane: Plane, by: str, tolerance: float) -> float:
 
 
 def outlines(lattice: AdaptiveGrid, seeds: tuple[IntArray, IntArray], by: str, tolerance: float) -> list[Polyline]:
-    """Return the boundary on a lattice that has been refined.
-
-    tolerance: width of the last brackets over the coordinate [-].
-    """
+    """Return the boundary on a grid that has been refined, to a width over the coordinate [-]."""
     if by == "verdict":
         return _outlined(lattice, verdicts, "overturned", tolerance, seeds)
     made: list[Polyline] = []
@@ -215,11 +197,7 @@ def _centres(lattice: AdaptiveGrid, inside: Inside, corners: BoolArray, i: IntAr
 
 
 def bisected(lattice: AdaptiveGrid, inside: Inside, numbers: IntArray, tolerance: float) -> Edges:
-    """Return where the boundary of a region crosses edges of a lattice: one batch for each halving.
-
-    tolerance: width of the last bracket over the coordinate [-]. Returns middles of the last brackets, and the modes at
-    their ends.
-    """
+    """Return where the boundary of a region crosses edges of a grid: one batch for each halving."""
     upright = numbers % 2 == 1
     i, j = (numbers // 2) % lattice.columns, (numbers // 2) // lattice.columns
     ends = [(i, j), (i + ~upright, j + upright)]
@@ -255,21 +233,16 @@ def crossed_edges(inside: BoolArray) -> BoolArray:
 
 
 def edge_numbers(i: IntArray, j: IntArray, columns: int) -> IntArray:
-    """Return the numbers of the edges of cells; neighbours share them.
-
-    Returns twice the number of the left or lower end, plus one for upright edges: bottom, right, top, left.
-    """
+    """Return the numbers of the edges of cells: twice that of the left or lower end, plus one if upright."""
     here = 2 * (j * columns + i)
     return np.stack([here, here + 3, here + 2 * columns, here + 1], axis=1)
 
 
 def segments(inside: BoolArray, edges: IntArray, centre: BoolArray) -> IntArray:
-    """Return which crossed edges a boundary joins within each cell.
+    """Return which crossed edges a boundary joins within each cell, as numbers of the edges at both ends.
 
     A saddle, whose inside corners are opposite, is decided by its centre: the inside corners are joined if the centre
     is inside, else the outside ones.
-
-    Returns numbers of the edges at both ends.
     """
     crossed = crossed_edges(inside)
     count = crossed.sum(axis=1)
@@ -283,9 +256,7 @@ def segments(inside: BoolArray, edges: IntArray, centre: BoolArray) -> IntArray:
 
 
 def chains(joined: IntArray) -> list[list[int]]:
-    """Return the polylines that segments make; of closed ones the first edge is repeated at the end.
-
-    Returns numbers of the edges in order; open ones first.
+    """Return the polylines that segments make, open ones first; of closed ones the first edge is repeated at the end.
 
     >>> chains(np.array([[1, 2], [3, 2], [5, 6], [6, 7], [7, 5]]))
     [[1, 2, 3], [5, 6, 7, 5]]

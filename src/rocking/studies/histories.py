@@ -3,6 +3,7 @@
 import hashlib
 import json
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -13,14 +14,12 @@ from rocking import checks, plausibility
 from rocking.conventions import FloatArray
 from rocking.dynamics.content import full_name, hash_of
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
-from rocking.dynamics.plane.batch import ROWS, SIDES_UNTOLD, Batch, Rows
-from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
+from rocking.dynamics.plane.batch import PIECE, ROWS, SIDES_UNTOLD, Batch, Rows
+from rocking.dynamics.plane.fast_engine import Arrays, empty_results
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 from rocking.studies.motion_sets import MotionSet
-
-__all__ = ["Histories", "HistoryTable", "Product", "described_law", "hash_of", "part"]
 
 _ROWS_AT_ONCE = 32768
 MOTIONS_AT_ONCE = 128
@@ -93,12 +92,12 @@ class Histories(ABC):
         """
 
     def description(self) -> dict[str, Any]:
-        """Return what makes these histories these.
+        """Return what makes these histories these, as plain values.
 
         Returns
         -------
         dict
-            Plain values. Two studies that describe themselves alike have the same results.
+            Two studies that describe themselves alike have the same results.
         """
         return {
             "histories": type(self).__name__,
@@ -129,9 +128,9 @@ class Histories(ABC):
         InvalidValueError
             If the description holds anything but plain values.
         """
-        told = self.description() if described is None else described
+        content = self.description() if described is None else described
         try:
-            text = json.dumps(told, sort_keys=True, separators=(",", ":"), allow_nan=False)
+            text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
         except (TypeError, ValueError) as error:
             why = f"what makes histories must be finite numbers, words, lists and dictionaries of words: {error}"
             raise InvalidValueError(why) from error
@@ -178,9 +177,9 @@ class Histories(ABC):
         return {}
 
     def _segments(self, number: int) -> Segments:
-        found = self._kept.pop(number, None) or self.motions[number].segments()
-        self._kept[number] = found
-        return found
+        segments = self._kept.pop(number, None) or self.motions[number].segments()
+        self._kept[number] = segments  # the newest last
+        return segments
 
     def _forget(self) -> None:
         """Forget the oldest motions: all but the last where those of the next piece are others, or there is no room."""
@@ -195,7 +194,7 @@ class Histories(ABC):
 
     def _run_made(self, first: int, last: int, threads: int | None) -> Arrays:
         """Run with motions that are made for some histories and forgotten after them: never many at once."""
-        results = {name: np.empty(last - first, dtype) for name, dtype in RESULTS.items()}
+        results = empty_results(last - first)
         for start in range(first, last, _ROWS_AT_ONCE):
             rows = self.rows(start, min(start + _ROWS_AT_ONCE, last))
             wanted, places = np.unique(rows.motion, return_inverse=True)
@@ -218,6 +217,27 @@ class Histories(ABC):
         return batch.run(len(rows), lambda first, last: part(rows, first, last))[0]
 
 
+def results_of(
+    histories: Histories, *, threads: int | None = None, progress: Callable[[int], None] | None = None
+) -> Arrays:
+    """Return the results of all histories, computed piece by piece so that progress can be told."""
+    check_progress(progress)
+    results = empty_results(histories.count)
+    for first in range(0, histories.count, PIECE):
+        last = min(first + PIECE, histories.count)
+        for name, values in histories.run(first, last, threads=threads).items():
+            results[name][first:last] = values
+        if progress is not None:
+            progress(last - first)
+    return results
+
+
+def check_progress(progress: Any) -> None:
+    """Refuse what cannot be told how far the work is."""
+    if progress is not None and not callable(progress):
+        raise InvalidValueError(f"progress must be a function of the histories done, or None, got {progress!r:.60}")
+
+
 def part(rows: Rows, first: int, last: int) -> Rows:
     """Return some of the rows."""
     values = {name: rows.values[name][first:last] for name in ROWS}
@@ -236,12 +256,8 @@ class HistoryTable(Histories):
         Number of each history's motion.
     values : dict of str to ndarray
         The keys of `batch.ROWS` [rad, rad/s, -, rad, rad/s], one entry a history.
-    law : ImpactLaw, optional
-        How the coefficient changes from impact to impact.
-    settings : Settings, optional
-        How to integrate.
-    engine : {"auto", "fast", "reference"}
-        Which engine.
+    law, settings, engine
+        As for `Histories`.
 
     Raises
     ------
@@ -266,52 +282,31 @@ class HistoryTable(Histories):
         return int(self.motion.size)
 
     def rows(self, first: int, last: int) -> Rows:
-        """Return some of the rows.
-
-        Parameters
-        ----------
-        first, last : int
-            Numbers: from the first up to but not including the last.
-
-        Returns
-        -------
-        Rows
-            The rows.
-        """
+        """Return some of the rows."""
         values = {name: array[first:last] for name, array in self.values.items()}
         return Rows(values, self.motion[first:last], np.arange(first, last, dtype=np.int64))
 
     def content(self) -> dict[str, Any]:
-        """Return the hashes of the arrays.
-
-        Returns
-        -------
-        dict
-            By name.
-        """
+        """Return the hashes of the arrays."""
         return {"motion": hash_of(self.motion)} | {name: hash_of(values) for name, values in self.values.items()}
 
 
 @dataclass(frozen=True, eq=False)
 class Product(Histories):
-    """Every motion with every body, scale and choice of restitution; the motion changes slowest, the choice fastest.
+    """Every motion with every body, scale and restitution; the motion changes slowest, the restitution fastest.
 
     Parameters
     ----------
     motions : MotionSet
         The motions.
-    sides : dict of str to ndarray, shape (bodies, choices)
+    sides : dict of str to ndarray, shape (bodies, restitutions)
         alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left [-]; and q_right, q_left
         (m R^2 / I_O), without which the forces of the ground are not known [-]; and share_right, share_left, of
         the probability of a law that draws, 1 if not given [-].
     scales : ndarray, shape (scales,) or (motions, scales)
         Factors on the motions, the same for all or for each its own [-].
-    law : ImpactLaw, optional
-        How the coefficient changes from impact to impact.
-    settings : Settings, optional
-        How to integrate.
-    engine : {"auto", "fast", "reference"}
-        Which engine.
+    law, settings, engine
+        As for `Histories`.
     """
 
     sides: dict[str, FloatArray]
@@ -319,13 +314,13 @@ class Product(Histories):
 
     def __post_init__(self) -> None:
         """Check the shapes."""
-        wanted = {name for name in ROWS if name[-5:] in {"right", "_left"}}
+        names = {name for name in ROWS if name[-5:] in {"right", "_left"}}
         shape = np.shape(next(iter(self.sides.values()), ()))
         unknown = {name: np.full(shape, value) for name, value in SIDES_UNTOLD.items()}
         object.__setattr__(self, "sides", unknown | self.sides)
         shapes = {np.shape(values) for values in self.sides.values()}
-        if set(self.sides) != wanted or len(shapes) != 1 or len(next(iter(shapes))) != 2:
-            raise InvalidValueError(f"sides must be {', '.join(sorted(wanted))}, each of shape (bodies, choices)")
+        if set(self.sides) != names or len(shapes) != 1 or len(next(iter(shapes))) != 2:
+            raise InvalidValueError(f"sides must be {', '.join(sorted(names))}, each of shape (bodies, restitutions)")
         scales = np.asarray(self.scales, dtype=np.float64)
         if scales.ndim not in {1, 2} or (scales.ndim == 2 and len(scales) != len(self.motions)) or not scales.size:
             raise InvalidValueError(f"scales must be of shape (scales,) or (motions, scales), got {scales.shape}")
@@ -337,9 +332,9 @@ class Product(Histories):
 
     @property
     def shape(self) -> tuple[int, int, int, int]:
-        """Numbers of motions, bodies, scales and choices of restitution."""
-        bodies, choices = self.sides["p_right"].shape
-        return len(self.motions), bodies, self.scales.shape[-1], choices
+        """Numbers of motions, bodies, scales and restitutions."""
+        bodies, restitutions = self.sides["p_right"].shape
+        return len(self.motions), bodies, self.scales.shape[-1], restitutions
 
     @property
     def count(self) -> int:
@@ -352,32 +347,15 @@ class Product(Histories):
         return self.count // len(self.motions)
 
     def rows(self, first: int, last: int) -> Rows:
-        """Return some of the rows.
-
-        Parameters
-        ----------
-        first, last : int
-            Numbers: from the first up to but not including the last.
-
-        Returns
-        -------
-        Rows
-            The rows.
-        """
+        """Return some of the rows."""
         numbers = np.arange(first, last, dtype=np.int64)
-        motion, body, scale, choice = np.unravel_index(numbers, self.shape)
+        motion, body, scale, restitution = np.unravel_index(numbers, self.shape)
         factor = self.scales[scale] if self.scales.ndim == 1 else self.scales[motion, scale]
-        values = {name: array[body, choice] for name, array in self.sides.items()}
+        values = {name: array[body, restitution] for name, array in self.sides.items()}
         return Rows.of(last - first, motion, numbers, scale=factor, **values)
 
     def content(self) -> dict[str, Any]:
-        """Return the shape and the hashes of the arrays.
-
-        Returns
-        -------
-        dict
-            By name.
-        """
+        """Return the shape and the hashes of the arrays."""
         hashes = {name: hash_of(np.ascontiguousarray(values)) for name, values in self.sides.items()}
         return {"shape": list(self.shape), "scales": hash_of(self.scales), **hashes}
 
@@ -390,8 +368,5 @@ def _own(array: np.ndarray, given: object) -> np.ndarray:
 
 
 def described_law(law: ImpactLaw) -> dict[str, Any]:
-    """Return what makes a law of impact this law.
-
-    Returns its class, and what it says of itself.
-    """
+    """Return what makes a law of impact this law: its class, and what it says of itself."""
     return {"law": type(law).__name__, "class": full_name(type(law)), "content": law.content()}

@@ -15,29 +15,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Island:
-    """A connected region of survival that has no part where the body is not even lifted.
+    """A connected region of survival that has no part where the body is not even lifted."""
 
-    Parameters
-    ----------
-    label : int
-        Its number in `Islands.labels`, from 1.
-    cells : int
-        Points of the map in it.
-    area : float
-        Its area in the units of the axes; a point stands for half the way to its neighbours.
-    x, y : tuple of (float, float)
-        Least and greatest coordinates.
-    enclosed : bool
-        Whether overturning in one and the same way surrounds it; otherwise it reaches the edge of the map or a point
-        that failed, or lies between two ways of overturning, where survival may lead on as a strip too thin for the
-        grid.
-    """
-
-    label: int
-    cells: int
-    area: float
-    x: tuple[float, float]
+    label: int  # its number in `Islands.labels`, from 1
+    cells: int  # points of the map in it
+    area: float  # its area in the units of the axes; a point stands for half the way to its neighbours
+    x: tuple[float, float]  # x, y: least and greatest coordinates
     y: tuple[float, float]
+    # whether overturning in one and the same way surrounds it; otherwise it reaches the edge of the map or a point
+    # that failed, or lies between two ways of overturning, where survival may lead on as a strip too thin for the
+    # grid
     enclosed: bool
 
 

@@ -157,11 +157,7 @@ class Cases:
         cls, motion: Motion, sides: dict[str, FloatArray], settings: Settings, lowest: float | None,
         highest: float | None,
     ) -> "Cases":  # fmt: skip
-        """Return the cases of some bodies under one motion.
-
-        sides: sides of the bodies, as of `sides_of` [rad, rad/s, -]; lowest, highest: peak accelerations between which
-        to look [m/s2].
-        """
+        """Return the cases of some bodies under one motion, to be looked for between peak accelerations [m/s2]."""
         if not motion.peak > 0.0:
             raise InvalidValueError(f"motion must have a peak above zero to be scaled, got {motion.name!r}")
         uplift, (low, high) = _range(motion, sides, settings, lowest, highest)
@@ -169,25 +165,18 @@ class Cases:
 
     @classmethod
     def joined(cls, parts: Sequence["Cases"]) -> "Cases":
-        """Return the cases of several motions or restitutions as one."""
         sides = {name: np.concatenate([each.sides[name] for each in parts]) for name in parts[0].sides}
         names = ("peak", "uplift", "low", "high")
         arrays = {name: np.concatenate([getattr(each, name) for each in parts]) for name in names}
         return cls(sides, **arrays, record=parts[0].record)
 
     def grid(self, points: int) -> FloatArray:
-        """Return the first factors on the motions.
-
-        points: how many for each case [-]. Returns in equal ratios [-].
-        """
+        """Return the first factors on the motions, so many for each case, in equal ratios [-]."""
         return np.asarray(np.geomspace(self.low, self.high, points, axis=1) / self.peak[:, None])  # Eq. 182
 
 
 def searched(cases: Cases, effort: Effort, run: Run) -> tuple[Transitions | None, ...]:
-    """Return the crossings of all cases, which are computed together and do not know of one another.
-
-    Returns one for each case; None where no history could be computed.
-    """
+    """Return the transitions of all cases, which are computed together; None where no history could be computed."""
     scan = AmplitudeSearch(run, cases.sides, cases.grid(effort.points))
     if cases.record:
         search_below(scan, effort.points)
@@ -339,27 +328,9 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
     Parameters
     ----------
     bodies : sequence of Body
-        The bodies.
-    motion : GroundMotion or Pulse
-        The motion, of any amplitude above zero.
-    restitution : as for `simulate`
-        Evaluated for every body.
-    lowest, highest : float, optional
-        Peak accelerations between which to look [m/s2].
-    points : int
-        First samples, in equal ratios [-].
-    levels : int
-        How often suspicious intervals are halved, from 0 to 12 [-].
-    tolerance : float
-        Width of the last brackets over the acceleration [-].
-    gravity : float
-        Acceleration of gravity [m/s2].
-    threads : int, optional
-        Threads of the fast engine; the results do not depend on them.
-    progress : callable, optional
-        Called with the number of histories done since the last call.
-    **settings
-        ``engine`` and fields of `Settings`.
+        The bodies; the restitution is evaluated for every one.
+    motion, restitution, lowest, highest, points, tolerance, levels, gravity, threads, progress, **settings
+        As for `minimum_overturning_acceleration`.
 
     Returns
     -------

@@ -91,13 +91,7 @@ class MotionList(MotionSet):
         return True
 
     def description(self) -> dict[str, Any]:
-        """Return names and hashes.
-
-        Returns
-        -------
-        dict
-            Kind, and for each motion its name and the SHA-256 of its coefficients and step.
-        """
+        """Return names and hashes."""
         return {
             "kind": "list",
             "motions": [{"name": motion.name, "sha256": digest(motion)} for motion in self._motions],
@@ -105,10 +99,7 @@ class MotionList(MotionSet):
 
 
 def digest(motion: Motion) -> str:
-    """Return the SHA-256 of what an engine sees of a motion.
-
-    Returns 64 hexadecimal digits: of the step, and the coefficients of the horizontal and vertical accelerations.
-    """
+    """Return the SHA-256 of what an engine sees of a motion: the step, and the coefficients of both accelerations."""
     import hashlib
 
     import numpy as np
@@ -193,18 +184,7 @@ class SyntheticSet(MotionSet):
         return motion
 
     def description(self) -> dict[str, Any]:
-        """Return family, distributions in the order of drawing, seed, level, and hashes of the first and last motion.
-
-        Returns
-        -------
-        dict
-            Plain values; two sets that describe themselves alike hold the same motions.
-
-        Raises
-        ------
-        InvalidValueError
-            If the family draws or makes its motions in a way that has no name of its own.
-        """
+        """Return family, distributions as drawn, seed, level, and hashes of the first and last motion."""
         first, last = self._ends
         return {
             "kind": "synthetic",

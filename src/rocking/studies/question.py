@@ -70,14 +70,11 @@ class Question:
         stream: Any = None,
         progress: Callable[[int], None] | None = None,
     ) -> tuple[Arrays, dict[str, int]]:
-        """Return the results of many variations, their modes and relative peaks with them.
+        """Return the results of many variations, their modes and relative peaks [-] with them.
 
         A motion stretched in time by s does to a body of frequency parameter p what the motion itself does to one of p
-        s, all times multiplied by s: so one motion serves all stretches, and nothing is approximated.
-
-        values: sides and scale, by the names of `batch.ROWS` [rad, rad/s, -], one entry a history;
-        stretch: factors on the time of the motion [-]. Returns results: the keys of `fast_engine.RESULTS`,
-        mode [-] and peak_ratio [-].
+        s, all times multiplied by s: so one motion serves all stretches, and nothing is approximated. Values: sides and
+        scale, by the names of `batch.ROWS`, one entry a history.
         """
         count = stretch.size
         if np.any(stretch != 1.0):
@@ -117,11 +114,7 @@ class Question:
 
 
 def sides_of(all_parameters: Sequence[RockingParameters | None]) -> dict[str, FloatArray]:
-    """Return the sides of many bodies as arrays.
-
-    Returns alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left, q_right, q_left, share_right,
-    share_left [-]; NaN where there is no body.
-    """
+    """Return alpha [rad], p [rad/s], r, q, share [-] of both sides of many bodies; NaN where there is no body."""
     return {
         f"{short}_{side}": np.array([np.nan if r is None else getattr(getattr(r, side), name) for r in all_parameters])
         for short, name in SIDES
@@ -130,9 +123,7 @@ def sides_of(all_parameters: Sequence[RockingParameters | None]) -> dict[str, Fl
 
 
 def modes_of(results: Arrays) -> np.ndarray:
-    """Return how each history ended.
-
-    Returns -3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts.
+    """Return -3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts.
 
     >>> modes_of({"outcome": np.array([0, 1, 2, 3]), "impacts": np.array([0, 3, 1, 0])}).tolist()
     [-2, -1, 1, -3]
@@ -144,9 +135,5 @@ def modes_of(results: Arrays) -> np.ndarray:
 
 
 def peak_ratio(peak: FloatArray, right: FloatArray, left: FloatArray) -> FloatArray:
-    """Return the peak rotation over the slenderness angle of the side it stands on.
-
-    peak: peak rotation with its sign [rad]; right, left: slenderness angles of the sides [rad]. Returns the ratio;
-    beyond one is not overturning [-].
-    """
+    """Return the peak rotation over the slenderness angle of its side; beyond one is not overturning [-]."""
     return np.abs(peak) / np.where(np.asarray(peak) < 0.0, left, right)  # Eq. 181

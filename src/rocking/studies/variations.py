@@ -33,10 +33,7 @@ class Case:
         return cls(question, count, np.ones(count), np.ones(count))
 
     def settled(self) -> "Case":
-        """Return the case with its bodies made, and the restitution evaluated for each different one.
-
-        Returns with its sides; NaN, which the engine refuses row by row, where there is no such body.
-        """
+        """Return the case with its bodies made and the restitution evaluated for each; NaN where there is none."""
         names = sorted(self.geometry)
         if not names:
             rows, places = np.empty((1, 0)), np.zeros(self.count, dtype=np.int64)
@@ -83,22 +80,18 @@ class Case:
 
 
 def reference_side(body: Body) -> str:
-    """Return the side that the ground lifts the body about first: the less stocky one, the right one if equal.
-
-    Returns the side that axes refer to when they speak of size and slenderness.
-    """
+    """Return the side that the ground lifts the body about first: the less stocky one, the right one if equal."""
     return "left" if body.side("left").slenderness_angle < body.side("right").slenderness_angle else "right"
 
 
 def changed_body(body: Body, parameters: Mapping[str, float]) -> Body:
     """Return a body with other dimensions.
 
-    parameters: semi_diagonal [m] scales any body with all its lengths; slenderness_angle [rad], width and height [m]
-    are for a block. A slenderness alone keeps the semi-diagonal, a width alone the height, a height alone the width.
-    Returns the changed body; the same if there is nothing to change.
+    semi_diagonal [m] scales any body with all its lengths; slenderness_angle [rad], width and height [m] are for a
+    block. A slenderness alone keeps the semi-diagonal, a width alone the height, a height alone the width.
 
-    >>> made = changed_body(Block(width=1.0, height=4.0), {"height": 3.0})
-    >>> made.width, made.height
+    >>> changed = changed_body(Block(width=1.0, height=4.0), {"height": 3.0})
+    >>> changed.width, changed.height
     (1.0, 3.0)
     """
     if not parameters:

@@ -304,12 +304,12 @@ def _fine(levels: FloatArray) -> FloatArray:
 
 def _curve_points(found: Any, name: str) -> dict[str, Any]:
     from rocking.plots.fragility import gathered
-    from rocking.studies.sensitivity.changes import share_interval
+    from rocking.statistics.counts import share_interval
 
     counted = (np.asarray(part, dtype=np.float64) for part in (found.counts[name], found.trials))
     at, reached, trials = gathered(np.asarray(found.levels, dtype=np.float64), *counted)
     share = reached / trials
-    ends = [share_interval(s, n) for s, n in zip(share.tolist(), trials.tolist(), strict=True)]
+    ends = [share_interval(s * n, n) for s, n in zip(share.tolist(), trials.tolist(), strict=True)]
     return {
         "x": at.tolist(),
         "reached": reached.tolist(),

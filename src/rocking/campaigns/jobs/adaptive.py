@@ -8,10 +8,11 @@ from typing import Any, Protocol
 import numpy as np
 
 from rocking.conventions import IntArray
+from rocking.dynamics.content import hash_of
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.errors import InvalidValueError
-from rocking.studies.histories import Histories, HistoryTable, hash_of
+from rocking.studies.histories import Histories, HistoryTable
 from rocking.studies.motion_sets import MotionList, MotionSet
 from rocking.studies.question import Question
 from rocking.studies.sensitivity.restitutions import sampled

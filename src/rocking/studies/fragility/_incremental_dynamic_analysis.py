@@ -4,21 +4,20 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.conventions import BoolArray, FloatArray
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.statistics.censored import CensoredFit, fit_crossings
-from rocking.statistics.lognormal import LognormalFit
 from rocking.studies.fragility._multiple_stripe_analysis import MultipleStripeAnalysis, multiple_stripe_plan
 from rocking.studies.fragility._overturning_intervals import OverturningInterval, overturning_intervals, survivals_of
-from rocking.studies.fragility.subject import Motions, Progress, Subject, results_of
-from rocking.studies.histories import Product
+from rocking.studies.fragility.subject import Motions, Progress
+from rocking.studies.histories import Product, results_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,69 +41,32 @@ OWN_LAW = (
 
 
 @dataclass(frozen=True, eq=False)
-class IncrementalDynamicAnalysis:
-    """The outcome of an incremental analysis.
+class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
+    """The outcome of an incremental dynamic analysis: that of the stripes, and the intervals between their levels.
 
     A stronger motion may leave standing what a weaker one overturns (resurrection). Two definitions of the probability
     of overturning therefore differ; both are given, each with its name.
 
     Parameters
     ----------
-    stripes : MultipleStripeAnalysis
-        The curves: every motion at every level.
+    subject, states, histories, responses, levels
+        As for `MultipleStripeAnalysis`; the histories of the search between the levels apart.
     intervals : tuple of OverturningInterval
         All intervals of levels in which a motion overturns the body, by motion and level, of motions without a failed
         history. Survival between overturning to one side and to the other is always found; other intervals of either
         kind that are narrower than the distance between levels may be missed.
     """
 
-    stripes: MultipleStripeAnalysis
     intervals: tuple[OverturningInterval, ...]
 
-    @property
-    def subject(self) -> Subject:
-        """The body, the motions and the measure."""
-        return self.stripes.subject
-
-    @property
-    def histories(self) -> Product:
-        """What was computed, the search between the levels apart."""
-        return self.stripes.histories
-
-    @property
-    def levels(self) -> FloatArray:
-        """Levels of the measure [its unit]."""
-        return self.stripes.levels
+    kind = "incremental"
+    definition = FRACTION
+    definitions: ClassVar[dict[str, str]] = {"first crossing": FIRST_CROSSING, "fraction": FRACTION}
 
     @property
     def curves(self) -> FloatArray:
         """Rotation over alpha, infinite where overturned, of shape (motions, levels) [-]."""
-        return self.stripes.responses.rotation
-
-    @property
-    def trials(self) -> IntArray:
-        """Motions at each level whose history could be computed."""
-        return self.stripes.trials
-
-    @property
-    def counts(self) -> dict[str, IntArray]:
-        """Number of motions that reach each state, by name of the state, at each level."""
-        return self.stripes.counts
-
-    @property
-    def fits(self) -> dict[str, LognormalFit]:
-        """Lognormal curve of each state by the definition "fraction"."""
-        return self.stripes.fits
-
-    @property
-    def definitions(self) -> dict[str, str]:
-        """What is meant by the probability of overturning, both ways."""
-        return {"first crossing": FIRST_CROSSING, "fraction": FRACTION}
-
-    @property
-    def definition(self) -> str:
-        """What is meant in `fits` and `fractions`."""
-        return FRACTION
+        return self.responses.rotation
 
     @property
     def restitution_note(self) -> str:
@@ -114,7 +76,7 @@ class IncrementalDynamicAnalysis:
     @cached_property
     def complete(self) -> BoolArray:
         """Which motions have no failed history; the others have no first crossing."""
-        return np.asarray(self.stripes.responses.good.all(axis=1))
+        return np.asarray(self.responses.good.all(axis=1))
 
     @property
     def fractions(self) -> FloatArray:
@@ -125,10 +87,10 @@ class IncrementalDynamicAnalysis:
     @cached_property
     def first_crossings(self) -> FloatArray:
         """Lowest level at which each motion overturns the body; infinite if it does not, NaN if one failed."""
-        found = np.where(self.complete, math.inf, math.nan)
+        crossings = np.where(self.complete, math.inf, math.nan)
         for interval in reversed(self.intervals):
-            found[interval.motion] = interval.start
-        return found
+            crossings[interval.motion] = interval.start
+        return crossings
 
     @cached_property
     def first_crossing_fit(self) -> CensoredFit | None:
@@ -180,26 +142,23 @@ class IncrementalDynamicAnalysis:
         """All outcomes of the levels, the first crossings and the intervals, with their units."""
         rows = [(i.motion, i.start, i.end) for i in self.intervals]
         motion, start, end = (np.array(column) for column in zip(*rows, strict=True)) if rows else (np.empty(0),) * 3
-        words = {f"definition_{name.replace(' ', '_')}": told for name, told in self.definitions.items()}
-        return self.stripes.dataset.assign(
-            first_crossing=("motion", self.first_crossings, self.subject.label),
-            interval_motion=("interval", motion.astype(np.int64), {"units": "1"}),
-            interval_start=("interval", start, self.subject.label),
-            interval_end=("interval", end, self.subject.label),
-        ).assign_attrs(**words)
+        words = {f"definition_{name.replace(' ', '_')}": meaning for name, meaning in self.definitions.items()}
+        return (
+            super()
+            .dataset.assign(
+                first_crossing=("motion", self.first_crossings, self.subject.label),
+                interval_motion=("interval", motion.astype(np.int64), {"units": "1"}),
+                interval_start=("interval", start, self.subject.label),
+                interval_end=("interval", end, self.subject.label),
+            )
+            .assign_attrs(**words)
+        )
 
     def summary(self) -> dict[str, Any]:
-        """Return what is printed: both definitions, each with its curve, and the resurrections.
-
-        Returns
-        -------
-        dict
-            Plain values; median in the unit of the measure.
-        """
+        """Both definitions, each with its curve, and the resurrections too."""
         first = self.first_crossing_fit
         return {
-            **self.stripes.summary(),
-            "analysis": "incremental",
+            **super().summary(),
             "definition": self.definitions,
             "first crossing": first and first.summary(),
             "incomplete motions": np.flatnonzero(~self.complete).tolist(),
@@ -221,28 +180,10 @@ def incremental_dynamic_plan(
     tolerance: float = 1e-8,
     **options: Any,
 ) -> tuple[Product, Callable[[Arrays], IncrementalDynamicAnalysis]]:
-    """Return the histories of an incremental analysis, and what makes the analysis of their results.
-
-    Parameters
-    ----------
-    body, motions, levels, restitution, measure, states, tolerance, **options
-        As for `incremental_dynamic_analysis`.
-
-    Returns
-    -------
-    histories : Product
-        What has to be computed, by a campaign for instance.
-    finish : callable
-        Takes the results of all histories, searches between the levels, and returns the `IncrementalDynamicAnalysis`.
-
-    Raises
-    ------
-    InvalidValueError
-        If the coefficients of restitution are drawn at random: crossings would not be defined.
-    """
+    """Return the histories of an incremental dynamic analysis, and what makes it of their results and a search."""
     tolerance = checks.within("tolerance", tolerance, 0.0, 0.1)
     threads = options.pop("threads", None)
-    histories, stripes = multiple_stripe_plan(body, motions, levels, restitution, measure, states, **options)
+    histories, finish_stripes = multiple_stripe_plan(body, motions, levels, restitution, measure, states, **options)
     if histories.law.kind == RANDOM or histories.law.per_history:
         raise InvalidValueError(
             f"restitution must be the same whenever a motion is repeated, got {type(histories.law).__name__}: no level "
@@ -250,8 +191,11 @@ def incremental_dynamic_plan(
         )
 
     def finish(arrays: Arrays) -> IncrementalDynamicAnalysis:
-        found = stripes(arrays)
-        return IncrementalDynamicAnalysis(found, tuple(overturning_intervals(found, tolerance, threads)))
+        stripes = finish_stripes(arrays)
+        return IncrementalDynamicAnalysis(
+            stripes.subject, stripes.states, histories, stripes.responses, stripes.levels,
+            tuple(overturning_intervals(stripes, tolerance, threads)),
+        )  # fmt: skip
 
     return histories, finish
 
@@ -272,25 +216,8 @@ def incremental_dynamic_analysis(
 
     Parameters
     ----------
-    body : Body
-        The body.
-    motions : GroundMotion or Pulse, a sequence of them, or MotionSet
-        All records or all pulses.
-    levels : array_like
-        Levels of the measure, increasing; between neighbours of unlike outcome the boundary is searched, and below
-        the first one down to zero [unit of the measure].
-    restitution : as for `simulate`
-        Model or its name, number, pair by side, or law.
-    measure : str or IntensityMeasure
-        A name of `measures`, or ``sa(period)``; one that grows with the motion.
-    states : sequence of float
-        Rotations over alpha that count as states of their own [-].
-    tolerance : float
-        Width over level to which the boundaries are searched; 0 for the last bit [-].
-    progress : callable, optional
-        Called with the number of histories done since the last call; those of the search are not told.
-    **options
-        ``gravity`` [m/s2], ``engine``, ``threads`` and fields of `Settings`.
+    body, motions, levels, restitution, measure, states, tolerance, progress, **options
+        As for `rocking.fragility`; progress is not told of the histories of the search.
 
     Returns
     -------
@@ -301,10 +228,11 @@ def incremental_dynamic_analysis(
     --------
     >>> import rocking as rk
     >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.5, 0.7)]
-    >>> found = incremental_dynamic_analysis(rk.Block(width=0.4, height=1.6), pulses, [3.0, 6.0, 9.0], restitution=0.9)
-    >>> found.fractions.tolist()  # what overturns at 6 m/s2 need not at 9
+    >>> block = rk.Block(width=0.4, height=1.6)
+    >>> analysis = incremental_dynamic_analysis(block, pulses, [3.0, 6.0, 9.0], restitution=0.9)
+    >>> analysis.fractions.tolist()  # what overturns at 6 m/s2 need not at 9
     [0.0, 1.0, 0.5]
-    >>> [(round(i.start, 3), round(i.end, 3)) for i in found.intervals]
+    >>> [(round(i.start, 3), round(i.end, 3)) for i in analysis.intervals]
     [(4.789, inf), (3.449, 8.667)]
     """
     histories, finish = incremental_dynamic_plan(

@@ -10,7 +10,8 @@ import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.studies.fragility._multiple_stripe_analysis import MultipleStripeAnalysis
-from rocking.studies.fragility.subject import Responses, results_of
+from rocking.studies.fragility.subject import Responses
+from rocking.studies.histories import results_of
 
 Outcomes = Callable[[IntArray, FloatArray], tuple[IntArray, BoolArray]]
 """Takes numbers of motions and levels; returns sides overturned to (0 if none), and which could be computed."""
@@ -24,24 +25,13 @@ FEW = 1000
 
 @dataclass(frozen=True)
 class OverturningInterval:
-    """Levels between which a motion overturns the body.
+    """Levels between which a motion overturns the body."""
 
-    Parameters
-    ----------
-    motion : int
-        Number of the motion.
-    start : float
-        Level at which overturning starts [unit of the measure].
-    end : float
-        Level at which it stops: above it the body stays standing again; infinite if it did up to the last level.
-    start_width, end_width : float
-        Widths of the brackets that hold them [unit of the measure].
-    """
-
-    motion: int
-    start: float
+    motion: int  # number of the motion
+    start: float  # level at which overturning starts [unit of the measure]
+    # level at which it stops: above it the body stays standing again; infinite if it did up to the last level
     end: float
-    start_width: float
+    start_width: float  # start_width, end_width: widths of the brackets that hold them [unit of the measure]
     end_width: float
 
     @property
@@ -72,25 +62,21 @@ class OutcomeBrackets:
         return np.asarray((self.before != 0) & (self.after == 0))
 
     def __len__(self) -> int:
-        """Return how many there are."""
         return int(self.motion.size)
 
     def chosen(self, which: Any) -> "OutcomeBrackets":
-        """Return some of them."""
         return OutcomeBrackets(*(values[which] for values in vars(self).values()))
 
     def joined(self, other: "OutcomeBrackets") -> "OutcomeBrackets":
-        """Return these and others."""
         pairs = zip(vars(self).values(), vars(other).values(), strict=True)
         both = OutcomeBrackets(*(np.concatenate(pair) for pair in pairs))
         return both.chosen(np.lexsort((both.low, both.motion)))
 
 
 def brackets_of(motion: IntArray, levels: FloatArray, sides: IntArray) -> OutcomeBrackets:
-    """Return the pairs of neighbouring levels between which the outcome changes.
+    """Return the pairs of neighbouring levels, increasing along each row, between which the outcome changes.
 
-    levels: levels, increasing along each row [unit of the measure]. Returns by row and level; also those between
-    overturning to one side and to the other.
+    Those between overturning to one side and to the other too.
     """
     row, place = np.nonzero(sides[:, 1:] != sides[:, :-1])
     return OutcomeBrackets(
@@ -99,15 +85,12 @@ def brackets_of(motion: IntArray, levels: FloatArray, sides: IntArray) -> Outcom
 
 
 def refined(brackets: OutcomeBrackets, outcomes: Outcomes, tolerance: float) -> OutcomeBrackets:
-    """Return narrower brackets, all cut at once in every round.
+    """Return narrower brackets, all cut at once in every round, to a width over level [-].
 
     Levels that overturn to the right and levels that overturn to the left are both open sets, so that between two of
     them there is one that leaves the body standing: it is searched for, and splits the bracket. The first round keeps
     every change of outcome that it finds; later ones the lowest in each bracket, so that a fractal boundary cannot make
     their number explode. A bracket within which a history fails stays as it is.
-
-    tolerance: width over level to which they are narrowed [-]. Returns by motion and level; where the body stays
-    standing in less than the tolerance, sides may still meet.
     """
     done = brackets.chosen(slice(0, 0))
     first = True
@@ -167,11 +150,7 @@ def intervals_of(brackets: OutcomeBrackets) -> list[OverturningInterval]:
 
 
 def survivals_of(intervals: Sequence[OverturningInterval], highest: float) -> list[tuple[int, float, float]]:
-    """Return the levels above an overturning one between which the body stays standing.
-
-    highest: highest level that was tried [unit of the measure]. Returns number of the motion, and both ends [unit of
-    the measure].
-    """
+    """Return motion and ends of the levels, above an overturning one, at which the body stays standing."""
     found = []
     for one, after in pairwise([*intervals, None]):
         if one is not None and not one.is_open:
@@ -183,10 +162,7 @@ def survivals_of(intervals: Sequence[OverturningInterval], highest: float) -> li
 def overturning_intervals(
     stripes: MultipleStripeAnalysis, tolerance: float, threads: int | None = None
 ) -> list[OverturningInterval]:
-    """Return all intervals of levels in which motions overturn a body, searched between the levels of stripes.
-
-    tolerance: width over level to which the boundaries are searched [-].
-    """
+    """Return all intervals of levels in which motions overturn a body, searched between those of stripes."""
     subject, responses = stripes.subject, stripes.responses
     motion = np.flatnonzero(responses.good.all(axis=1))
     zero = np.zeros((motion.size, 1))

@@ -12,22 +12,11 @@ from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.dynamics.plane.fast_engine import Arrays
-from rocking.errors import InvalidValueError, extra
+from rocking.errors import InvalidValueError
 from rocking.statistics.least_squares import Regression, regression
 from rocking.statistics.lognormal import LognormalFit, fit_lognormal
-from rocking.studies.fragility.subject import (
-    LimitState,
-    Motions,
-    Progress,
-    Responses,
-    Subject,
-    UpliftCheck,
-    fits_of,
-    limit_states,
-    results_of,
-    uplift_check,
-)
-from rocking.studies.histories import Product
+from rocking.studies.fragility.subject import FragilityAnalysis, Motions, Progress, Responses, Subject, limit_states
+from rocking.studies.histories import Product, results_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,36 +32,19 @@ DEFINITION = (
 
 
 def checked_least(least: float) -> float:
-    """Return the rotation below which a history counts as barely lifted, if it is one.
-
-    least: rotation over alpha, from 0 to below 1 [-]. Returns the same [-].
-    """
+    """Return the rotation over alpha [-] below which a history counts as barely lifted, if it is one."""
     return checks.within("least", least, 0.0, 1.0, open_high=True, hint="a rotation over alpha")
 
 
 def clearly_lifted(responses: Responses, least: float) -> BoolArray:
-    """Return which histories rocked, not barely, and stayed standing.
-
-    least: rotation over alpha below which a history counts as barely lifted [-].
-    """
+    """Return which histories rocked, by at least a rotation over alpha [-], and stayed standing."""
     return np.asarray(responses.rocked & (responses.rotation >= least) & (responses.rotation > 0.0))
-
-
-def barely_lifted(responses: Responses, least: float) -> int:
-    """Return how many histories rocked barely.
-
-    least: rotation over alpha below which a history counts as barely lifted [-].
-    """
-    return int(np.sum(responses.rocked & ~clearly_lifted(responses, least)))
 
 
 class ClearShare:
     """How many of the histories that rocked and stayed standing were clearly lifted, level by level.
 
     A lognormal curve where the outcomes fix one, else their share at all levels.
-
-    levels: level of each history [unit of the measure]; least: rotation over alpha below which a history counts as
-    barely lifted [-].
     """
 
     def __init__(self, levels: FloatArray, responses: Responses, least: float) -> None:
@@ -87,52 +59,42 @@ class ClearShare:
                 self.fit = None
 
     def at(self, levels: FloatArray) -> FloatArray:
-        """Return the share at levels of the measure.
-
-        levels: levels [unit of the measure]. Returns probability that what rocked and stayed standing was clearly
-        lifted [-].
-        """
+        """Return the share at levels of the measure [-]."""
         if self.fit is None or not self.fit.exists:
             return np.full(np.shape(levels), self.share)
         return np.asarray(self.fit.probability(levels))
 
 
 @dataclass(frozen=True, eq=False)
-class CloudAnalysis:
+class CloudAnalysis(FragilityAnalysis):
     """The outcome of a cloud analysis.
 
     Parameters
     ----------
     subject : Subject
         The body, the motions and the measure.
-    motion_levels : ndarray
-        Measure of each motion, with the factor [its unit].
     states : tuple of LimitState
         From rocking to overturned.
     histories : Product
         What was computed: one history a motion.
     responses : Responses
         States and rotations, one entry a motion.
+    motion_levels : ndarray
+        Measure of each motion, with the factor [its unit].
     least : float
         Rotation over alpha below which a history counts as barely lifted, and is left out of the line [-].
     """
 
-    subject: Subject
     motion_levels: FloatArray
-    states: tuple[LimitState, ...]
-    histories: Product
-    responses: Responses
     least: float = LEAST
 
-    @property
-    def definition(self) -> str:
-        """What is meant by the probability of a state."""
-        return DEFINITION
+    kind = "cloud"
+    definition = DEFINITION
 
     @property
-    def failed(self) -> int:
-        """Number of histories that could not be computed; they are left out."""
-        return int((~self.responses.good).sum())
+    def history_levels(self) -> FloatArray:
+        """Level of each history."""
+        return self.motion_levels
 
     @cached_property
     def _sorted(self) -> tuple[FloatArray, IntArray]:
@@ -157,11 +119,6 @@ class CloudAnalysis:
         return np.bincount(self._sorted[1][chosen], minlength=self.levels.size).astype(np.int64)
 
     @cached_property
-    def fits(self) -> dict[str, LognormalFit]:
-        """Lognormal curve of each state from the outcomes alone; none for rocking where a level decides it."""
-        return fits_of(self.subject, self.states, self.motion_levels, self.responses)
-
-    @cached_property
     def regression(self) -> Regression:
         """Straight line of ln(theta/alpha) over ln of the measure, of histories clearly lifted and still standing."""
         rocked = clearly_lifted(self.responses, self.least)
@@ -170,16 +127,11 @@ class CloudAnalysis:
     @property
     def barely_lifted(self) -> int:
         """Number of histories that rocked by less than `least`: they are left out of the line."""
-        return barely_lifted(self.responses, self.least)
+        return int(np.sum(self.responses.rocked & ~clearly_lifted(self.responses, self.least)))
 
     @cached_property
     def _clear_share(self) -> ClearShare:
         return ClearShare(self.motion_levels, self.responses, self.least)
-
-    @cached_property
-    def uplift(self) -> UpliftCheck:
-        """Check of the histories against the threshold of uplift."""
-        return uplift_check(self.subject, self.motion_levels, self.responses)
 
     def probability_of_rocking(self, level: Any) -> FloatArray:
         """Return the probability that the body rocks or overturns.
@@ -251,43 +203,20 @@ class CloudAnalysis:
     @cached_property
     def dataset(self) -> "xr.Dataset":
         """All outcomes with their units, over motion."""
-        xarray = extra("xarray", "a labelled dataset")
         data = {**self.responses.labelled("motion"), "level": ("motion", self.motion_levels, self.subject.label)}
-        more = {"definition": self.definition, "uplift": self.uplift.verdict, "failed": self.failed}
-        more["contact"] = self.responses.contact
-        coords = {"motion_name": ("motion", self.subject.names)}
-        made: xr.Dataset = xarray.Dataset(data, coords=coords, attrs=self.subject.about() | more)
-        return made
+        return self._labelled(data, {}, DEFINITION)
 
-    def summary(self) -> dict[str, Any]:
-        """Return what is printed: the definition, the check, the line and the curves.
-
-        Returns
-        -------
-        dict
-            Plain values; median in the unit of the measure.
-        """
+    def _summary_of_kind(self) -> dict[str, Any]:
+        try:
+            line = self.regression.summary()
+        except InvalidValueError as error:
+            line = {"none": str(error)}
         return {
-            "analysis": "cloud",
-            "definition": self.definition,
-            "measure": self.subject.measure.name,
-            "unit": self.subject.measure.unit,
-            "uplift": self.uplift.verdict,
-            "failed": self.failed,
-            "contact": self.responses.contact,
             "outcomes": {outcome.name.lower(): n for outcome, n in self.responses.counts().items()},
-            "regression": _told(self),
+            "regression": line,
             "least": self.least,
             "barely lifted": self.barely_lifted,
-            "curves": {name: fit.summary() for name, fit in self.fits.items()},
         }
-
-
-def _told(analysis: CloudAnalysis) -> dict[str, Any]:
-    try:
-        return analysis.regression.summary()
-    except InvalidValueError as error:
-        return {"none": str(error)}
 
 
 def cloud_plan(
@@ -301,20 +230,7 @@ def cloud_plan(
     least: float = LEAST,
     **options: Any,
 ) -> tuple[Product, Callable[[Arrays], CloudAnalysis]]:
-    """Return the histories of a cloud analysis, and what makes the analysis of their results.
-
-    Parameters
-    ----------
-    body, motions, restitution, measure, states, factor, least, **options
-        As for `cloud`.
-
-    Returns
-    -------
-    histories : Product
-        What has to be computed, by a campaign for instance.
-    finish : callable
-        Takes the results of all histories and returns the `CloudAnalysis`.
-    """
+    """Return the histories of a cloud analysis, and what makes the analysis of their results."""
     subject = Subject.of(body, motions, restitution, measure, options)
     factor, least = checks.positive("factor", factor), checked_least(least)
     levels = subject.measure.scaled(subject.intensities, factor)
@@ -323,7 +239,7 @@ def cloud_plan(
 
     def finish(arrays: Arrays) -> CloudAnalysis:
         responses = Responses.of(arrays, subject.parameters, (len(subject.motions),))
-        return CloudAnalysis(subject, levels, limits, histories, responses, least)
+        return CloudAnalysis(subject, limits, histories, responses, levels, least)
 
     return histories, finish
 
@@ -344,24 +260,8 @@ def cloud(
 
     Parameters
     ----------
-    body : Body
-        The body.
-    motions : GroundMotion or Pulse, a sequence of them, or MotionSet
-        All records or all pulses.
-    restitution : as for `simulate`
-        Model or its name, number, pair by side, or law.
-    measure : str or IntensityMeasure
-        A name of `measures`, or ``sa(period)``.
-    states : sequence of float
-        Rotations over alpha that count as states of their own [-].
-    factor : float
-        One factor on all motions [-].
-    least : float
-        Rotation over alpha below which a history counts as barely lifted, and is left out of the line [-].
-    progress : callable, optional
-        Called with the number of histories done since the last call.
-    **options
-        ``gravity`` [m/s2], ``engine``, ``threads`` and fields of `Settings`.
+    body, motions, restitution, measure, states, factor, least, progress, **options
+        As for `rocking.fragility`.
 
     Returns
     -------
@@ -372,8 +272,8 @@ def cloud(
     --------
     >>> import rocking as rk
     >>> pulses = [rk.pulses.sine(a, 0.6) for a in (2.0, 2.6, 2.8, 3.0, 3.2, 6.0, 8.0)]
-    >>> found = cloud(rk.Block(width=0.4, height=1.6), pulses)
-    >>> {outcome.name: n for outcome, n in found.responses.counts().items()}
+    >>> analysis = cloud(rk.Block(width=0.4, height=1.6), pulses)
+    >>> {outcome.name: n for outcome, n in analysis.responses.counts().items()}
     {'NO_UPLIFT': 1, 'ROCKED': 4, 'OVERTURNED': 2}
     """
     threads = options.pop("threads", None)

@@ -245,10 +245,7 @@ def model_of(
 
 
 def curve_of(state: str, fit: LognormalFit) -> FragilityCurve | None:
-    """Return a fit as a curve.
-
-    Returns none if the fit has no finite median and dispersion above zero.
-    """
+    """Return a fit as a curve; None if it has no finite median and dispersion above zero."""
     median, dispersion = fit.median, fit.dispersion
     if median is None or dispersion is None or not 0.0 < median < math.inf or not 0.0 < dispersion < math.inf:
         return None
@@ -262,19 +259,13 @@ def curve_of(state: str, fit: LognormalFit) -> FragilityCurve | None:
 def with_evidence(
     curve: FragilityCurve, fit: LognormalFit, levels: FloatArray, bootstrap: int = 0, seed: int = 0
 ) -> FragilityCurve:
-    """Return a curve with its goodness of fit, and with intervals from the bootstrap where they are asked for.
-
-    levels: levels of the band [unit of the measure].
-    """
+    """Return a curve with its goodness of fit, and bootstrap intervals and bands at levels where asked for."""
     repeated = repeated_of(fit, levels, bootstrap, seed) if bootstrap else None
     return replace(curve, agreement=agreement_of(fit, seed), repeated=repeated)
 
 
 def with_common_dispersion(model: FragilityModel) -> FragilityModel:
-    """Return the model with all states fitted again with one dispersion, from its counts.
-
-    Returns the same states with other medians and one dispersion; each curve says so in method and verdict.
-    """
+    """Return the model with all states fitted again with one dispersion, from its counts."""
     missing = [curve.state for curve in model.curves if curve.state not in model.reached]
     if missing:
         raise InvalidValueError(f"counts of all states are needed for one dispersion, got none of {missing[0]!r:.60}")
@@ -286,38 +277,26 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
 
 
 def _common(curve: FragilityCurve, median: float, dispersion: float) -> FragilityCurve:
-    told = (
+    verdict = (
         f"One dispersion was fitted to all states, so that no curves cross; alone this state has median"
         f" {curve.median:.4g}, dispersion {curve.dispersion:.3g}. {curve.verdict}"
     )
-    none: dict[str, Any] = {
-        "median_95": None,
-        "dispersion_95": None,
-        "interval_method": "",
-        "agreement": None,
-        "repeated": None,
-    }
-    return replace(
-        curve, median=median, dispersion=dispersion, method="common-dispersion", verdict=told.strip(), **none
-    )
+    return FragilityCurve(curve.state, median, dispersion, "common-dispersion", verdict.strip())
 
 
 def variables_of(curves: Sequence[FragilityCurve], levels: int, unit: str) -> dict[str, Any]:
-    """Return what is known of curves beside their parameters, over state.
-
-    Returns Dimensions, values and attributes by name; numbers are missing (NaN) where there is none or an end is open.
-    """
+    """Return intervals, goodness of fit and bootstrap of curves, over state; NaN where there is none."""
     told = "95 % interval, missing where it is open, or there is none"
-    found: dict[str, Any] = {}
+    variables: dict[str, Any] = {}
     for name, of in (("median_95", unit), ("dispersion_95", "1")):
-        found[name] = (_BOTH, np.array([ends_of(getattr(curve, name)) for curve in curves]), _told(of, told))
+        variables[name] = (_BOTH, np.array([ends_of(getattr(curve, name)) for curve in curves]), _told(of, told))
     agreements = [curve.agreement or Agreement() for curve in curves]
     for name, words in STATISTICS.items():
         value, p_value = np.array([each.numbers[name] for each in agreements]).T
-        found[name] = ("state", value, _told("1", words))
-        found[f"{name}_p_value"] = ("state", p_value, _told("1", f"p-value: {words}"))
-    found["agreement"] = ("state", np.array([each.words for each in agreements]))
-    return found | (_repeated(curves, levels, unit) if any(curve.repeated for curve in curves) else {})
+        variables[name] = ("state", value, _told("1", words))
+        variables[f"{name}_p_value"] = ("state", p_value, _told("1", f"p-value: {words}"))
+    variables["agreement"] = ("state", np.array([each.words for each in agreements]))
+    return variables | (_repeated(curves, levels, unit) if any(curve.repeated for curve in curves) else {})
 
 
 def _repeated(curves: Sequence[FragilityCurve], levels: int, unit: str) -> dict[str, Any]:
@@ -326,11 +305,7 @@ def _repeated(curves: Sequence[FragilityCurve], levels: int, unit: str) -> dict[
     bands = np.array([one.band_at(levels) for one in each])
     return {
         "median_bootstrap_95": (_BOTH, np.array([ends_of(one.median_95) for one in each]), _told(unit, told)),
-        "dispersion_bootstrap_95": (
-            _BOTH,
-            np.array([ends_of(one.dispersion_95) for one in each]),
-            _told("1", told),
-        ),
+        "dispersion_bootstrap_95": (_BOTH, np.array([ends_of(one.dispersion_95) for one in each]), _told("1", told)),
         "probability_bootstrap_95": (("state", "end", "level"), bands, _told("1", told)),
         "bootstrap": ("state", np.array([one.words for one in each])),
     }
@@ -347,11 +322,7 @@ class Excess:
 
 
 def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Excess | None:
-    """Return where neighbouring curves are most out of order.
-
-    lowest, highest: levels between which they are compared, >= 0 [unit of the measure]. Returns none if no curve is
-    above the one before it.
-    """
+    """Return where neighbouring curves are most out of order between two levels; None if they never are."""
     found = None
     for lesser, worse in zip(model.curves[:-1], model.curves[1:], strict=True):
         with np.errstate(over="ignore", under="ignore"):
@@ -365,10 +336,9 @@ def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Exce
 
 
 def nested(model: FragilityModel, crossing: Crossing = "refuse", highest: float | None = None) -> FragilityModel:
-    """Return curves that may be written: no worse state is likelier than a lesser one.
+    """Return curves that may be written: no worse state is likelier than a lesser one up to the highest level.
 
-    highest: largest level that readers of the file take; `FragilityModel.highest`, if not given [unit of the measure].
-    Returns the model itself if its curves do not cross, or the one with common dispersion if that was asked for.
+    The model itself if its curves do not cross, or the one with common dispersion if that was asked for.
     """
     if check_crossing(crossing) == "common-dispersion":
         return with_common_dispersion(model)

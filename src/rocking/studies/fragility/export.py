@@ -174,10 +174,7 @@ def fema_p58_table(
 
 
 def with_added_dispersion(dispersion: float, *others: float) -> float:
-    """Return the dispersion with others added, as the root of the sum of squares.
-
-    dispersion: dispersion from record to record [-]; *others: of modelling, of construction, and so on [-]. Returns
-    total dispersion [-].
+    """Return the dispersion with others [-], of modelling or construction, added: the root of the sum of squares.
 
     >>> round(with_added_dispersion(0.3, 0.4), 12)
     0.5
@@ -217,22 +214,18 @@ def to_csv(
 
 
 def to_excel(model: FragilityModel, path: Destination, *, crossing: Crossing = "refuse") -> Path:
-    """Write all tables of a model as a workbook, one sheet a table.
+    """Write all tables of a model as a workbook, one sheet a table; words are stored as words, never as formulas.
 
     Parameters
     ----------
-    model : FragilityModel
-        The curves.
-    path : str or path
-        The file.
-    crossing : {"refuse", "common-dispersion"}
-        What to do with curves that cross: the sheet of FEMA P-58 says why they are refused there, or all states get
+    model, path, crossing
+        As for `to_csv`. Where curves cross, the sheet of FEMA P-58 says why they are refused there, or all states get
         one dispersion in it.
 
     Returns
     -------
     Path
-        The file. Words are stored as words, never as formulas.
+        The file.
     """
     target = target_of(path)
     tables_to_excel([(name, _sheet(model, name, crossing)) for name in TABLES], target, model.about)
@@ -253,10 +246,8 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
 
     Parameters
     ----------
-    model : FragilityModel
-        The curves.
-    path : str or path
-        The file.
+    model, path
+        As for `to_csv`.
 
     Returns
     -------
@@ -300,10 +291,8 @@ def to_netcdf(model: FragilityModel, path: Destination) -> Path:
 
     Parameters
     ----------
-    model : FragilityModel
-        The curves.
-    path : str or path
-        The file.
+    model, path
+        As for `to_csv`.
 
     Returns
     -------
@@ -393,9 +382,7 @@ def to_nrml(
 
 
 def intensity_type(measure: str) -> tuple[str, float]:
-    """Return what OpenQuake calls a measure, and the factor from SI to its unit.
-
-    Returns factor: one SI unit in the unit there: g, cm/s, cm, m/s or g s.
+    """Return what OpenQuake calls a measure, and the factor from SI to its unit: g, cm/s, cm, m/s or g s.
 
     >>> intensity_type("pgv")
     ('PGV', 100.0)
@@ -412,10 +399,7 @@ def intensity_type(measure: str) -> tuple[str, float]:
 
 
 def moments_of_lognormal(median: float, dispersion: float) -> tuple[float, float]:
-    """Return mean and standard deviation of a lognormal variable.
-
-    median: its median [any unit]; dispersion: standard deviation of its natural logarithm [-]. Returns of the variable
-    [the same unit].
+    """Return mean and standard deviation of a lognormal variable, in the unit of its median.
 
     >>> mean, deviation = moments_of_lognormal(1.0, 0.5)
     >>> round(mean, 6), round(deviation, 6)

@@ -14,7 +14,8 @@ from rocking.motions.intensity import measure
 from rocking.statistics.least_squares import Regression, regression
 from rocking.studies.fragility.cloud_analysis import LEAST, CloudAnalysis, checked_least, clearly_lifted
 from rocking.studies.fragility.curves import curve_of
-from rocking.studies.fragility.subject import Progress, check_progress, fits_of
+from rocking.studies.fragility.subject import Progress, fits_of
+from rocking.studies.histories import check_progress
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,46 +28,24 @@ DEFAULT_MEASURES = (
 
 @dataclass(frozen=True)
 class MeasureScore:
-    """How well one measure predicts rocking and overturning.
+    """How well one measure predicts rocking and overturning."""
 
-    Parameters
-    ----------
-    measure, unit : str
-        Name and unit of the measure.
-    efficiency : float
-        Standard deviation of ln(theta/alpha) about its line over the ln of the measure, of histories that rocked and
-        stayed standing: the less, the fewer motions are needed [-].
-    slope : float
-        Slope of that line [-].
-    proficiency : float
-        Efficiency over the size of the slope: the uncertainty of the measure that does the same [-].
-    determination : float
-        R squared of that line [-].
-    overturning_dispersion : float
-        Dispersion of the lognormal curve of overturning; NaN if there is none [-].
-    overturning_verdict : str
-        What can be said of that curve.
-    sufficiency : dict of str to float
-        For each column of the metadata the p-value of a slope of the residuals over it: a small one says that the
-        measure leaves out what the column knows [-].
-    rocked, overturned : int
-        Histories that the line and the curve rest on.
-    barely_lifted : int
-        Histories that rocked too little for the line, and were left out of it.
-    """
-
-    measure: str
+    measure: str  # measure, unit: name and unit of the measure
     unit: str
+    # standard deviation of ln(theta/alpha) about its line over the ln of the measure, of histories that rocked and
+    # stayed standing: the less, the fewer motions are needed [-]
     efficiency: float
-    slope: float
-    proficiency: float
-    determination: float
-    overturning_dispersion: float
-    overturning_verdict: str
+    slope: float  # slope of that line [-]
+    proficiency: float  # efficiency over the size of the slope: the uncertainty of the measure that does the same [-]
+    determination: float  # R squared of that line [-]
+    overturning_dispersion: float  # dispersion of the lognormal curve of overturning; NaN if there is none [-]
+    overturning_verdict: str  # what can be said of that curve
+    # for each column of the metadata the p-value of a slope of the residuals over it: a small one says that the
+    # measure leaves out what the column knows [-]
     sufficiency: Mapping[str, float]
-    rocked: int
+    rocked: int  # rocked, overturned: histories that the line and the curve rest on
     overturned: int
-    barely_lifted: int = 0
+    barely_lifted: int = 0  # histories that rocked too little for the line, and were left out of it
 
 
 @dataclass(frozen=True)
@@ -107,12 +86,12 @@ class MeasureComparison:
         return made
 
     def to_dataframe(self) -> "pd.DataFrame":
-        """Return the table.
+        """Return the table, one row a measure, by rank.
 
         Returns
         -------
         pandas.DataFrame
-            One row a measure, by rank.
+            The fields of `MeasureScore`.
         """
         frame: pd.DataFrame = extra("pandas", "a table").DataFrame(self.rows()).set_index("rank")
         return frame
@@ -189,10 +168,7 @@ def compare_measures(
 
 
 def replace_measure(analysis: CloudAnalysis, name: Any) -> CloudAnalysis:
-    """Return the same histories against another measure.
-
-    Returns nothing is computed again but the measure and what is fitted to it.
-    """
+    """Return the same histories against another measure: it alone is computed again, and what is fitted to it."""
     subject = replace(analysis.subject, measure=measure(name))
     factor = float(np.asarray(analysis.histories.scales).ravel()[0])
     return replace(analysis, subject=subject, motion_levels=subject.measure.scaled(subject.intensities, factor))

@@ -1,10 +1,15 @@
-"""One body under a set of motions: what all fragility analyses ask about."""
+"""What all fragility analyses share: a body under motions, limit states read from its responses, and their curves.
+
+No rocking, rocking beyond a level, overturned. Whether a body rocks at all is certain once PGA is known: that is a
+check of the histories, not a curve.
+"""
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -13,19 +18,22 @@ from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.dynamics.loss_of_contact import contact_words, lost_contact
 from rocking.dynamics.parameters import RockingParameters
-from rocking.dynamics.plane.batch import PIECE, SIDES
-from rocking.dynamics.plane.fast_engine import Arrays, empty_results
+from rocking.dynamics.plane.batch import SIDES
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings, settings_of
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, extra
 from rocking.motions.intensity import IntensityMeasure, RockingScale, measure
 from rocking.outcome import Outcome, of_results, overturned
 from rocking.quantities import attributes
 from rocking.statistics.counts import pooled
 from rocking.statistics.lognormal import LognormalFit, fit_counts
-from rocking.studies.histories import Histories, HistoryTable, Product
+from rocking.studies.histories import HistoryTable, Product
 from rocking.studies.motion_sets import MotionList, MotionSet, digest
 from rocking.version import SOFTWARE
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Motions = MotionSet | Motion | Sequence[Motion]
 Progress = Callable[[int], None] | None
@@ -43,16 +51,13 @@ class Subject:
 
     @classmethod
     def of(cls, body: Body, motions: Motions, restitution: Any, measure_name: Any, options: dict[str, Any]) -> Self:
-        """Return the subject of an analysis.
-
-        options: ``gravity`` [m/s2], ``engine`` and other fields of `Settings`.
-        """
+        """Return the subject of an analysis; options: gravity [m/s2], engine and other fields of `Settings`."""
         rest = dict(options)
         engine = rest.pop("engine", "auto")
         settings = settings_of(rest.pop("gravity", conventions.g), rest)
         parameters = RockingParameters.of_body(body, restitution, settings.gravity)
-        given = motions if isinstance(motions, MotionSet) else MotionList(motions)
-        return cls(parameters, given, measure(measure_name), settings, engine)
+        all_motions = motions if isinstance(motions, MotionSet) else MotionList(motions)
+        return cls(parameters, all_motions, measure(measure_name), settings, engine)
 
     @cached_property
     def scale(self) -> RockingScale:
@@ -69,7 +74,7 @@ class Subject:
 
     @cached_property
     def uplift_threshold(self) -> float | None:
-        """Level of the measure above which every motion lifts the body, and below which none does, if there is one.
+        """Level above which every motion lifts the body, and below which none does; None if the measure has none.
 
         There is one for PGA, absolute or normalised, of a body with equal sides under horizontal motions.
         """
@@ -83,13 +88,13 @@ class Subject:
     @cached_property
     def names(self) -> list[str]:
         """Names of the motions."""
-        found, horizontal = [], True
+        names, horizontal = [], True
         for k in self._all:
             motion = self.motions[k]
-            found.append(motion.name)
+            names.append(motion.name)
             horizontal &= getattr(motion, "vertical", None) is None
         self.__dict__.setdefault("_are_horizontal", horizontal)  # no motion is made twice for both
-        return found
+        return names
 
     @cached_property
     def _are_horizontal(self) -> bool:
@@ -102,15 +107,13 @@ class Subject:
 
     @cached_property
     def clusters(self) -> IntArray:
-        """Number of the first motion that is the same as each motion, sample by sample.
-
-        Only motions of equal intensity are compared: to make all those of a large set once more would take long.
-        """
+        """Number of the first motion that is the same as each motion, sample by sample."""
+        # only motions of equal intensity are compared: to make all those of a large set once more would take long
         _, group, size = np.unique(self.intensities, return_inverse=True, return_counts=True)
-        found, first = np.arange(len(self.motions)), dict[str, int]()
+        clusters, first = np.arange(len(self.motions)), dict[str, int]()
         for k in np.flatnonzero(size[group] > 1).tolist():
-            found[k] = first.setdefault(digest(self.motions[k]), k)
-        return found
+            clusters[k] = first.setdefault(digest(self.motions[k]), k)
+        return clusters
 
     @property
     def label(self) -> dict[str, str]:
@@ -127,20 +130,14 @@ class Subject:
         }
 
     def product(self, factors: FloatArray) -> Product:
-        """Return the histories of every motion with factors.
-
-        factors: factors on the motions [-].
-        """
+        """Return the histories of every motion with factors [-]."""
         sides = {name: np.array([[value]]) for name, value in self._sides.items()}
         return Product(
             self.motions, sides, factors, law=self.parameters.law, settings=self.settings, engine=self.engine
         )
 
     def table(self, motion: np.ndarray, factors: FloatArray) -> HistoryTable:
-        """Return histories given one by one.
-
-        factors: factor on it [-].
-        """
+        """Return histories one by one: numbers of motions, and the factor on each [-]."""
         values = {name: np.array([value]) for name, value in self._sides.items()}
         return HistoryTable(
             self.motions, motion, values | {"scale": factors},
@@ -148,93 +145,45 @@ class Subject:
         )  # fmt: skip
 
     def about(self) -> dict[str, Any]:
-        """Return what was asked about, as plain values for the attributes of a file."""
-        sides = {f"body_{name}": value for name, value in self._sides.items()}
+        """Return body, measure, restitution and settings as plain values, for the attributes of a file."""
         return {
             "software": SOFTWARE,
             "measure": self.measure.name,
             "measure_words": self.measure.words,
             "measure_unit": self.measure.unit,
             "restitution": self.parameters.label,
-            **sides,
+            **{f"body_{name}": value for name, value in self._sides.items()},
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in self.settings.stated.items()},
         }
 
 
-def checked_levels(name: str, given: Any, unit: str) -> FloatArray:
-    """Return levels of a measure if they are above zero and increase.
-
-    given: the levels [unit of the measure].
-    """
-    levels = np.atleast_1d(checks.positive_array(name, given, unit)).copy()
+def checked_levels(name: str, values: Any, unit: str) -> FloatArray:
+    """Return levels of a measure [its unit] if they are above zero and increase."""
+    levels = np.atleast_1d(checks.positive_array(name, values, unit)).copy()
     if levels.ndim != 1 or not levels.size or np.any(np.diff(levels) <= 0.0):
-        raise InvalidValueError(f"{name} must be numbers [{unit}], each above the one before, got {given!r:.60}")
+        raise InvalidValueError(f"{name} must be numbers [{unit}], each above the one before, got {values!r:.60}")
     return levels
-
-
-def results_of(histories: Histories, *, threads: int | None = None, progress: Progress = None) -> Arrays:
-    """Return the results of all histories, computed piece by piece."""
-    check_progress(progress)
-    results = empty_results(histories.count)
-    for first in range(0, histories.count, PIECE):
-        last = min(first + PIECE, histories.count)
-        for name, values in histories.run(first, last, threads=threads).items():
-            results[name][first:last] = values
-        if progress is not None:
-            progress(last - first)
-    return results
-
-
-def check_progress(progress: Any) -> None:
-    """Refuse what cannot be told how far the work is."""
-    if progress is not None and not callable(progress):
-        raise InvalidValueError(f"progress must be a function of the histories done, or None, got {progress!r:.60}")
 
 
 @dataclass(frozen=True)
 class LimitState:
-    """A state that a history reaches or does not; one that reaches a state has reached all before it.
+    """A state that a history reaches or does not; one that reaches a state has reached all before it."""
 
-    Parameters
-    ----------
-    name : str
-        ``rocking``, ``rotation > 0.5 alpha`` or ``overturned``.
-    level : float
-        Rotation over alpha that must be exceeded: 0 for rocking at all, infinite for overturning [-].
-    """
-
-    name: str
-    level: float
+    name: str  # ``rocking``, ``rotation > 0.5 alpha`` or ``overturned``
+    level: float  # rotation over alpha to be exceeded: 0 for rocking at all, infinite for overturning [-]
 
 
 def limit_states(levels: Sequence[float] = (0.5,)) -> tuple[LimitState, ...]:
-    """Return the limit states: rocking, rotations beyond levels, overturned.
+    """Return rocking, rotations beyond levels (over alpha, increasing [-]), overturned.
 
-    Parameters
-    ----------
-    levels : sequence of float
-        Rotations over alpha, above zero, each above the one before [-].
-
-    Returns
-    -------
-    tuple of LimitState
-        From the least to the worst.
-
-    Raises
-    ------
-    InvalidValueError
-        If a level is not a finite number above zero, or they do not increase.
-
-    Examples
-    --------
     >>> [state.name for state in limit_states((0.2, 0.5))]
     ['rocking', 'rotation > 0.2 alpha', 'rotation > 0.5 alpha', 'overturned']
     """
-    given = np.atleast_1d(np.asarray(levels))
-    wanted = checks.positive_array("states", given) if given.size else np.empty(0)
-    if wanted.ndim != 1 or np.any(np.diff(wanted) <= 0.0):
+    rotations = np.atleast_1d(np.asarray(levels))
+    rotations = checks.positive_array("states", rotations) if rotations.size else np.empty(0)
+    if rotations.ndim != 1 or np.any(np.diff(rotations) <= 0.0):
         raise InvalidValueError(f"states must be rotations over alpha, each above the one before, got {levels!r:.60}")
-    between = [LimitState(f"rotation > {level:.6g} alpha", float(level)) for level in wanted]
+    between = [LimitState(f"rotation > {level:.6g} alpha", float(level)) for level in rotations]
     return LimitState("rocking", 0.0), *between, LimitState("overturned", math.inf)
 
 
@@ -251,10 +200,7 @@ class Responses:
 
     @classmethod
     def of(cls, arrays: Arrays, parameters: Any, shape: tuple[int, ...]) -> "Responses":
-        """Return the responses of one body from results.
-
-        Returns of that shape.
-        """
+        """Return the responses of one body from results, in a shape."""
         missing = {"outcome", "peak_rotation"} - set(arrays)
         sizes = {np.size(arrays[name]) for name in ("outcome", "peak_rotation") if name in arrays}
         if missing or sizes != {math.prod(shape)}:
@@ -293,10 +239,7 @@ class Responses:
         return overturned(self.outcome)
 
     def exceed(self, state: LimitState) -> FloatArray:
-        """Return which histories reached a limit state; no result is neither.
-
-        Returns 1 for those that did, 0 for those that did not, NaN for those without a result [-].
-        """
+        """Return 1 for histories that reached a limit state, 0 for those that did not, NaN without a result [-]."""
         if state.level == 0.0:
             return of_results(self.outcome, self.rocked | (self.overturned == 1.0))
         if math.isinf(state.level):
@@ -306,31 +249,24 @@ class Responses:
 
     def labelled(self, dimensions: Any) -> dict[str, Any]:
         """Return outcome and rotation as variables of a labelled dataset."""
-        told = "largest rotation over alpha; infinite if overturned, NaN if the history failed"
-        made: dict[str, Any] = {
+        meaning = "largest rotation over alpha; infinite if overturned, NaN if the history failed"
+        variables: dict[str, Any] = {
             "outcome": (dimensions, self.outcome, attributes("outcome")),
-            "rotation": (dimensions, self.rotation, {"units": "1", "long_name": told}),
+            "rotation": (dimensions, self.rotation, {"units": "1", "long_name": meaning}),
         }
         if self.lost is not None:
-            made["lost_contact"] = (dimensions, self.lost, attributes("lost_contact"))
-        return made
+            variables["lost_contact"] = (dimensions, self.lost, attributes("lost_contact"))
+        return variables
 
     def counts(self) -> dict[Outcome, int]:
-        """Return how many histories ended in which way.
-
-        Returns not lifted, rocked and stayed standing, overturned; those without a result are in none.
-        """
+        """Return how many were not lifted, rocked, overturned; those without a result are in none."""
         outcomes = Outcome.NO_UPLIFT, Outcome.ROCKED, Outcome.OVERTURNED
         return {outcome: int((self.outcome == outcome.code).sum()) for outcome in outcomes}
 
 
 @dataclass(frozen=True)
 class UpliftCheck:
-    """Whether the histories rocked exactly where rocking is known beforehand.
-
-    A body with equal sides under horizontal motions rocks if and only if PGA exceeds g tan(alpha): that is no matter of
-    probability, and no curve is fitted to it.
-    """
+    """Whether the histories rocked exactly where rocking is known beforehand: above PGA = g tan(alpha), never below."""
 
     # level of the measure that lifts the body [unit of the measure]; None if no level of this measure decides
     threshold: float | None
@@ -349,10 +285,7 @@ class UpliftCheck:
 
 
 def uplift_check(subject: Subject, levels: FloatArray, responses: Responses) -> UpliftCheck:
-    """Compare which histories rocked with the threshold of uplift.
-
-    levels: level of the measure of each history [its unit].
-    """
+    """Compare which histories rocked, each at its level [unit of the measure], with the threshold of uplift."""
     threshold = subject.uplift_threshold
     if threshold is None:
         return UpliftCheck(None, 0, 0)
@@ -364,11 +297,73 @@ def uplift_check(subject: Subject, levels: FloatArray, responses: Responses) -> 
 def fits_of(
     subject: Subject, states: Sequence[LimitState], levels: FloatArray, responses: Responses
 ) -> dict[str, LognormalFit]:
-    """Return the lognormal curve of each state.
-
-    levels: level of the measure of each history [its unit].
-    """
-    wanted = [state for state in states if state.level > 0.0 or subject.uplift_threshold is None]
-    reached = [responses.exceed(state) == 1.0 for state in wanted]
+    """Return the lognormal curve of each state, of histories at levels [unit of the measure]."""
+    uncertain = [state for state in states if state.level > 0.0 or subject.uplift_threshold is None]
+    reached = [responses.exceed(state) == 1.0 for state in uncertain]
     counts = pooled(levels, responses.good, reached, subject.clusters)
-    return {state.name: fit_counts(each) for state, each in zip(wanted, counts, strict=True)}
+    return {state.name: fit_counts(each) for state, each in zip(uncertain, counts, strict=True)}
+
+
+@dataclass(frozen=True, eq=False)
+class FragilityAnalysis(ABC):
+    """What every fragility analysis has: histories of one subject, the states that they reached, and their curves."""
+
+    subject: Subject
+    states: tuple[LimitState, ...]  # from rocking to overturned
+    histories: Product  # what was computed
+    responses: Responses
+
+    kind: ClassVar[str]
+    definition: ClassVar[str]
+
+    @property
+    @abstractmethod
+    def history_levels(self) -> FloatArray:
+        """Level of each history, in the shape of the responses [unit of the measure]."""
+
+    @property
+    def failed(self) -> int:
+        """Number of histories that could not be computed; they count nowhere."""
+        return int((~self.responses.good).sum())
+
+    @cached_property
+    def fits(self) -> dict[str, LognormalFit]:
+        """Lognormal curve of each state from the outcomes; none for rocking where a level decides it."""
+        return fits_of(self.subject, self.states, self.history_levels, self.responses)
+
+    @cached_property
+    def uplift(self) -> UpliftCheck:
+        """Check of the histories against the threshold of uplift."""
+        return uplift_check(self.subject, self.history_levels, self.responses)
+
+    def _labelled(self, data: dict[str, Any], coordinates: dict[str, Any], definition: str) -> "xr.Dataset":
+        xarray = extra("xarray", "a labelled dataset")
+        about = self.subject.about() | {"definition": definition, "uplift": self.uplift.verdict, "failed": self.failed}
+        names = {"motion_name": ("motion", self.subject.names)}
+        labelled: xr.Dataset = xarray.Dataset(
+            data, coords=coordinates | names, attrs=about | {"contact": self.responses.contact}
+        )
+        return labelled
+
+    def summary(self) -> dict[str, Any]:
+        """Return what is printed, as plain values: the definition, the check and the curves.
+
+        Returns
+        -------
+        dict
+            Medians in the unit of the measure.
+        """
+        return {
+            "analysis": self.kind,
+            "definition": self.definition,
+            "measure": self.subject.measure.name,
+            "unit": self.subject.measure.unit,
+            "uplift": self.uplift.verdict,
+            "failed": self.failed,
+            "contact": self.responses.contact,
+            **self._summary_of_kind(),
+            "curves": {name: fit.summary() for name, fit in self.fits.items()},
+        }
+
+    def _summary_of_kind(self) -> dict[str, Any]:
+        return {}

@@ -16,9 +16,10 @@ from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome
+from rocking.statistics.counts import share_interval
 from rocking.studies.histories import Product
 from rocking.studies.inventory.hazard import Hazard
-from rocking.studies.inventory.lights import Light, Thresholds, share_interval
+from rocking.studies.inventory.lights import Light, Thresholds
 from rocking.studies.inventory.objects import DIRECTIONS, Direction, InventoryObject, NotAssessed
 from rocking.studies.inventory.reading import Inventory
 from rocking.studies.motion_sets import MotionList
@@ -26,33 +27,22 @@ from rocking.studies.motion_sets import MotionList
 
 @dataclass(frozen=True)
 class DirectionResult:
-    """How an object fares in one direction with one model of impact.
+    """How an object fares in one direction with one model of impact."""
 
-    Parameters
-    ----------
-    direction : {"width", "depth"}
-        The direction.
-    uplift_acceleration : float
-        Horizontal acceleration below which it stays still, ``g b / h`` [m/s2].
-    count, lifted, overturned, failed : int
-        Motions that were computed, that lift it, that overturn it; and those that could not be computed [-].
-    median_rotation, high_rotation : float or None
-        Median and 84 % quantile of the peak rotation over the slenderness angle [-]; None if it overturns there.
-    light : Light
-        What this direction alone would show.
-    lost_contact : int
-        Motions of the computed ones in which the ground would have to pull: their verdicts assume contact [-].
-    """
-
-    direction: Direction
-    uplift_acceleration: float
+    direction: Direction  # the direction
+    uplift_acceleration: float  # horizontal acceleration below which it stays still, ``g b / h`` [m/s2]
+    # count, lifted, overturned, failed: motions that were computed, that lift it, that overturn it; and those that
+    # could not be computed [-]
     count: int
     lifted: int
     overturned: int
     failed: int
+    # median_rotation, high_rotation: median and 84 % quantile of the peak rotation over the slenderness angle [-];
+    # None if it overturns there
     median_rotation: float | None
     high_rotation: float | None
-    light: Light
+    light: Light  # what this direction alone would show
+    # motions of the computed ones in which the ground would have to pull: their verdicts assume contact [-]
     lost_contact: int = 0
 
     @property
@@ -74,24 +64,12 @@ class DirectionResult:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What is said of an object.
+    """What is said of an object."""
 
-    Parameters
-    ----------
-    item : InventoryObject
-        The object.
-    results : tuple of DirectionResult
-        One for each direction, by the model of impact that was asked for.
-    compared : tuple of DirectionResult
-        The same by the other model.
-    interval : tuple of float
-        Interval of the share that overturns in the worse direction [-].
-    """
-
-    item: InventoryObject
-    results: tuple[DirectionResult, ...]
-    compared: tuple[DirectionResult, ...]
-    interval: tuple[float, float]
+    item: InventoryObject  # the object
+    results: tuple[DirectionResult, ...]  # one for each direction, by the model of impact that was asked for
+    compared: tuple[DirectionResult, ...]  # the same by the other model
+    interval: tuple[float, float]  # interval of the share that overturns in the worse direction [-]
 
     @property
     def worse(self) -> DirectionResult:
@@ -243,10 +221,9 @@ def assessment_plan(
     thresholds: Thresholds | None = None,
     gravity: float = g,
 ) -> tuple[Product, Callable[[Arrays], Assessment], tuple[InventoryObject, ...]]:
-    """Return the histories of an assessment, and what makes it of their results: for campaigns.
+    """Return the histories of an assessment, what makes it of their results, and the objects, for campaigns.
 
-    gravity: acceleration of gravity [m/s2]. Returns histories: over motion, object and direction, one scale, and the
-    two models of impact; finish: takes the outcome and the peak_rotation of all histories; returns what `assess` does.
+    The histories are over motion, object and direction, one scale, and the two models of impact.
     """
     asked = _Asked.of(inventory, hazard, restitution, thresholds, gravity)
     bodies = asked.bodies(asked.inventory.objects)

@@ -37,11 +37,6 @@ class IntensityLevel:
     value : float
         The level [m/s2 or m/s].
 
-    Raises
-    ------
-    InvalidValueError
-        If it is not one finite number above zero, or another kind.
-
     Examples
     --------
     >>> IntensityLevel.of("PGA", "0.3g").value, str(IntensityLevel.of("PGV", "25 cm/s"))
@@ -67,7 +62,7 @@ class IntensityLevel:
 
     @classmethod
     def of(cls, kind: str, words: str) -> "IntensityLevel":
-        """Return a level from a number with its unit.
+        """Return a level from a number with its unit, which is never guessed.
 
         Parameters
         ----------
@@ -80,11 +75,6 @@ class IntensityLevel:
         -------
         IntensityLevel
             The level.
-
-        Raises
-        ------
-        InvalidValueError
-            If there is no number or no unit: units are never guessed.
         """
         if kind not in {"PGA", "PGV"}:
             raise InvalidValueError(f"a level is a PGA or a PGV, got {kind!r:.40}")
@@ -144,10 +134,8 @@ class Hazard:
             The family.
         level : IntensityLevel
             To what each motion is scaled; the families do not say how strong the shaking is.
-        count : int
-            How many motions [-].
-        seed : int
-            Seed of the set [-].
+        count, seed : int
+            How many motions, and the seed of the set [-].
         progress : callable, optional
             Told how many motions have been made since it was last called.
 
@@ -169,24 +157,19 @@ class Hazard:
 
     @classmethod
     def of_records(cls, records: Sequence[GroundMotion], level: IntensityLevel | None = None) -> "Hazard":
-        """Return records, scaled if a level is given.
+        """Return records, each scaled with its vertical component if a level is given.
 
         Parameters
         ----------
         records : sequence of GroundMotion
             The records.
         level : IntensityLevel, optional
-            To what each is scaled, with its vertical component; as they are if not given.
+            To what each is scaled; as they are if not given.
 
         Returns
         -------
         Hazard
             The motions.
-
-        Raises
-        ------
-        InvalidValueError
-            If there is none, too many, or one cannot be scaled.
         """
         found = [checked_motion(record, f"records[{k}]") for k, record in enumerate(records)]
         if not 1 <= len(found) <= MOST_MOTIONS:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from rocking import checks
-from rocking.errors import InvalidValueError
+from rocking.statistics.counts import share_interval
 
 # 0.07 * 100 is 7.000000000000001: seven of a hundred must reach it
 _ROUNDING = 1e-9
@@ -122,48 +122,7 @@ class Thresholds:
 def percent(share: float) -> str:
     """Return a share in percent, unrounded: a threshold of 0.5 % is not one of 0 %, nor 99.999 % all.
 
-    share: the share [-]. Returns as many digits as it has, at most ten.
-
     >>> percent(0.005), percent(0.95), percent(0.07)
     ('0.5%', '95%', '7%')
     """
     return f"{100.0 * share:.10g}%"
-
-
-def share_interval(hits: int, count: int, level: float = 0.95) -> tuple[float, float]:
-    """Return the interval of Clopper and Pearson (1934) for a share.
-
-    It covers the true share at least as often as its level says, for any number of trials.
-
-    Parameters
-    ----------
-    hits, count : int
-        How many of how many [-].
-    level : float
-        Confidence, equal tails [-].
-
-    Returns
-    -------
-    tuple of float
-        Lower and upper end [-].
-
-    Raises
-    ------
-    InvalidValueError
-        If there are no trials or more hits than trials.
-
-    Examples
-    --------
-    >>> low, high = share_interval(0, 100)
-    >>> low, round(high, 6), round(1.0 - 0.025 ** (1 / 100), 6)
-    (0.0, 0.036217, 0.036217)
-    """
-    from scipy.special import betaincinv
-
-    level = checks.within("level", level, 0.0, 1.0, open_low=True, open_high=True)
-    if not 0 <= hits <= count or count < 1:
-        raise InvalidValueError(f"hits must be in [0, count] with a count of at least 1, got {hits} of {count}")
-    tail = 0.5 * (1.0 - level)
-    low = 0.0 if hits == 0 else float(betaincinv(hits, count - hits + 1, tail))
-    high = 1.0 if hits == count else float(betaincinv(hits + 1, count - hits, 1.0 - tail))  # Eq. 186
-    return low, high

@@ -106,7 +106,7 @@ class InventoryObject:
         return self._size(direction) if found is None else found
 
     def uplift_acceleration(self, direction: Direction, gravity: float = g) -> float:
-        """Return the horizontal acceleration of the ground below which the object stays still.
+        """Return the ground acceleration ``g b / h`` below which the object stays still, with half the base.
 
         Parameters
         ----------
@@ -118,7 +118,7 @@ class InventoryObject:
         Returns
         -------
         float
-            ``g b / h`` with half the base and the height of the centre [m/s2].
+            The acceleration [m/s2].
         """
         height = 0.5 * self.height if self.centre_of_mass_height is None else self.centre_of_mass_height
         return gravity * 0.5 * self.base(direction) / height
@@ -188,21 +188,11 @@ class InventoryObject:
 
 @dataclass(frozen=True)
 class NotAssessed:
-    """A row that could not be assessed.
+    """A row that could not be assessed."""
 
-    Parameters
-    ----------
-    row : int
-        Line of the file [-].
-    name : str
-        What the row says the object is called, possibly nothing.
-    reason : str
-        Why not, in one sentence.
-    """
-
-    row: int
-    name: str
-    reason: str
+    row: int  # line of the file [-]
+    name: str  # what the row says the object is called, possibly nothing
+    reason: str  # why not, in one sentence
 
 
 def _length(name: str, value: float) -> float:

@@ -45,9 +45,7 @@ class InventoryColumn:
 
 
 def columns_of(titles: Sequence[str], source: str) -> tuple[list[InventoryColumn | None], tuple[str, ...]]:
-    """Return what the columns of a file hold.
-
-    Returns columns: none for one that is not read; ignored: names of those that are not read.
+    """Return what the columns of a file hold, None for one that is not read; and the names of these.
 
     >>> columns, ignored = columns_of(["name", "base_cm", "room"], "list.csv")
     >>> columns[1].fields, ignored
@@ -63,10 +61,7 @@ def columns_of(titles: Sequence[str], source: str) -> tuple[list[InventoryColumn
 
 
 def has_required(titles: Sequence[str]) -> bool:
-    """Return whether names are those of an inventory.
-
-    Returns whether none that is needed is missing; units are not looked at.
-    """
+    """Return whether the names hold all columns that an inventory must have; units are not looked at."""
     stems = {_split(title)[0] for title in titles}
     return all(each in stems for each in REQUIRED)
 
@@ -137,10 +132,7 @@ class DecimalMark:
         self.commas, self.points, self.comma_delimited = "," in found, "." in found, comma_delimited
 
     def number(self, name: str, cell: str) -> float:
-        """Return the number in a cell.
-
-        Returns the number, in the unit of the column.
-        """
+        """Return the number in a cell, in the unit of the column."""
         text = cell.strip()
         match = _NUMBER.fullmatch(text)
         if not match:

@@ -19,11 +19,7 @@ HEADER = (
 
 
 def rows(assessment: Assessment) -> list[list[str | float | int]]:
-    """Return the table, the worst object first and rows without a verdict at the end.
-
-    Returns one row an object, in the order of `HEADER`; text that a spreadsheet would take for a formula has an
-    apostrophe before it.
-    """
+    """Return one row an object, by `HEADER`, the worst first, those without a verdict last; formulas are escaped."""
     lines: list[list[str | float | int]] = []
     for rank, verdict in enumerate(assessment.verdicts, start=1):
         worse, item, (low, high) = verdict.worse, verdict.item, verdict.interval
@@ -43,10 +39,7 @@ def rows(assessment: Assessment) -> list[list[str | float | int]]:
 
 
 def as_csv(assessment: Assessment) -> str:
-    """Return the table as CSV.
-
-    Returns Commas, points before decimals, one line an object; a last line if columns of the list were not read.
-    """
+    """Return the table as CSV; its last line names the columns of the list that were not read, if any."""
     text = io.StringIO(newline="")
     writer = csv.writer(text)
     writer.writerow(HEADER)
@@ -62,10 +55,7 @@ def as_csv(assessment: Assessment) -> str:
 
 
 def as_plain(assessment: Assessment) -> dict[str, Any]:
-    """Return everything as plain values, for JSON.
-
-    Returns SI units, named in the keys; text as it was typed.
-    """
+    """Return everything as plain values, for JSON: SI units, named in the keys; text as it was typed."""
     hazard, limits = assessment.hazard, assessment.thresholds
     low, high = hazard.velocity()
     return {
@@ -184,10 +174,7 @@ def advice(verdict: Verdict, assessment: Assessment) -> str:
 
 
 def model_note(verdict: Verdict, assessment: Assessment) -> str:
-    """Return whether the model of impact decides.
-
-    Returns one sentence, empty if both models show the same light.
-    """
+    """Return whether the model of impact decides, as a sentence; empty if both models show the same light."""
     if not verdict.model_decides:
         return ""
     other = verdict.worse_compared
@@ -196,17 +183,12 @@ def model_note(verdict: Verdict, assessment: Assessment) -> str:
 
 
 def rotation_words(value: float | None) -> str:
-    """Return a peak rotation in words.
-
-    value: over the slenderness angle, None if the object overturns [-].
-    """
+    """Return a peak rotation over the slenderness angle in words; None overturns."""
     return "overturns" if value is None else f"{value:.2f}"
 
 
 def rounded_down(value: float, digits: int) -> str:
-    """Return a limit that stays true in print.
-
-    digits: decimals [-]. Returns the largest number of so many decimals that is not above it, but for rounding.
+    """Return a limit with so many decimals that stays true in print: not above it, but for rounding.
 
     >>> rounded_down(0.1299, 2), rounded_down(0.3, 2)
     ('0.12', '0.30')

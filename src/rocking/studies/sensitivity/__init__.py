@@ -1,6 +1,5 @@
-"""How the choice of a restitution changes a study: maps, spectra and fragility, with the verdicts that flip."""
+"""How the restitution changes a study: maps, spectra and fragility, with the verdicts that flip."""
 
-from rocking.studies.sensitivity.changes import Change, CurveChange, Flips
 from rocking.studies.sensitivity.comparison import (
     Sensitivity,
     fragility_sensitivity,
@@ -8,13 +7,9 @@ from rocking.studies.sensitivity.comparison import (
     sensitivity,
     spectrum_sensitivity,
 )
-from rocking.studies.sensitivity.restitutions import SampledHistories, SampledRestitution
+from rocking.studies.sensitivity.restitutions import SampledRestitution
 
 __all__ = [
-    "Change",
-    "CurveChange",
-    "Flips",
-    "SampledHistories",
     "SampledRestitution",
     "Sensitivity",
     "fragility_sensitivity",

@@ -10,6 +10,7 @@ from rocking import checks
 from rocking.conventions import FloatArray, percent
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
+from rocking.statistics.counts import share_interval
 from rocking.statistics.maximum_likelihood import LogScale, find_curves, log_dispersion, log_fractile
 
 if TYPE_CHECKING:
@@ -26,32 +27,18 @@ _SIGNED = "peak_rotation"
 
 @dataclass(frozen=True)
 class Flips:
-    """Histories whose verdict, overturned or not, differs between two results.
+    """Histories whose verdict, overturned or not, differs between two results."""
 
-    Parameters
-    ----------
-    count : int
-        Histories whose verdict differs.
-    gained : int
-        Those of them that overturn in the second result only; the others overturn in the first only.
-    compared : int
-        Histories with a verdict in both.
-    unknown : int
-        Histories that could not be computed in one of them.
-    low, high : float
-        95 % interval of the share: what other motions, or other draws, of the same kind may give; NaN where there is
-        neither, since the cells of a grid are no sample of anything [-].
-    clusters : int
-        Motions that the histories belong to, which are what the interval takes for independent; 0 if it takes every
-        history for independent, or there is none.
-    """
-
-    count: int
-    gained: int
-    compared: int
-    unknown: int
+    count: int  # histories whose verdict differs
+    gained: int  # those of them that overturn in the second result only; the others overturn in the first only
+    compared: int  # histories with a verdict in both
+    unknown: int  # histories that could not be computed in one of them
+    # low, high: 95 % interval of the share: what other motions, or other draws, of the same kind may give; NaN where
+    # there is neither, since the cells of a grid are no sample of anything [-]
     low: float
     high: float
+    # motions that the histories belong to, which are what the interval takes for independent; 0 if it takes every
+    # history for independent, or there is none
     clusters: int = 0
 
     @property
@@ -83,15 +70,12 @@ def flips_of(first: Any, second: Any, motions: Any = None, *, drawn: bool = Fals
     count, gained = int(flipped.sum()), int((sign == 1).sum())
     groups = None if motions is None else np.broadcast_to(np.asarray(motions), sign.shape)[known]
     size, clusters = _effective(flipped, groups)
-    low, high = share_interval(count / compared, size) if clusters or drawn else (np.nan, np.nan)
+    low, high = share_interval(count / compared * size, size) if clusters or drawn else (np.nan, np.nan)
     return Flips(count, gained, compared, sign.size - compared, low, high, clusters)
 
 
 def flip_map(first: Any, second: Any) -> np.ndarray:
-    """Return where the verdict differs.
-
-    Returns 0 the same verdict, 1 overturned in the second only, -1 in the first only, 2 no verdict in one of them.
-    """
+    """Return 0 the same verdict, 1 overturned in the second only, -1 in the first only, 2 no verdict in one of them."""
     a, b = _codes(first), _codes(second)
     if a.shape != b.shape:
         raise InvalidValueError(f"results to compare must be of one shape, got {a.shape} and {b.shape}")
@@ -100,28 +84,10 @@ def flip_map(first: Any, second: Any) -> np.ndarray:
     return np.where((a == failed) | (b == failed), np.int8(UNKNOWN), sign)
 
 
-def share_interval(share: float, size: float, level: float = LEVEL) -> tuple[float, float]:
-    """Return the exact binomial interval of a share (Clopper & Pearson 1934), for a number of trials not always whole.
-
-    share: share observed [-]; level: confidence [-]. Returns ends [-].
-
-    >>> low, high = share_interval(0.0, 100)
-    >>> low, round(high, 6) == round(1 - 0.025 ** (1 / 100), 6)
-    (0.0, True)
-    """
-    from scipy.special import betaincinv
-
-    tail, hits = 0.5 * (1.0 - level), share * size
-    low = float(betaincinv(hits, size - hits + 1.0, tail)) if share > 0.0 else 0.0
-    high = float(betaincinv(hits + 1.0, size - hits, 1.0 - tail)) if share < 1.0 else 1.0  # Eq. 186
-    return low, high
-
-
 def difference_of(first: "xr.Dataset", second: "xr.Dataset", name: str) -> "xr.DataArray":
-    """Return how a value moves from one result to another, where the history stood in both.
+    """Return second less first of a value (of peak rotations their sizes), where the history stood in both.
 
-    Returns second less first, of peak rotations their sizes; missing (NaN) where either overturned or failed: its peak
-    is then no rotation of rocking.
+    Missing (NaN) where either overturned or failed: its peak is then no rotation of rocking.
     """
     if name == "verdict":
         flag = "-1 overturned in the baseline only, 0 same verdict, 1 overturned only here, 2 one of the two failed"
@@ -179,62 +145,27 @@ _WEIGHTS = 4_000_000
 
 @dataclass(frozen=True)
 class Change:
-    """A number with the 95 % interval that resampling the motions gives it.
+    """A number with the 95 % interval that resampling the motions gives it."""
 
-    Parameters
-    ----------
-    value : float
-        The number.
-    interval : tuple of float, optional
-        Ends; None where more than 2.5 % of the resampled sets have no curve, so that no interval can be claimed.
-    """
-
-    value: float
+    value: float  # the number
+    # ends; None where more than 2.5 % of the resampled sets have no curve, so that no interval can be claimed
     interval: tuple[float, float] | None
 
 
 @dataclass(frozen=True)
 class CurveChange:
-    """What changes from one lognormal fragility curve to another.
+    """What changes from one lognormal fragility curve to another."""
 
-    Parameters
-    ----------
-    median : Change
-        Second median over the first [-].
-    dispersion : Change
-        Second dispersion less the first [-].
-    distance : Change
-        Largest difference of the probabilities, without its sign [-]; zero is never inside its interval.
-    level : float
-        Intensity at which it is largest, in the unit of the intensity measure.
-    repetitions : int
-        Sets of motions drawn, the same for both curves.
-    without_curve : int
-        Those of them for which one of the curves does not exist.
-    """
-
-    median: Change
-    dispersion: Change
+    median: Change  # second median over the first [-]
+    dispersion: Change  # second dispersion less the first [-]
+    # largest difference of the probabilities, without its sign [-]; zero is never inside its interval
     distance: Change
-    level: float
-    repetitions: int
-    without_curve: int
+    level: float  # intensity at which it is largest, in the unit of the intensity measure
+    repetitions: int  # sets of motions drawn, the same for both curves
+    without_curve: int  # those of them for which one of the curves does not exist
 
     def told(self, unit: str, size: float = 1.0) -> str:
-        """Return the changes in words.
-
-        Parameters
-        ----------
-        unit : str
-            Of the intensity measure.
-        size : float
-            Its size in the unit of the levels.
-
-        Returns
-        -------
-        str
-            Part of a sentence.
-        """
+        """Return the changes as part of a sentence, in a unit of the intensity measure of some size."""
         shown = "{:+.3f}".format
         ends = self.median.interval
         median = None if ends is None else (ends[0] - 1.0, ends[1] - 1.0)
@@ -247,9 +178,7 @@ class CurveChange:
 
 
 def signed(share: float) -> str:
-    """Return a share in percent with its sign.
-
-    share: the share [-].
+    """Return a share [-] in percent with its sign.
 
     >>> signed(0.14), signed(-0.02)
     ('+14 %', '-2 %')
@@ -270,12 +199,10 @@ def curve_change(
     repetitions: int = 1000,
     seed: int = 0,
 ) -> CurveChange:
-    """Return what changes from one fragility curve to another, with intervals from motions drawn with replacement.
+    """Return what changes from one fragility curve (median, dispersion) to another, with 95 % intervals.
 
-    Both curves of a repetition are fitted to the same motions, so that what the motions have in common cancels.
-
-    curves: the two curves: medians in the unit of the levels, dispersions [-]; levels: intensities [unit of the
-    intensity measure]. Returns ratio of the medians, difference of the dispersions, largest distance.
+    The intervals come from motions drawn with replacement. Both curves of a repetition are fitted to the same
+    motions, so that what the motions have in common cancels.
     """
     at = checks.positive_array("levels", levels)
     if at.ndim != 1 or at.size < 2 or np.any(np.diff(at) <= 0.0):
@@ -304,9 +231,7 @@ def _moved(log_median: FloatArray, dispersion: FloatArray) -> tuple[FloatArray, 
 
 
 def curve_distance(log_median: FloatArray, dispersion: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the largest vertical distance between pairs of lognormal curves, and where it is.
-
-    dispersion: dispersions [-]. Returns distance: largest difference of the probabilities, without its sign [-].
+    """Return the largest vertical distance between pairs of lognormal curves [-], and the ln of the level.
 
     >>> distance, where = curve_distance(np.array([0.0, 1.0]), np.array([0.5, 0.5]))
     >>> round(float(distance), 6), float(where)
@@ -329,11 +254,7 @@ def curve_distance(log_median: FloatArray, dispersion: FloatArray) -> tuple[Floa
 
 
 def fits(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> FloatArray:
-    """Return lognormal curves of many sets of stripes at once, as `fit_lognormal` finds them.
-
-    levels: intensities, ascending [unit of the intensity measure]. Returns logarithm of the median, and dispersion [-];
-    NaN where there is no curve.
-    """
+    """Return ln of the median, and dispersion, of many sets of stripes at once; NaN where there is no curve."""
     x = np.log(levels)
     scale = LogScale(float(x.mean()), float(x.std()))
     theta = find_curves(levels, scale, failures, trials).theta

@@ -364,18 +364,10 @@ def map_sensitivity(
 
     Parameters
     ----------
-    body : Body
-        The body.
-    motion : GroundMotion or Pulse
-        The motion.
-    x, y : Axis or (str, array_like)
-        Axes of the map, none of them the restitution.
-    restitutions : list of choices, or dict of them by name
-        At least two models, coefficients [-], pairs by side, or laws of impact.
-    baseline : str, optional
-        Name of the choice that the others are compared with; the first if not given.
-    **options
-        Those of `overturning_map`.
+    body, motion, x, y, **options
+        As for `rocking.overturning_map`; neither axis is the restitution.
+    restitutions, baseline
+        As for `sensitivity`.
 
     Returns
     -------
@@ -393,8 +385,8 @@ def map_sensitivity(
     >>> block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.6)
     >>> ratios = [1.0, 2.0, 3.0, 4.0]
     >>> axes = ("frequency_ratio", ratios), ("amplitude_ratio", ratios)
-    >>> found = map_sensitivity(block, pulse, *axes, ["ked", "0.999999999*ked"])
-    >>> bool(found.differences("verdict").any())
+    >>> changes = map_sensitivity(block, pulse, *axes, ["ked", "0.999999999*ked"])
+    >>> bool(changes.differences("verdict").any())
     False
     """
     from rocking.studies._overturning_map import overturning_map
@@ -418,18 +410,10 @@ def spectrum_sensitivity(
 
     Parameters
     ----------
-    motions : GroundMotion or Pulse, or a sequence of them
-        The motions, the same for all choices.
-    slenderness_angles : array_like
-        alpha [rad].
-    periods : array_like
-        2 pi / p [s].
-    restitutions : list of choices, or dict of them by name
-        At least two models, coefficients [-], pairs by side, or laws of impact.
-    baseline : str, optional
-        Name of the choice that the others are compared with; the first if not given.
-    **options
-        Those of `rocking_spectrum`.
+    motions, slenderness_angles, periods, **options
+        As for `rocking.rocking_spectrum`.
+    restitutions, baseline
+        As for `sensitivity`.
 
     Returns
     -------
@@ -457,22 +441,10 @@ def fragility_sensitivity(
 
     Parameters
     ----------
-    body : Body
-        The body.
-    motions : GroundMotion or Pulse, a sequence of them, or MotionSet
-        The motions, the same for all choices.
-    levels : array_like
-        Levels of the intensity measure [its unit].
-    restitutions : list of choices, or dict of them by name
-        At least two models, coefficients [-], pairs by side, or laws of impact.
-    baseline : str, optional
-        Name of the choice that the others are compared with; the first if not given.
-    repetitions : int
-        Sets of motions that are drawn for the intervals of what changes of the curves; 0 for no intervals.
-    seed : int
-        Seed of these draws.
-    **options
-        Those of `multiple_stripe_analysis`.
+    body, motions, levels, **options
+        As for `rocking.studies.multiple_stripe_analysis`.
+    restitutions, baseline, repetitions, seed
+        As for `sensitivity`; no repetitions, no intervals.
 
     Returns
     -------
@@ -480,7 +452,7 @@ def fragility_sensitivity(
         Flips, and for every state the ratio of medians, difference of dispersions and distance of the curves.
     """
     from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_plan
-    from rocking.studies.fragility.subject import results_of
+    from rocking.studies.histories import results_of
 
     threads, progress = options.pop("threads", None), options.pop("progress", None)
     given = _kept(motions)

@@ -18,9 +18,7 @@ from rocking.studies.histories import Histories, described_law
 
 
 def named_choices(restitutions: Any) -> dict[str, Any]:
-    """Return choices of restitution by name.
-
-    restitutions: models or their names, coefficients [-], pairs by side, laws of impact; names are made for a sequence.
+    """Return restitutions by name: models, coefficients [-], pairs by side, laws; names are made for a sequence.
 
     >>> named_choices(["housner", 0.9, {"left": 0.8, "right": 0.9}])
     {'housner': 'housner', '0.9': 0.9, 'left 0.8, right 0.9': {'left': 0.8, 'right': 0.9}}
@@ -139,13 +137,7 @@ class SampledRestitution(DrawnRestitution):
         return cls(law.factors, law.seed, law.times, law.cut)
 
     def content(self) -> dict[str, Any]:
-        """Return the seed and the hashes of the tables; of a dataclass of your own, its fields.
-
-        Returns
-        -------
-        dict
-            What beside the class makes this law; what it multiplies is in the coefficients of the histories.
-        """
+        """Return the seed and the hashes of the tables; of a dataclass of your own, its fields."""
         return self._tables() if type(self) is SampledRestitution else super().content()
 
     def draws(self, numbers: Any, onto: Foot | None = None, share: Any = 1.0) -> FloatArray:
@@ -173,48 +165,14 @@ class SampledRestitution(DrawnRestitution):
 
 @dataclass(frozen=True, eq=False)
 class SampledHistories(Histories):
-    """Histories whose coefficients are multiplied by a draw for each, keyed by its number.
+    """Histories whose coefficients are multiplied by a draw for each, keyed by its number."""
 
-    Parameters
-    ----------
-    motions : MotionSet
-        Those of the base.
-    base : Histories
-        The histories; with r = 1 on both sides the draw is the coefficient itself.
-    draw : SampledRestitution
-        The distribution; what it multiplies is in the rows of the base.
-    law : ImpactLaw, optional
-        How the coefficient changes from impact to impact.
-    settings : Settings, optional
-        How to integrate.
-    engine : {"auto", "fast", "reference"}
-        Which engine.
-    """
-
-    base: Histories
-    draw: SampledRestitution
+    base: Histories  # the histories; with r = 1 on both sides the draw is the coefficient itself
+    draw: SampledRestitution  # the distribution; what it multiplies is in the rows of the base
 
     @classmethod
     def of(cls, base: Histories, draw: SampledRestitution) -> "SampledHistories":
-        """Return histories with the draws.
-
-        Parameters
-        ----------
-        base : Histories
-            The histories, with the coefficients that the draws multiply.
-        draw : SampledRestitution
-            The distribution.
-
-        Returns
-        -------
-        SampledHistories
-            Of the same motions, settings and engine.
-
-        Raises
-        ------
-        InvalidValueError
-            If the histories draw already, or either is something else.
-        """
+        """Return histories with the draws, which multiply the coefficients of the base."""
         given: object = base
         if not isinstance(given, Histories) or not isinstance(draw, SampledRestitution):
             raise InvalidValueError(f"give Histories and a SampledRestitution, got {base!r:.40} and {draw!r:.40}")
@@ -234,44 +192,22 @@ class SampledHistories(Histories):
         return self.base.together
 
     def rows(self, first: int, last: int) -> Rows:
-        """Return some of the rows.
-
-        Parameters
-        ----------
-        first, last : int
-            Numbers: from the first up to but not including the last.
-
-        Returns
-        -------
-        Rows
-            Those of the base, with the coefficients times the draws.
-        """
+        """Return those of the base, with the coefficients times the draws."""
         return drawn_rows(self.base.rows(first, last), self.draw)
 
     def content(self) -> dict[str, Any]:
-        """Return the content of the base, and the distribution with its seed.
-
-        Returns
-        -------
-        dict
-            By name.
-        """
+        """Return the content of the base, and the distribution with its seed."""
         base = {"class": full_name(type(self.base)), "content": self.base.content()}
         return {"base": base, "draw": described_law(self.draw)}
 
 
 def sampled(histories: Histories) -> Histories:
-    """Return histories that the fast engine can take, where their law is a draw for every history.
-
-    Returns `SampledHistories` if the law is a `SampledRestitution`; otherwise the same.
-    """
+    """Return histories that the fast engine can take, where their law is a draw for every history."""
     return SampledHistories.of(histories, histories.law) if isinstance(histories.law, SampledRestitution) else histories
 
 
 def uniforms(seed: int, numbers: Any, impact: int = 0) -> FloatArray:
-    """Return numbers in [0, 1) that depend on seed, history and impact: `impact_laws.uniform`, of many.
-
-    Returns the numbers, to the last bit those of `uniform`.
+    """Return numbers in [0, 1) that depend on seed, history and impact: `impact_laws.uniform` of many, to the last bit.
 
     >>> from rocking.dynamics.impact_laws import uniform
     >>> bool(uniforms(7, [123])[0] == uniform(7, 123, 0))

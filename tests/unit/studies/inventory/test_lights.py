@@ -6,7 +6,8 @@ import pytest
 from scipy import stats
 
 from rocking.errors import InvalidValueError
-from rocking.studies.inventory.lights import Light, Thresholds, percent, share_interval
+from rocking.statistics import share_interval
+from rocking.studies.inventory.lights import Light, Thresholds, percent
 
 
 @pytest.mark.parametrize(("hits", "count"), [(0, 7), (1, 7), (7, 7), (12, 200), (100, 200), (199, 200)])

@@ -8,6 +8,7 @@ import pytest
 import rocking as rk
 from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError
+from rocking.statistics import share_interval
 from rocking.studies.axis import RestitutionAxis
 from rocking.studies.sensitivity import (
     SampledRestitution,
@@ -17,7 +18,6 @@ from rocking.studies.sensitivity import (
     sensitivity,
     spectrum_sensitivity,
 )
-from rocking.studies.sensitivity.changes import share_interval
 
 xr = pytest.importorskip("xarray")
 BLOCK, PULSE = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.6)
@@ -92,7 +92,7 @@ def test_cells_of_a_grid_have_no_interval_unless_something_is_drawn():
     drawn = map_sensitivity(BLOCK, PULSE, *AXES, {"housner": "housner", "ked": "ked", "drawn": law})
     assert np.isnan(drawn.flips_between("housner", "ked").low)
     flips = drawn.flips_between("housner", "drawn")
-    assert (flips.low, flips.high) == share_interval(flips.share, flips.compared)
+    assert (flips.low, flips.high) == share_interval(flips.count, flips.compared)
     assert [line.count("95 % interval") for line in drawn.verdict.splitlines()] == [0, 1]
     single = spectrum_sensitivity(PULSE, [0.2], [2.0, 3.0, 4.0], ["housner", "ked"])
     assert "interval" not in single.verdict

@@ -6,7 +6,8 @@ from scipy import stats
 
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
-from rocking.studies.sensitivity.changes import Flips, difference_of, flip_map, flips_of, share_interval
+from rocking.statistics import share_interval
+from rocking.studies.sensitivity.changes import Flips, difference_of, flip_map, flips_of
 
 STILL, ROCKED, OVER, FAILED = range(4)
 
@@ -34,7 +35,7 @@ def test_the_other_way_round_gains_what_was_lost():
 def test_the_interval_is_the_exact_binomial_one(hits, size):
     """The interval of independent cells is that of scipy's exact binomial test."""
     expected = stats.binomtest(hits, size).proportion_ci(0.95, "exact")
-    assert share_interval(hits / size, size) == pytest.approx((expected.low, expected.high), rel=1e-9, abs=1e-12)
+    assert share_interval(hits, size) == pytest.approx((expected.low, expected.high), rel=1e-9, abs=1e-12)
 
 
 def coverage(by_motion, repetitions=400):
@@ -66,7 +67,7 @@ def test_no_flips_are_as_sure_as_there_are_motions():
 def test_one_motion_is_no_sample_of_motions():
     """With a single motion there is no interval, unless every history has draws of its own: these are counted."""
     first, second = np.full((1, 50), ROCKED), np.full((1, 50), OVER)
-    assert flips_of(first, second, [[0]], drawn=True) == Flips(50, 50, 50, 0, *share_interval(1.0, 50), 0)
+    assert flips_of(first, second, [[0]], drawn=True) == Flips(50, 50, 50, 0, *share_interval(50, 50), 0)
     for motions in ([[0]], None):
         found = flips_of(first, second, motions)
         assert (found.count, found.share, found.clusters) == (50, 1.0, 0)

@@ -1,0 +1,179 @@
+"""The front door: an inventory assessed, as a labelled dataset."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking.conventions import g
+from rocking.errors import InvalidValueError, extra
+from rocking.motions.motion import GroundMotion
+from rocking.studies.inventory.assessment import Assessment, DirectionResult, assess
+from rocking.studies.inventory.hazard import COUNT, FAMILY, SEED, Hazard, IntensityLevel
+from rocking.studies.inventory.lights import Light, Thresholds
+from rocking.studies.inventory.objects import DIRECTIONS, InventoryObject
+from rocking.studies.inventory.reading import Inventory, read_inventory
+from rocking.studies.inventory.table import advice, sentence
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+# of each restitution, object and direction: unit and meaning
+_COUNTS = {
+    "count": ("1", "motions that were computed"),
+    "lifted": ("1", "motions that lift it"),
+    "overturned": ("1", "motions that overturn it"),
+    "failed": ("1", "motions that could not be computed"),
+    "lost_contact": ("1", "motions in which the ground would have to pull"),
+}
+_ROTATIONS = {
+    "median_rotation": ("1", "median of the peak rotation over the slenderness angle; infinite if it overturns there"),
+    "high_rotation": ("1", "84 % quantile of the peak rotation over the slenderness angle; infinite if it overturns"),
+}
+
+
+def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
+    objects: str | Path | Inventory | Sequence[InventoryObject],
+    motions: str | Hazard | GroundMotion | Sequence[GroundMotion] = FAMILY,
+    restitution: Any = "ked",
+    *,
+    pga: str | float | None = None,
+    pgv: str | float | None = None,
+    count: int | None = None,
+    seed: int | None = None,
+    thresholds: Thresholds | None = None,
+    gravity: float = g,
+    **options: Any,
+) -> "xr.Dataset":
+    """Return which objects of a list stay standing at a level of shaking, the worst first.
+
+    Parameters
+    ----------
+    objects : str, Path, Inventory or sequence of InventoryObject
+        A CSV file with the columns ``name``, ``width_cm``, ``depth_cm``, ``height_cm`` and more, or the objects.
+    motions : str, Hazard, GroundMotion or sequence of GroundMotion
+        The family of synthetic motions, or records; each acts in either direction by itself.
+    restitution : str, RestitutionModel, float or mapping
+        Model of impact; the verdict of Housner's stands beside it (of KED, if Housner's was asked for).
+    pga, pgv : str or float, optional
+        Peak ground acceleration or velocity to which every motion is scaled, such as ``"0.3g"`` or ``"25cm/s"``, a
+        number in SI; synthetic motions need one of the two, records are taken as they are without [m/s2 or m/s].
+    count, seed : int, optional
+        How many synthetic motions, 200 if not given, and their seed, 1 if not given [-].
+    thresholds : Thresholds, optional
+        What the lights mean.
+    gravity : float
+        Acceleration of gravity [m/s2].
+    **options
+        ``threads`` of the fast engine, and ``progress``, told how many histories have been computed since it was last
+        called.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``object``, the worst first: light, worse direction, acceleration of uplift, interval of the share that
+        overturns, and both sentences; over ``restitution``, ``object`` and ``direction``: motions that lift it and
+        overturn it, and rotations; over ``not_assessed`` the rows without a verdict and why; with units.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no object, the motions are not said to be of any strength, or a value is outside its range.
+    MissingExtraError
+        If xarray is not installed.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> from rocking.studies.inventory import InventoryObject
+    >>> sizes = {"tall vase": 0.12, "chest": 1.2}
+    >>> objects = [InventoryObject(name=name, width=w, depth=w, height=1.0) for name, w in sizes.items()]
+    >>> ranking = rk.inventory(objects, "point-source", pga="0.3g", count=5)
+    >>> ranking["object"].values.tolist(), ranking["light"].values.tolist()
+    (['tall vase', 'chest'], ['red', 'green'])
+    """
+    everything = read_inventory(objects) if isinstance(objects, (str, Path)) else objects
+    hazard = _hazard(motions, pga, pgv, count, seed)
+    assessment = assess(everything, hazard, restitution=restitution, thresholds=thresholds, gravity=gravity, **options)
+    return dataset_of(assessment)
+
+
+def _hazard(motions: Any, pga: Any, pgv: Any, count: int | None, seed: int | None) -> Hazard:
+    levels = {kind: value for kind, value in (("PGA", pga), ("PGV", pgv)) if value is not None}
+    if len(levels) > 1:
+        raise InvalidValueError("give pga or pgv, not both: motions are scaled to one of them")
+    level = next((_level(*pair) for pair in levels.items()), None)
+    if isinstance(motions, str):
+        if level is None:
+            raise InvalidValueError('how strong is the shaking? Give pga="0.3g" or pgv="25cm/s", or records')
+        number, start = COUNT if count is None else count, SEED if seed is None else seed
+        return Hazard.of_family(motions, level, count=number, seed=start)
+    odd = [name for name, value in (("count", count), ("seed", seed)) if value is not None]
+    if odd:
+        raise InvalidValueError(f"{', '.join(odd)} is for synthetic motions: leave it out beside records")
+    if isinstance(motions, Hazard):
+        if level is not None:
+            raise InvalidValueError("a hazard is scaled already: leave pga and pgv out")
+        return motions
+    return Hazard.of_records([motions] if isinstance(motions, GroundMotion) else motions, level)
+
+
+def _level(kind: str, value: Any) -> IntensityLevel:
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return IntensityLevel(kind, value) if number else IntensityLevel.of(kind, value)
+
+
+def dataset_of(assessment: Assessment) -> "xr.Dataset":
+    """Return an assessment as a labelled dataset."""
+    xarray = extra("xarray", "inventory")
+    verdicts, three = assessment.verdicts, ("restitution", "object", "direction")
+    results = [[each.results for each in verdicts], [each.compared for each in verdicts]]
+    shape = (2, len(verdicts), len(DIRECTIONS))
+
+    def table(name: str, kind: type) -> np.ndarray:
+        flat = [_number(one, name) for of_model in results for pair in of_model for one in pair]
+        return np.array(flat, dtype=kind).reshape(shape)
+
+    data: dict[str, Any] = {
+        "light": ("object", [each.light.word for each in verdicts], {"long_name": _meanings(assessment)}),
+        "worse_direction": ("object", [each.worse.direction for each in verdicts]),
+        "uplift_acceleration": (
+            "object", [each.uplift_acceleration for each in verdicts],
+            {"units": "m/s2", "long_name": "ground acceleration below which it stays still in both directions"},
+        ),
+        "overturned_share_95": (
+            ("object", "end"), np.array([each.interval for each in verdicts]).reshape(len(verdicts), 2),
+            {"units": "1", "long_name": "interval of the share that overturns in the worse direction"},
+        ),
+        "in_words": ("object", [sentence(each, assessment) for each in verdicts]),
+        "what_to_do": ("object", [advice(each, assessment) for each in verdicts]),
+        **{name: (three, table(name, np.int64), _labels(about)) for name, about in _COUNTS.items()},
+        **{name: (three, table(name, np.float64), _labels(about)) for name, about in _ROTATIONS.items()},
+        "reason": ("not_assessed", [each.reason for each in assessment.not_assessed]),
+    }  # fmt: skip
+    coordinates = {
+        "object": [each.item.name for each in verdicts],
+        "row": ("object", [each.item.row for each in verdicts], {"units": "1", "long_name": "line of its file"}),
+        "direction": list(DIRECTIONS),
+        "restitution": [assessment.restitution, assessment.comparison],
+        "end": ["low", "high"],
+        "not_assessed": [each.name for each in assessment.not_assessed],
+    }
+    about = {"inventory": assessment.source, "shaking": assessment.hazard.words(), "motions": assessment.hazard.source}
+    labelled: xr.Dataset = xarray.Dataset(data, coords=coordinates, attrs=about)
+    return labelled
+
+
+def _number(result: DirectionResult, name: str) -> float:
+    value = getattr(result, name)
+    return np.inf if value is None else value
+
+
+def _labels(about: tuple[str, str]) -> dict[str, str]:
+    return dict(zip(("units", "long_name"), about, strict=True))
+
+
+def _meanings(assessment: Assessment) -> str:
+    sentences = assessment.thresholds.sentences()
+    return " ".join(f"{light.word}: {sentences[light]}" for light in reversed(Light))

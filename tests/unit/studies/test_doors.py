@@ -1,0 +1,136 @@
+"""rk.fragility and rk.inventory: datasets with units that say what the analyses behind them say, and refusals."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.cli import main
+from rocking.errors import InvalidValueError
+from rocking.studies import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
+from rocking.studies.inventory import Hazard, InventoryObject, Thresholds, assess
+
+pytest.importorskip("xarray")
+
+BLOCK = rk.Block(width=0.4, height=1.6)
+PULSES = [rk.pulses.sine(1.0, period) for period in (0.4, 0.5, 0.6, 0.7, 0.8, 1.0)]
+LEVELS = [2.0, 4.0, 6.0, 8.0]
+RECORDS = [rk.GroundMotion(3.0 * np.sin(np.arange(100) * w), 0.01) for w in (0.05, 0.08, 0.12)]
+OBJECTS = [InventoryObject(name=n, width=w, depth=2 * w, height=1.0) for n, w in (("chest", 0.9), ("vase", 0.12))]
+
+
+@pytest.mark.parametrize(
+    ("words", "analysis"),
+    [
+        ({"levels": LEVELS}, lambda: multiple_stripe_analysis(BLOCK, PULSES, LEVELS)),
+        ({"analysis": "cloud", "factor": 4.0}, lambda: cloud(BLOCK, PULSES, factor=4.0)),
+        (
+            {"analysis": "incremental", "levels": LEVELS, "tolerance": 1e-3},
+            lambda: incremental_dynamic_analysis(BLOCK, PULSES, LEVELS, tolerance=1e-3),
+        ),
+    ],
+    ids=["stripes", "cloud", "incremental"],
+)
+def test_fragility_is_the_analysis_with_its_curves(words, analysis):
+    """Every variable of the analysis, and the fit of each state, to the last bit; NaN where there is none."""
+    labelled, found = rk.fragility(BLOCK, PULSES, **words), analysis()
+    for name, values in found.dataset.data_vars.items():
+        np.testing.assert_array_equal(labelled[name], values)
+    assert labelled["state"].values.tolist() == [state.name for state in found.states]
+    for state in labelled["state"].values.tolist():
+        curve, fit = labelled.sel(state=state), found.fits.get(state)
+        exists = fit is not None and fit.exists and fit.dispersion
+        assert math.isnan(float(curve["median"])) == (not exists)
+        if exists:
+            assert (float(curve["median"]), float(curve["dispersion"])) == (fit.median, fit.dispersion)
+            assert str(curve["verdict"].values) == fit.verdict
+    assert labelled["median"].attrs["units"] == "m/s2"
+    assert labelled["dispersion"].attrs["units"] == "1"
+
+
+def test_levels_that_serve_where_none_are_given():
+    """16 levels from .9 to 9 times what lifts the body, in equal ratios: rocking begins within the first step."""
+    levels = rk.fragility(BLOCK, PULSES)["level"].values
+    lifts = 9.80665 * 0.25  # g b / h
+    np.testing.assert_allclose(levels, lifts * np.geomspace(0.9, 9.0, 16), rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ({"analysis": "ida"}, "analysis must be one of stripes, cloud, incremental"),
+        ({"analysis": "cloud", "levels": LEVELS}, "levels are not for a cloud"),
+        ({"factor": 2.0}, 'factor is for analysis="cloud" only, this is "stripes"'),
+        ({"analysis": "cloud", "tolerance": 0.1}, 'tolerance is for analysis="incremental" only'),
+        ({"measure": "arias"}, "which levels of arias"),
+        ({"states": (0.5, 0.2)}, "states must be rotations over alpha"),
+    ],
+)
+def test_fragility_refuses(words, message):
+    with pytest.raises(InvalidValueError, match=message):
+        rk.fragility(BLOCK, PULSES, **words)
+
+
+def test_inventory_is_the_assessment():
+    """Counts, lights and sentences of every verdict, by restitution and direction; the worst object first."""
+    labelled = rk.inventory(OBJECTS, RECORDS, pga="0.3g")
+    found = assess(OBJECTS, Hazard.of_records([r.scaled(0.3 * 9.80665 / r.peak) for r in RECORDS]))
+    assert labelled["object"].values.tolist() == [v.item.name for v in found.verdicts] == ["vase", "chest"]
+    assert labelled["restitution"].values.tolist() == [found.restitution, found.comparison]
+    for place, verdict in enumerate(found.verdicts):
+        one = labelled.isel(object=place)
+        assert str(one["light"].values) == verdict.light.word
+        assert tuple(one["overturned_share_95"].values) == verdict.interval
+        assert float(one["uplift_acceleration"]) == verdict.uplift_acceleration
+        for model, results in enumerate((verdict.results, verdict.compared)):
+            for result in results:
+                cell = one.isel(restitution=model).sel(direction=result.direction)
+                for name in ("count", "lifted", "overturned", "failed", "lost_contact"):
+                    assert int(cell[name]) == getattr(result, name)
+                high = math.inf if result.high_rotation is None else result.high_rotation
+                assert float(cell["high_rotation"]) == high
+    assert labelled["uplift_acceleration"].attrs["units"] == "m/s2"
+
+
+def test_the_command_and_the_door_say_the_same(tmp_path, capsys):
+    """One file, one family: each light, count and sentence of `rocking inventory --json`."""
+    path = tmp_path / "list.csv"
+    path.write_text("name,width_cm,depth_cm,height_cm\nvase,12,12,100\nbroken,?,1,1\nchest,120,90,100\n")
+    labelled = rk.inventory(path, "point-source", pga="0.3g", count=4, seed=2)
+    command = ["inventory", str(path), "--synthetic", "point-source", "--pga", "0.3g", "--count", "4", "--seed", "2"]
+    with pytest.raises(SystemExit):
+        main([*command, "--json"])
+    said = json.loads(capsys.readouterr().out)
+    assert labelled["object"].values.tolist() == [each["name"] for each in said["objects"]]
+    assert labelled["light"].values.tolist() == [each["light"] for each in said["objects"]]
+    assert labelled["in_words"].values.tolist() == [each["in_words"] for each in said["objects"]]
+    assert labelled["not_assessed"].values.tolist() == ["broken"]
+    assert labelled["reason"].values.tolist() == [each["reason"] for each in said["not_assessed"]]
+
+
+def test_negative_control_thresholds_move_the_lights():
+    """Another convention gives other lights of the same counts: they are not decoration."""
+    usual, strict = (
+        rk.inventory(OBJECTS, RECORDS, pga=3.0, thresholds=limits)
+        for limits in (None, Thresholds(overturning_green=0.01, overturning_red=0.99, rocking=0.01))
+    )
+    np.testing.assert_array_equal(usual["overturned"], strict["overturned"])
+    assert usual["light"].values.tolist() != strict["light"].values.tolist()
+
+
+@pytest.mark.parametrize(
+    ("motions", "words", "message"),
+    [
+        ("firm-ground", {}, "how strong is the shaking"),
+        ("firm-ground", {"pga": "0.3g", "pgv": 0.2}, "pga or pgv, not both"),
+        (RECORDS, {"count": 3}, "count is for synthetic motions"),
+        (Hazard.of_records(RECORDS), {"pga": 1.0}, "scaled already"),
+        (RECORDS, {"pga": "0.3"}, "PGA must be a number with its unit"),
+        (RECORDS, {"pga": True}, "PGA must be a number with its unit"),
+    ],
+)
+def test_inventory_refuses(motions, words, message):
+    with pytest.raises(InvalidValueError, match=message):
+        rk.inventory(OBJECTS, motions, **words)
