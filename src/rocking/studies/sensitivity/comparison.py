@@ -17,6 +17,7 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.outcome import Outcome
 from rocking.studies.axis import RestitutionAxis, axis_of
+from rocking.studies.fragility._multiple_stripe_analysis import MultipleStripeAnalysis, multiple_stripe_plan
 from rocking.studies.motion_sets import MotionSet
 from rocking.studies.sensitivity.changes import CurveChange, Flips, curve_change, difference_of, flips_of
 from rocking.studies.sensitivity.restitutions import named_choices, sampled
@@ -178,11 +179,11 @@ class Sensitivity:
     @property
     def states(self) -> tuple[str, ...]:
         """Names of the states that have a fragility curve; none unless the study is of stripes."""
-        found = self.results.values()
-        stripes = "level" in self.datasets[self.baseline]["outcome"].dims
-        if not stripes or not all(hasattr(result, name) for result in found for name in ("fits", "responses")):
+        results = self.results.values()
+        stripes = all(getattr(result, "kind", None) == MultipleStripeAnalysis.kind for result in results)
+        if not stripes:
             return ()
-        return tuple(name for name in self.results[self.baseline].fits if all(name in r.fits for r in found))
+        return tuple(name for name in self.results[self.baseline].fits if all(name in r.fits for r in results))
 
     @cached_property
     def _curve_changes(self) -> dict[str, dict[str, CurveChange | str]]:
@@ -451,7 +452,6 @@ def fragility_sensitivity(
     Sensitivity
         Flips, and for every state the ratio of medians, difference of dispersions and distance of the curves.
     """
-    from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_plan
     from rocking.studies.histories import results_of
 
     threads, progress = options.pop("threads", None), options.pop("progress", None)
