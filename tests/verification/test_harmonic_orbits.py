@@ -55,7 +55,7 @@ def shaken(amplitude, w, psi, cycles):
     return rk.pulses.harmonic(amplitude * conventions.g * ALPHA, period, cycles, psi + math.pi).segments()
 
 
-def rocker_of(r, left=None):
+def parameters_of(r, left=None):
     right = RockingSide(ALPHA, P, 1.0, r)
     return RockingParameters(right, left or right, ConstantRestitution(), "")
 
@@ -65,7 +65,7 @@ def history(case, psi, x, v, cycles, engine, *, linear=True, left=None):
     segments = shaken(amplitude, w, psi, cycles)
     settings = Settings(linear=linear, rest_speed=1e-9)
     state = {"rotation": x * ALPHA, "velocity": v * P * ALPHA}
-    return run(rocker_of(r, left), segments, settings, engine=engine, **state)
+    return run(parameters_of(r, left), segments, settings, engine=engine, **state)
 
 
 def impacts_of(found):
@@ -101,7 +101,7 @@ def orbit(case, tau):
 def turn(case, psi, v, engine):
     """Largest rotation before the next impact, between fine samples."""
     segments = shaken(case[0], case[1], psi, 0.5).refined(16)
-    found = run(rocker_of(case[2]), segments, Settings(linear=True), engine=engine, velocity=v * P * ALPHA)
+    found = run(parameters_of(case[2]), segments, Settings(linear=True), engine=engine, velocity=v * P * ALPHA)
     time = np.arange(found.rotation.size) * segments.step
     curve = CubicHermiteSpline(time, found.rotation / ALPHA, found.angular_velocity / ALPHA)
     turns = curve.derivative().roots(extrapolate=False)

@@ -89,7 +89,7 @@ def rocking_spectrum(
     given = MotionList(motions)
     blocks = [Block.from_angle(float(alpha), float(size)) for alpha in angles for size in sizes]
     question = Question(blocks[0], given[0], restitution, settings, threads, engine)
-    sides = sides_of([question.rocker_of(block) for block in blocks])
+    sides = sides_of([question.parameters_of(block) for block in blocks])
     histories = Product(
         given, {name: v[:, None] for name, v in sides.items()}, np.array([scale]),
         law=question.law, settings=settings, engine=engine,

@@ -348,7 +348,7 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
     engine = settings.pop("engine", "auto")
     question = Question(bodies[0], motion, restitution, settings_of(gravity, settings), threads, engine)
     effort = Effort(points, levels, tolerance)
-    sides = sides_of([question.rocker_of(b) for b in bodies])
+    sides = sides_of([question.parameters_of(b) for b in bodies])
     cases = Cases.of(motion, sides, question.settings, lowest, highest)
 
     def run(values: dict[str, FloatArray], body: IntArray) -> Arrays:

@@ -47,7 +47,7 @@ class Question:
     @cached_property
     def parameters(self) -> RockingParameters:
         """The body as it is, before any axis changes it."""
-        return self.rocker_of(self.body)
+        return self.parameters_of(self.body)
 
     @property
     def law(self) -> ImpactLaw:
@@ -59,7 +59,7 @@ class Question:
         """The motion as the engine lays it out."""
         return Batch([self.motion.segments()], self.law, self.settings, self.threads, self.engine)
 
-    def rocker_of(self, body: Body) -> RockingParameters:
+    def parameters_of(self, body: Body) -> RockingParameters:
         """Return another body with the same restitution, evaluated for it."""
         return RockingParameters.of_body(body, self.restitution, self.settings.gravity)
 

@@ -39,15 +39,15 @@ class Case:
             rows, places = np.empty((1, 0)), np.zeros(self.count, dtype=np.int64)
         else:
             rows, places = np.unique(np.stack([self.geometry[n] for n in names], axis=-1), axis=0, return_inverse=True)
-        table = sides_of(self._rockers([dict(zip(names, row.tolist(), strict=True)) for row in rows]))
+        table = sides_of(self._parameters([dict(zip(names, row.tolist(), strict=True)) for row in rows]))
         return replace(self, sides={name: values[places.ravel()] for name, values in table.items()})
 
-    def _rockers(self, parameters: list[dict[str, float]]) -> list[RockingParameters | None]:
+    def _parameters(self, dimensions: list[dict[str, float]]) -> list[RockingParameters | None]:
         made: list[RockingParameters | None] = []
         refused: InvalidValueError | None = None
-        for given in parameters:
+        for each in dimensions:
             try:
-                made.append(self.question.rocker_of(changed_body(self.question.body, given)))
+                made.append(self.question.parameters_of(changed_body(self.question.body, each)))
             except InvalidValueError as error:
                 made.append(None)
                 refused = error

@@ -9,6 +9,7 @@ import numpy as np
 from rocking.campaigns.jobs.adaptive import AdaptiveResult, Compute, DelegatedQuestion
 from rocking.campaigns.jobs.study import Study, along, labels_along
 from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.content import hash_of
 from rocking.dynamics.plane.batch import Rows
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
@@ -19,7 +20,7 @@ from rocking.spec.study import StudyProblem, axes_of
 from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, RefinedMap, refine
 from rocking.studies.axis import RestitutionAxis
 from rocking.studies.boundaries import Polyline, checked, outlines
-from rocking.studies.histories import Histories, hash_of
+from rocking.studies.histories import Histories
 from rocking.studies.motion_sets import MotionList
 from rocking.studies.question import Question, modes_of, peak_ratio, sides_of
 from rocking.studies.sensitivity.restitutions import sampled
