@@ -13,9 +13,7 @@ from rocking.campaigns.disk import (
     CampaignWorkerError,
 )
 from rocking.campaigns.executors import Executor, Serial
-from rocking.campaigns.forecast import Forecast
-from rocking.campaigns.reading import HistoryRange, Verification
-from rocking.campaigns.status import CampaignStatus, Estimate, Progress, Summary
+from rocking.campaigns.status import Estimate, Progress
 
 __all__ = [
     "Campaign",
@@ -25,16 +23,11 @@ __all__ = [
     "CampaignIncompleteError",
     "CampaignInterrupted",
     "CampaignMismatchError",
-    "CampaignStatus",
     "CampaignStorageError",
     "CampaignWorkerError",
     "DaskExecutor",
     "Estimate",
     "Executor",
-    "Forecast",
-    "HistoryRange",
     "Progress",
     "Serial",
-    "Summary",
-    "Verification",
 ]

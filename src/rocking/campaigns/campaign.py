@@ -19,7 +19,7 @@ from rocking.campaigns.ledger import Ledger
 from rocking.campaigns.processes import chosen
 from rocking.campaigns.running import run
 from rocking.campaigns.status import CampaignStatus, Progress, Summary
-from rocking.dynamics.plane.fast_engine import Arrays
+from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import Histories
 
@@ -114,7 +114,7 @@ class Campaign:
 
         Returns
         -------
-        Status
+        CampaignStatus
             As recorded at this instant.
         """
         path = Path(folder)
@@ -132,10 +132,10 @@ class Campaign:
                 work = ledger.costs(plan.count).left()
             broken: tuple[str, ...] = ()
             if verify:
-                found = reading.verified(path)
-                chunks, histories, broken = found.chunks, found.verified, found.damaged
-            numbers = (plan.count, histories, plan.chunks, chunks)
-            return CampaignStatus(path, *numbers, running, *effort, damaged, plan.software, work, broken)
+                read = reading.verified(path)
+                chunks, histories, broken = read.chunks, read.verified, read.damaged
+            done = (plan.count, histories, plan.chunks, chunks)
+            return CampaignStatus(path, *done, running, *effort, damaged, plan.software, work, broken)
 
     @property
     def plan(self) -> Plan:
@@ -157,7 +157,7 @@ class Campaign:
 
         Returns
         -------
-        Status
+        CampaignStatus
             As recorded at this instant.
         """
         return self.status_of(self.folder, verify=verify)
@@ -219,12 +219,10 @@ class Campaign:
         CampaignInterrupted
             If Ctrl-C or SIGTERM asked it to stop.
         """
-        given: object = progress
-        if given is not None and not callable(given):
-            raise InvalidValueError(f"progress must be a function of a Progress, or None, got {given!r:.60}")
-        seed: object = order_seed
-        if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or seed < 0):
-            raise InvalidValueError(f"order_seed must be a whole number >= 0, got {seed!r:.60}")
+        if progress is not None and not callable(progress):
+            raise InvalidValueError(f"progress must be a function of a Progress, or None, got {progress!r:.60}")
+        if order_seed is not None and (type(order_seed) is not int or order_seed < 0):
+            raise InvalidValueError(f"order_seed must be a whole number >= 0, got {order_seed!r:.60}")
         who = chosen(executor, workers, start_method)
         self.identity.refuse_other(self.folder, self.histories)
         return run(self.folder, self.identity, self.histories, who, order_seed, progress)
@@ -234,7 +232,7 @@ class Campaign:
 
         Yields
         ------
-        Piece
+        HistoryRange
             First history, last one (not included), and their results.
         """
         with disk.guarded(self.folder):
@@ -253,8 +251,13 @@ class Campaign:
         dict of str to ndarray
             Those keys, one entry a history.
         """
-        with disk.guarded(self.folder):
-            return reading.results(self.folder, self.plan, names)
+        for name in names:
+            _check_column(name)
+        whole = {name: np.empty(self.plan.count, RESULTS[name]) for name in names or RESULTS}
+        for piece in self.pieces():
+            for name, values in whole.items():
+                values[piece.first : piece.last] = piece.results[name]
+        return whole
 
     def column(self, name: str) -> Iterator[np.ndarray]:
         """Return one result of all histories, piece by piece.
@@ -269,8 +272,9 @@ class Campaign:
         ndarray
             Its values for one chunk after another.
         """
-        with disk.guarded(self.folder):
-            yield from reading.column(self.folder, self.plan, name)
+        _check_column(name)
+        for piece in self.pieces():
+            yield piece.results[name]
 
     def sha256(self) -> str:
         """Return the hash of all results; it does not depend on the size of the chunks.
@@ -291,6 +295,11 @@ class Campaign:
             What is damaged or missing; a run computes that.
         """
         return reading.verified(self.folder)
+
+
+def _check_column(name: str) -> None:
+    if name not in RESULTS:
+        raise InvalidValueError(f"column must be one of {', '.join(RESULTS)}, got {name!r:.60}")
 
 
 def _refuse_used(folder: Path) -> None:

@@ -37,10 +37,7 @@ class Chunk(NamedTuple):
     of: str = ""
 
     def piece(self, first: int, last: int) -> "Chunk":
-        """Return a piece of it, which is named by what it holds, too.
-
-        Returns the piece; itself if that is all of it.
-        """
+        """Return a piece of it, which is named by what it holds, too; itself if that is all of it."""
         if (first, last) == (self.first, self.last):
             return self
         whole = self.of or self.name
@@ -73,8 +70,7 @@ class Plan:
     def __post_init__(self) -> None:
         """Check the numbers."""
         for name, value, low, high in (("count", self.count, 1, 1 << 48), ("chunk", self.size, 1, LARGEST_CHUNK)):
-            given: object = value
-            if isinstance(given, bool) or not isinstance(given, int) or not low <= value <= high:
+            if type(value) is not int or not low <= value <= high:
                 raise InvalidValueError(f"{name} must be a whole number of histories in [{low}, {high}], got {value!r}")
 
     @property
@@ -83,10 +79,7 @@ class Plan:
         return -(-self.count // self.size)
 
     def chunk(self, number: int) -> Chunk:
-        """Return one of the chunks.
-
-        Returns the chunk; its name is the SHA-256 of the plan without its size, and of the first and last history.
-        """
+        """Return a chunk, named by the SHA-256 of the plan without its size and of its first and last history."""
         if not 0 <= number < self.chunks:
             raise InvalidValueError(f"chunk must be in [0, {self.chunks - 1}], got {number}")
         first = number * self.size
@@ -99,8 +92,7 @@ class Plan:
 def pack(chunk: Chunk, arrays: Arrays) -> bytes:
     """Return the bytes of a shard: no time, place or machine is in them, so whoever makes them makes the same.
 
-    Returns magic word, version, length of the header; the header in JSON; the columns, little-endian; SHA-256 of all
-    that.
+    Magic word, version, length of the header; the header in JSON; the columns, little-endian; SHA-256 of all that.
     """
     count = chunk.last - chunk.first
     columns = [np.ascontiguousarray(arrays[name][:count], _little(kind)).data for name, kind in RESULTS.items()]
@@ -113,18 +105,12 @@ def pack(chunk: Chunk, arrays: Arrays) -> bytes:
 
 
 def seal(data: bytes) -> str:
-    """Return the seal that a shard bears, without breaking it open.
-
-    Returns 64 hexadecimal digits: SHA-256 of all that stands before.
-    """
+    """Return the seal that a shard bears at its end, 64 hexadecimal digits, without breaking it open."""
     return data[-_SEAL:].hex()
 
 
 def range_of(data: bytes) -> tuple[int, int]:
-    """Return which histories a shard says that it holds.
-
-    Returns from the first up to but not including the last.
-    """
+    """Return from which up to but not including which history a shard says that it holds."""
     header = _read_header(data, _payload_at(data))
     found = header.get("first"), header.get("last")
     if not all(isinstance(each, int) for each in found):

@@ -4,14 +4,14 @@ import os
 import pickle
 import socket
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from importlib import import_module
 from types import ModuleType
 from typing import Any
 
 from rocking.campaigns.chunks import Chunk
 from rocking.campaigns.disk import CampaignWorkerError
-from rocking.campaigns.executors import Done, Executor, WorkerTask, cannot_be_sent, whole
+from rocking.campaigns.executors import Done, Executor, Retried, Stop, WorkerTask, cannot_be_sent, whole
 from rocking.errors import InvalidValueError, MissingExtraError, how_to_install
 
 _LOOK = 0.2
@@ -42,34 +42,8 @@ class DaskExecutor(Executor):
             raise InvalidValueError(f'address must be that of a scheduler, as in "tcp://host:8786", got {given!r:.60}')
         self.address, self.ahead, self.timeout = address, whole("ahead", ahead), timeout
 
-    def run(
-        self, job: WorkerTask, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
-    ) -> Iterator[Done]:
-        """Compute chunks.
-
-        Parameters
-        ----------
-        job : Job
-            What to compute.
-        chunks : iterator of Chunk
-            What remains to be done.
-        stop : callable
-            Whether to stop: chunks that are not done within a second are left.
-        retried : callable
-            Called with a chunk that the cluster lost; a chunk whose worker dies is retried by the cluster itself.
-
-        Yields
-        ------
-        Done
-            In the order in which they finish.
-
-        Raises
-        ------
-        MissingExtraError
-            If Dask is not installed.
-        CampaignWorkerError
-            If the scheduler cannot be reached, or a chunk cannot be computed.
-        """
+    def run(self, job: WorkerTask, chunks: Iterator[Chunk], stop: Stop, retried: Retried) -> Iterator[Done]:
+        """Compute chunks; what the cluster lost is tried again, chunks of a worker that dies by the cluster itself."""
         dask = _distributed()
         try:
             client = dask.Client(self.address, timeout=self.timeout, set_as_default=False)
@@ -88,9 +62,7 @@ class _Window:
         self._loaded = client.submit(pickle.loads, _pickled(job), pure=False)
         self._flying: dict[Any, tuple[Chunk, int]] = {}
 
-    def work(
-        self, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
-    ) -> Iterator[Done]:
+    def work(self, chunks: Iterator[Chunk], stop: Stop, retried: Retried) -> Iterator[Done]:
         deadline = None
         while self._fill(chunks, stop):
             if deadline is None and stop():
@@ -106,7 +78,7 @@ class _Window:
                 else:
                     yield done._replace(attempts=attempts)
 
-    def _fill(self, chunks: Iterator[Chunk], stop: Callable[[], bool]) -> bool:
+    def _fill(self, chunks: Iterator[Chunk], stop: Stop) -> bool:
         if not stop():
             self._executor.at_once = max(1, sum(self._client.nthreads().values()))
         while len(self._flying) < self._executor.at_once * self._executor.ahead and not stop():
@@ -139,7 +111,7 @@ class _Window:
             raise CampaignWorkerError(f"{where}: {type(error).__name__}: {error}") from error
         return self._job.keep(chunk, data, seconds, worker)
 
-    def _lost(self, chunk: Chunk, attempts: int, retried: Callable[[Chunk, str], None]) -> None:
+    def _lost(self, chunk: Chunk, attempts: int, retried: Retried) -> None:
         if attempts >= 3 or self._client.status != "running":
             raise CampaignWorkerError(f"the Dask cluster lost histories {chunk.first} to {chunk.last - 1}; is it gone?")
         retried(chunk, "the cluster lost a chunk; it is computed again")
@@ -155,12 +127,8 @@ def _pickled(job: WorkerTask) -> bytes:
 
 def _compute(job: WorkerTask, chunk: Chunk) -> tuple[bytes, float, str]:
     start = time.perf_counter()
-    data = job.compute(chunk)
-    return (
-        data or b"",
-        job.pace.settled(time.perf_counter() - start),
-        f"process {os.getpid()} on {socket.gethostname()}",
-    )
+    data = job.compute(chunk) or b""
+    return data, job.pace.settled(time.perf_counter() - start), f"process {os.getpid()} on {socket.gethostname()}"
 
 
 def _distributed() -> ModuleType:

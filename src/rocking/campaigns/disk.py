@@ -99,10 +99,7 @@ def remove_unfinished(folder: Path) -> int:
 
 
 def set_aside(path: Path) -> Path:
-    """Give a damaged file another name, under which a user finds it; nothing is deleted.
-
-    Returns its new name: the old one with ``.damaged-1``, ``.damaged-2`` ... behind it.
-    """
+    """Give a damaged file another name, ``.damaged-1``, ``-2`` ... behind it, and return that; nothing is deleted."""
     number = 1
     while (aside := path.with_name(f"{path.name}.damaged-{number}")).exists():
         number += 1
@@ -185,10 +182,7 @@ class FolderLock:
 
 
 def holder(folder: Path) -> str | None:
-    """Return who runs a campaign.
-
-    Returns process and machine; None if nobody does.
-    """
+    """Return the process and machine that run a campaign; None if nobody does."""
     try:
         handle = os.open(folder / NAME, os.O_RDONLY)
     except OSError:

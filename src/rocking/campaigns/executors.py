@@ -16,7 +16,6 @@ from typing import Any, NamedTuple
 
 from rocking.campaigns import chunks as shard
 from rocking.campaigns import disk, identity
-from rocking.campaigns import identity as fingerprint
 from rocking.campaigns.chunks import DEFAULT_CHUNK, Chunk
 from rocking.campaigns.disk import CampaignWorkerError
 from rocking.campaigns.identity import kind_of
@@ -35,6 +34,8 @@ SUFFIX, PIECES = ".shard", "pieces"
 """End of the names of shards; the folder of those that are pieces of a chunk, until it is whole."""
 
 _LOOK = 0.2
+Stop = Callable[[], bool]
+Retried = Callable[[Chunk, str], None]
 
 
 class Interruption:
@@ -94,10 +95,7 @@ class Pace:
         return between if end < last and between > first else end
 
     def took(self, count: int, seconds: float) -> None:
-        """Learn from a step.
-
-        seconds: what they took [s].
-        """
+        """Learn from a step and the seconds that it took."""
         if self._first is None:
             self._first = count, seconds
         elif not self.begun:
@@ -107,27 +105,9 @@ class Pace:
             self.step = max(1, min(wanted, _FASTER * self.step, DEFAULT_CHUNK))
 
     def settled(self, seconds: float) -> float:
-        """Return what a piece took without what its first step took beyond its histories: code, motions laid out.
-
-        seconds: what it took [s]. Returns the rest; all of it where the first step was in an earlier piece [s].
-        """
+        """Return the seconds of a piece without what its first step took beyond its histories: code, motions."""
         found, self._startup = self._startup, 0.0
         return seconds - found if found < seconds else seconds
-
-
-class Watch:
-    """Says when a piece is long enough: after a second, unless the rest takes less than half of one."""
-
-    def __init__(self) -> None:
-        self._start = time.perf_counter()
-
-    def over(self, done: int, left: int) -> bool:
-        """Return whether to keep what is done, and leave the rest to whoever is free.
-
-        Returns false as long as nothing is done.
-        """
-        spent = time.perf_counter() - self._start
-        return spent > PIECE and done > 0 and left * spent > _REST * PIECE * done
 
 
 class Done(NamedTuple):
@@ -163,57 +143,56 @@ class WorkerTask:
             raise CampaignWorkerError(
                 f"this worker has version {software}, the campaign was begun with {self.software}"
             )
-        here, wanted = fingerprint.engine_of(self.histories), self.engine
+        here, wanted = identity.engine_of(self.histories), self.engine
         if kind_of(here) != kind_of(wanted):
             kinds = f"{kind_of(here)} engine, the campaign takes the {kind_of(wanted)} one"
             raise CampaignWorkerError(f"this worker has the {kinds}")
         if here != wanted:
             raise CampaignWorkerError(
                 f"this worker computes other last digits: its engine is {here}, that of the campaign is {wanted} "
-                f"({fingerprint.LAST_DIGITS})"
+                f"({identity.LAST_DIGITS})"
             )
 
-    def compute(self, chunk: Chunk, threads: int | None = 1, stop: Callable[[], bool] = lambda: False) -> bytes | None:
-        """Return the shard of a chunk, or of as much of it from its start as takes a second.
-
-        Returns the shard, which says how far it goes; None if it was stopped.
-        """
+    def compute(self, chunk: Chunk, threads: int | None = 1, stop: Stop = lambda: False) -> bytes | None:
+        """Return the shard of a chunk, or of as much of it from its start as takes a second; None if it was stopped."""
         results = empty_results(chunk.last - chunk.first)
         last = self.fill(results, chunk, threads, stop)
         return None if last is None else shard.pack(chunk.piece(chunk.first, last), results)
 
-    def fill(self, results: Arrays, chunk: Chunk, threads: int | None, stop: Callable[[], bool]) -> int | None:
-        """Compute the results of a chunk, or of as much of it from its start as takes a second.
-
-        Returns how far it came: the first history that is not there; None if it was stopped.
-        """
+    def fill(self, results: Arrays, chunk: Chunk, threads: int | None, stop: Stop) -> int | None:
+        """Compute a chunk, or as much of it as takes a second; the first history that is not there, None if stopped."""
         self.check()
-        first, watch = chunk.first, Watch()
-        while first < chunk.last and not watch.over(first - chunk.first, chunk.last - first):
+        first, begun = chunk.first, time.perf_counter()
+        while first < chunk.last and not _long(time.perf_counter() - begun, first - chunk.first, chunk.last - first):
             if first > chunk.first and stop():
                 return None
             start, last = time.perf_counter(), self.pace.until(first, chunk.last)
             for name, values in self.histories.run(first, last, threads=threads).items():
                 results[name][first - chunk.first : last - chunk.first] = values
             if not self.pace.begun:
-                watch = Watch()  # the first step of all starts much else
+                begun = time.perf_counter()  # the first step of all starts much else
             self.pace.took(last - first, time.perf_counter() - start)
             first = last
         return first
 
     def keep(self, chunk: Chunk, data: bytes, seconds: float, worker: str = "") -> Done:
-        """Write the shard of a chunk, or of a piece of it.
-
-        seconds: what it took [s].
-        """
+        """Write the shard of a chunk, or of a piece of it, which took some seconds."""
         done = chunk.piece(*shard.range_of(data))
         disk.write_new(path_of(self.folder, done), data)
         return Done(done, shard.seal(data), len(data), seconds, worker or f"process {os.getpid()}")
 
 
+def _long(spent: float, done: int, left: int) -> bool:
+    """Return whether a piece is long enough: after a second, unless the rest takes less than half of one."""
+    return spent > PIECE and done > 0 and left * spent > _REST * PIECE * done
+
+
 def path_of(folder: Path, chunk: Chunk) -> Path:
     """Return where the shard of a chunk is, or of a piece of one."""
     return (folder.with_name(PIECES) if chunk.of else folder) / f"{chunk.name}{SUFFIX}"
+
+
+_Begun = tuple[Chunk, Arrays, Future[tuple[int, float] | None]]
 
 
 class Executor(ABC):
@@ -223,14 +202,12 @@ class Executor(ABC):
     """How many workers share the work."""
 
     @abstractmethod
-    def run(
-        self, job: WorkerTask, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
-    ) -> Iterator[Done]:
+    def run(self, job: WorkerTask, chunks: Iterator[Chunk], stop: Stop, retried: Retried) -> Iterator[Done]:
         """Compute chunks, taking no more of them than are being computed or about to be.
 
         Parameters
         ----------
-        job : Job
+        job : WorkerTask
             What to compute.
         chunks : iterator of Chunk
             What remains to be done; it ends early when the campaign is to stop.
@@ -275,76 +252,38 @@ class Serial(Executor):
     def __init__(self, threads: int | None = None) -> None:
         self._threads = None if threads is None else whole("workers", threads)
 
-    def run(
-        self, job: WorkerTask, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
-    ) -> Iterator[Done]:
-        """Compute chunks.
+    def run(self, job: WorkerTask, chunks: Iterator[Chunk], stop: Stop, retried: Retried) -> Iterator[Done]:
+        """Compute chunks one after another; of one that is begun too early nothing is wanted."""
+        over, pool = Event(), ThreadPoolExecutor(1, "campaign")
 
-        Parameters
-        ----------
-        job : Job
-            What to compute.
-        chunks : iterator of Chunk
-            What remains to be done.
-        stop : callable
-            Whether to stop: a large chunk is left unfinished then, and one that was begun too early is not wanted.
-        retried : callable
-            Never called.
+        def compute(results: Arrays, chunk: Chunk) -> tuple[int, float] | None:
+            start = time.perf_counter()
+            last = job.fill(results, chunk, self._threads, lambda: over.is_set() or stop())
+            return None if last is None else (last, job.pace.settled(time.perf_counter() - start))
 
-        Yields
-        ------
-        Done
-            One after another.
-        """
-        with _Ahead(job, self._threads, stop) as ahead:
-            begun = ahead.begin(chunks)
+        def begin() -> _Begun | None:
+            """Begin the next chunk, if there is one; its results are there as soon as its time is known."""
+            chunk = next(chunks, None)
+            if chunk is None:
+                return None
+            results = empty_results(chunk.last - chunk.first)
+            # in the context of the caller: what NumPy does about an overflow is part of it
+            return chunk, results, pool.submit(copy_context().run, compute, results, chunk)
+
+        try:
+            begun = begin()
             while begun is not None:
-                chunk, results = begun
-                found = ahead.found()
-                if found is None:
+                chunk, results, future = begun
+                while not wait([future], _LOOK).done:
+                    pass  # a wait without end would not be woken by Ctrl-C everywhere
+                done = future.result()
+                if done is None:
                     return
-                last, seconds = found
-                begun = ahead.begin(chunks)
-                yield job.keep(chunk, shard.pack(chunk.piece(chunk.first, last), results), seconds)
+                begun = begin()
+                yield job.keep(chunk, shard.pack(chunk.piece(chunk.first, done[0]), results), done[1])
                 if stop():  # as if the next one had not been begun
                     return
-                begun = begun or ahead.begin(chunks)  # what was left of the last one
-
-
-class _Ahead:
-    """The thread that computes, one chunk at a time."""
-
-    def __init__(self, job: WorkerTask, threads: int | None, stop: Callable[[], bool]) -> None:
-        self._job, self._threads, self._stop = job, threads, stop
-        self._over = Event()
-        self._pool = ThreadPoolExecutor(1, "campaign")
-        self._begun: Future[tuple[int, float] | None]
-
-    def __enter__(self) -> "_Ahead":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """Wait for the thread, which leaves its chunk as soon as it asks; what it says then is not wanted."""
-        self._over.set()
-        self._pool.shutdown()
-
-    def begin(self, chunks: Iterator[Chunk]) -> tuple[Chunk, Arrays] | None:
-        """Begin the next chunk, if there is one; its results are there as soon as its time is known."""
-        chunk = next(chunks, None)
-        if chunk is None:
-            return None
-        results = empty_results(chunk.last - chunk.first)
-        # in the context of the caller: what NumPy does about an overflow is part of it
-        self._begun = self._pool.submit(copy_context().run, self._compute, results, chunk)
-        return chunk, results
-
-    def found(self) -> tuple[int, float] | None:
-        """Wait for the chunk that was begun: how far it came, and what it took [s]; None if it was stopped."""
-        while not wait([self._begun], _LOOK).done:
-            pass  # a wait without end would not be woken by Ctrl-C everywhere
-        return self._begun.result()
-
-    def _compute(self, results: Arrays, chunk: Chunk) -> tuple[int, float] | None:
-        start = time.perf_counter()
-        last = self._job.fill(results, chunk, self._threads, lambda: self._over.is_set() or self._stop())
-        return None if last is None else (last, self._job.pace.settled(time.perf_counter() - start))
+                begun = begun or begin()  # what was left of the last one
+        finally:
+            over.set()  # the thread leaves its chunk as soon as it asks
+            pool.shutdown()

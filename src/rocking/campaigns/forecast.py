@@ -25,22 +25,12 @@ _PLACES = 32
 
 @dataclass(frozen=True)
 class Forecast:
-    """What a campaign will take.
+    """What a campaign will take."""
 
-    Parameters
-    ----------
-    histories, chunks : int
-        How many remain.
-    work : Estimate
-        Time of one core for them, from a sample spread over them.
-    needed, free : int
-        Room on the disk [bytes].
-    """
-
-    histories: int
+    histories: int  # how many remain
     chunks: int
-    work: Estimate
-    needed: int
+    work: Estimate  # time of one core for them, from a sample spread over them
+    needed: int  # room on the disk [bytes]
     free: int
 
 

@@ -34,10 +34,7 @@ _SHOWN = 5
 
 
 def engine_of(histories: Histories) -> str:
-    """Return the engine that computes histories here, with the last digits that it gives.
-
-    Returns as in ``fast, 0123456789abcdef``: engines of the same words give the same bits, whatever the machine.
-    """
+    """Return the engine that computes here: of the same text, ``fast, 0123456789abcdef``, are the same bits."""
     chosen = fast_engine.chosen(histories.engine, histories.law)
     return f"{chosen}, {_fingerprint(chosen, fast_engine.instruction_set() if chosen == 'fast' else '')}"
 
@@ -116,10 +113,7 @@ class Identity:
 
     @classmethod
     def of(cls, histories: Histories, size: int | None = None) -> "Identity":
-        """Return the identity of a new campaign.
-
-        Returns the same wherever it is made with this version of the package by an engine of the same last digits.
-        """
+        """Return the identity of a new campaign: the same wherever an engine of the same last digits makes it."""
         chosen = engine_of(histories)
         pieces = usual_chunk(histories) if size is None else size
         told = histories.description()
@@ -170,10 +164,7 @@ class Identity:
 
 
 def usual_chunk(histories: Histories) -> int:
-    """Return how many histories make a chunk, unless somebody wants another number.
-
-    Returns Histories; where motions are made for them, those of one motion are in one chunk.
-    """
+    """Return how many histories make a chunk, unless somebody wants another number; those of a made motion together."""
     together = 1 if histories.motions.in_memory else histories.together
     return default_chunk(fast_engine.chosen(histories.engine, histories.law), together)
 

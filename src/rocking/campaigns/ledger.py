@@ -100,17 +100,11 @@ class Ledger:
         )
 
     def records(self) -> Iterator[LedgerEntry]:
-        """Return the finished chunks, in order.
-
-        Returns one after another; none that was changed behind the ledger's back.
-        """
+        """Return the finished chunks, in order; none that was changed behind the ledger's back."""
         return self._records("SELECT * FROM chunks ORDER BY number")
 
     def pieces(self) -> Iterator[LedgerEntry]:
-        """Return the finished pieces of chunks that are not whole yet, in order.
-
-        Returns one after another; none that was changed behind the ledger's back.
-        """
+        """Return the finished pieces of chunks that are not whole yet, in order; none that was changed."""
         return self._records("SELECT * FROM pieces ORDER BY first")
 
     def _records(self, asked: str) -> Iterator[LedgerEntry]:
@@ -142,19 +136,13 @@ class Ledger:
             end = record.last
 
     def finished(self) -> tuple[int, int]:
-        """Return how much is finished.
-
-        Returns their numbers; of histories also those in pieces.
-        """
+        """Return how many chunks are finished, and how many histories, those in pieces too."""
         asked = f"SELECT (SELECT count(*) FROM chunks), (SELECT coalesce(sum(last - first), 0) FROM {_ALL})"
         chunks, histories = self._database.execute(asked).fetchone()
         return int(chunks), int(histories)
 
     def effort(self) -> tuple[float, int]:
-        """Return what the finished chunks took.
-
-        Returns seconds: time of all workers [s].
-        """
+        """Return the seconds of all workers for what is finished, and the attempts beyond the first."""
         asked = "SELECT coalesce(sum(seconds), 0), coalesce(sum(attempts - 1), 0) FROM " + _ALL
         found = self._database.execute(asked).fetchone()
         return float(found[0]), int(found[1])

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, NoReturn
 
 from rocking.campaigns.chunks import Chunk
 from rocking.campaigns.disk import CampaignWorkerError
-from rocking.campaigns.executors import Done, Executor, Serial, WorkerTask, cannot_be_sent, whole
+from rocking.campaigns.executors import Done, Executor, Retried, Serial, Stop, WorkerTask, cannot_be_sent, whole
 from rocking.errors import InvalidValueError
 
 _WATCH = 0.5
@@ -24,7 +24,6 @@ _AHEAD = 2
 _LOOK = 0.1
 _GRACE = 0.8
 _GUARD = 'too little memory? A script that starts processes needs if __name__ == "__main__": around its calls'
-Retried = Callable[[Chunk, str], None]
 
 
 class Failure(NamedTuple):
@@ -88,13 +87,7 @@ class Processes(Executor):
         self.at_once = _processors() if workers is None else whole("workers", workers)
         self.start_method = start_method
 
-    def run(
-        self, job: WorkerTask, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Retried
-    ) -> Iterator[Done]:
-        """Compute chunks.
-
-        Returns in the order in which they finish.
-        """
+    def run(self, job: WorkerTask, chunks: Iterator[Chunk], stop: Stop, retried: Retried) -> Iterator[Done]:
         with closing(_Crew(self.at_once, self.start_method, job, retried)) as crew:
             deadline = None
             while crew.feed(chunks, stop):
@@ -154,7 +147,7 @@ class _Crew:
         self._members: list[_Member] = []
         self._again: deque[tuple[Chunk, int]] = deque()
 
-    def feed(self, chunks: Iterator[Chunk], stop: Callable[[], bool]) -> bool:
+    def feed(self, chunks: Iterator[Chunk], stop: Stop) -> bool:
         """Hand out chunks while there are any and there is room; whether any are at work."""
         while not stop() and (len(self._members) < self._wanted or len(self._least().tasks) < _AHEAD):
             task = self._again.popleft() if self._again else (next(chunks, None), 1)

@@ -15,7 +15,7 @@ from rocking.campaigns.disk import CampaignDamagedError, CampaignInterrupted, Fo
 from rocking.campaigns.executors import PIECE, PIECES, Done, Executor, Interruption, Pace, WorkerTask, path_of
 from rocking.campaigns.identity import SHARDS, Identity
 from rocking.campaigns.ledger import Ledger, LedgerEntry
-from rocking.campaigns.reading import EarlierRun, now, recover, set_aside_if_damaged
+from rocking.campaigns.recovery import EarlierRun, now, set_aside_if_damaged
 from rocking.campaigns.status import Costs, Meter, Progress, Summary
 from rocking.dynamics.plane.fast_engine import empty_results
 from rocking.studies.histories import Histories
@@ -28,7 +28,7 @@ _LONG = 20.0
 
 
 class Remaining(Iterator[Chunk]):
-    """Chunks, and pieces of chunks, that nobody has computed yet; each is handed out once, unless it is put back.
+    """Chunks and pieces that nobody has computed yet; each is handed out once, unless it is put back.
 
     They are taken from all parts of the campaign in turn: what was measured is like what will come.
     """
@@ -66,10 +66,7 @@ class Remaining(Iterator[Chunk]):
         return found
 
     def back(self, done: Chunk, seconds: float) -> None:
-        """Take note of what was computed, and put the rest of its piece back.
-
-        seconds: what it took [s].
-        """
+        """Take note of what was computed in some seconds, and put the rest of its piece back."""
         self._rate = (done.last - done.first) / max(seconds, 1e-9)
         asked = self._out.pop(done.first, done)
         if asked.last == done.last:
@@ -161,14 +158,14 @@ def run(
         with Ledger(folder, writable=True) as ledger:
             for sentence in anew:
                 ledger.note("damaged", None, sentence)
-            found = recover(folder / SHARDS, identity.plan, ledger, interruption.asked)
+            earlier = EarlierRun(folder / SHARDS, identity.plan, ledger).recover(interruption.asked)
             before = ledger.finished()[0]
             meter.begin(before, ((record.first, record.last) for record in (*ledger.records(), *ledger.pieces())))
             job = WorkerTask(histories, identity.plan.engine, identity.plan.software, folder / SHARDS)
-            run = _CampaignRun(job, identity.plan, ledger, meter, found)
+            run = _CampaignRun(job, identity.plan, ledger, meter, earlier)
             run.merge_all()
             remaining = Remaining(
-                identity.plan, np.flatnonzero(~found.finished), found.pieces, histories.together, meter.costs,
+                identity.plan, np.flatnonzero(~earlier.finished), earlier.pieces, histories.together, meter.costs,
                 sharers=lambda: executor.at_once, stop=interruption.asked, seed=order_seed,
             )  # fmt: skip
             run.compute(executor, remaining, interruption.asked)
@@ -177,22 +174,19 @@ def run(
         with suppress(OSError):  # damaged pieces that were set aside stay
             (folder / PIECES).rmdir()
     return Summary(
-        meter.chunks - before, before, found.adopted, (*anew, *found.set_aside), tuple(meter.retries), meter.seconds
+        meter.chunks - before, before, earlier.adopted, (*anew, *earlier.set_aside), tuple(meter.retries), meter.seconds
     )
 
 
 @dataclass
 class _CampaignRun:
-    """Records what is finished; the record is what makes it finished. Pieces that are a whole chunk become its shard.
-
-    The shards of a finished campaign are the same files whatever the pieces were.
-    """
+    """Records what is finished; pieces that are a whole chunk become its shard, the same file whatever they were."""
 
     job: WorkerTask
     plan: Plan
     ledger: Ledger
     meter: Meter
-    found: EarlierRun
+    earlier: EarlierRun
 
     def compute(self, executor: Executor, remaining: Remaining, stop: Callable[[], bool]) -> None:
         def retried(chunk: Chunk, why: str) -> None:
@@ -205,20 +199,20 @@ class _CampaignRun:
                 (self.ledger.record if whole else self.ledger.record_piece)(_record(done))
                 remaining.back(done.chunk, done.seconds)
                 if not whole:
-                    insort(self.found.pieces.setdefault(done.chunk.number, []), done.chunk)
+                    insort(self.earlier.pieces.setdefault(done.chunk.number, []), done.chunk)
                     whole = self.merge(done.chunk.number)
                 self.meter.add(done.chunk, done.seconds, whole=whole)
 
     def merge_all(self) -> None:
         """Make chunks of what an earlier run left without coming to that."""
-        for number in list(self.found.pieces):
+        for number in list(self.earlier.pieces):
             if self.merge(number):
-                self.found.finished[number] = True
+                self.earlier.finished[number] = True
                 self.meter.chunks += 1
 
     def merge(self, number: int) -> bool:
         """Make a chunk of its pieces, if all are there."""
-        chunk, pieces = self.plan.chunk(number), self.found.pieces[number]
+        chunk, pieces = self.plan.chunk(number), self.earlier.pieces[number]
         if sum(each.last - each.first for each in pieces) < chunk.last - chunk.first:
             return False
         results = empty_results(chunk.last - chunk.first)
@@ -235,7 +229,7 @@ class _CampaignRun:
         workers = ", ".join(sorted({each.worker for each in parts}))
         done = self.job.keep(chunk, shard.pack(chunk, results), seconds, workers)
         self.ledger.record(_record(done._replace(attempts=attempts)))
-        for each in self.found.pieces.pop(number):
+        for each in self.earlier.pieces.pop(number):
             path_of(self.job.folder, each).unlink(missing_ok=True)
         return True
 

@@ -63,11 +63,7 @@ class Speed:
         self._first: tuple[float, float] | None = None
 
     def look(self, work: float, now: float) -> float:
-        """Note the work of all pieces that are finished, right after one was.
-
-        work: of all workers together [s]; now: instant of a clock that never goes back [s]. Returns seconds of work in
-        a second; 0 during the first seconds, when that says nothing [-].
-        """
+        """Note all work right after a piece was finished [s]; the work in a second, 0 in the first seconds [-]."""
         self._first = self._first or (work, now)
         spent = now - self._first[1]
         return (work - self._first[0]) / spent if spent >= _SETTLED else 0.0
@@ -91,10 +87,7 @@ class Costs:
         self._seen, self._spent = np.zeros_like(self._missing), np.zeros_like(self._missing)
 
     def add(self, first: Any, last: Any, seconds: Any = 0.0) -> None:
-        """Note histories that are finished.
-
-        seconds: what they took; 0 where that is not known [s].
-        """
+        """Note histories that are finished, and what they took; 0 where that is not known [s]."""
         share = self._overlap(first, last)
         seconds = np.broadcast_to(np.atleast_1d(seconds), len(share))
         self._missing -= share.sum(axis=0)
@@ -114,10 +107,7 @@ class Costs:
         return np.flatnonzero((self._missing > 0.0) & (self._seen == 0.0))
 
     def left(self) -> Estimate | None:
-        """Return the time of one worker for what is missing.
-
-        Returns none while a part that is not finished has not been measured.
-        """
+        """Return the time of one worker for what is missing; None while a part of that was not measured."""
         if self.unseen().size:
             return None
         if not self._missing.any():
@@ -134,44 +124,20 @@ class Costs:
 
 @dataclass(frozen=True)
 class CampaignStatus:
-    """How far a campaign is, as its folder says.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign.
-    histories, histories_done : int
-        All of them, and those that are safe on disk.
-    chunks, chunks_done : int
-        The same, in chunks.
-    running : str or None
-        Process that runs it now.
-    seconds : float
-        Time that all workers have spent on finished chunks [s].
-    retries : int
-        Attempts of finished chunks beyond the first.
-    damaged : tuple of str
-        Shards that were found damaged or missing so far, and computed again; a ledger that was made anew.
-    software : str
-        Version of this package that computes it.
-    work : Estimate or None
-        Time of one worker for what is missing; None while a part of the campaign was not measured yet.
-    broken : tuple of str
-        Shards that are damaged or missing now, and do not count; a run computes them again.
-    """
+    """How far a campaign is, as its folder says."""
 
     folder: Path
     histories: int
-    histories_done: int
+    histories_done: int  # those that are safe on disk
     chunks: int
     chunks_done: int
-    running: str | None
-    seconds: float
-    retries: int
-    damaged: tuple[str, ...]
-    software: str
-    work: Estimate | None = None
-    broken: tuple[str, ...] = ()
+    running: str | None  # process that runs it now
+    seconds: float  # time that all workers have spent on finished chunks [s]
+    retries: int  # attempts of finished chunks beyond the first
+    damaged: tuple[str, ...]  # shards found damaged or missing so far, and computed again; a ledger that was made anew
+    software: str  # version of this package that computes it
+    work: Estimate | None = None  # time of one worker for what is missing; None while a part was not measured yet
+    broken: tuple[str, ...] = ()  # shards that are damaged or missing now, and do not count; a run computes them again
 
     @property
     def complete(self) -> bool:
@@ -220,30 +186,14 @@ class Progress:
 
 @dataclass(frozen=True)
 class Summary:
-    """What a run did.
+    """What a run did."""
 
-    Parameters
-    ----------
-    computed : int
-        Chunks that were computed in it.
-    resumed : int
-        Chunks that were there before.
-    adopted : int
-        Those of them that had been written but not recorded when an earlier run was killed.
-    set_aside : tuple of str
-        Shards that were damaged or missing, and computed again; a damaged ledger, made anew.
-    retries : tuple of str
-        Chunks that were tried again, and why.
-    seconds : float
-        How long it took [s].
-    """
-
-    computed: int
-    resumed: int
-    adopted: int
-    set_aside: tuple[str, ...]
-    retries: tuple[str, ...]
-    seconds: float
+    computed: int  # chunks that were computed in it
+    resumed: int  # chunks that were there before
+    adopted: int  # those of them that had been written but not recorded when an earlier run was killed
+    set_aside: tuple[str, ...]  # shards that were damaged or missing, and computed again; a damaged ledger, made anew
+    retries: tuple[str, ...]  # chunks that were tried again, and why
+    seconds: float  # how long it took [s]
 
 
 class Meter:
@@ -273,10 +223,7 @@ class Meter:
         self._say()
 
     def add(self, done: Chunk, seconds: float, *, whole: bool) -> None:
-        """Note that one more chunk, or piece of one, is recorded.
-
-        seconds: what it took [s].
-        """
+        """Note that one more chunk, or piece of one, is recorded, and what it took [s]."""
         if not self._work:
             self._begun = time.perf_counter() - seconds  # what it took to start says nothing about the rest
         self.costs.add(done.first, done.last, seconds)

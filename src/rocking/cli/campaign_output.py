@@ -20,8 +20,8 @@ from rocking.campaigns import (
     Executor,
     Progress,
 )
-from rocking.campaigns.jobs import Job, JobFolder, JobStatus, forecast, status_of, verified
-from rocking.campaigns.jobs.folder import JOB
+from rocking.campaigns.jobs import Job, JobFolder, forecast, status_of, verified
+from rocking.campaigns.jobs.folder import JOB, JobStatus
 from rocking.campaigns.jobs.rounds import resume
 from rocking.errors import InvalidValueError
 

@@ -15,8 +15,9 @@ import numpy as np
 
 from rocking.app.errors import NotFound
 from rocking.app.studies.job_document import JobDocument
-from rocking.campaigns import CampaignStatus, disk
+from rocking.campaigns import disk
 from rocking.campaigns.jobs.folder import status_of
+from rocking.campaigns.status import CampaignStatus
 from rocking.errors import InvalidValueError, RockingError
 
 _ID = re.compile(r"[0-9a-f]{16}\Z")

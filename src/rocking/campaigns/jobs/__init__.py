@@ -2,15 +2,13 @@
 
 from rocking.campaigns.jobs.exporting import export, exports_of
 from rocking.campaigns.jobs.findings import analyses, answer, assessment, comparison, measure_comparison
-from rocking.campaigns.jobs.folder import JobFolder, JobStatus, status_of, verified
-from rocking.campaigns.jobs.forecasting import JobForecast, forecast
+from rocking.campaigns.jobs.folder import JobFolder, status_of, verified
+from rocking.campaigns.jobs.forecasting import forecast
 from rocking.campaigns.jobs.job import Job
 
 __all__ = [
     "Job",
     "JobFolder",
-    "JobForecast",
-    "JobStatus",
     "analyses",
     "answer",
     "assessment",

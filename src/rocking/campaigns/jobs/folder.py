@@ -15,11 +15,8 @@ from rocking.campaigns import (
     Campaign,
     CampaignDamagedError,
     CampaignMismatchError,
-    CampaignStatus,
     Executor,
     Progress,
-    Summary,
-    Verification,
     disk,
     reading,
 )
@@ -35,6 +32,8 @@ from rocking.campaigns.jobs.rounds import (
     verified_rounds,
     way_out,
 )
+from rocking.campaigns.reading import Verification
+from rocking.campaigns.status import CampaignStatus, Summary
 from rocking.errors import InvalidValueError
 from rocking.spec.reading import InputFiles, document_of, located, refuse_changes
 
@@ -174,28 +173,15 @@ class JobFolder:
 
 @dataclass(frozen=True)
 class JobStatus:
-    """How far a campaign is, and what it is.
-
-    Parameters
-    ----------
-    path : Path
-        The folder.
-    name, kind : str
-        Of the campaign, as the job says.
-    status : Status or None
-        How far it is; None if it was killed before it had begun. Of an adaptive study it is of all rounds that have
-        begun.
-    complete : bool
-        Whether all is computed.
-    rounds : int or None
-        Rounds of an adaptive study that have begun; how many will follow is not known before they do. None of others.
-    """
+    """How far a campaign is, and what it is."""
 
     path: Path
     name: str
     kind: str
+    # None if it was killed before it had begun; of an adaptive study it is of all rounds that have begun
     status: CampaignStatus | None
-    complete: bool
+    complete: bool  # whether all is computed
+    # rounds of an adaptive study that have begun; how many will follow is not known before they do. None of others
     rounds: int | None = None
 
 

@@ -18,39 +18,18 @@ _KEPT, _BASE = 100, 150_000_000
 
 @dataclass(frozen=True)
 class JobForecast:
-    """What a job will take.
-
-    Parameters
-    ----------
-    histories, chunks, chunk : int
-        How many, in how many chunks, and how many in each.
-    rate : float
-        Histories of one core in a second [1/s].
-    seconds : float
-        Time of the workers for all of them [s].
-    between : tuple of float
-        Bounds between which it probably is [s].
-    memory : int
-        Memory of all workers together, of an adaptive study with all that its rounds keep, roughly [bytes].
-    disk : int
-        Room for the results [bytes].
-    free : int or None
-        Room that there is, where a folder is given [bytes].
-    later : tuple of int, optional
-        Of an adaptive study, whose other numbers are of the first round: between how many and how many histories the
-        later rounds usually have.
-    """
+    """What a job will take, an adaptive study in its first round."""
 
     histories: int
     chunks: int
-    chunk: int
-    rate: float
-    seconds: float
-    between: tuple[float, float]
-    memory: int
-    disk: int
-    free: int | None
-    later: tuple[int, int] | None = None
+    chunk: int  # histories in each
+    rate: float  # histories of one core in a second [1/s]
+    seconds: float  # time of the workers for all of them [s]
+    between: tuple[float, float]  # bounds between which it probably is [s]
+    memory: int  # of all workers together, of an adaptive study with all that its rounds keep, roughly [bytes]
+    disk: int  # room for the results [bytes]
+    free: int | None  # room that there is, where a folder is given [bytes]
+    later: tuple[int, int] | None = None  # of an adaptive study, how many histories later rounds usually have
 
 
 def forecast(job: Job, workers: int = 1, folder: Path | None = None) -> JobForecast:

@@ -13,12 +13,9 @@ from rocking.campaigns import (
     CampaignDamagedError,
     CampaignIncompleteError,
     CampaignInterrupted,
-    CampaignStatus,
     CampaignStorageError,
     Executor,
     Progress,
-    Summary,
-    Verification,
     disk,
 )
 from rocking.campaigns.disk import FolderLock, holder
@@ -26,7 +23,8 @@ from rocking.campaigns.executors import Interruption, WorkerTask
 from rocking.campaigns.identity import NAME, SHARDS, Identity
 from rocking.campaigns.jobs.adaptive import AdaptiveResult, Search, first_round
 from rocking.campaigns.processes import chosen
-from rocking.campaigns.reading import verified
+from rocking.campaigns.reading import Verification, verified
+from rocking.campaigns.status import CampaignStatus, Summary
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.studies.histories import Histories
 

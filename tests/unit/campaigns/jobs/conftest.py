@@ -5,19 +5,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from campaign_jobs import BODIES, BODY, PULSE, PULSES, SYNTHETIC, TWO_MODELS, axes, job
 
 from rocking.campaigns.jobs import Job, JobFolder
 
-BLOCK = '[body]\nunits = "m"\nwidth = 0.5\nheight = 2.0\n'
-PULSE = '[motions]\npulse = "sine:amplitude=3,period=0.6"\n'
-PULSES = """[motions]
-pulse = ["sine:amplitude=1,period=0.5", "sine:amplitude=1,period=0.7", "ricker:amplitude=1,period=0.9"]
-"""
-FEW = '[motions]\nsynthetic = "pulse-like"\ncount = 12\nseed = 4\n'
-MAP = """[map]
-x = { axis = "frequency_ratio", from = 1, to = 7, count = 9 }
-y = { axis = "amplitude_ratio", from = 1, to = 9, count = 7 }
-"""
 SPECTRUM = """[spectrum]
 slenderness_angles = [0.15, 0.3]
 periods = { from = 1.5, to = 9, count = 6, spacing = "log" }
@@ -27,41 +18,20 @@ measure = "pga"
 levels = { from = 2, to = 10, count = 5 }
 states = [0.3]
 """
-INCREMENTAL = """[restitution]
-value = 0.9
-[fragility]
-levels = [2.0, 4.0, 6.0, 9.0]
-states = []
-"""
-CLOUD = '[fragility]\nmeasure = "pgv"\nfactor = 2.0\n'
-BODIES = """[[body]]
-units = "cm"
-width = 50
-height = 200
-[[body]]
-units = "m"
-width = 0.3
-height = 1.0
-"""
-SCALES = """[restitution]
-models = ["housner", "ked"]
-[histories]
-scales = [2.5, 5.0, 8.0, 11.0]
-"""
+INCREMENTAL = "[restitution]\nvalue = 0.9\n[fragility]\nlevels = [2.0, 4.0, 6.0, 9.0]\nstates = []\n"
 JOBS = {
-    "overturning-map": BLOCK + PULSE + MAP,
+    "overturning-map": BODY + PULSE + axes(),
     "rocking-spectrum": PULSES.replace("amplitude=1", "amplitude=4") + SPECTRUM,
-    "stripes": BLOCK + FEW + STRIPES,
-    "incremental": BLOCK + PULSES + INCREMENTAL,
-    "cloud": BLOCK + FEW + CLOUD,
-    "histories": BODIES + PULSES + SCALES,
+    "stripes": BODY + SYNTHETIC + STRIPES,
+    "incremental": BODY + PULSES + INCREMENTAL,
+    "cloud": BODY + SYNTHETIC + '[fragility]\nmeasure = "pgv"\nfactor = 2.0\n',
+    "histories": BODIES + PULSES + TWO_MODELS + "[histories]\nscales = [2.5, 5.0, 8.0, 11.0]\n",
 }
 
 
 def text_of(kind: str, chunk: int | None = None) -> str:
     """Text of a small job."""
-    cut = "" if chunk is None else f"chunk = {chunk}\n"
-    return f'[campaign]\nname = "a small {kind}"\nkind = "{kind}"\n{cut}{JOBS[kind]}'
+    return job(kind, JOBS[kind], name=f"a small {kind}", chunk=chunk)
 
 
 @pytest.fixture

@@ -1,12 +1,13 @@
 """Goodness of fit and bootstrap in the fragility files of campaigns: those of the Python call, however it was cut."""
 
 import csv
-import hashlib
 import re
 from contextlib import suppress
+from functools import cache, partial
 
 import numpy as np
 import pytest
+from campaign_jobs import BODY, job
 
 import rocking as rk
 from rocking.campaigns import Campaign
@@ -16,24 +17,14 @@ from rocking.cli import main
 from rocking.errors import InvalidValueError
 from rocking.studies import multiple_stripe_analysis
 from rocking.studies.fragility.curves import model_of
-from rocking.studies.fragility.export import to_csv
+from rocking.studies.fragility.export import to_csv, to_nrml
 
 PERIODS = [round(0.4 + 0.05 * k, 2) for k in range(24)]
-STRIPES = f"""[campaign]
-name = "many states"
-kind = "stripes"
-seed = 6
-[body]
-units = "m"
-width = 0.5
-height = 2.0
-[motions]
-pulse = {[f"sine:amplitude=1,period={period}" for period in PERIODS]}
-[fragility]
-levels = {{ from = 2, to = 8, count = 13 }}
-states = [0.3]
-"""
-ASKED = STRIPES + "[export]\nbootstrap = 150\n"
+STRIPES = job(
+    "stripes", BODY, f"[motions]\npulse = {[f'sine:amplitude=1,period={period}' for period in PERIODS]}\n",
+    "[fragility]\nlevels = { from = 2, to = 8, count = 13 }\nstates = [0.3]\n", name="many states", seed=6,
+)  # fmt: skip
+ASKED = STRIPES + "[export]\nbootstrap = 99\n"
 
 
 def cut(folder, text, chunk=None):
@@ -44,6 +35,14 @@ def cut(folder, text, chunk=None):
     return made
 
 
+@pytest.fixture(scope="module")
+def campaigns(tmp_path_factory):
+    """The job as it is, and with a bootstrap, both through."""
+    folder = tmp_path_factory.mktemp("fragility")
+    return {name: cut(folder / name, text) for name, text in (("plain", STRIPES), ("asked", ASKED))}
+
+
+@cache
 def from_python(bootstrap, seed):
     """Return the model of the same study by the Python calls."""
     motions = [rk.pulses.sine(1.0, period) for period in PERIODS]
@@ -53,38 +52,36 @@ def from_python(bootstrap, seed):
 
 
 @pytest.mark.parametrize(("what", "which"), [("fragility", "parameters"), ("fragility-points", "points")])
-def test_the_bytes_of_the_python_call(tmp_path, what, which):
+def test_the_bytes_of_the_python_call(campaigns, tmp_path, what, which):
     """Intervals, bands and p-values have the seed of the campaign; another seed makes another file."""
-    path = export(cut(tmp_path / "c", ASKED), tmp_path / "r.csv", what)
-    assert path.read_bytes() == to_csv(from_python(150, 6), tmp_path / "w.csv", which).read_bytes()
-    assert path.read_bytes() != to_csv(from_python(150, 7), tmp_path / "w.csv", which).read_bytes()
+    path = export(campaigns["asked"], tmp_path / "r.csv", what)
+    assert path.read_bytes() == to_csv(from_python(99, 6), tmp_path / "w.csv", which).read_bytes()
+    assert path.read_bytes() != to_csv(from_python(99, 7), tmp_path / "w.csv", which).read_bytes()
     assert "bootstrap" in path.read_text(encoding="utf-8")
 
 
-def test_the_same_bytes_whatever_the_chunks(tmp_path):
-    """Files with goodness of fit and bootstrap do not depend on chunks and their order; fewer repetitions do."""
-    made = {chunk: cut(tmp_path / f"c{chunk}", ASKED, chunk) for chunk in (7, 64, 312)}
-    for end in (".csv", ".nc", ".mat"):
-        found = []
-        for chunk, folder in made.items():
-            data = export(folder, tmp_path / f"{chunk}{end}", "fragility").read_bytes()
-            found.append(hashlib.sha256(data[128:] if end == ".mat" else data).hexdigest())  # the head has a time
-        assert len(set(found)) == 1
-        other = export(made[7], tmp_path / f"other{end}", "fragility", bootstrap=140).read_bytes()
-        assert hashlib.sha256(other[128:] if end == ".mat" else other).hexdigest() not in found
+def test_the_same_bytes_whatever_the_chunks(campaigns, tmp_path):
+    """Files with goodness of fit and bootstrap do not depend on chunks and their order; the repetitions count."""
+    made = [campaigns["asked"], cut(tmp_path / "c7", ASKED, 7), cut(tmp_path / "c64", ASKED, 64)]
+    found = [export(folder, tmp_path / f"{k}.csv", "fragility").read_bytes() for k, folder in enumerate(made)]
+    assert len(set(found)) == 1
+    for end in (".nc", ".mat"):
+        files = [export(folder, tmp_path / f"{k}{end}", "fragility") for k, folder in enumerate(made[:2])]
+        # the head of a .mat has a time
+        assert len({file.read_bytes()[128 if end == ".mat" else 0 :] for file in files}) == 1
+    assert export(made[0], tmp_path / "other.csv", "fragility", bootstrap=101).read_bytes() not in found
 
 
-def test_off_unless_asked_for(tmp_path):
+def test_off_unless_asked_for(campaigns, tmp_path):
     """Without the key there is no bootstrap; the call may ask for it, or against it."""
-    plain, asked = cut(tmp_path / "c", STRIPES), cut(tmp_path / "d", ASKED)
+    plain, asked = campaigns["plain"], campaigns["asked"]
     one = export(plain, tmp_path / "a.csv", "fragility")
     assert "median bootstrap" not in one.read_text(encoding="utf-8")
     with one.open(encoding="utf-8") as file:
         assert all(0.0 < float(row["deviance p-value [-]"]) <= 1.0 for row in csv.DictReader(file))
     assert export(asked, tmp_path / "b.csv", "fragility", bootstrap=0).read_bytes() == one.read_bytes()
-    pair = enumerate((plain, asked))
-    both = [export(folder, tmp_path / f"{k}.csv", "fragility", bootstrap=150) for k, folder in pair]
-    assert both[0].read_bytes() == both[1].read_bytes() != one.read_bytes()
+    called = export(plain, tmp_path / "c.csv", "fragility", bootstrap=99).read_bytes()
+    assert called == to_csv(from_python(99, 6), tmp_path / "w.csv").read_bytes() != one.read_bytes()
 
 
 def test_a_state_that_is_never_reached(tmp_path):
@@ -110,11 +107,10 @@ def test_a_state_that_is_never_reached(tmp_path):
         ("fragility", float("nan"), "bootstrap must be"),
     ],
 )
-def test_refusals(tmp_path, what, bootstrap, words):
+def test_refusals(campaigns, tmp_path, what, bootstrap, words):
     """Too few, too many, and where there are no curves."""
-    folder = cut(tmp_path / "c", STRIPES)
     with pytest.raises(InvalidValueError, match=words):
-        export(folder, tmp_path / "r.csv", what, bootstrap=bootstrap)
+        export(campaigns["plain"], tmp_path / "r.csv", what, bootstrap=bootstrap)
     assert not (tmp_path / "r.csv").exists()
 
 
@@ -133,12 +129,12 @@ def test_command_line(tmp_path, capsys, monkeypatch):
         with suppress(SystemExit):
             main(["campaign", *words])
     capsys.readouterr()
-    assert (tmp_path / "r.csv").read_bytes() == to_csv(from_python(150, 6), tmp_path / "w.csv").read_bytes()
+    assert (tmp_path / "r.csv").read_bytes() == to_csv(from_python(99, 6), tmp_path / "w.csv").read_bytes()
 
 
-def test_what_analyses_read(tmp_path, monkeypatch):
+def test_what_analyses_read(campaigns):
     """An analysis reads seventeen bytes of a history, and all else would change nothing in it."""
-    folder = cut(tmp_path / "c", STRIPES)
+    folder = campaigns["plain"]
     read = folder.campaign.results(*READ)
     assert {name: values.itemsize for name, values in read.items()} == {
         "outcome": 1,
@@ -158,3 +154,52 @@ def test_what_analyses_read(tmp_path, monkeypatch):
     whole["outcome"][: whole["outcome"].size // 2] = 1
     (other,) = folder.job.study.finish(whole).values()
     assert other.fits["overturned"].median != same.fits["overturned"].median
+
+
+SMALL = "a small stripes"
+COMMON = '[export]\ncrossing = "common-dispersion"\n'
+
+
+@pytest.fixture
+def crossed(finished, text):
+    """Campaign of stripes whose states have unlike dispersions, and cross within the levels."""
+    words = text("stripes").replace("count = 5", "count = 9")
+    return lambda more="": finished("stripes", 64 + len(more), words + more)
+
+
+@pytest.mark.parametrize(
+    ("what", "name", "write"),
+    [("fragility", "r.xml", to_nrml), ("fema-p58", "r.csv", partial(to_csv, which="fema-p58"))],
+)
+def test_common_dispersion(crossed, tmp_path, what, name, write):
+    """Refused as it stands; with the option, the bytes of the Python export with the same option."""
+    folder = crossed()
+    with pytest.raises(InvalidValueError, match="curves must not cross"):
+        export(folder, tmp_path / name, what)
+    assert not list(tmp_path.glob("r.*"))
+    found = export(folder, tmp_path / name, what, crossing="common-dispersion")
+    model = model_of(next(iter(analyses(folder).values())), SMALL)
+    wanted = write(model, tmp_path / f"w{name}", crossing="common-dispersion")
+    assert found.read_bytes() == wanted.read_bytes()
+
+
+def test_the_job_may_say_crossing(crossed, tmp_path):
+    """[export] in the job is what counts unless the call says otherwise."""
+    folder = crossed(COMMON)
+    called = export(crossed(), tmp_path / "s.xml", "fragility", crossing="common-dispersion")
+    assert export(folder, tmp_path / "r.xml", "fragility").read_bytes() == called.read_bytes()
+    with pytest.raises(InvalidValueError, match="curves must not cross"):
+        export(folder, tmp_path / "t.xml", "fragility", crossing="refuse")
+
+
+def test_refusals_of_crossing(crossed, text, tmp_path):
+    """It is about curves only, and there are two ways."""
+    folder = crossed()
+    with pytest.raises(InvalidValueError, match="crossing must be one of refuse, common-dispersion, got 'maybe'"):
+        export(folder, tmp_path / "r.xml", "fragility", crossing="maybe")
+    with pytest.raises(InvalidValueError, match="it is about curves"):
+        export(folder, tmp_path / "r.nc", crossing="refuse")
+    with pytest.raises(InvalidValueError, match=r"export\.crossing"):
+        Job.of_text(text("stripes") + COMMON.replace("common-", "un"))
+    with pytest.raises(InvalidValueError, match=r"\[export\] goes with stripes, incremental, cloud"):
+        JobFolder.create(tmp_path / "m", Job.of_text(text("overturning-map") + COMMON))

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from campaign_jobs import finished as through
+from campaign_jobs import job
 from scipy.io import loadmat
 
 import rocking as rk
@@ -18,12 +20,7 @@ from rocking.studies import SyntheticSet, cloud, compare_measures
 
 COUNT, PGA = 40, 3.2
 NAMES = ["pga", "pgv", "p pgv/(g tan alpha)", "arias", "sa(1.0)"]
-HEAD = f"""
-[campaign]
-name = "far earthquakes"
-kind = "cloud"
-{{chunk}}
-[body]
+HEAD = f"""[body]
 units = "m"
 width = 0.4
 height = 2.0
@@ -31,8 +28,6 @@ height = 2.0
 synthetic = "point-source"
 count = {COUNT}
 seed = 1
-[restitution]
-models = {{models}}
 [fragility]
 measure = "pgv"
 factor = 1.5
@@ -40,19 +35,15 @@ factor = 1.5
 EXPORT = f"[export]\nmeasures = {json.dumps(NAMES)}\ncolumns = ['magnitude', 'ln distance_km']\n"
 
 
-def job_of(models: str = '["ked"]', export_table: str = EXPORT, chunk: str = "") -> Job:
-    return Job.of_text(HEAD.format(models=models, chunk=chunk) + export_table)
-
-
-def finished(folder: Path, job: Job) -> JobFolder:
-    made = JobFolder.create(folder, job)
-    made.run()
-    return made
+def text_of(*models: str, export_table: str = EXPORT, chunk: int | None = None) -> str:
+    """Text of a cloud with some models."""
+    restitution = f"[restitution]\nmodels = {json.dumps(models or ['ked'])}\n"
+    return job("cloud", HEAD, restitution, export_table, chunk=chunk)
 
 
 @pytest.fixture(scope="module")
 def campaign(tmp_path_factory) -> JobFolder:
-    return finished(tmp_path_factory.mktemp("cloud") / "c", job_of())
+    return through(tmp_path_factory.mktemp("cloud") / "c", text_of())
 
 
 @pytest.fixture(scope="module")
@@ -136,7 +127,7 @@ def test_resumed(campaign, tmp_path):
         if progress.chunks_done == 3:
             raise CampaignInterrupted("stopped on purpose")
 
-    folder = JobFolder.create(tmp_path / "stopped", job_of(chunk="chunk = 7"))
+    folder = JobFolder.create(tmp_path / "stopped", Job.of_text(text_of(chunk=7)))
     with pytest.raises(CampaignInterrupted):
         folder.run(progress=stop)
     with pytest.raises(CampaignIncompleteError, match=r"nothing to export because .* chunks"):
@@ -150,27 +141,27 @@ def test_resumed(campaign, tmp_path):
 
 def test_what_the_job_does_not_say(tmp_path):
     """Without [export] the usual measures and that of the job are ranked, against magnitude and ln distance."""
-    text = HEAD.format(models='["ked"]', chunk="").replace('"pgv"', '"sa(0.3)"')
-    found = measure_comparison(finished(tmp_path / "c", Job.of_text(text)))
+    text = text_of(export_table="").replace('"pgv"', '"sa(0.3)"')
+    found = measure_comparison(through(tmp_path / "c", text))
     names = {score.measure for score in found.scores}
     assert {"pga", "sa(0.3)", "cav", "housner"} <= names
     assert list(found.scores[0].sufficiency) == ["magnitude", "ln distance_km"]
     pulses = ", ".join(f'"half-sine:amplitude={a},period={t}"' for a in (3.0, 3.5, 4.0) for t in (0.2, 0.3, 0.4))
     body, _, rest = text.partition("[motions]")
-    short = body + f"[motions]\npulse = [{pulses}]\n" + rest[rest.index("[restitution]") :]
+    short = body + f"[motions]\npulse = [{pulses}]\n" + rest[rest.index("[fragility]") :]
     short = short.replace("factor = 1.5", "factor = 1.0").replace("height = 2.0", "height = 1.6")
-    assert measure_comparison(finished(tmp_path / "p", Job.of_text(short))).scores[0].sufficiency == {}
+    assert measure_comparison(through(tmp_path / "p", short)).scores[0].sufficiency == {}
 
 
 def test_several_restitutions(tmp_path):
     """Each has a ranking of its own, which is that of a campaign with it alone; which one is meant must be said."""
-    both = finished(tmp_path / "both", job_of('["housner", "ked"]'))
+    both = through(tmp_path / "both", text_of("housner", "ked"))
     assert exports_of(both) == [
         "histories", "fragility", "fragility-points", "fema-p58", "measures", "flips", "differences",
     ]  # fmt: skip
     with pytest.raises(InvalidValueError, match="restitution must be one of housner, ked"):
         export(both, tmp_path / "m.csv", "measures")
-    alone = finished(tmp_path / "alone", job_of('["housner"]'))
+    alone = through(tmp_path / "alone", text_of("housner"))
     assert measure_comparison(both, "housner").rows() == measure_comparison(alone).rows()
     assert measure_comparison(both, "housner").rows() != measure_comparison(both, "ked").rows()
     export(both, tmp_path / "m.csv", "measures", restitution="housner")
@@ -195,7 +186,7 @@ def test_nothing_to_export(finished, tmp_path):
             export(made, tmp_path / "m.csv", "measures")
         with pytest.raises(InvalidValueError, match="nothing to export because measures are compared over a cloud"):
             measure_comparison(made)
-    weak = job_of().text.replace("factor = 1.5", "factor = 0.01")
+    weak = text_of().replace("factor = 1.5", "factor = 0.01")
     made = finished("cloud", words=weak)
     with pytest.raises(InvalidValueError, match=r"nothing to export because .* too few rocked"):
         export(made, tmp_path / "m.csv", "measures")
@@ -216,7 +207,7 @@ def test_nothing_to_export(finished, tmp_path):
 def test_refusals_of_the_job(table, words):
     """A job that names what there is not is refused before anything is computed."""
     with pytest.raises(InvalidValueError, match=words):
-        job_of(export_table=f"[export]\n{table}\n")
+        Job.of_text(text_of(export_table=f"[export]\n{table}\n"))
 
 
 def test_only_of_clouds(text):

@@ -4,9 +4,10 @@ import dataclasses
 
 import numpy as np
 import pytest
+from campaign_jobs import finished, job, search
 
 from rocking import conventions
-from rocking.campaigns.jobs import Job, JobFolder, answer
+from rocking.campaigns.jobs import answer
 from rocking.campaigns.jobs.kinds.minimum import tables_of
 from rocking.studies.minimum_acceleration import Cases, Effort, Transitions
 from rocking.studies.motion_sets import SyntheticSet
@@ -59,29 +60,6 @@ UNITS = {
     "minimum": "m/s2", "certain": "m/s2", "uplift_acceleration": "m/s2", "lowest": "m/s2", "highest": "m/s2",
     "acceleration": "m/s2", "width": "m/s2",
 }  # fmt: skip
-JOB = """[campaign]
-name = "a search"
-kind = "minimum-acceleration"
-[[body]]
-units = "m"
-width = 0.5
-height = 2.0
-[[body]]
-units = "m"
-width = 0.3
-height = 1.5
-[motions]
-synthetic = "pulse-like"
-count = 2
-seed = 3
-[restitution]
-values = [0.85, 0.93]
-[minimum]
-highest = 25.0
-points = 12
-levels = 1
-tolerance = 0.01
-"""
 
 
 def test_every_column_as_written_out():
@@ -108,8 +86,7 @@ def test_every_column_as_written_out():
 @pytest.fixture(scope="module")
 def searched(tmp_path_factory):
     """Tables of a small search: two motions, two restitutions, two bodies."""
-    folder = JobFolder.create(tmp_path_factory.mktemp("searched") / "c", Job.of_text(JOB))
-    folder.run(workers=1)
+    folder = finished(tmp_path_factory.mktemp("searched") / "c", job("minimum-acceleration", search(12, 0.01)))
     return {name: sheet.columns for name, sheet in answer(folder).tables.items()}
 
 

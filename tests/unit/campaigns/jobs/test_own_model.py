@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from campaign_jobs import BODY, PULSE, axes, finished, job
 
 from rocking.campaigns.jobs import Job, JobFolder
 from rocking.errors import InvalidValueError, UnknownModelError
@@ -22,37 +23,24 @@ class Mine(rk.restitution.RestitutionModel):
     def raw_coefficient(self, body, onto):
         return {value}
 """
-JOB = """[campaign]
-name = "of my own"
-kind = "overturning-map"
-chunk = 10
-[body]
-units = "m"
-width = 0.5
-height = 2.0
-[motions]
-pulse = "sine:amplitude=3,period=0.6"
-[restitution]
-{restitution}
-[map]
-x = {{ axis = "frequency_ratio", from = 1, to = 7, count = 6 }}
-y = {{ axis = "amplitude_ratio", from = 1, to = 9, count = 5 }}
-"""
+
+
+def job_of(restitution):
+    """Text of a job with a restitution."""
+    return job("overturning-map", BODY, PULSE, f"[restitution]\n{restitution}\n", axes((1, 7, 6), (1, 9, 5)), chunk=10)
 
 
 @pytest.fixture
 def own(tmp_path: Path) -> Path:
     """A folder with a job, and the file of the model that it names."""
     (tmp_path / "mine.py").write_text(MINE.format(value=0.9), encoding="utf-8")
-    (tmp_path / "job.toml").write_text(JOB.format(restitution='model = "mine.py:Mine"'), encoding="utf-8")
+    (tmp_path / "job.toml").write_text(job_of('model = "mine.py:Mine"'), encoding="utf-8")
     return tmp_path
 
 
 def digest(folder: Path, restitution: str) -> str:
     """Hash of the results of the same job with another restitution."""
-    made = JobFolder.create(folder, Job.of_text(JOB.format(restitution=restitution)))
-    made.run(workers=1)
-    return made.campaign.sha256()
+    return finished(folder, job_of(restitution)).campaign.sha256()
 
 
 @pytest.mark.parametrize("executor", ["serial", "processes"])
@@ -67,10 +55,10 @@ def test_own_model_computes_in_every_process(own: Path, executor: str) -> None:
 
 def test_own_model_may_stand_among_others(own: Path) -> None:
     """In a list beside a name, and as what a distribution multiplies."""
-    (own / "job.toml").write_text(JOB.format(restitution='models = ["ked", "mine.py:Mine"]'), encoding="utf-8")
+    (own / "job.toml").write_text(job_of('models = ["ked", "mine.py:Mine"]'), encoding="utf-8")
     assert list(Job.read(own / "job.toml").study.dims.values()) == [2, 5, 6]
     drawn = 'distribution = { mean = 0.95, deviation = 0.01, times = "mine.py" }'
-    (own / "job.toml").write_text(JOB.format(restitution=drawn), encoding="utf-8")
+    (own / "job.toml").write_text(job_of(drawn), encoding="utf-8")
     rows = Job.read(own / "job.toml").study.histories.rows(0, 30)
     assert np.array_equal(rows.values["r_right"], np.full(30, 0.9))
 

@@ -8,6 +8,7 @@ import sqlite3
 
 import numpy as np
 import pytest
+from campaign_jobs import BODY, PULSE, axes, finished, job
 
 from rocking.campaigns import (
     CampaignDamagedError,
@@ -24,24 +25,10 @@ from rocking.campaigns.jobs import Job, JobFolder, answer, export, forecast, rou
 from rocking.errors import InvalidValueError
 from rocking.studies.adaptive_grid import absent, merged
 
-MAP = """[campaign]
-name = "a map"
-kind = "overturning-map"
-chunk = 1000
-[body]
-units = "m"
-width = 0.5
-height = 2.0
-[motions]
-pulse = "sine:amplitude=3,period=0.6"
-[restitution]
-value = 0.9
-[map]
-x = { axis = "frequency_ratio", from = 1, to = 7, count = 50 }
-y = { axis = "amplitude_ratio", from = 1, to = 9, count = 50 }
-refine = 0
-tolerance = 0.01
-"""
+MAP = job(
+    "overturning-map", BODY, PULSE, "[restitution]\nvalue = 0.9\n", axes((1, 7, 50), (1, 9, 50)),
+    "refine = 0\ntolerance = 0.01\n", chunk=1000,
+)  # fmt: skip
 SMALL = MAP.replace("count = 50", "count = 4").replace("refine = 0", "refine = 1")
 
 
@@ -59,16 +46,13 @@ def digests(folder):
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     """The larger map, by threads of this process."""
-    folder = begun(tmp_path_factory.mktemp("whole") / "c", MAP)
-    folder.run(workers=1)
-    return folder
+    return finished(tmp_path_factory.mktemp("whole") / "c", MAP)
 
 
-@pytest.mark.parametrize("workers", [4, 8])
-def test_spawned_processes(whole, tmp_path, workers):
+def test_spawned_processes(whole, tmp_path):
     """Three chunks of 1000 in the first round, by spawned processes: the bits of one thread."""
     folder = begun(tmp_path / "c", MAP)
-    folder.run("processes", workers=workers, start_method="spawn")
+    folder.run("processes", workers=3, start_method="spawn")
     assert digests(folder) == digests(whole)
 
 
@@ -137,8 +121,7 @@ def test_full_disk_names_the_job(tmp_path, monkeypatch):
 
 def test_damaged_ledger_of_a_round_is_made_anew(tmp_path):
     """Status and answers say how to go on, and going on computes nothing again."""
-    folder = begun(tmp_path / "c")
-    folder.run(workers=1)
+    folder = finished(tmp_path / "c", SMALL)
     before = digests(folder)
     (folder.path / "round-001" / "ledger.sqlite").write_bytes(b"this is not what was written" * 40)
     for call in (lambda: status_of(folder.path), lambda: answer(folder)):
@@ -151,8 +134,7 @@ def test_damaged_ledger_of_a_round_is_made_anew(tmp_path):
 
 def test_damaged_round_and_its_way_out(tmp_path):
     """A round's plan damaged: status, answers and runs say which folder to remove, and doing so is the way out."""
-    folder = begun(tmp_path / "c")
-    folder.run(workers=1)
+    folder = finished(tmp_path / "c", SMALL)
     before = digests(folder)
     inner = folder.path / "round-001"
     (inner / "campaign.json").write_bytes(b"this is not what was written" * 40)

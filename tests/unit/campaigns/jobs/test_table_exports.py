@@ -1,4 +1,4 @@
-"""Tables of adaptive studies and of comparisons for MATLAB and netCDF: the numbers of the CSV file."""
+"""Tables of adaptive studies and of comparisons: as the Python calls have them, the same numbers in every format."""
 
 import csv
 import json
@@ -6,66 +6,51 @@ import re
 
 import numpy as np
 import pytest
+from campaign_jobs import BODY, PULSE, TWO_MODELS, axes, finished, job
 from scipy.io import loadmat
 
-from rocking.campaigns.jobs import Job, JobFolder, export
+import rocking as rk
+from rocking import conventions
+from rocking.campaigns.jobs import comparison, export, exports_of
 from rocking.errors import InvalidValueError
+from rocking.studies import map_sensitivity
 from rocking.tables import Column, Table, add_to_netcdf, text_array, to_mat
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("h5netcdf")
 
-BODY = '[body]\nunits = "m"\nwidth = 0.5\nheight = 2.0\n'
-PULSE = '[motions]\npulse = ["sine:amplitude=3,period=0.6", "sine:amplitude=3,period=1.1"]\n'
-MINIMUM = """[campaign]
-name = "minima"
-kind = "minimum-acceleration"
-{body}{pulse}[restitution]
+X, Y = np.linspace(2.0, 8.0, 9), np.linspace(1.0, 9.0, 7)
+MAP = PULSE + axes((2, 8, 9), (1, 9, 7))
+MINIMUM = """[motions]
+pulse = ["sine:amplitude=3,period=0.6", "sine:amplitude=3,period=1.1"]
+[restitution]
 values = [0.85, 0.93]
 [minimum]
-highest = {highest}
 points = 20
 levels = 1
 """
-MAP = """[campaign]
-name = "two models"
-kind = "overturning-map"
-{body}[motions]
-pulse = "sine:amplitude=3,period=0.6"
-[restitution]
-models = ["housner", "ked"]
-[map]
-x = {{ axis = "frequency_ratio", from = 2, to = 8, count = 9 }}
-y = {{ axis = "amplitude_ratio", from = 1, to = 9, count = 7 }}
-"""
-STRIPES = """[campaign]
-name = "stripes"
-kind = "stripes"
-{body}[motions]
+STRIPES = """[motions]
 synthetic = "pulse-like"
 count = 30
 seed = 1
-[restitution]
-models = ["housner", "ked"]
 [fragility]
-levels = {{ from = 2, to = 12, count = 6 }}
+levels = { from = 2, to = 12, count = 6 }
 """
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """Campaigns that are through."""
-    place = tmp_path_factory.mktemp("made")
     texts = {
-        "minimum": MINIMUM.format(body=BODY, pulse=PULSE, highest=20.0),
-        "nothing": MINIMUM.format(body=BODY, pulse=PULSE, highest=2.6),
-        "map": MAP.format(body=BODY),
-        "stripes": STRIPES.format(body=BODY),
+        "minimum": job("minimum-acceleration", BODY, MINIMUM, "highest = 20.0\n"),
+        "nothing": job("minimum-acceleration", BODY, MINIMUM, "highest = 2.6\n"),
+        "map": job("overturning-map", BODY, TWO_MODELS, MAP),
+        "one model": job("overturning-map", BODY, MAP),
+        "histories": job("histories", BODY, TWO_MODELS, PULSE, "[histories]\nscales = [1, 2, 3]\n"),
+        "stripes": job("stripes", BODY, TWO_MODELS, STRIPES),
     }
-    folders = {name: JobFolder.create(place / name, Job.of_text(text)) for name, text in texts.items()}
-    for folder in folders.values():
-        folder.run(workers=1)
-    return folders
+    place = tmp_path_factory.mktemp("made")
+    return {name: finished(place / name, text) for name, text in texts.items()}
 
 
 def rows_of(path):
@@ -138,11 +123,9 @@ def test_no_crossings(made, tmp_path, end):
         assert np.size(table.crossing_acceleration) == np.size(table.crossing_motion) == 0
 
 
-def test_refined_maps(tmp_path, made):
+def test_refined_maps(tmp_path):
     """Points and vertices of refined maps go to MATLAB too."""
-    text = MAP.format(body=BODY).replace('models = ["housner", "ked"]', 'model = "ked"') + "refine = 1\n"
-    folder = JobFolder.create(tmp_path / "refined", Job.of_text(text))
-    folder.run(workers=1)
+    folder = finished(tmp_path / "refined", job("overturning-map", BODY, MAP, "refine = 1\n"))
     for what, name in (("refined", "refined_mode"), ("boundary", "boundary_x")):
         _, rows = rows_of(export(folder, tmp_path / "r.csv", what))
         path = export(folder, tmp_path / "r.mat", what)
@@ -159,3 +142,60 @@ def test_too_large_for_matlab(tmp_path, monkeypatch):
     with pytest.raises(InvalidValueError, match=r"up to 2 GiB, this one has 20 rows; take \.nc"):
         to_mat(table, tmp_path / "s.mat")
     add_to_netcdf({"row": table}, tmp_path / "s.nc", {})
+
+
+def from_python(models):
+    """The same comparison by the call."""
+    body, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.0, 0.6)
+    return map_sensitivity(body, pulse, ("frequency_ratio", X), ("amplitude_ratio", Y), models)
+
+
+def test_the_same_comparison_as_from_python(made):
+    """Flips and differences of the campaign are those of `map_sensitivity`; those of the reverse order are not."""
+    found, wanted = comparison(made["map"]), from_python(["housner", "ked"])
+    assert found.summary() == wanted.summary()
+    assert found.summary()[1]["flips"] > 0
+    for name in ("verdict", "peak_ratio"):
+        np.testing.assert_array_equal(found.differences(name).values, wanted.differences(name).values)
+    assert found.summary() != from_python(["ked", "housner"]).summary()
+
+
+def test_comparisons_add_up(made, tmp_path):
+    """The files have a row for each choice and each cell, and add up to the flips."""
+    tables = {}
+    for what in ("flips", "differences"):
+        header, rows = rows_of(export(made["map"], tmp_path / f"{what}.csv", what))
+        tables[what] = [dict(zip(header, row, strict=True)) for row in rows]
+    flips, cells = tables.values()
+    assert [row["choice"] for row in flips] == ["housner", "ked"]
+    assert len(cells) == X.size * Y.size
+    assert {row["restitution"] for row in cells} == {"ked"}
+    changed = [row for row in cells if float(row["verdict"]) in {-1.0, 1.0}]
+    assert len(changed) == float(flips[1]["flips"])
+    gained = [row for row in changed if float(row["verdict"]) == 1.0]
+    assert len(gained) == float(flips[1]["gained"])
+    block = rk.Block(width=0.5, height=2.0)
+    period = 2.0 * np.pi / (float(gained[0]["frequency_ratio"]) * block.frequency_parameter)
+    amplitude = float(gained[0]["amplitude_ratio"]) * conventions.g * np.tan(block.slenderness_angle)
+    outcomes = [rk.simulate(block, rk.pulses.sine(amplitude, period), r).outcome for r in ("housner", "ked")]
+    assert outcomes == [rk.Outcome.ROCKED, rk.Outcome.OVERTURNED]
+
+
+def test_comparisons_of_other_kinds(made, tmp_path):
+    """Histories and stripes with several restitutions are compared too; stripes tell how their curves move."""
+    assert comparison(made["histories"]).summary()[1]["computed"] == 3
+    header, rows = rows_of(export(made["stripes"], tmp_path / "flips.csv", "flips"))
+    # KED loses less than Housner, so that its median is lower
+    assert float(rows[1][header.index("overturned: median ratio")]) < 1.0
+
+
+def test_refusals_of_comparisons(made, tmp_path):
+    """One restitution has nothing to compare, and a format that does not fit is refused."""
+    assert exports_of(made["one model"]) == ["histories"]
+    assert exports_of(made["map"]) == ["histories", "flips", "differences"]
+    with pytest.raises(InvalidValueError, match="several restitutions"):
+        comparison(made["one model"])
+    with pytest.raises(InvalidValueError, match="has no flips"):
+        export(made["one model"], tmp_path / "x.csv", "flips")
+    with pytest.raises(InvalidValueError, match=r"flips can be written as \.nc, \.csv, .*got '\.pdf'"):
+        export(made["map"], tmp_path / "x.pdf", "flips")

@@ -1,71 +1,91 @@
-"""A coefficient that is drawn from what the measurements say of the body: the bits of the Python call."""
+"""A coefficient drawn from values in the job, or from what the measurements say of the body: as the Python call."""
 
 import numpy as np
 import pytest
+from campaign_jobs import BODY, PULSE, axes, job
 
 import rocking as rk
 from rocking.campaigns.jobs import Job
 from rocking.conventions import percent
+from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.evidence import restitution_distribution
 from rocking.spec.response import ResponseJob
-from rocking.studies import overturning_map
+from rocking.studies import SampledRestitution, overturning_map
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 AXES = ("frequency_ratio", np.linspace(2.0, 8.0, 9)), ("amplitude_ratio", np.linspace(1.0, 9.0, 8))
-BODY = '[body]\nunits = "m"\nwidth = 0.5\nheight = 2.0\n'
-PULSE = '[motions]\npulse = "sine:amplitude=3,period=0.6"\n'
-MAP = """[map]
-x = { axis = "frequency_ratio", from = 2, to = 8, count = 9 }
-y = { axis = "amplitude_ratio", from = 1, to = 9, count = 8 }
-"""
+MAP = axes((2, 8, 9), (1, 9, 8))
+VALUES = np.round(np.random.default_rng(4).normal(0.88, 0.04, 40).clip(0.0, 1.0), 6).tolist()
+EACH = pytest.mark.parametrize("each", ["history", "impact"])
 
 
-def job_of(told, kind="overturning-map", seed=8, body=BODY, rest=MAP):
-    """Return a job with a distribution."""
-    head = f'[campaign]\nname = "drawn"\nkind = "{kind}"\nseed = {seed}\n'
-    return Job.of_text(f"{head}{body}{PULSE}[restitution.distribution]\n{told}\n{rest}")
+def job_of(distribution, kind="overturning-map", seed=8, body=BODY, rest=MAP):
+    """A job with a distribution."""
+    return Job.of_text(job(kind, body, PULSE, f"[restitution.distribution]\n{distribution}\n", rest, seed=seed))
 
 
-def peaks_of(told, seed=8):
-    """Return the peak rotations of a map."""
-    study = job_of(told, seed=seed).study
+def peaks_of(distribution, seed=8):
+    """Peak rotations of a map."""
+    study = job_of(distribution, seed=seed).study
     return study.histories.run(0, study.histories.count)["peak_rotation"]
 
 
-@pytest.mark.parametrize("each", ["history", "impact"])
-def test_same_as_from_python(each):
+def label_of(distribution, *how, **changes):
+    """What the restitution of a job is called."""
+    (label,) = job_of(distribution, *how, **changes).problem.restitutions
+    return label
+
+
+def from_python(law):
+    """Peak rotations of the map of one call."""
+    return overturning_map(BLOCK, rk.pulses.sine(3.0, 0.6), *AXES, restitution=law)["peak_rotation"].values.ravel()
+
+
+@EACH
+def test_values_are_the_law_of_python(each):
+    """A map with values in its job is that of the law made of them; other values, and another seed, are other maps."""
+    text = f'values = {VALUES}\neach = "{each}"\nseed = 8'
+    found = peaks_of(text)
+    kind = RandomRestitution if each == "impact" else SampledRestitution
+    np.testing.assert_array_equal(found, from_python(kind.of_sample(VALUES, seed=8)))
+    for other in (text.replace("seed = 8", "seed = 9"), text.replace(str(VALUES), "[0.8, 0.81]")):
+        assert not np.array_equal(found, peaks_of(other), equal_nan=True)
+
+
+@EACH
+def test_posterior_is_the_law_of_python(each):
     """The map of the job is that of the posterior's law in Python, bit by bit; another seed and body are not."""
     found = restitution_distribution(BLOCK)
     law = found.per_history(8) if each == "history" else found.per_impact(8)
-    wanted = overturning_map(BLOCK, rk.pulses.sine(3.0, 0.6), *AXES, restitution=law)["peak_rotation"].values.ravel()
-    told = f'posterior = true\neach = "{each}"'
-    np.testing.assert_array_equal(peaks_of(f"{told}\nseed = 8", seed=0), wanted)
-    np.testing.assert_array_equal(peaks_of(told), wanted)  # the seed of the campaign, where the table has none
-    assert not np.array_equal(peaks_of(f"{told}\nseed = 9"), wanted, equal_nan=True)
+    wanted, text = from_python(law), f'posterior = true\neach = "{each}"'
+    np.testing.assert_array_equal(peaks_of(f"{text}\nseed = 8", seed=0), wanted)
+    np.testing.assert_array_equal(peaks_of(text), wanted)  # the seed of the campaign, where the table has none
+    assert not np.array_equal(peaks_of(f"{text}\nseed = 9"), wanted, equal_nan=True)
     slender = restitution_distribution(8.0)
     other = slender.per_history(8) if each == "history" else slender.per_impact(8)
     assert not np.array_equal(law.factors, other.factors)
 
 
-@pytest.mark.parametrize("each", ["history", "impact"])
-def test_so_many_values(each):
+@EACH
+def test_so_many_values_of_the_posterior(each):
     """With count, the law is that of a sample of the posterior: the values that `values` would take."""
     sample = restitution_distribution(BLOCK).sample(40, 5)
-    listed = f'values = {sample.tolist()}\neach = "{each}"\nseed = 5'
     named = f'posterior = true\ncount = 40\neach = "{each}"\nseed = 5'
-    np.testing.assert_array_equal(peaks_of(named), peaks_of(listed))
+    np.testing.assert_array_equal(peaks_of(named), peaks_of(f'values = {sample.tolist()}\neach = "{each}"\nseed = 5'))
     assert not np.array_equal(peaks_of(named), peaks_of(named.replace("40", "41")), equal_nan=True)
 
 
-def test_label():
+def test_labels():
     """The label says what is drawn, and whether the body is more slender than what was measured."""
-    (label,) = job_of("posterior = true\ncount = 30").problem.restitutions
-    assert label == "drawn per impact: 30 values of the posterior of the measurements, seed 8"
-    (label,) = job_of("posterior = true", body=BODY.replace("2.0", "40.0")).problem.restitutions
-    cut = restitution_distribution(80.0).cut["left"]
-    assert label == "drawn per impact: posterior of the measurements (extrapolated in slenderness), seed 8" + (
-        f" (of the distribution {percent(cut)} cut off, where impacts would create energy)"
+    values = 'values = [0.95, 1.0, 0.9]\ntimes = "housner"\nseed = 1'  # draws may multiply a model
+    assert label_of(values) == "drawn per impact: 3 values from 0.9 to 1, seed 1"
+    wanted = "drawn per impact: 30 values of the posterior of the measurements, seed 8"
+    assert label_of("posterior = true\ncount = 30") == wanted
+    cut = percent(restitution_distribution(80.0).cut["left"])
+    assert label_of("posterior = true", body=BODY.replace("2.0", "40.0")) == (
+        "drawn per impact: posterior of the measurements (extrapolated in slenderness), seed 8"
+        f" (of the distribution {cut} cut off, where impacts would create energy)"
     )
 
 
@@ -74,14 +94,22 @@ def test_one_response():
     text = f"[response]\nfree = 0.5\n{BODY}[restitution.distribution]\nposterior = true\nseed = 3"
     (law,) = ResponseJob.of_text(text, ".").problem.restitutions.values()
     wanted = restitution_distribution(BLOCK).per_impact(3)
-    assert type(law) is type(wanted)
+    assert (type(law), law.seed) == (type(wanted), 3)
     assert np.array_equal(law.factors, wanted.factors)
-    assert law.seed == 3
+
+
+ONE = "give mean and deviation, or values alone"
 
 
 @pytest.mark.parametrize(
-    ("told", "words"),
+    ("distribution", "words"),
     [
+        ("values = [0.9, 0.8]\nmean = 0.9\ndeviation = 0.1", ONE),
+        *((each, ONE) for each in ("mean = 0.9", "deviation = 0.1", "seed = 3")),
+        *(
+            (f"values = {each}", r"restitution\.distribution\.values")
+            for each in ("[0.9]", "[]", "[0.9, -0.1]", "[0.9, nan]", "[0.9, 1.1]")
+        ),
         ("posterior = true\nvalues = [0.8, 0.9]", "posterior alone; got values and posterior"),
         ("posterior = true\nmean = 0.9", "posterior alone; got mean and posterior"),
         ("posterior = false", r"restitution\.distribution\.posterior"),
@@ -90,10 +118,10 @@ def test_one_response():
         ('posterior = true\ntimes = "ked"', "times does not go with posterior"),
     ],
 )
-def test_refused_tables(told, words):
-    """It stands alone, and with a count of its own."""
+def test_refused_tables(distribution, words):
+    """One distribution, whole; values are several coefficients; a posterior stands alone, with a count of its own."""
     with pytest.raises(InvalidValueError, match=words):
-        job_of(told)
+        job_of(distribution)
 
 
 def test_one_body_is_needed():
@@ -117,7 +145,7 @@ outline = [[0.0, 0.0], [0.4, 0.0], [0.4, 1.5], [0.0, 1.2]]
 """
 
 
-@pytest.mark.parametrize("each", ["history", "impact"])
+@EACH
 @pytest.mark.parametrize("count", ["", "count = 30"])
 def test_a_body_with_unequal_sides(each, count):
     """Each side draws from a table of its own: the laws of the evidence, or samples of both at the same numbers."""
@@ -127,12 +155,12 @@ def test_a_body_with_unequal_sides(each, count):
     law = found.per_history(8) if each == "history" else found.per_impact(8)
     if count:
         law = type(law).of_sample({foot: found.sample(30, 8, foot) for foot in ("left", "right")}, seed=8)
-    job = job_of(f'posterior = true\neach = "{each}"\n{count}', "histories", body=SECTION, rest="")
-    (told,) = job.problem.restitutions.values()
-    assert type(told) is type(law)
-    assert np.array_equal(told.factors, law.factors)
-    assert not np.array_equal(told.table("left"), told.table("right"))
-    peak = job.study.histories.run(0, 1)["peak_rotation"][0]
+    made = job_of(f'posterior = true\neach = "{each}"\n{count}', "histories", body=SECTION, rest="")
+    (own,) = made.problem.restitutions.values()
+    assert type(own) is type(law)
+    assert np.array_equal(own.factors, law.factors)
+    assert not np.array_equal(own.table("left"), own.table("right"))
+    peak = made.study.histories.run(0, 1)["peak_rotation"][0]
     assert peak == pytest.approx(rk.simulate(body, rk.pulses.sine(3.0, 0.6), law).peak_rotation, abs=1e-9)
 
 
@@ -141,13 +169,12 @@ def test_the_label_says_what_is_cut_off():
     body = rk.Section([rk.Region([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 3.0)], 2400.0)])
     text = SECTION.replace("0.4, 1.5], [0.0, 1.2", "1.0, 1.0], [0.0, 3.0").replace("0.4", "1.0")
     with pytest.warns(PlausibilityWarning, match=r"9\.78 % of the distribution"):
-        (label,) = job_of("mean = 0.9\ndeviation = 0.05", "histories", body=text, rest="").problem.restitutions
+        label = label_of("mean = 0.9\ndeviation = 0.05", "histories", body=text, rest="")
     with pytest.warns(PlausibilityWarning, match=r"9\.78 % of the distribution"):
-        told = rk.simulate_many(body, rk.pulses.sine(3.0, 0.6), rk.dynamics.RandomRestitution.normal(0.9, 0.05, seed=8))
+        many = rk.simulate_many(body, rk.pulses.sine(3.0, 0.6), RandomRestitution.normal(0.9, 0.05, seed=8))
     words = " (of the distribution 9.78 % onto right cut off, where impacts would create energy)"
     assert label == f"drawn per impact: 0.9 +- 0.05, seed 8{words}"
-    assert str(told["restitution"].values[0]).endswith(words)
-    with pytest.raises(
-        InvalidValueError, match=r"restitution: the coefficient .* right foot .* 100 % of the distribution"
-    ):
+    assert str(many["restitution"].values[0]).endswith(words)
+    refused = r"restitution: the coefficient .* right foot .* 100 % of the distribution"
+    with pytest.raises(InvalidValueError, match=refused):
         job_of("mean = 0.99\ndeviation = 0.001", "histories", body=text, rest="")
