@@ -25,7 +25,7 @@ from rocking.restitution.bed import (
     bed_impacts,
     setup_of,
 )
-from rocking.restitution.bed.tables import Setup
+from rocking.restitution.bed.setup import Setup
 
 POINTS = 41
 COUNT = 10_000

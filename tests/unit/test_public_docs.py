@@ -85,5 +85,5 @@ def test_a_missing_parameter_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None
     """Negative control."""
     text = str(rocking.coefficient_of_restitution.__doc__)
     monkeypatch.setattr(rocking.coefficient_of_restitution, "__doc__", text.replace("eta : float", "zeta : float"))
-    found = faults("rocking.restitution.coefficient.coefficient_of_restitution")
+    found = faults("rocking.restitution.registry.coefficient_of_restitution")
     assert any("PR01" in fault for fault in found)

@@ -28,10 +28,9 @@ from rocking.restitution.bed import (
     reference,
     setup_of,
 )
-from rocking.restitution.bed.friction import BaseFriction
-from rocking.restitution.bed.impact import MOST_STEPS
-from rocking.restitution.bed.law import ContactLaw, LawNumbers
-from rocking.restitution.bed.tables import RESULTS, Setup
+from rocking.restitution.bed.contact_bed import BaseFriction
+from rocking.restitution.bed.laws import ContactLaw, LawNumbers
+from rocking.restitution.bed.setup import RESULTS, Setup
 
 pytestmark = pytest.mark.skipif(not fast.available(), reason="the bed's fast engine was not built")
 
@@ -80,7 +79,7 @@ def falling(law: LawNumbers, speed: float, depth: float) -> Setup:
 def dropped(law: LawNumbers, speed: float) -> tuple[float, float, float]:
     """Contact time, greatest depth and velocity ratio of a block of 1000 kg that falls flat on two points."""
     depth = speed * math.sqrt(1000.0 / law.stiffness) if law.exponent == 1.0 else 1e-3
-    results, _, _, _, intervals = fast.one(falling(law, speed, depth), MOST_STEPS)
+    results, _, _, _, intervals = fast.one(falling(law, speed, depth))
     assert len(intervals) == 2
     assert intervals[0, 2] == pytest.approx(intervals[1, 2], rel=1e-12)
     return float(intervals[0, 2] - intervals[0, 1]), float(results[RESULTS.index("deepest")]), float(results[3] / speed)
@@ -252,7 +251,7 @@ def test_another_solver_agrees(name: str) -> None:
     """SciPy's DOP853 on forces without branches gives the same r and losses to 1e-6, in a moving frame too."""
     block = slender(2.0)
     setup = setup_of(block, laws(block)[name], angular_velocity=1.0, ground_acceleration=(0.3, 0.5))
-    quick = BedImpact(setup, *fast.one(setup, MOST_STEPS))
+    quick = BedImpact(setup, *fast.one(setup))
     slow = BedImpact(setup, *reference.one(setup, tolerance=1e-12))
     assert quick.emergent.by_peak == pytest.approx(slow.emergent.by_peak, abs=1e-6)
     assert quick.emergent.by_energy == pytest.approx(slow.emergent.by_energy, abs=1e-6)
@@ -294,7 +293,7 @@ def test_an_implicit_solver_agrees() -> None:
     """SciPy's LSODA gives the same as its explicit method and as the fast engine, to 1e-6."""
     block = slender(2.0)
     setup = setup_of(block, ContactBed.uniform(block, 3, sprung(block, 200.0, 1.0)), angular_velocity=0.6)
-    quick = BedImpact(setup, *fast.one(setup, MOST_STEPS)).coefficient
+    quick = BedImpact(setup, *fast.one(setup)).coefficient
     assert BedImpact(setup, *reference.one(setup, "LSODA", 1e-8)).coefficient == pytest.approx(quick, abs=1e-6)
 
 
@@ -326,7 +325,7 @@ def test_the_other_solver_says_between_what_the_impact_lies() -> None:
     bed = ContactBed.uniform(block, 5, sprung(block, 100.0, 0.5), kinematics="small")
     setup = setup_of(block, bed, angular_velocity=1.0)
     found = BedImpact(setup, *reference.one(setup, tolerance=1e-9))
-    assert found.coefficient == pytest.approx(BedImpact(setup, *fast.one(setup, MOST_STEPS)).coefficient, abs=1e-6)
+    assert found.coefficient == pytest.approx(BedImpact(setup, *fast.one(setup)).coefficient, abs=1e-6)
     pressing, new, old = found.forces > 0.0, setup.start.new_foot, setup.start.old_foot
     sinks = bed.positions[new] * found.sample("angular_velocity") - found.sample("w")
     touch = int(np.argmax(np.delete(pressing, old, axis=1).any(axis=1)))
@@ -357,7 +356,7 @@ def test_both_solvers_say_when_time_ran_out() -> None:
     block = slender(2.0)
     setup = setup_of(block, ContactBed.uniform(block, 3, sprung(block, 200.0, 1.0)), angular_velocity=0.6)
     short = replace(setup, longest=1e-2 * setup.start.depth / setup.start.speed)
-    for result in (fast.one(short, MOST_STEPS), reference.one(short)):
+    for result in (fast.one(short), reference.one(short)):
         found = BedImpact(short, *result)
         assert found.status is BedStatus.TIME_OUT
         assert found.result("time") == pytest.approx(short.longest, rel=1e-9)
@@ -539,7 +538,7 @@ def test_deepest_and_greatest_force_lie_between_the_steps() -> None:
     setup = setup_of(block, ContactBed([-0.5, 0.5], KelvinVoigt(1.0)), angular_velocity=1.0, impulsive=True)
     depth = speed * math.sqrt(1000.0 / 1e7)
     start = replace(setup.start, state=(0.0, 0.0, 0.0, -speed, 0.0), depth=depth, speed=speed, old_foot=-1)
-    results = fast.one(replace(setup, law=law, start=start, longest=1e3 * depth / speed), MOST_STEPS)[0]
+    results = fast.one(replace(setup, law=law, start=start, longest=1e3 * depth / speed))[0]
     assert results[RESULTS.index("deepest")] == pytest.approx(depth, rel=1e-6)
     assert results[RESULTS.index("peak_force")] == pytest.approx(speed * math.sqrt(1000.0 * 1e7), rel=1e-6)
 

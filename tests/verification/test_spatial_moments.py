@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from rocking.bodies.solid import Corner, Edge, Part, Solid, box, cylinder, ellipsoid, frustum, rotation_about
 from rocking.restitution.space import LeaningImpact, SpatialKedPoint, energy_left, impact_in_space, spatial_models
-from rocking.restitution.space.moments import edge_frame, kept_moments
+from rocking.restitution.space.integrals import edge_frame, kept_moments
 
 UP = np.array([0.0, 0.0, 1.0])
 PRISM = Solid(box(1.0, 1.3, 4.0))

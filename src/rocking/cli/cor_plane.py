@@ -13,7 +13,7 @@ from rocking.conventions import FEET, Foot, g
 from rocking.errors import InvalidValueError
 from rocking.evidence._coefficient_table import CoefficientRow, outside_evidence
 from rocking.reports.facts.impact import ImpactAnswer, impact_facts
-from rocking.restitution import energy_ledger
+from rocking.restitution import energy_balance
 from rocking.spec.construction import body_of
 from rocking.spec.document import SettingsTable
 from rocking.spec.fields import JobTable
@@ -114,7 +114,7 @@ def show(answer: ImpactAnswer, length: str = "m") -> None:
         "k: implied impulse position over half base; loss: share of kinetic energy; friction: needed at impact."
     )
     for foot in answer.tables:
-        shares = energy_ledger(answer.body, onto=foot).shares
+        shares = energy_balance(answer.body, onto=foot).shares
         kept = ", ".join(f"{100.0 * share:.1f} % {stage}" for stage, share in shares.items())
         console.print(f"KED's kinetic energy onto the {foot} foot: {kept}.", markup=False)
     for name, report in answer.identities.items():

@@ -8,8 +8,8 @@ from rocking.bodies import Body, Region, Section
 from rocking.conventions import FloatArray, Foot
 from rocking.plots.body import outlines
 from rocking.plots.style import DOUBLE, INK, in_journal_style, new_figure
-from rocking.restitution import EnergyLedger, energy_ledger
-from rocking.restitution.ledger import STAGES
+from rocking.restitution import EnergyBalance, energy_balance
+from rocking.restitution.ked_stages import STAGES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,7 +46,7 @@ def energy_stages_picture(body: Body | None = None, *, onto: Foot = "right", ang
         Four panels with one colour scale, and the share of energy in each.
     """
     body = _pedestal() if body is None else body
-    ledger = energy_ledger(body, onto=onto, angular_velocity=angular_velocity)
+    balance = energy_balance(body, onto=onto, angular_velocity=angular_velocity)
     x0, _, x1, height = body.local_box
     shape = min(max(height / (x1 - x0), 0.6), 3.0)
     figure, axes = new_figure(DOUBLE, 0.85 + 1.3 * shape, columns=4, sharey=True)
@@ -55,13 +55,13 @@ def energy_stages_picture(body: Body | None = None, *, onto: Foot = "right", ang
     density = body.density_at(x, y)
     inside = density > 0.0
     density = np.where(inside, density, density.max())
-    fields = {stage: 0.5 * density * (v**2).sum(axis=-1) for stage, v in ledger.velocities(x, y).items()}
+    fields = {stage: 0.5 * density * (v**2).sum(axis=-1) for stage, v in balance.velocities(x, y).items()}
     top = max(float(field[inside].max()) for field in fields.values())
     for panel, stage in zip(axes, STAGES, strict=True):
         image = panel.pcolormesh(
             x, y, fields[stage], cmap="viridis", vmin=0.0, vmax=top, shading="gouraud", rasterized=True
         )
-        _panel(panel, body, ledger, stage, image)
+        _panel(panel, body, balance, stage, image)
     bar = figure.colorbar(image, ax=axes, shrink=0.8, aspect=30, pad=0.01)
     bar.set_label("kinetic energy per volume [J/m$^3$]", fontsize=7)
     bar.ax.tick_params(labelsize=7)
@@ -84,7 +84,7 @@ def _pedestal() -> Section:
     return Section.from_trapezoid(1.0, 0.5, 2.5, density=2700.0, holes=[hollow])
 
 
-def _panel(axes: "Axes", body: Body, ledger: EnergyLedger, stage: str, image: "QuadMesh") -> None:
+def _panel(axes: "Axes", body: Body, balance: EnergyBalance, stage: str, image: "QuadMesh") -> None:
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
@@ -92,8 +92,8 @@ def _panel(axes: "Axes", body: Body, ledger: EnergyLedger, stage: str, image: "Q
     patch = PathPatch(whole, facecolor="none", edgecolor=INK, linewidth=0.8)
     axes.add_patch(patch)
     image.set_clip_path(patch)
-    _arrows(axes, body, ledger, stage)
-    axes.set_title(f"{STAGE_WORDS[stage]}\n{100.0 * ledger.shares[stage]:.1f} % of the kinetic energy", fontsize=7)
+    _arrows(axes, body, balance, stage)
+    axes.set_title(f"{STAGE_WORDS[stage]}\n{100.0 * balance.shares[stage]:.1f} % of the kinetic energy", fontsize=7)
     for foot, at in zip(("O", "O'"), body.feet, strict=True):
         axes.annotate(foot, (at, body.ground), (0, -9), textcoords="offset points", ha="center", fontsize=7)
         axes.plot([at], [body.ground], marker="^", color=INK, markersize=4, clip_on=False, zorder=5)
@@ -107,10 +107,10 @@ def _panel(axes: "Axes", body: Body, ledger: EnergyLedger, stage: str, image: "Q
     axes.locator_params(axis="x", nbins=3)
 
 
-def _arrows(axes: "Axes", body: Body, ledger: EnergyLedger, stage: str) -> None:
+def _arrows(axes: "Axes", body: Body, balance: EnergyBalance, stage: str) -> None:
     x, y = arrow_feet(body)
-    inside = ledger.energy_density(x, y)["before"] > 0.0
-    velocity = ledger.velocities(x[inside], y[inside])
+    inside = balance.energy_density(x, y)["before"] > 0.0
+    velocity = balance.velocities(x[inside], y[inside])
     fastest = float(np.hypot(*velocity["before"].T).max())
     step = arrow_spacing(body)
     axes.quiver(

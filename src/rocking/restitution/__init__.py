@@ -3,11 +3,10 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from rocking.restitution.coefficient import coefficient_of_restitution
 from rocking.restitution.impact import ImpactGeometry
 from rocking.restitution.implied import Implication, implied
 from rocking.restitution.model import Flag, InertiaModel, Restitution, RestitutionModel
-from rocking.restitution.registry import model, models, register
+from rocking.restitution.registry import coefficient_of_restitution, model, models, register
 
 if TYPE_CHECKING:
     from rocking.restitution.contact_bed import ContactBedModel
@@ -18,14 +17,14 @@ if TYPE_CHECKING:
     from rocking.restitution.identities import IdentityCheck, identity_report
     from rocking.restitution.interface import Interface
     from rocking.restitution.ked import Ked, projected_moment
-    from rocking.restitution.ledger import EnergyLedger, energy_ledger
+    from rocking.restitution.ked_stages import EnergyBalance, energy_balance
     from rocking.restitution.plastic_winkler import PlasticWinkler
     from rocking.restitution.shifted_impulse import ShiftedImpulse
 
 __all__ = [
     "ContactBedModel",
     "DistributedImpulse",
-    "EnergyLedger",
+    "EnergyBalance",
     "Fixed",
     "Flag",
     "HorizontalMomentum",
@@ -41,7 +40,7 @@ __all__ = [
     "RestitutionModel",
     "ShiftedImpulse",
     "coefficient_of_restitution",
-    "energy_ledger",
+    "energy_balance",
     "identity_report",
     "implied",
     "model",
@@ -53,7 +52,7 @@ __all__ = [
 _HOME = {
     "ContactBedModel": "contact_bed",
     "DistributedImpulse": "distributed_impulse",
-    "EnergyLedger": "ledger",
+    "EnergyBalance": "ked_stages",
     "Fixed": "fixed",
     "HorizontalMomentum": "horizontal_momentum",
     "Housner": "housner",
@@ -62,7 +61,7 @@ _HOME = {
     "Ked": "ked",
     "PlasticWinkler": "plastic_winkler",
     "ShiftedImpulse": "shifted_impulse",
-    "energy_ledger": "ledger",
+    "energy_balance": "ked_stages",
     "identity_report": "identities",
     "projected_moment": "ked",
 }

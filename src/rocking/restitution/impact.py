@@ -1,4 +1,4 @@
-"""The impact as the inertia-only models see it: levers, height and gyration, of one body or of many."""
+"""The impact as the models in the plane see it: levers, height and gyration, and where the base touches."""
 
 from dataclasses import dataclass
 
@@ -100,3 +100,23 @@ class ImpactGeometry:
     def new_gyration(self) -> FloatArray:
         """I_O' / m about the new foot [m2]."""
         return self.base_gyration + self.new_lever**2  # Eq. 108
+
+
+def contact_of(body: Body, onto: Foot) -> FloatArray:
+    """Return the flat stretches of the base, measured from the plumb line of the centre of mass.
+
+    Returns ends of the stretches, in growing order; none for a body that stands on points [m].
+    """
+    patches = np.array(body.local_contact, dtype=np.float64).reshape(-1, 2) - body.local_moments.x
+    return patches if onto == "right" else np.ascontiguousarray(-patches[::-1, ::-1])
+
+
+def is_whole_base(patches: FloatArray, geometry: ImpactGeometry) -> bool:
+    """Return whether the base touches from foot to foot without a gap.
+
+    patches: from `contact_of` [m]. Returns true for one stretch that ends at both feet.
+    """
+    if len(patches) != 1:
+        return False
+    ends = np.array([-float(geometry.old_lever), float(geometry.new_lever)])
+    return bool(np.abs(patches[0] - ends).max() <= 1e-9 * (ends[1] - ends[0]))

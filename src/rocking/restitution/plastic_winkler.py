@@ -1,16 +1,18 @@
 """Plastic Winkler bed: pressure grows with indentation while a point descends, and is gone once it rises."""
 
+import math
+from bisect import bisect_right
 from dataclasses import dataclass
 from functools import lru_cache
+from operator import mul
 
 import numpy as np
 
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, Foot
-from rocking.restitution.contact import contact_of
-from rocking.restitution.impact import ImpactGeometry
+from rocking.errors import RockingError
+from rocking.restitution.impact import ImpactGeometry, contact_of
 from rocking.restitution.model import InertiaModel
-from rocking.restitution.plastic_bed import land
 
 _LARGEST_BATCH = 128
 _DEGREE = 80
@@ -89,3 +91,161 @@ def _log_odds() -> np.polynomial.Chebyshev:
         return np.asarray(np.log(r / (1.0 - r)))
 
     return np.polynomial.Chebyshev.interpolate(odds, _DEGREE, domain=[-_REACH, _REACH])
+
+
+# The contact ends exponentially: once the tip is this slow, relative to the start, nothing more happens.
+_AT_REST = 1e-14
+_STOPPED = 1e-9
+_ORDER = 20
+_RELATIVE = 1e-16
+_STEPS = 100_000
+
+_State = tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Landing:
+    """How a body leaves a bed."""
+
+    # end of the base that leaves the bed last, or the foot if that is nearer, over the lever of the new foot [-]
+    end: float
+    velocity: float  # angular velocity then, over the one before; zero where the body stops [-]
+
+
+def land(kappa: float, back: float, stretches: FloatArray) -> Landing:
+    """Return how a body leaves the bed, for levers in units of the new one.
+
+    The state is (v, omega, Int v dt, Int omega dt): a point x of the base descends while omega x > v, and is pushed
+    with k_w times its indentation as long. Where the edge v / omega of the pressure passes an end of a stretch, the
+    equations have a kink: there the integration stops and begins anew.
+
+    kappa: m b_new^2 / (I_C + m h^2) [-]; back: lever of the old foot [-]; stretches: where the base touches, from the
+    old foot (-back) to the new one (1) [-].
+    """
+    bed = _Bed(kappa, stretches)
+    state: _State = (-back, 1.0, 0.0, 0.0)
+    part = bed.first_part(-back)
+    while True:
+        path = _Path(bed, part)
+        state = path.follow(state)
+        if path.towards == 0:
+            return Landing(bed.end, 0.0 if state[1] < _STOPPED else state[1])
+        part += path.towards
+
+
+class _Bed:
+    """Force and moment of the springs, by the part of the base in which the pressure ends."""
+
+    def __init__(self, kappa: float, stretches: FloatArray) -> None:
+        self.stretches: list[list[float]] = stretches.tolist()
+        self.edges = [edge for stretch in self.stretches for edge in stretch]
+        self.last = len(self.edges) - 1
+        self.end = min(self.edges[-1], 1.0)
+        # the stiffness of the bed only scales time: a contact of any size then takes about as long
+        self.push = 1.0 / sum(far - near for near, far in self.stretches)
+        self.turn = -kappa * self.push
+
+    def whole(self, part: int) -> _State:
+        """Return length, first and second moment of the stretches beyond a part."""
+        full = self.stretches[(part + 1) // 2 :]
+        return tuple(sum((far**n - near**n) / n for near, far in full) for n in (1, 2, 3))
+
+    def first_part(self, edge: float) -> int:
+        """Return in which part of the base the pressure ends at first."""
+        part = bisect_right(self.edges, edge)
+        if part == 0 or self.edges[part - 1] != edge:
+            return part
+        # it starts on the end of a stretch, and moves to where the first push drives it
+        length, first, second = self.whole(part - 1)
+        return part if self.push * (first - edge * length) >= edge * self.turn * (second - edge * first) else part - 1
+
+
+class _Path:
+    """The motion as long as the pressure ends in one part of the base, by Taylor series."""
+
+    def __init__(self, bed: _Bed, part: int) -> None:
+        self._bed = bed
+        self._inside = part % 2 == 1
+        self._far = bed.edges[part] if self._inside else 0.0
+        self._whole = bed.whole(part)
+        self._lower = bed.edges[part - 1] if part > 0 else None
+        self._upper = bed.edges[part] if part < bed.last else None
+        self.towards = 0
+
+    def follow(self, state: _State) -> _State:
+        """Return the state where the edge of the pressure leaves the part, or where the contact ends."""
+        for _ in range(_STEPS):
+            series = self._series(state)
+            step = _step(series)
+            v, omega, *_ = after = _at(series, step)
+            for edge, sign in ((self._upper, 1), (self._lower, -1)):
+                if edge is not None and sign * (v - edge * omega) > 0.0:
+                    passing = self._at_edge(series, step, edge, sign)
+                    self.towards = sign if passing[1] >= _STOPPED else 0  # a body that stops there goes nowhere
+                    return passing
+            if omega < _STOPPED or self._bed.end * omega - v <= _AT_REST:
+                return after
+            state = after
+        raise RockingError(f"a landing on a bed of plastic springs did not end within {_STEPS} steps")
+
+    def _series(self, state: _State) -> list[list[float]]:
+        """Return the Taylor coefficients of v, omega and their integrals."""
+        push, turn = self._bed.push, self._bed.turn
+        length, first, second = self._whole
+        v, omega, y, theta = series = [[value] for value in state]
+        edge: list[float] = []
+        square: list[float] = []
+        cube: list[float] = []
+        end = self._far  # zero where the pressure ends between two stretches
+        reach, lever, inertia = [length + end], [first + 0.5 * end * end], [second + end**3 / 3.0]
+        for k in range(_ORDER):
+            if k:
+                for one in (reach, lever, inertia):
+                    one.append(0.0)
+            if self._inside:
+                edge.append((v[k] - _product(omega[1:], edge)) / omega[0])
+                square.append(_product(edge, edge))
+                cube.append(_product(edge, square))
+                reach[k] -= edge[k]
+                lever[k] -= 0.5 * square[k]
+                inertia[k] -= cube[k] / 3.0
+            v.append(push * (_product(theta, lever) - _product(y, reach)) / (k + 1))  # Eq. 13
+            omega.append(turn * (_product(theta, inertia) - _product(y, lever)) / (k + 1))  # Eq. 13
+            y.append(v[k] / (k + 1))
+            theta.append(omega[k] / (k + 1))
+        return series
+
+    @staticmethod
+    def _at_edge(series: list[list[float]], step: float, edge: float, sign: int) -> _State:
+        """Return the state at an edge that was passed in a step: by halving, to the last bit."""
+        start, stop = 0.0, step
+        while start < (middle := 0.5 * (start + stop)) < stop:
+            v, omega, *_ = _at(series, middle)
+            if sign * (v - edge * omega) > 0.0:
+                stop = middle
+            else:
+                start = middle
+        return _at(series, start)
+
+
+def _product(one: list[float], other: list[float]) -> float:
+    """Return the last coefficient of a product of series, as far as both are known."""
+    return float(sum(map(mul, one, reversed(other))))
+
+
+def _step(series: list[list[float]]) -> float:
+    """Return how far the series hold: what the last two terms add is below the rounding of the state."""
+    v, omega = series[0][0], series[1][0]
+    room = _RELATIVE * max(abs(v), abs(omega))
+    last, before = (max(abs(one[-k]) for one in series) + 1e-300 for k in (1, 2))
+    return min(math.pow(room / last, 1.0 / _ORDER), math.pow(room / before, 1.0 / (_ORDER - 1)))
+
+
+def _at(series: list[list[float]], time: float) -> _State:
+    found = []
+    for coefficients in series:
+        value = 0.0
+        for coefficient in reversed(coefficients):
+            value = value * time + coefficient
+        found.append(value)
+    return tuple(found)

@@ -1,10 +1,12 @@
-"""Names of the restitution models; a new one is one file and one line here, or one call of `register`."""
+"""Restitution models by name, a new one in one line here or by one call of `register`; the coefficient of a body."""
 
 import inspect
 from importlib import import_module
 from typing import Any
 
 from rocking import checks
+from rocking.bodies import Body
+from rocking.conventions import Foot
 from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.restitution.model import RestitutionModel
 
@@ -159,3 +161,53 @@ def _value(name: str, words: str) -> float:
         return float(words)
     except ValueError as error:
         raise InvalidValueError(f"{name} must be a number, got {words!r}") from error
+
+
+_by_name = model  # what the parameter of the next function hides
+
+
+def coefficient_of_restitution(
+    body: Body,
+    model: str | RestitutionModel,
+    *,
+    onto: Foot = "right",
+    eta: float = 1.0,
+    **parameters: Any,
+) -> float:
+    """Return the coefficient of restitution of a body under a model.
+
+    Parameters
+    ----------
+    body : Body
+        Block, Section or MassPoints.
+    model : str or RestitutionModel
+        Name of a model (see `rocking.restitution.models`) or a model object, which may be your own.
+    onto : {"left", "right"}
+        The foot on which the body lands.
+    eta : float
+        Interface factor in (0, 1] that multiplies the model's coefficient [-].
+    **parameters
+        The model's parameters: ``k``, ``q`` or ``r``.
+
+    Returns
+    -------
+    float
+        theta_dot_after / theta_dot_before; zero where the body stops instead of stepping on [-].
+
+    Raises
+    ------
+    UnknownModelError
+        If the model or a parameter is unknown.
+    InvalidValueError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> block = rk.Block(width=1.0, height=4.0)
+    >>> round(rk.coefficient_of_restitution(block, "ked"), 8)
+    0.94736684
+    >>> round(rk.coefficient_of_restitution(block, "shifted-impulse", k=0.6), 8)
+    0.94610778
+    """
+    return _by_name(model, eta=eta, **parameters).coefficient(body, onto)

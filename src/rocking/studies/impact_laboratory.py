@@ -26,7 +26,7 @@ from rocking.restitution.bed import (
     setup_of,
 )
 from rocking.restitution.bed.scaled import ScaledImpact, resolved_coefficients
-from rocking.restitution.bed.tables import Setup
+from rocking.restitution.bed.setup import Setup
 from rocking.restitution.bed_table import HARDNESS, POINTS, STEP, BedTable, nodes
 from rocking.restitution.contact_bed import ContactBedModel
 from rocking.tables import Column, Table, target_of, to_csv, to_dataframe, to_netcdf

@@ -11,7 +11,7 @@ from rocking.evidence._coefficient_table import coefficient_table
 from rocking.evidence.measurements import datasets
 from rocking.plots import body_picture, coefficient_picture, energy_stages_picture, paper_figure, save, write
 from rocking.plots.paper_figures import paper_figures
-from rocking.restitution import Ked, energy_ledger
+from rocking.restitution import Ked, energy_balance
 
 
 @pytest.mark.parametrize("name", paper_figures())
@@ -51,11 +51,11 @@ def test_figure_7_and_8_hold_every_block():
 
 
 def test_figure_2_prints_the_shares():
-    """Titles of Figure 2 give the shares of the ledger; landing on the other foot of a block gives the same."""
+    """Titles of Figure 2 give the shares of the balance; landing on the other foot of a block gives the same."""
     block = Block(width=1.0, height=2.0)
     for onto in ("left", "right"):
         titles = [axes.get_title() for axes in energy_stages_picture(block, onto=onto).axes[:4]]
-        for title, share in zip(titles, energy_ledger(block, onto=onto).shares.values(), strict=True):
+        for title, share in zip(titles, energy_balance(block, onto=onto).shares.values(), strict=True):
             assert f"{100.0 * share:.1f} %" in title
     assert "80.0 %" in titles[1]  # cos^2 alpha at h/b = 2
 

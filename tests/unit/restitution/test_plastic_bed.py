@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from rocking.restitution.plastic_bed import land
+from rocking.restitution.plastic_winkler import land
 
 BASES = {
     "whole base": (0.06, 1.0, [[-1.0, 1.0]]),

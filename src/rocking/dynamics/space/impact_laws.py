@@ -13,8 +13,7 @@ from rocking.dynamics.space.body import SpatialBody
 from rocking.errors import InvalidValueError
 from rocking.portable import dot
 from rocking.restitution.space import SpatialHousner, SpatialModel, spatial_model
-from rocking.restitution.space.geometry import UP
-from rocking.restitution.space.leaning import NO_MATTER, LeaningImpact
+from rocking.restitution.space.impact import NO_MATTER, UP, LeaningImpact
 
 
 @runtime_checkable

@@ -10,7 +10,7 @@ from rocking.conventions import FEET, Foot
 from rocking.errors import InvalidValueError
 from rocking.evidence._coefficient_table import CoefficientRow, coefficient_table, default_models
 from rocking.reports.facts.body import body_facts
-from rocking.restitution import IdentityCheck, RestitutionModel, energy_ledger, identity_report
+from rocking.restitution import IdentityCheck, RestitutionModel, energy_balance, identity_report
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ def impact_facts(answer: ImpactAnswer) -> dict[str, Any]:
     body = answer.body
     return {
         "body": body_facts(body, answer.gravity),
-        "ked_energy_shares": {foot: energy_ledger(body, onto=foot).shares for foot in answer.tables},
+        "ked_energy_shares": {foot: energy_balance(body, onto=foot).shares for foot in answer.tables},
         "coefficients": {foot: [row.as_dict() for row in rows] for foot, rows in answer.tables.items()},
         "identities": {
             name: {check.name: check.holds for check in report} for name, report in answer.identities.items()

@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking.bodies import Body, MassPoints
 from rocking.conventions import FloatArray, Foot
-from rocking.restitution import EnergyLedger, energy_ledger
+from rocking.restitution import EnergyBalance, energy_balance
 
 _ARROWS = 7
 _WORDS = {
@@ -18,29 +18,29 @@ _WORDS = {
 
 
 def stages_facts(body: Body, onto: Foot, angular_velocity: float = 1.0) -> dict[str, Any]:
-    """Return the energy ledger of an impact with a field of velocities for each stage.
+    """Return the energy balance of an impact with a field of velocities for each stage.
 
     angular_velocity: angular velocity before the impact [rad/s]. Returns ``velocity_before_rad_s``,
     ``velocity_after_rad_s``, ``points_m`` at which the fields are given, and ``stages``: ``name``, ``words``,
     ``energy_J``, ``share`` and ``velocity_m_s`` at the points.
     """
-    ledger = energy_ledger(body, onto=onto, angular_velocity=angular_velocity)
+    balance = energy_balance(body, onto=onto, angular_velocity=angular_velocity)
     points = _places(body)
-    fields = ledger.velocities(points[:, 0], points[:, 1])
+    fields = balance.velocities(points[:, 0], points[:, 1])
     return {
-        "velocity_before_rad_s": ledger.velocity_before,
-        "velocity_after_rad_s": ledger.velocity_after,
+        "velocity_before_rad_s": balance.velocity_before,
+        "velocity_after_rad_s": balance.velocity_after,
         "points_m": points.tolist(),
-        "stages": [_stage(ledger, name, fields[name]) for name in ledger.totals],
+        "stages": [_stage(balance, name, fields[name]) for name in balance.totals],
     }
 
 
-def _stage(ledger: EnergyLedger, name: str, field: FloatArray) -> dict[str, Any]:
+def _stage(balance: EnergyBalance, name: str, field: FloatArray) -> dict[str, Any]:
     return {
         "name": name,
         "words": _WORDS[name],
-        "energy_J": ledger.totals[name],
-        "share": ledger.shares[name],
+        "energy_J": balance.totals[name],
+        "share": balance.shares[name],
         "velocity_m_s": field.tolist(),
     }
 

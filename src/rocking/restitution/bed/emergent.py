@@ -18,8 +18,8 @@ from enum import Enum
 
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError
-from rocking.restitution.bed.settlement import settlement
-from rocking.restitution.bed.tables import COUNTS, RESULTS, Setup
+from rocking.restitution.bed.rigid import settlement
+from rocking.restitution.bed.setup import COUNTS, RESULTS, Setup
 
 
 class BedStatus(Enum):

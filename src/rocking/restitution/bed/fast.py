@@ -7,7 +7,9 @@ from types import ModuleType
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.restitution.bed.tables import COUNTS, RESULTS, Setup, choices_of, numbers_of
+from rocking.restitution.bed.setup import COUNTS, RESULTS, Setup
+
+MOST_STEPS = 500_000
 
 
 @cache
@@ -27,7 +29,7 @@ def available() -> bool:
     return _module() is not None
 
 
-def one(setup: Setup, most_steps: int) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
+def one(setup: Setup, most_steps: int = MOST_STEPS) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
     """Compute one impact with its history.
 
     Returns columns `RESULTS`, `COUNTS`, `SAMPLES`; forces of the points at the samples [N]; contacts (point, on, off).
@@ -40,15 +42,15 @@ def one(setup: Setup, most_steps: int) -> tuple[FloatArray, IntArray, FloatArray
         bed.positions,
         bed.heights,
         bed.shares,
-        numbers_of(setup)[None],
-        choices_of(setup, 0, most_steps)[None],
+        _numbers(setup)[None],
+        _choices(setup, 0, most_steps)[None],
         results,
         counts,
     )
     return results[0], counts[0], samples, forces, intervals
 
 
-def many(setups: Sequence[Setup], most_steps: int, threads: int) -> tuple[FloatArray, IntArray]:
+def many(setups: Sequence[Setup], threads: int) -> tuple[FloatArray, IntArray]:
     """Compute many impacts; no row sees another, so that threads do not change a bit.
 
     Returns columns `RESULTS` and `COUNTS`, a row an impact.
@@ -66,10 +68,31 @@ def many(setups: Sequence[Setup], most_steps: int, threads: int) -> tuple[FloatA
     results, counts = np.zeros((len(setups), len(RESULTS))), np.zeros((len(setups), len(COUNTS)), dtype=np.int64)
     module.run_batch(
         *(np.concatenate([getattr(bed, name) for bed in beds]) for name in ("positions", "heights", "shares")),
-        np.array([numbers_of(s) for s in setups]),
-        np.array([choices_of(s, firsts[id(s.rigid.bed)], most_steps) for s in setups]),
+        np.array([_numbers(s) for s in setups]),
+        np.array([_choices(s, firsts[id(s.rigid.bed)], MOST_STEPS) for s in setups]),
         results,
         counts,
         threads,
     )
     return results, counts
+
+
+def _numbers(setup: Setup) -> FloatArray:
+    """Return the row of numbers of an impact."""
+    r, law, start = setup.rigid, setup.law, setup.start
+    _, coefficient, creep = r.bed.friction.numbers
+    return np.array([
+        r.mass, r.inertia, r.height, setup.gravity, setup.push,
+        law.stiffness, law.damping, law.exponent, law.viscosity, law.rebound, coefficient, creep,
+        *start.state, setup.tolerance, start.depth, start.speed, start.half_base, setup.longest, setup.farthest,
+    ])  # fmt: skip
+
+
+def _choices(setup: Setup, first: int, most_steps: int) -> IntArray:
+    """Return the row of whole numbers of an impact."""
+    bed, start = setup.rigid.bed, setup.start
+    numbers = [
+        int(setup.law.kind), int(bed.friction.numbers[0]), int(bed.kinematics == "exact"), setup.end,
+        start.new_foot, start.old_foot, first, len(bed.positions), most_steps,
+    ]  # fmt: skip
+    return np.array(numbers, dtype=np.int64)

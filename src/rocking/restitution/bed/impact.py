@@ -1,26 +1,23 @@
-"""One impact on a bed, resolved in time."""
+"""Impacts on a bed, resolved in time."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
 import numpy as np
 
-from rocking import checks, conventions
+from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import FloatArray, IntArray
+from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError, MissingExtraError
 from rocking.restitution.bed import fast, reference
 from rocking.restitution.bed.contact_bed import ContactBed
 from rocking.restitution.bed.emergent import BedStatus, Emergent, emergent_of, status_of
-from rocking.restitution.bed.law import LawKind
-from rocking.restitution.bed.rigid import RigidRocking
-from rocking.restitution.bed.start import start_of
-from rocking.restitution.bed.tables import COUNTS, RESULTS, SAMPLES, Setup
+from rocking.restitution.bed.setup import COUNTS, RESULTS, SAMPLES, Setup, setup_of
 
 BedEngine = Literal["auto", "fast", "reference"]
 ENGINES: tuple[BedEngine, ...] = ("auto", "fast", "reference")
-MOST_STEPS = 500_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,9 +29,9 @@ class BedImpact:
     setup : Setup
         Body, bed, start.
     results, counts : ndarray
-        Rows of results, columns `tables.RESULTS` and `tables.COUNTS`.
+        Rows of results, columns `setup.RESULTS` and `setup.COUNTS`.
     samples : ndarray
-        History, columns `tables.SAMPLES`.
+        History, columns `setup.SAMPLES`.
     forces : ndarray, shape (samples, points)
         Normal force of each point [N].
     intervals : ndarray, shape (contacts, 3)
@@ -108,7 +105,7 @@ class BedImpact:
         Parameters
         ----------
         name : str
-            One of `tables.RESULTS`, "bed_loss" or "friction_loss" [J] for instance.
+            One of `setup.RESULTS`, "bed_loss" or "friction_loss" [J] for instance.
 
         Returns
         -------
@@ -123,7 +120,7 @@ class BedImpact:
         Parameters
         ----------
         name : str
-            One of `tables.SAMPLES`.
+            One of `setup.SAMPLES`.
 
         Returns
         -------
@@ -200,77 +197,119 @@ def bed_impact(
         )
     if engine == "reference" or not fast.available():
         return BedImpact(setup, *reference.one(setup))
-    return BedImpact(setup, *fast.one(setup, MOST_STEPS))
+    return BedImpact(setup, *fast.one(setup))
 
 
-def setup_of(
-    body: Body,
-    bed: ContactBed,
-    *,
-    rotation: float | None = None,
-    angular_velocity: float | None = None,
-    impulsive: bool = False,
-    ground_acceleration: tuple[float, float] = (0.0, 0.0),
-    tolerance: float = 1e-9,
-    gravity: float = conventions.g,
-) -> Setup:
-    """Return an impact, checked and ready to be computed; parameters as in `bed_impact`.
+_NONE = Emergent(float("nan"), float("nan"), float("nan"), stopped=False)
+
+
+@dataclass(frozen=True, eq=False)
+class BedImpacts:
+    """Results of many impacts, a row each.
 
     Parameters
     ----------
-    body : Body
-        The body.
-    bed : ContactBed
-        Its bed.
-    rotation, angular_velocity : float, optional
-        One of the two [rad], [rad/s].
-    impulsive : bool
-        Whether gravity is left out.
-    ground_acceleration : (float, float)
-        Horizontal and vertical [m/s2].
-    tolerance : float
-        Relative error of a step [-].
-    gravity : float
-        Acceleration of gravity [m/s2].
+    setups : sequence of Setup
+        The impacts.
+    results, counts : ndarray
+        Columns `setup.RESULTS` and `setup.COUNTS`.
+    emergent : tuple of Emergent
+        Coefficients of restitution by three measures; NaN for an impact that failed.
+    """
+
+    setups: Sequence[Setup]
+    results: FloatArray
+    counts: IntArray
+    emergent: tuple[Emergent, ...]
+
+    @property
+    def coefficient(self) -> FloatArray:
+        """Coefficients of restitution; NaN for an impact that failed, see `status` [-]."""
+        return np.array([row.coefficient for row in self.emergent])
+
+    @property
+    def stopped(self) -> BoolArray:
+        """Whether the body did not step onto the new foot."""
+        return np.array([row.stopped for row in self.emergent])
+
+    @property
+    def status(self) -> list[BedStatus]:
+        """How each computation ended."""
+        return [status_of(row) for row in self.counts]
+
+    @property
+    def contacts(self) -> IntArray:
+        """How often each body came into contact with its bed as a whole."""
+        return np.array(self.counts[:, COUNTS.index("contacts")])
+
+    @property
+    def audit(self) -> FloatArray:
+        """Energy at the end plus losses minus energy at the start, over the energy before each impact [-]."""
+        energy = np.array([setup.start.energy for setup in self.setups], dtype=np.float64)
+        return np.asarray(self.result("residual") / energy)
+
+    def result(self, name: str) -> FloatArray:
+        """Return one column of the results.
+
+        Parameters
+        ----------
+        name : str
+            One of `setup.RESULTS`.
+
+        Returns
+        -------
+        ndarray
+            Its values in SI.
+        """
+        return np.array(self.results[:, RESULTS.index(name)])
+
+
+def bed_impacts(setups: Iterable[Setup], *, threads: int = 1) -> BedImpacts:
+    """Compute many impacts; the bits of a row depend neither on the threads nor on the other rows.
+
+    Parameters
+    ----------
+    setups : iterable of Setup
+        Impacts from `setup_of`.
+    threads : int
+        Threads of the fast engine.
 
     Returns
     -------
-    Setup
-        The impact.
+    BedImpacts
+        A row an impact, in the order given; one that fails says so in its status and has a coefficient of NaN.
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range or the law cannot carry the body.
+        If there is no impact, or the number of threads is not a whole number above zero.
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> from rocking.restitution.bed import ContactBed, KelvinVoigt, bed_impacts, setup_of
+    >>> block = Block(width=0.2, height=0.4)
+    >>> bed = ContactBed.uniform(block, 2, KelvinVoigt(1e9, damping_ratio=1.0))
+    >>> impacts = bed_impacts([setup_of(block, bed, angular_velocity=v) for v in (0.5, 1.0)])
+    >>> impacts.coefficient.round(2).tolist()
+    [0.7, 0.7]
     """
-    given: tuple[object, object] = (body, bed)
-    if not (isinstance(given[0], Body) and isinstance(given[1], ContactBed)):
-        raise InvalidValueError(f"body and bed must be a Body and a ContactBed, got {body!r:.40} and {bed!r:.40}")
-    push, lift = _accelerations(ground_acceleration)
-    total = checks.positive("gravity", gravity, "m/s2") + lift
-    total = checks.positive("gravity + vertical ground acceleration", total, "m/s2", hint="the body floats")
-    tolerance = checks.within("tolerance", tolerance, 1e-13, 1e-3)
-    law = bed.law.numbers(body.mass)
-    if not impulsive and (law.stiffness == 0.0 or (law.kind is LawKind.PLASTIC and law.rebound == 0.0)):
-        raise InvalidValueError(
-            "a law without stiffness or without rebound cannot carry the weight; "
-            "use impulsive=True, or stiffness and rebound > 0"
-        )
-    rigid = RigidRocking.of_body(body, bed, total)
-    start = start_of(rigid, law, rotation=rotation, angular_velocity=angular_velocity, impulsive=impulsive)
-    longest = 30.0 * (rigid.inertia_about(start.old_foot) / (rigid.mass * total * rigid.height)) ** 0.5
-    if impulsive:
-        longest = min(longest, 1e6 * start.depth / start.speed)
-    return Setup(rigid, law, start, push, tolerance, longest)
+    rows = list(setups)
+    if not rows:
+        raise InvalidValueError("at least one impact is needed, got none")
+    number = checks.positive("threads", threads)
+    if number != int(number):
+        raise InvalidValueError(f"threads must be a whole number, got {threads}")
+    if fast.available():
+        results, counts = fast.many(rows, int(number))
+    else:
+        computed = [reference.one(row)[:2] for row in rows]
+        results, counts = np.array([c[0] for c in computed]), np.array([c[1] for c in computed])
+    return BedImpacts(rows, results, counts, tuple(_emergent(*row) for row in zip(rows, results, counts, strict=True)))
 
 
-def _accelerations(given: object) -> tuple[float, float]:
-    if not isinstance(given, (tuple, list, np.ndarray)) or np.shape(given) != (2,):
-        raise InvalidValueError(
-            f"ground_acceleration must be two finite numbers, horizontal and vertical [m/s2], got {given!r:.60}; "
-            "for a horizontal one alone give (value, 0.0)"
-        )
-    return (
-        checks.number("horizontal ground acceleration", given[0], "m/s2"),
-        checks.number("vertical ground acceleration", given[1], "m/s2"),
-    )
+def _emergent(setup: Setup, results: FloatArray, counts: IntArray) -> Emergent:
+    try:
+        return emergent_of(setup, results, counts)
+    except InvalidValueError:
+        return _NONE

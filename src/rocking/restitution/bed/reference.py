@@ -12,9 +12,9 @@ import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.portable import dot
-from rocking.restitution.bed.friction import FrictionKind
-from rocking.restitution.bed.law import LawKind, force, stored
-from rocking.restitution.bed.tables import END_AT_PEAK, Setup
+from rocking.restitution.bed.contact_bed import FrictionKind
+from rocking.restitution.bed.laws import LawKind, force, stored
+from rocking.restitution.bed.setup import END_AT_PEAK, Setup
 
 Method = Literal["DOP853", "LSODA"]
 Event = Callable[[float, FloatArray], float]

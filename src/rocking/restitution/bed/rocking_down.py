@@ -11,10 +11,9 @@ from rocking.errors import InvalidValueError
 from rocking.restitution.bed import fast, reference
 from rocking.restitution.bed.contact_bed import ContactBed
 from rocking.restitution.bed.emergent import BedStatus, status_of
-from rocking.restitution.bed.impact import MOST_STEPS, setup_of
-from rocking.restitution.bed.law import LawKind
+from rocking.restitution.bed.laws import LawKind
 from rocking.restitution.bed.rigid import RigidRocking
-from rocking.restitution.bed.tables import RESULTS, Setup
+from rocking.restitution.bed.setup import RESULTS, Setup, setup_of
 
 _MOST_RUNS = 50
 _AT_REST = 1e-3
@@ -88,7 +87,7 @@ def bed_free_rocking(
     rigid = setup.rigid
     angles, times, now, lingers = [float(rotation)], [0.0], 0.0, False
     for _ in range(_MOST_RUNS * int(peaks)):
-        results, counts = (fast.one(setup, MOST_STEPS) if fast.available() else reference.one(setup))[:2]
+        results, counts = (fast.one(setup) if fast.available() else reference.one(setup))[:2]
         row = dict(zip(RESULTS, results.tolist(), strict=True))
         now += row["time"]
         if status_of(counts) is not BedStatus.PEAK or abs(row["rotation"]) < _AT_REST * rotation:

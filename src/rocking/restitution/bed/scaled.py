@@ -11,13 +11,11 @@ from rocking import checks, conventions
 from rocking.bodies import MassPoints
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.restitution.bed.contact_bed import ContactBed
+from rocking.restitution.bed.contact_bed import BaseFriction, ContactBed, Coulomb, Sticking
 from rocking.restitution.bed.emergent import BedStatus
-from rocking.restitution.bed.friction import BaseFriction, Coulomb, Sticking
-from rocking.restitution.bed.impact import setup_of
-from rocking.restitution.bed.kelvin_voigt import KelvinVoigt
-from rocking.restitution.bed.many import bed_impacts
-from rocking.restitution.bed.tables import Setup
+from rocking.restitution.bed.impact import bed_impacts
+from rocking.restitution.bed.laws import KelvinVoigt
+from rocking.restitution.bed.setup import Setup, setup_of
 
 RELEASE = 0.05
 """Rotation from which the body falls, over the least slenderness angle: rocking of small amplitude [-]."""

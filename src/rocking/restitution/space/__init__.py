@@ -1,17 +1,15 @@
 """What an impact costs a body in space: corner to corner, edge to edge, corner to edge."""
 
 from rocking.restitution.space.energies import UnitEnergies, lost_density, unit_energies
-from rocking.restitution.space.geometry import SpatialImpact
 from rocking.restitution.space.horizontal_momentum import SpatialHorizontalMomentum
 from rocking.restitution.space.housner import SpatialHousner
+from rocking.restitution.space.impact import LeaningImpact, RigidImpact, SpatialImpact
 from rocking.restitution.space.impulse_position import ImpulsePosition, impulse_position
+from rocking.restitution.space.integrals import KeptMoments, kept_moments
 from rocking.restitution.space.interface import edge_coefficient, impact_in_space, spatial_model, spatial_models
 from rocking.restitution.space.ked import SpatialKedPoint, energy_left
 from rocking.restitution.space.ked_impulse import SpatialKed
-from rocking.restitution.space.leaning import LeaningImpact
 from rocking.restitution.space.model import SpatialFlag, SpatialModel, SpatialRestitution
-from rocking.restitution.space.moments import KeptMoments, kept_moments
-from rocking.restitution.space.rigid import RigidImpact
 
 __all__ = [
     "ImpulsePosition",

@@ -9,7 +9,7 @@ from rocking.bodies.solid import Part
 from rocking.bodies.solid.units import Units, divided
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.restitution.space.geometry import SpatialImpact
+from rocking.restitution.space.impact import SpatialImpact
 from rocking.restitution.space.ked import stage_velocities
 from rocking.restitution.space.model import SpatialRestitution
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from rocking.conventions import FloatArray
 from rocking.portable import applied, dot
+from rocking.restitution.space.impact import RigidImpact, solved
 from rocking.restitution.space.model import SpatialModel
-from rocking.restitution.space.rigid import RigidImpact, solved
 
 
 @dataclass(frozen=True)

@@ -1,20 +1,17 @@
-"""Integrals over the mass of a solid that are homogeneous about the place it lands on.
+"""Integrals over the mass of a solid that are homogeneous about the place it lands on."""
 
-A product of features of degrees i and j about the landing point, divided by a squared length, is homogeneous; over the
-volume it is a sum over the surface (`samples`). About an edge and upright the one integral of the plane, Eq. 17 of
-Mao et al. 2024, is exact for extrusions along it.
-"""
-
+import math
 from collections.abc import Callable
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 
-from rocking.bodies.solid import Edge, Part, Polyhedron, Prism, Solid
+from rocking.bodies.solid import Corner, Edge, Part, Polyhedron, Prism, Solid
 from rocking.bodies.solid.sampling import Distance, samples
 from rocking.conventions import FloatArray
-from rocking.portable import applied, gram, times
-from rocking.restitution.ked_integrals import ring_integral
+from rocking.portable import applied, dot, gram, times
+from rocking.restitution.ked import ring_integral
 
 Features = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
@@ -109,3 +106,188 @@ def of_part(part: Part, point: FloatArray, features: Features, graded: tuple[Dis
 def _height_squared(s: FloatArray) -> FloatArray:
     squared: FloatArray = s[:, 2] ** 2
     return squared
+
+
+_UP = np.array([0.0, 0.0, 1.0])
+_PAIRS = np.array([(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)])
+_CACHED = 256
+
+
+@dataclass(frozen=True, eq=False)
+class KeptMoments:
+    """Moments of the mass points with what stage 2 of KED keeps of their velocities.
+
+    Parameters
+    ----------
+    form : ndarray, shape (n + m, n + m)
+        Integrals of the products of n quadratic and m linear features over the squared length [kg m2 and kg m, kg].
+    directions : ndarray, shape (m, 3)
+        A: the directions of the linear features [-].
+    products : ndarray, shape (n, m, 3)
+        How each linear feature times s is made of the quadratic ones [-].
+    whole : tuple of float and two ndarray, optional
+        Mass, first and second moments about the landing point, from which the form is removed [kg, kg m, kg m2];
+        without, the form is what stays.
+    """
+
+    form: FloatArray
+    directions: FloatArray
+    products: FloatArray
+    whole: tuple[float, FloatArray, FloatArray] | None
+
+    @property
+    def second(self) -> FloatArray:
+        """``Int Q_ij dm``, shape (3, 3) [kg]."""
+        count = len(self.directions)
+        tensor = times(times(self.directions.T, self.form[-count:, -count:]), self.directions)
+        return tensor if self.whole is None else self.whole[0] * np.eye(3) - tensor
+
+    @property
+    def third(self) -> FloatArray:
+        """``Int Q_ij s_k dm``, shape (3, 3, 3) [kg m]."""
+        count = len(self.directions)
+        mixed = times(self.form[-count:, :-count], self._factors.reshape(-1, 9))
+        tensor: FloatArray = np.einsum("pi,pjk->ijk", self.directions, mixed.reshape(-1, 3, 3))
+        return tensor if self.whole is None else np.einsum("ij,k->ijk", np.eye(3), self.whole[1]) - tensor
+
+    @property
+    def fourth(self) -> FloatArray:
+        """``Int Q_ij s_k s_l dm``, shape (3, 3, 3, 3) [kg m2]."""
+        count = len(self.directions)
+        tensor: FloatArray = np.einsum(
+            "pik,pq,qjl->ijkl", self._factors, self.form[:-count, :-count], self._factors, optimize=True
+        )
+        return tensor if self.whole is None else np.einsum("ij,kl->ijkl", np.eye(3), self.whole[2]) - tensor
+
+    @cached_property
+    def _factors(self) -> FloatArray:
+        """B: coefficient of each quadratic feature in ``sum A_i W_ik s_k``, shape (n, 3, 3)."""
+        factors: FloatArray = np.einsum("nqk,qi->nik", self.products, self.directions)
+        return factors
+
+    def coefficients(self, drift: FloatArray, gradient: FloatArray) -> FloatArray:
+        """Return what a field of velocities is made of, in the features of the form.
+
+        Parameters
+        ----------
+        drift : ndarray, shape (3,)
+            u [m/s].
+        gradient : ndarray, shape (3, 3)
+            W [1/s].
+
+        Returns
+        -------
+        ndarray, shape (n + m,)
+            Quadratic coefficients [1/s], then linear ones [m/s].
+        """
+        quadratic = applied(self._factors.reshape(-1, 9), gradient.ravel())
+        return np.concatenate([quadratic, applied(self.directions, drift)])
+
+    def energy_left(self, drift: FloatArray, gradient: FloatArray) -> float:
+        """Return the kinetic energy of what stage 2 keeps of the velocities ``u + W s``.
+
+        Parameters
+        ----------
+        drift : ndarray, shape (3,)
+            u [m/s].
+        gradient : ndarray, shape (3, 3)
+            W [1/s].
+
+        Returns
+        -------
+        float
+            T'' [J].
+        """
+        state = self.coefficients(drift, gradient)
+        along = dot(state, applied(self.form, state))  # Eq. 106
+        if self.whole is None:
+            return 0.5 * max(along, 0.0)
+        mass, first, second = self.whole
+        crossed = 2.0 * dot(drift, applied(gradient, first))
+        every = mass * dot(drift, drift) + crossed + float((times(gradient, second) * gradient).sum())
+        return 0.5 * max(every - along, 0.0)
+
+
+def kept_moments(solid: Solid, onto: Corner | Edge) -> KeptMoments:
+    """Return the moments of what stage 2 of KED keeps about a corner or an edge.
+
+    Parameters
+    ----------
+    solid : Solid
+        The body.
+    onto : Corner or Edge
+        What it lands on, in the solid's own frame, whose origin is `Solid.origin` [m].
+
+    Returns
+    -------
+    KeptMoments
+        The moments, about the landing point.
+
+    Examples
+    --------
+    About a corner two of three directions stay, so that the trace is twice the mass; about an edge it is the mass.
+
+    >>> from rocking.bodies.solid import box
+    >>> prism = Solid(box(1.0, 1.0, 4.0))
+    >>> corner, edge = prism.local_base.corners[0], prism.local_base.edges[0]
+    >>> [round(float(np.trace(kept_moments(prism, onto).second)) / prism.mass, 12) for onto in (corner, edge)]
+    [2.0, 1.0]
+    """
+    if isinstance(onto, Edge):
+        return _about_line(solid, *onto.point.tolist(), *onto.direction.tolist())
+    return _about_point(solid, *onto.point.tolist())
+
+
+@lru_cache(maxsize=_CACHED)
+def _about_point(solid: Solid, x: float, y: float, z: float) -> KeptMoments:
+    point = np.array([x, y, z])
+    form = sum((of_part(part, point, _corner_features, (norm, None)) for part in solid.local_parts), np.zeros(()))
+    products = np.zeros((6, 3, 3))
+    for number, (i, j) in enumerate(_PAIRS):
+        products[number, i, j] = products[number, j, i] = 1.0
+    found = solid.local_moments
+    whole = found.mass, found.mass * (found.centre - point), found.second_about(point)
+    return KeptMoments(form, np.eye(3), products, whole)
+
+
+@lru_cache(maxsize=_CACHED)
+def _about_line(solid: Solid, x: float, y: float, z: float, *direction: float) -> KeptMoments:
+    point, frame = np.array([x, y, z]), edge_frame(np.array(direction))
+    form = sum((_line_part(part, point, frame) for part in solid.local_parts), np.zeros(()))
+    e, f, g = frame
+    # s = sigma e + t f + z g; quadratic features zz, z sigma, tz, tt, t sigma; linear ones z and t
+    none = np.zeros(3)
+    products = np.array([[g, none], [e, none], [f, g], [none, f], [none, e]])
+    return KeptMoments(form, np.stack([-f, g]), products, None)
+
+
+def edge_frame(direction: FloatArray) -> FloatArray:
+    """Return the axes of an edge: along it, level across it, and the third.
+
+    direction: unit vector along the edge, level in the frame of the body [-]. Returns rows e, f = n x e and g = e x f
+    [-].
+    """
+    across = np.cross(_UP, direction)
+    across /= math.sqrt(dot(across, across))
+    return np.stack([direction, across, np.cross(direction, across)])
+
+
+def _line_part(part: Part, point: FloatArray, frame: FloatArray) -> FloatArray:
+    def features(s: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return _edge_features(times(s, frame.T))
+
+    return of_part(part, point, features, (distance_to(frame[0]), None))
+
+
+def _corner_features(s: FloatArray) -> tuple[FloatArray, FloatArray]:
+    inverse = 1.0 / np.maximum(norm(s), 1e-300)
+    quadratic = s[:, _PAIRS[:, 0]] * s[:, _PAIRS[:, 1]]
+    # degrees over |s|: one less than those of the features
+    return np.column_stack([quadratic, s]) * inverse[:, None], np.repeat([1.0, 0.0], [6, 3])
+
+
+def _edge_features(local: FloatArray) -> tuple[FloatArray, FloatArray]:
+    sigma, t, z = local.T
+    inverse = 1.0 / np.maximum(np.sqrt(t * t + z * z), 1e-300)
+    features = np.stack([z * z, z * sigma, t * z, t * t, t * sigma, z, t], axis=1)
+    return features * inverse[:, None], np.repeat([1.0, 0.0], [5, 2])

@@ -10,9 +10,9 @@ from rocking.bodies.solid.shape import vector
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError, InvalidValueError, UnknownModelError
 from rocking.portable import norm
-from rocking.restitution.space.geometry import SpatialImpact
 from rocking.restitution.space.horizontal_momentum import SpatialHorizontalMomentum
 from rocking.restitution.space.housner import SpatialHousner
+from rocking.restitution.space.impact import SpatialImpact
 from rocking.restitution.space.ked import SpatialKedPoint
 from rocking.restitution.space.ked_impulse import SpatialKed
 from rocking.restitution.space.model import SpatialModel, SpatialRestitution

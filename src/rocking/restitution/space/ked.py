@@ -9,10 +9,9 @@ from rocking.bodies.solid import Edge
 from rocking.conventions import FloatArray
 from rocking.portable import applied, dot, times
 from rocking.restitution.space.horizontal_momentum import SpatialHorizontalMomentum
-from rocking.restitution.space.integrals import line_moment
+from rocking.restitution.space.impact import RigidImpact
+from rocking.restitution.space.integrals import kept_moments, line_moment
 from rocking.restitution.space.model import SpatialModel
-from rocking.restitution.space.moments import kept_moments
-from rocking.restitution.space.rigid import RigidImpact
 
 _PLANE = 1e-14
 

@@ -8,9 +8,9 @@ import numpy as np
 from rocking.bodies.solid import Solid
 from rocking.conventions import FloatArray
 from rocking.portable import applied, dot
+from rocking.restitution.space.impact import RigidImpact
 from rocking.restitution.space.impulse_position import impulse_position
 from rocking.restitution.space.model import SpatialFlag, SpatialModel
-from rocking.restitution.space.rigid import RigidImpact
 
 _ROUNDING = 1e-12
 

@@ -11,8 +11,7 @@ from rocking.bodies.solid import Edge
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.portable import applied, dot, norm
-from rocking.restitution.space.geometry import SpatialImpact
-from rocking.restitution.space.rigid import RigidImpact
+from rocking.restitution.space.impact import RigidImpact, SpatialImpact
 
 _TOUCH = 1e-12
 

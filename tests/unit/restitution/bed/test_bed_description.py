@@ -19,9 +19,9 @@ from rocking.restitution.bed import (
     bed_impact,
     bed_impacts,
     fast,
+    laws,
     setup_of,
 )
-from rocking.restitution.bed import law as laws
 from rocking.restitution.bed.reference import Field
 from rocking.restitution.bed.rigid import RigidRocking
 

@@ -9,8 +9,8 @@ import pytest
 from rocking.bodies import Block
 from rocking.errors import InvalidValueError
 from rocking.restitution.bed import ContactBed, KelvinVoigt
-from rocking.restitution.bed.impact import setup_of
-from rocking.restitution.bed.law import LawKind, LawNumbers, force, stored
+from rocking.restitution.bed.laws import LawKind, LawNumbers, force, stored
+from rocking.restitution.bed.setup import setup_of
 
 K, C, CHI, N = 3.0e5, 700.0, 1.7, 1.5
 LAWS = {

@@ -94,7 +94,7 @@ def position_table(bodies: Sequence[SpatialBody | None]) -> tuple[IntArray, Floa
 
 def _kept(body: SpatialBody) -> FloatArray:
     from rocking.bodies.solid import Corner, Edge
-    from rocking.restitution.space.moments import kept_moments
+    from rocking.restitution.space.integrals import kept_moments
 
     assert body.matter is not None
     solid, origin = body.matter.placed

@@ -1,4 +1,4 @@
-"""The energy ledger of the paper's Figure 2: what each stage of KED leaves of the kinetic energy, and where."""
+"""The energy balance of the paper's Figure 2: what each stage of KED leaves of the kinetic energy, and where."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ STAGES = ("before", "stage 1", "stage 2", "after")
 
 
 @dataclass(frozen=True, slots=True)
-class EnergyLedger:
+class EnergyBalance:
     """Kinetic energy of a body through the stages of KED (Fig. 2, Mao et al. 2024).
 
     Parameters
@@ -31,8 +31,8 @@ class EnergyLedger:
     Examples
     --------
     >>> from rocking import Block
-    >>> ledger = energy_ledger(Block(width=1.0, height=2.0, density=1000.0))
-    >>> [round(share, 6) for share in ledger.shares.values()]
+    >>> balance = energy_balance(Block(width=1.0, height=2.0, density=1000.0))
+    >>> [round(share, 6) for share in balance.shares.values()]
     [1.0, 0.8, 0.689413, 0.689413]
     """
 
@@ -95,8 +95,8 @@ class EnergyLedger:
         return {stage: 0.5 * density * (field**2).sum(axis=-1) for stage, field in fields.items()}
 
 
-def energy_ledger(body: Body, *, onto: Foot = "right", angular_velocity: float = 1.0) -> EnergyLedger:
-    """Return the energy ledger of an impact under KED.
+def energy_balance(body: Body, *, onto: Foot = "right", angular_velocity: float = 1.0) -> EnergyBalance:
+    """Return the energy balance of an impact under KED.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def energy_ledger(body: Body, *, onto: Foot = "right", angular_velocity: float =
 
     Returns
     -------
-    EnergyLedger
+    EnergyBalance
         Totals, shares, and fields over the body (Eqs. 6-17, Mao et al. 2024, doi:10.3390/buildings14072119).
 
     Raises
@@ -120,7 +120,7 @@ def energy_ledger(body: Body, *, onto: Foot = "right", angular_velocity: float =
     Examples
     --------
     >>> from rocking import Block
-    >>> round(energy_ledger(Block(width=1.0, height=4.0)).velocity_after, 8)
+    >>> round(energy_balance(Block(width=1.0, height=4.0)).velocity_after, 8)
     0.94736684
     """
     onto = checks.foot("onto", onto)
@@ -135,4 +135,4 @@ def energy_ledger(body: Body, *, onto: Foot = "right", angular_velocity: float =
     }
     after = speed * float(np.sqrt(kept / inertia))  # Eq. 16, Mao et al. 2024
     # Eq. 15, Mao et al. 2024
-    return EnergyLedger(body, onto, speed, after, {**totals, "after": 0.5 * inertia * after**2})
+    return EnergyBalance(body, onto, speed, after, {**totals, "after": 0.5 * inertia * after**2})

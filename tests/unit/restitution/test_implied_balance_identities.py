@@ -1,11 +1,11 @@
-"""What a coefficient implies, the energy ledger of Figure 2, and the identity report."""
+"""What a coefficient implies, the energy balance of Figure 2, and the identity report."""
 
 import numpy as np
 import pytest
 
 import rocking as rk
 from rocking.errors import InvalidValueError
-from rocking.restitution import Fixed, Housner, Ked, ShiftedImpulse, energy_ledger, identity_report, implied
+from rocking.restitution import Fixed, Housner, Ked, ShiftedImpulse, energy_balance, identity_report, implied
 
 BODY = rk.Block(width=1.0, height=2.0).with_feet(0.1, 1)
 ASYMMETRIC = rk.Block(width=2.0, height=1.0).with_feet(0.8, 2.0)
@@ -67,16 +67,16 @@ def test_implied_refuses(value):
 def test_ledger_totals():
     """Energies of the stages (Eqs. 6 to 17, Mao et al. 2024): I_O, Int y^2 dm, N, and r^2 I_O' halves."""
     block = rk.Block(width=1.0, height=2.0, density=1000.0)
-    ledger = energy_ledger(block, angular_velocity=3.0)
+    balance = energy_balance(block, angular_velocity=3.0)
     before = 0.5 * 9.0 * 2000.0 * (5 / 12 + 1.25)
-    assert ledger.totals["before"] == pytest.approx(before, rel=1e-13)
-    assert ledger.totals["stage 1"] == pytest.approx(0.5 * 9.0 * 1000.0 * 8.0 / 3.0, rel=1e-13)
+    assert balance.totals["before"] == pytest.approx(before, rel=1e-13)
+    assert balance.totals["stage 1"] == pytest.approx(0.5 * 9.0 * 1000.0 * 8.0 / 3.0, rel=1e-13)
     # REF of physics 1.4: E sin^2 = .8, E sin^4 = .6894...
-    assert ledger.shares["stage 1"] == pytest.approx(0.8, rel=1e-13)
-    assert ledger.shares["stage 2"] == pytest.approx(0.689413284635524127, rel=1e-13)
-    assert ledger.shares["after"] == pytest.approx(ledger.shares["stage 2"], rel=1e-13)
-    assert ledger.velocity_after == pytest.approx(3.0 * 0.830309150037216034, rel=1e-13)
-    assert ledger.shares["stage 1"] != pytest.approx(ledger.shares["stage 2"], rel=1e-2)
+    assert balance.shares["stage 1"] == pytest.approx(0.8, rel=1e-13)
+    assert balance.shares["stage 2"] == pytest.approx(0.689413284635524127, rel=1e-13)
+    assert balance.shares["after"] == pytest.approx(balance.shares["stage 2"], rel=1e-13)
+    assert balance.velocity_after == pytest.approx(3.0 * 0.830309150037216034, rel=1e-13)
+    assert balance.shares["stage 1"] != pytest.approx(balance.shares["stage 2"], rel=1e-2)
 
 
 @pytest.mark.parametrize("onto", ["left", "right"])
@@ -87,13 +87,13 @@ def test_ledger_fields_integrate_to_totals(onto):
         rk.Region([(5, 1), (6, 1), (6, 2), (5, 2)], 2000.0),
         rk.Region([(5.25, 2), (5.75, 2), (5.75, 3), (5.25, 3)], 500.0),
     ], (5.1, 5.9), ground=1.0)  # fmt: skip
-    ledger = energy_ledger(section, onto=onto, angular_velocity=2.0)
+    balance = energy_balance(section, onto=onto, angular_velocity=2.0)
     n = 120
     x, y = np.meshgrid(5 + (np.arange(n) + 0.5) / n, 1 + (np.arange(2 * n) + 0.5) / n)
-    for stage, density in ledger.energy_density(x, y).items():
-        assert density.sum() / n**2 == pytest.approx(ledger.totals[stage], rel=3e-4)
-        assert density.sum() / n**2 * 1.001 != pytest.approx(ledger.totals[stage], rel=3e-4)
-    speeds = ledger.velocities(np.array([5.5]), np.array([3.0]))
+    for stage, density in balance.energy_density(x, y).items():
+        assert density.sum() / n**2 == pytest.approx(balance.totals[stage], rel=3e-4)
+        assert density.sum() / n**2 * 1.001 != pytest.approx(balance.totals[stage], rel=3e-4)
+    speeds = balance.velocities(np.array([5.5]), np.array([3.0]))
     assert np.sign(speeds["before"][0, 0]) == (1.0 if onto == "right" else -1.0)
     assert speeds["stage 1"][0, 1] == 0.0
 
@@ -102,10 +102,10 @@ def test_ledger_fields_integrate_to_totals(onto):
 def test_ledger_refuses(value):
     """The angular velocity is above zero; mass points have no density field."""
     with pytest.raises(InvalidValueError, match=r"^angular_velocity must be"):
-        energy_ledger(BODY, angular_velocity=value)
+        energy_balance(BODY, angular_velocity=value)
     lumped = rk.MassPoints([(0, 2)], [1.0], (-1, 1))
     with pytest.raises(InvalidValueError, match="MassPoints body has no density field"):
-        energy_ledger(lumped).energy_density(np.zeros(1), np.zeros(1))
+        energy_balance(lumped).energy_density(np.zeros(1), np.zeros(1))
 
 
 def broken(body, model):

@@ -1,0 +1,334 @@
+"""What a contact point is made of: a force for a depth, its speed and its past."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Self
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+
+
+class LawKind(IntEnum):
+    """The branches of the fast engine."""
+
+    KELVIN_VOIGT = 0
+    HUNT_CROSSLEY = 1
+    PLASTIC = 2
+
+
+@dataclass(frozen=True, slots=True)
+class LawNumbers:
+    """A law as both engines take it, after the mass of the body is known."""
+
+    kind: LawKind  # branch of the equations
+    stiffness: float  # of one copy of the law [N/m, or N/m^exponent]
+    damping: float = 0.0  # kelvin-Voigt dashpot [N s/m]
+    exponent: float = 1.0  # power of the depth [-]
+    viscosity: float = 0.0  # hunt-Crossley chi [s/m]
+    rebound: float = 1.0  # velocity ratio of plastic unloading [-]
+
+
+class ContactLaw(ABC):
+    """Normal force of a contact point; it never pulls.
+
+    A contact point stands on `share` copies of the law: forces, stiffness and damping are proportional to it.
+    """
+
+    @abstractmethod
+    def numbers(self, mass: float) -> LawNumbers:
+        """Return the law's numbers under a body.
+
+        Parameters
+        ----------
+        mass : float
+            Mass of the body, which a damping ratio refers to [kg].
+
+        Returns
+        -------
+        LawNumbers
+            Stiffness, damping and the rest in SI.
+        """
+
+    @property
+    @abstractmethod
+    def label(self) -> str:
+        """The law with its parameters, in one line."""
+
+
+def force(law: LawNumbers, depth: FloatArray, speed: FloatArray, deepest: FloatArray) -> FloatArray:
+    """Return the force of one copy of a law, written without its branches.
+
+    Kelvin-Voigt ``F = max(0, k d + c d')``, Hunt-Crossley ``F = k d^n max(0, 1 + chi d')``, plastic unloading ``F =
+    max(0, min(k d, k / e^2 (d - d_p)))`` with the set ``d_p = (1 - e^2) d_max``; zero for d <= 0. docs/theory.md,
+    Section 13; Walton and Braun (1986) for the unloading branch.
+
+    depth: depths d of the points [m]; speed: their rates d', positive while they sink [m/s]; deepest: greatest depths
+    so far; only plastic unloading remembers them [m]. Returns forces on the body, upwards [N].
+    """
+    pressed = np.maximum(depth, 0.0)
+    if law.kind is LawKind.KELVIN_VOIGT:
+        value = law.stiffness * depth + law.damping * speed  # Eq. 117
+    elif law.kind is LawKind.HUNT_CROSSLEY:
+        value = law.stiffness * pressed**law.exponent * (1.0 + law.viscosity * speed)  # Eq. 118
+    else:
+        value = law.stiffness * depth
+        if law.rebound > 0.0:
+            square = law.rebound**2
+            unloading = law.stiffness / square * (depth - (1.0 - square) * deepest)  # Eq. 120
+            value = np.where(depth < deepest, np.minimum(value, unloading), value)
+        else:
+            value = np.where((depth >= deepest) & (speed > 0.0), value, 0.0)
+    return np.where(depth > 0.0, np.maximum(value, 0.0), 0.0)
+
+
+def stored(law: LawNumbers, depth: FloatArray, deepest: FloatArray) -> FloatArray:
+    """Return the elastic energy of one copy of a law.
+
+    depth: depths of the points [m]; deepest: greatest depths so far [m]. Returns energy that unloading would return
+    [J].
+    """
+    pressed = np.maximum(depth, 0.0)
+    if law.kind is LawKind.PLASTIC:
+        if law.rebound == 0.0:
+            return np.zeros_like(pressed)
+        value = force(law, depth, np.zeros_like(depth), np.maximum(deepest, depth))
+        return np.asarray(0.5 * value**2 * law.rebound**2 / law.stiffness)  # Eq. 121
+    return np.asarray(law.stiffness * pressed ** (law.exponent + 1.0) / (law.exponent + 1.0))  # Eq. 121
+
+
+def depth_under(law: LawNumbers, load: float) -> float:
+    """Return how deep a static load presses one copy of a law.
+
+    load: force on it [N]. Returns Depth; zero for a law without stiffness [m].
+    """
+    if law.stiffness == 0.0:
+        return 0.0
+    return float((max(load, 0.0) / law.stiffness) ** (1.0 / law.exponent))
+
+
+def depth_absorbing(law: LawNumbers, copies: float, energy: float, speed: float) -> float:
+    """Return how deep the law goes to take up an energy at a steady speed: the scale of depths of an impact.
+
+    copies: copies of it that work side by side [-]; energy: energy of the impact [J]; speed: landing speed [m/s].
+    Returns depth [m].
+    """
+    order = law.exponent + 1.0
+    candidates = []
+    if law.stiffness > 0.0:
+        candidates.append(float((order * energy / (copies * law.stiffness)) ** (1.0 / order)))
+    if law.damping > 0.0:
+        candidates.append(energy / (copies * law.damping * speed))
+    return min(candidates)
+
+
+@dataclass(frozen=True)
+class KelvinVoigt(ContactLaw):
+    """Linear spring and dashpot: F = k d + c d' while that is above zero and d > 0.
+
+    Parameters
+    ----------
+    stiffness : float
+        k of one copy of the law; zero leaves the dashpot alone [N/m].
+    damping : float, optional
+        c of one copy [N s/m]; by default from `damping_ratio`.
+    damping_ratio : float, optional
+        zeta with c = 2 zeta sqrt(k m), m the mass of the body [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is negative, both dampings are given, or the law would give no force at all.
+
+    Examples
+    --------
+    >>> KelvinVoigt(4e6, damping_ratio=0.5).numbers(mass=100.0).damping
+    20000.0
+    """
+
+    stiffness: float
+    damping: float | None = None
+    damping_ratio: float | None = None
+
+    def __post_init__(self) -> None:
+        checks.within("stiffness", self.stiffness, 0.0, 1e18, unit="N/m")
+        if self.damping is not None and self.damping_ratio is not None:
+            raise InvalidValueError("give damping or damping_ratio, not both: one of them follows from the other")
+        if self.damping is not None:
+            checks.within("damping", self.damping, 0.0, 1e18, unit="N s/m")
+        if self.damping_ratio is not None:
+            checks.within("damping_ratio", self.damping_ratio, 0.0, 1e6)
+        if self.stiffness == 0.0 and not self.damping:
+            raise InvalidValueError("stiffness must be > 0 N/m where there is no dashpot, got 0; a bed without force?")
+
+    @classmethod
+    def from_layer(
+        cls, modulus: float, area: float, thickness: float, *, damping_ratio: float = 0.0, confinement: float = 1.0
+    ) -> Self:
+        """Return the law of an elastic layer under the whole base: k = E_eff A / t (docs/theory.md, Section 13).
+
+        Parameters
+        ----------
+        modulus : float
+            Elastic modulus E of the layer [Pa].
+        area : float
+            Area of the base A [m2].
+        thickness : float
+            Thickness of the layer t [m].
+        damping_ratio : float
+            zeta of the bed [-].
+        confinement : float
+            E_eff / E, above one for a layer that cannot bulge sideways [-].
+
+        Returns
+        -------
+        KelvinVoigt
+            The law of the whole bed.
+
+        Examples
+        --------
+        >>> KelvinVoigt.from_layer(2e9, area=0.05, thickness=0.01).stiffness
+        10000000000.0
+        """
+        modulus = checks.positive("modulus", modulus, "Pa", hint="GPa?")
+        area = checks.positive("area", area, "m2")
+        thickness = checks.length("thickness", thickness)
+        return cls(  # Eq. 115
+            checks.positive("confinement", confinement) * modulus * area / thickness, damping_ratio=damping_ratio
+        )
+
+    def numbers(self, mass: float) -> LawNumbers:
+        ratio = self.damping_ratio or 0.0
+        damping = 2.0 * ratio * (self.stiffness * mass) ** 0.5 if self.damping is None else self.damping  # Eq. 116
+        return LawNumbers(LawKind.KELVIN_VOIGT, float(self.stiffness), float(damping))
+
+    @property
+    def label(self) -> str:
+        loss = f"c={self.damping:.4g} N s/m" if self.damping is not None else f"zeta={self.damping_ratio or 0.0:.4g}"
+        return f"Kelvin-Voigt, k={self.stiffness:.4g} N/m, {loss}"
+
+
+@dataclass(frozen=True)
+class HuntCrossley(ContactLaw):
+    """Power-law spring with a damping proportional to its force: F = k d^n (1 + chi d').
+
+    Hunt and Crossley 1975, J. Appl. Mech. 42:440.
+
+    Parameters
+    ----------
+    stiffness : float
+        k of one copy of the law [N/m^n].
+    exponent : float
+        n, 1.5 for round points [-].
+    viscosity : float
+        chi, about 3 (1 - e) / (2 v) for a velocity ratio e near one at landing speed v [s/m].
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> HuntCrossley(1e9, viscosity=0.2).label
+    'Hunt-Crossley, k=1e+09 N/m^1.5, chi=0.2 s/m'
+    """
+
+    stiffness: float
+    exponent: float = 1.5
+    viscosity: float = 0.0
+
+    def __post_init__(self) -> None:
+        checks.within("stiffness", self.stiffness, 0.0, 1e24, unit="N/m^n", open_low=True)
+        checks.within("exponent", self.exponent, 1.0, 4.0)
+        checks.within("viscosity", self.viscosity, 0.0, 1e6, unit="s/m")
+
+    def numbers(self, mass: float) -> LawNumbers:
+        return LawNumbers(
+            LawKind.HUNT_CROSSLEY, float(self.stiffness), exponent=float(self.exponent), viscosity=float(self.viscosity)
+        )
+
+    @property
+    def label(self) -> str:
+        return f"Hunt-Crossley, k={self.stiffness:.4g} N/m^{self.exponent:.4g}, chi={self.viscosity:.4g} s/m"
+
+
+@dataclass(frozen=True)
+class Hertz(ContactLaw):
+    """Hertz contact: F = (4/3) E* sqrt(R) d^1.5 (Hertz 1882; Johnson, Contact Mechanics, 1985).
+
+    Parameters
+    ----------
+    modulus : float
+        Effective modulus E*, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 [Pa].
+    radius : float
+        Radius of curvature of a contact point R [m].
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is not above zero.
+
+    Examples
+    --------
+    >>> round(Hertz(modulus=3e9, radius=0.01).numbers(mass=1.0).stiffness / 1e6, 6)
+    400.0
+    """
+
+    modulus: float
+    radius: float
+
+    def __post_init__(self) -> None:
+        checks.positive("modulus", self.modulus, "Pa", hint="GPa?")
+        checks.length("radius", self.radius)
+
+    def numbers(self, mass: float) -> LawNumbers:
+        return LawNumbers(LawKind.HUNT_CROSSLEY, 4.0 / 3.0 * self.modulus * self.radius**0.5, exponent=1.5)  # Eq. 119
+
+    @property
+    def label(self) -> str:
+        return f"Hertz, E*={self.modulus:.4g} Pa, R={self.radius:.4g} m"
+
+
+@dataclass(frozen=True)
+class PlasticUnloading(ContactLaw):
+    """Linear loading, steeper unloading: k while new ground is pressed, k / e^2 on the way back and in again.
+
+    A point that drops alone comes back with the velocity ratio e; each point keeps its own greatest depth. With
+    e = 0 nothing comes back (the plastic Winkler bed of docs/theory.md, Section 6), which only an impulsive impact can
+    use: a load that stays would make the contact chatter.
+
+    Parameters
+    ----------
+    stiffness : float
+        k of one copy of the law [N/m].
+    rebound : float
+        e, velocity after over velocity before for a single point [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> PlasticUnloading(1e7, rebound=0.1).label
+    'plastic unloading, k=1e+07 N/m, e=0.1'
+    """
+
+    stiffness: float
+    rebound: float = 0.1
+
+    def __post_init__(self) -> None:
+        checks.within("stiffness", self.stiffness, 0.0, 1e18, unit="N/m", open_low=True)
+        checks.within("rebound", self.rebound, 0.0, 1.0)
+
+    def numbers(self, mass: float) -> LawNumbers:
+        return LawNumbers(LawKind.PLASTIC, float(self.stiffness), rebound=float(self.rebound))
+
+    @property
+    def label(self) -> str:
+        return f"plastic unloading, k={self.stiffness:.4g} N/m, e={self.rebound:.4g}"
