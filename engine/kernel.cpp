@@ -9,28 +9,37 @@ namespace ROCKING_ISA {
 // those that land to fill registers of their own, few enough for the caches. A single history takes one.
 constexpr int kMany = 8, kGroups = 3;
 
+// A history has the same bits alone and among many: where processors that matter never come (plain beside AVX2), one set
+// of kernels serves both, and where a wider register brings a single history nothing, that of AVX2 serves it.
+template <int N, int D, bool Z, bool L>
+Run rows_of(bool single) {
+#if defined(ROCKING_X86) && !defined(ROCKING_AVX2) && !defined(ROCKING_AVX512)
+    return run_rows<1, 1, N, D, Z, L>;
+#elif defined(ROCKING_AVX512)
+    return run_rows<kGroups, kMany, N, D, Z, L>;
+#else
+    if constexpr (N < 8) return run_rows<kGroups, kMany, N, D, Z, L>;
+    else return single ? run_rows<1, 1, N, D, Z, L> : run_rows<kGroups, kMany, N, D, Z, L>;
+#endif
+}
+
 Run kernel_for(bool single, const Choice& c) {
+#if defined(ROCKING_AVX512)
+    if (single && c.order == 8) return avx2::kernel_for(single, c);
+#endif
     if (c.order == 8) {
-        if (c.degree == 7) {
-            if (c.linear) return single ? run_rows<1, 1, 8, 7, false, true> : run_rows<kGroups, kMany, 8, 7, false, true>;
-            return single ? run_rows<1, 1, 8, 7, false, false> : run_rows<kGroups, kMany, 8, 7, false, false>;
-        }
-        if (c.vertical) {
-            if (c.linear) return single ? run_rows<1, 1, 8, 1, true, true> : run_rows<kGroups, kMany, 8, 1, true, true>;
-            return single ? run_rows<1, 1, 8, 1, true, false> : run_rows<kGroups, kMany, 8, 1, true, false>;
-        }
-        if (c.linear) return single ? run_rows<1, 1, 8, 1, false, true> : run_rows<kGroups, kMany, 8, 1, false, true>;
-        return single ? run_rows<1, 1, 8, 1, false, false> : run_rows<kGroups, kMany, 8, 1, false, false>;
+        if (c.degree == 7) return c.linear ? rows_of<8, 7, false, true>(single) : rows_of<8, 7, false, false>(single);
+        if (c.vertical) return c.linear ? rows_of<8, 1, true, true>(single) : rows_of<8, 1, true, false>(single);
+        return c.linear ? rows_of<8, 1, false, true>(single) : rows_of<8, 1, false, false>(single);
     }
     if (c.linear) return nullptr;
+    // many take order 6 wherever it serves; a single history takes it when a user asks, and order 4 likewise
     if (c.order == 6) {
-        if (c.degree == 7) return run_rows<kGroups, kMany, 6, 7, false, false>;
-        if (c.vertical) return single ? run_rows<1, 1, 6, 1, true, false> : run_rows<kGroups, kMany, 6, 1, true, false>;
-        return single ? run_rows<1, 1, 6, 1, false, false> : run_rows<kGroups, kMany, 6, 1, false, false>;
+        if (c.degree == 7) return rows_of<6, 7, false, false>(false);
+        return c.vertical ? rows_of<6, 1, true, false>(false) : rows_of<6, 1, false, false>(false);
     }
-    if (c.vertical) return nullptr;
-    if (c.order == 4) return c.degree == 7 ? run_rows<kGroups, kMany, 4, 7, false, false> : run_rows<kGroups, kMany, 4, 1, false, false>;
-    return nullptr;
+    if (c.vertical || c.order != 4) return nullptr;
+    return c.degree == 7 ? rows_of<4, 7, false, false>(false) : rows_of<4, 1, false, false>(false);
 }
 
 }  // namespace ROCKING_ISA
