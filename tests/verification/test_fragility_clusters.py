@@ -10,7 +10,7 @@ from scipy.stats import chi2, nct, norm, t
 from rocking.statistics import fit_lognormal
 
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
-STUDIES = 5000 if CAMPAIGN else 600
+STUDIES = 5000 if CAMPAIGN else 300
 MEDIAN, DISPERSION, MOTIONS = 0.8, 0.6, 30
 LEVELS = MEDIAN * np.exp(np.linspace(-1.6, 1.6, 8) * DISPERSION)
 COARSE = MEDIAN * np.exp((np.linspace(-2.5, 2.5, 8) + 0.2) * DISPERSION)
@@ -59,7 +59,7 @@ def test_intervals_from_few_motions_cover_as_often_as_they_say(motions, levels):
     An interval holds the truth where a study is not among the rarest 2.5 % either way, which takes one look instead of
     a search. Within three standard errors. The control: the profile interval, which takes the outcomes for independent.
     """
-    studies = 4000 if CAMPAIGN else 200
+    studies = 4000 if CAMPAIGN else 120
     random = np.random.default_rng(32)
     usual, alone = np.zeros((2, 3)), np.zeros(3)
     for k in range(studies):

@@ -9,6 +9,7 @@ from rocking.motions.integrals import (
     peak_ground_displacement,
     peak_ground_velocity,
     significant_duration,
+    significant_times,
 )
 from rocking.motions.intensity import (
     IntensityMeasure,
@@ -73,6 +74,7 @@ __all__ = [
     "rotd_pga",
     "scaled_to",
     "significant_duration",
+    "significant_times",
     "spectral_acceleration",
     "spectral_measure",
     "synthetic",

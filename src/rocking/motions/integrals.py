@@ -167,9 +167,21 @@ def significant_duration(motion: GroundMotion, start: float = 5.0, end: float = 
 
 
 def significant_times(motion: GroundMotion, start: float = 5.0, end: float = 95.0) -> tuple[float, float]:
-    """Return the times at which two percentages of the Arias intensity are reached, also inside steps [%, s].
+    """Return the times at which two percentages of the Arias intensity are reached, also inside steps.
 
     Husid (1969), Revista del IDIEM 8:21; straight lines between the samples of his plot.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion; its horizontal part counts.
+    start, end : float
+        Percentages, the second one larger [%].
+
+    Returns
+    -------
+    tuple of float
+        Both times [s].
     """
     motion = checked_motion(motion)
     start = checks.within("start", start, 0.0, 100.0, unit="%")

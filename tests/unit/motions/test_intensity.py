@@ -23,10 +23,10 @@ from rocking.motions import (
     peak_ground_displacement,
     peak_ground_velocity,
     significant_duration,
+    significant_times,
     spectral_acceleration,
 )
 from rocking.motions.formats import read_motion
-from rocking.motions.integrals import significant_times
 
 ZIGZAG = GroundMotion([0.0, 1.0, -1.0, 0.0], 1.0)
 RECORDS = st.lists(st.floats(-10.0, 10.0).map(lambda x: round(x, 3)), min_size=2, max_size=30)

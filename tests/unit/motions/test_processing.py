@@ -1,6 +1,7 @@
-"""Baselines, filters, resampling, cutting and turning against closed forms."""
+"""Baselines, filters, resampling, cutting and scaling against closed forms; what is refused."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,12 +19,13 @@ from rocking.motions import (
     padded,
     resampled,
     rotated,
-    rotd_pga,
+    scaled_to,
+    significant_times,
+    spectral_measure,
     tapered,
     trimmed,
     trimmed_to_significant,
 )
-from rocking.motions.integrals import significant_times
 
 T = np.arange(1001) * 0.01
 NOISE = np.random.default_rng(11).standard_normal(1001)
@@ -127,22 +129,6 @@ def test_refining_by_whole_ratios_is_the_same_motion(samples, ratio):
     np.testing.assert_allclose(ground_displacement(fine)[::ratio], ground_displacement(motion), rtol=0.0, atol=1e-12)
 
 
-def test_refining_by_any_ratio_lies_on_the_lines():
-    """At 0.3 of a step the samples of a ramp are on the ramp; beyond the record there is one zero."""
-    fine = resampled(GroundMotion([0.0, 1.0, 2.0], 1.0), 0.3)
-    np.testing.assert_allclose(fine.acceleration, [0.0, 0.3, 0.6, 0.9, 1.2, 1.5, 1.8, 0.0], rtol=0.0, atol=1e-14)
-
-
-def test_coarsening_keeps_slow_waves_and_drops_fast_ones():
-    """With 4 times the step (25 Hz), 1 Hz passes and 24 Hz, which would turn into a wave of 1 Hz, does not."""
-    middle = slice(300, 1200)
-    slow, fast = resampled(_sine(1.0), 0.04), resampled(_sine(24.0), 0.04)
-    # ripple of the Hamming design is 0.2 %
-    np.testing.assert_allclose(slow.acceleration[middle], _sine(1.0).acceleration[::4][middle], rtol=0.0, atol=3e-3)
-    assert np.abs(fast.acceleration[middle]).max() < 3e-3
-    assert np.abs(_sine(24.0).acceleration[::4][middle]).max() > 0.99  # negative control: no low pass
-
-
 def test_trimming_and_padding_undo_each_other():
     """Zeros added are cut off again, sample by sample, with both components."""
     longer = padded(BOTH, 0.5, 1.0)
@@ -152,13 +138,6 @@ def test_trimming_and_padding_undo_each_other():
     np.testing.assert_array_equal(again.vertical, BOTH.vertical)
 
 
-def test_trimming_goes_outwards():
-    """Times between samples keep the samples on both sides."""
-    motion = GroundMotion([0.0, 1.0, 2.0, 3.0, 4.0], 0.1)
-    assert trimmed(motion, 0.15, 0.25).acceleration.tolist() == [1.0, 2.0, 3.0]
-    assert trimmed(motion, 0.0, 0.4).acceleration.tolist() == motion.acceleration.tolist()
-
-
 def test_trimming_to_the_significant_part():
     """The part between 5 and 95 % begins and ends within a step of these times, and padding widens it."""
     first, last = significant_times(BOTH)
@@ -166,34 +145,6 @@ def test_trimming_to_the_significant_part():
     assert last - first <= part.duration <= last - first + 2.0 * BOTH.time_step
     assert trimmed_to_significant(BOTH, padding=0.1).duration == pytest.approx(part.duration + 0.2, abs=0.0201)
     assert len(trimmed_to_significant(BOTH, padding=100.0)) == len(BOTH)
-
-
-def test_turning_keeps_the_length_of_the_vector():
-    """Turned components have the same resultant, a turn back restores them, and a motion along 30 degrees is found."""
-    x, y = BOTH, GroundMotion(np.roll(NOISE, 7), 0.01)
-    a, b = rotated(x, y, 0.7)
-    np.testing.assert_allclose(
-        np.hypot(a.acceleration, b.acceleration), np.hypot(x.acceleration, y.acceleration), rtol=1e-12
-    )
-    np.testing.assert_allclose(rotated(a, b, -0.7)[0].acceleration, x.acceleration, rtol=0.0, atol=1e-14)
-    along = GroundMotion(math.cos(math.pi / 6) * NOISE, 0.01), GroundMotion(math.sin(math.pi / 6) * NOISE, 0.01)
-    turned = rotated(*along, math.pi / 6)
-    np.testing.assert_allclose(turned[0].acceleration, NOISE, rtol=0.0, atol=1e-14)
-    assert turned[1].peak < 1e-14
-
-
-def test_rotd_of_a_straight_and_a_circular_motion():
-    """On a line the peaks are P |cos|: median P / sqrt(2), largest P; on a circle all are the radius."""
-    still = GroundMotion(np.zeros(1001), 0.01)
-    peak = BOTH.peak
-    # every degree: the median of |cos| is within one degree of 45
-    assert rotd_pga(BOTH, still, 50) == pytest.approx(peak / math.sqrt(2.0), rel=0.01)
-    assert rotd_pga(BOTH, still, 100) == peak
-    assert rotd_pga(BOTH, still, 0) < 1e-12
-    phase = np.linspace(0.0, 2.0 * np.pi, 1001)
-    circle = GroundMotion(2.0 * np.cos(phase), 0.01), GroundMotion(2.0 * np.sin(phase), 0.01)
-    for percentile in (0, 50, 100):
-        assert rotd_pga(*circle, percentile) == pytest.approx(2.0, rel=1e-5)
 
 
 def test_every_change_leaves_a_line():
@@ -207,7 +158,6 @@ def test_every_change_leaves_a_line():
         assert len(motion.provenance) == 1
         assert motion.vertical is not None
         assert motion.name == BOTH.name
-    assert resampled(BOTH, 0.01) is BOTH
 
 
 @pytest.mark.parametrize(
@@ -226,21 +176,186 @@ def test_every_change_leaves_a_line():
         (lambda m: bandpassed(m, 0.0, 10.0), "low"),
         (lambda m: bandpassed(m, 1.0, 10.0, 0), "order"),
         (lambda m: bandpassed(m, 1.0, 10.0, 2.5), "order"),
-        (lambda m: resampled(m, 0.015), "whole multiple"),
-        (lambda m: resampled(m, 20.0), "2 samples"),
-        (lambda m: resampled(m, 1e-9), "wrong unit"),
-        (lambda m: resampled(m, math.nan), "time_step"),
-        (lambda m: trimmed(m, -1.0, 2.0), "start"),
-        (lambda m: trimmed(m, 2.0, 2.0), "end"),
-        (lambda m: trimmed(m, 1.0, 11.0), "end"),
-        (lambda m: trimmed_to_significant(m, padding=-1.0), "padding"),
-        (lambda m: padded(m, -1.0), "before"),
-        (lambda m: padded(m, 1e9), "wrong unit"),
-        (lambda m: rotated(m, trimmed(m, 0.0, 1.0), 0.1), "second"),
-        (lambda m: rotd_pga(m, m, 101), "percentile"),
     ],
 )
 def test_bad_values_are_refused(change, match):
     """No value outside its range gives a motion, and the error names the value."""
     with pytest.raises(InvalidValueError, match=match):
         change(BOTH)
+
+
+MOTION = GroundMotion(np.array([0.0, 1.0, -2.0, 4.0]), 0.1, vertical=np.array([1.0, 0.0, 0.0, 2.0]), name="m")
+
+
+def test_finer_is_on_the_lines() -> None:
+    """Half the step keeps every sample and puts means between; both parts, name and a line of provenance."""
+    fine = resampled(MOTION, 0.05)
+    np.testing.assert_allclose(fine.acceleration, [0.0, 0.5, 1.0, -0.5, -2.0, 1.0, 4.0], rtol=0.0, atol=1e-14)
+    assert fine.vertical is not None
+    np.testing.assert_allclose(fine.vertical, [1.0, 0.5, 0.0, 0.0, 0.0, 1.0, 2.0], rtol=0.0, atol=1e-14)
+    assert (fine.time_step, fine.name) == (0.05, "m")
+    assert fine.provenance[-1] == "interpolated linearly from 0.1 s to 0.05 s"
+
+
+def test_any_ratio() -> None:
+    """Steps of 0.08 s: on the lines by hand, and a zero where the record is over."""
+    other = resampled(MOTION, 0.08)
+    np.testing.assert_allclose(other.acceleration, [0.0, 0.8, -0.8, 0.4, 0.0], rtol=0.0, atol=1e-14)
+
+
+def test_the_last_sample_stays() -> None:
+    """Rounding does not drop the last sample, whatever the whole ratio."""
+    for parts in (3, 7, 10, 49, 1000):
+        fine = resampled(MOTION, 0.1 / parts)
+        assert len(fine) == 3 * parts + 1
+        assert fine.acceleration[-1] == 4.0
+
+
+def test_the_same_step() -> None:
+    """The step that it has changes nothing."""
+    assert resampled(MOTION, 0.1) is MOTION
+
+
+def test_coarser_is_filtered() -> None:
+    """A slow sine passes with its amplitude and phase; one beyond the new step's reach does not become another."""
+    t = np.arange(4001) * 0.005
+    slow, quick = np.sin(2.0 * math.pi * 1.0 * t), np.sin(2.0 * math.pi * 45.0 * t)
+    inside = slice(50, -50)
+    kept = resampled(GroundMotion(slow, 0.005), 0.02)
+    np.testing.assert_allclose(kept.acceleration[inside], slow[::4][inside], rtol=0.0, atol=5e-3)
+    assert np.abs(resampled(GroundMotion(quick, 0.005), 0.02).acceleration[inside]).max() < 0.01
+    assert np.abs(quick[::4][inside]).max() > 0.9, "control: without the filter it is there"
+    assert "low-passed (linear phase) and coarsened from 0.005 s to 0.02 s" in kept.provenance
+
+
+def test_steps_typed_to_a_few_digits() -> None:
+    """A step is a whole multiple if it is one to a part in a million: 2 and 5 times a thirtieth in seven decimals."""
+    motion = GroundMotion(np.sin(0.1 * np.arange(200)), 1.0 / 30.0)
+    for step, samples in ((0.0666667, 100), (0.1666667, 40)):
+        assert len(resampled(motion, step)) == samples
+    for step in (0.066667, 0.1667):
+        with pytest.raises(InvalidValueError, match="whole multiple"):
+            resampled(motion, step)
+
+
+@pytest.mark.parametrize(
+    ("step", "message"),
+    [
+        (0.15, "whole multiple of 0.1 s if above, got 0.15 s, 1.5 times"),
+        (0.4, "must leave 2 samples, at most 0.3 s, got 0.4 s"),
+        (1.1e-9, "at most 1e\\+08 samples, got 2.72727e\\+08; wrong unit"),
+        (1e-10, "in seconds"),
+        (2000.0, "in seconds"),
+        (0.0, "time_step must be in"),
+        (-0.1, "time_step must be in"),
+        (math.nan, "time_step must be finite"),
+        (None, "time_step must be a number"),
+        ("0.1", "time_step must be a number"),
+    ],
+)
+def test_bad_steps(step: Any, message: str) -> None:
+    """Steps that are no multiple, leave too few or too many samples, or are no number are refused."""
+    with pytest.raises(InvalidValueError, match=message):
+        resampled(MOTION, step)
+
+
+def test_trimmed_goes_outwards() -> None:
+    """Times between samples go to the next one outwards; the whole is the whole; two samples are the least."""
+    assert trimmed(MOTION, 0.12, 0.28).acceleration.tolist() == [1.0, -2.0, 4.0]
+    assert trimmed(MOTION, 0.0, 0.3).acceleration.tolist() == [0.0, 1.0, -2.0, 4.0]
+    assert trimmed(MOTION, 0.21, 0.22).acceleration.tolist() == [-2.0, 4.0]
+    part = trimmed(MOTION, 0.1, 0.2)
+    assert part.acceleration.tolist() == [1.0, -2.0]
+    assert part.vertical is not None
+    assert part.vertical.tolist() == [0.0, 0.0]
+    assert part.provenance == ("trimmed to 0.1 to 0.2 s",)
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "message"),
+    [
+        (-0.1, 0.2, "start must be in"),
+        (0.4, 0.5, "start must be in"),
+        (0.2, 0.2, "end must be after start"),
+        (0.2, 0.1, "end must be in"),
+        (0.1, 0.31, "end must be in"),
+        (math.nan, 0.2, "start must be finite"),
+        (0.1, None, "end must be a number"),
+    ],
+)
+def test_bad_cuts(start: Any, end: Any, message: str) -> None:
+    """Times outside the record, out of order, or no numbers are refused."""
+    with pytest.raises(InvalidValueError, match=message):
+        trimmed(MOTION, start, end)
+
+
+def test_trimmed_to_significant() -> None:
+    """Of a burst between rests what is left is the burst, with the padding asked for."""
+    burst = np.zeros(101)
+    burst[40:61] = 1.0
+    motion = GroundMotion(burst, 1.0)
+    short = trimmed_to_significant(motion)
+    # energy is 20 + 2/3; 5 % of it are reached 0.7 s after the burst is whole, at 40.7 s, and 95 % at 59.3 s
+    assert len(short) == 21
+    assert short.acceleration.tolist() == [1.0] * 21
+    assert len(trimmed_to_significant(motion, padding=10.0)) == 41
+    assert len(trimmed_to_significant(motion, 0.0, 100.0, padding=1e9)) == 101
+    bad: Any
+    for bad in (-1.0, math.nan, None):
+        with pytest.raises(InvalidValueError, match="padding must be"):
+            trimmed_to_significant(motion, padding=bad)
+    with pytest.raises(InvalidValueError, match="zero throughout"):
+        trimmed_to_significant(GroundMotion(np.zeros(5), 1.0))
+
+
+def test_padded() -> None:
+    """Zeros before and after, rounded up to whole steps, as many after as before unless said."""
+    assert padded(MOTION, 0.15).acceleration.tolist() == [0.0, 0.0, 0.0, 1.0, -2.0, 4.0, 0.0, 0.0]
+    one = padded(MOTION, 0.0, 0.1)
+    assert one.acceleration.tolist() == [0.0, 1.0, -2.0, 4.0, 0.0]
+    assert one.vertical is not None
+    assert one.vertical.tolist() == [1.0, 0.0, 0.0, 2.0, 0.0]
+    assert one.provenance[-1] == "padded with zeros, 0 samples before and 1 after"
+    bad: Any
+    for bad in (-0.1, math.nan, math.inf, True, "1"):
+        with pytest.raises(InvalidValueError, match="before must be"):
+            padded(MOTION, bad)
+        with pytest.raises(InvalidValueError, match="after must be"):
+            padded(MOTION, 0.0, bad)
+    nothing: Any = None
+    with pytest.raises(InvalidValueError, match="before must be a number"):
+        padded(MOTION, nothing)
+    with pytest.raises(InvalidValueError, match="at most 1e\\+08 samples, got 2e\\+07 s; wrong unit"):
+        padded(MOTION, 1e7)
+
+
+ZIGZAG = GroundMotion([0.0, 1.0, -1.0, 0.0], 1.0, vertical=[0.0, 0.5, 0.25, 0.0])
+
+
+def test_targets_are_met_by_closed_forms():
+    """The zigzag has PGA 1 and PGV 3/4; a step has PSA 2: the factors follow, for the vertical part too."""
+    np.testing.assert_allclose(scaled_to(ZIGZAG, "pga", 2.5).vertical, 2.5 * ZIGZAG.vertical, rtol=1e-15)
+    np.testing.assert_allclose(scaled_to(ZIGZAG, "pgv", 1.5).acceleration, 2.0 * ZIGZAG.acceleration, rtol=1e-15)
+    step = GroundMotion(np.ones(200), 0.01)
+    assert scaled_to(step, spectral_measure(0.5, 0.0), 5.0).peak == pytest.approx(2.5, rel=1e-4)
+
+
+def test_provenance_tells_the_target():
+    """The line of provenance names measure, target and factor."""
+    assert "PGV is 1.5 m/s" in scaled_to(ZIGZAG, "pgv", 1.5).provenance[-1]
+    assert "PSA(1 s, 0.05)" in scaled_to(ZIGZAG, "sa(1)", 1.0).provenance[-1]
+
+
+def test_impossible_targets_are_refused():
+    """A motion of zeros cannot be scaled, nor can one be scaled to zero or beyond all motions."""
+    nothing = GroundMotion([0.0, 0.0], 0.1)
+    for measure in ("pga", "pgv"):
+        with pytest.raises(InvalidValueError, match="zero throughout"):
+            scaled_to(nothing, measure, 1.0)
+        for target in (0.0, -1.0, np.nan):
+            with pytest.raises(InvalidValueError, match="target"):
+                scaled_to(ZIGZAG, measure, target)
+    with pytest.raises(InvalidValueError, match="zero throughout"):
+        scaled_to(nothing, "sa(1)", 1.0)
+    with pytest.raises(InvalidValueError, match="wrong unit"):
+        scaled_to(ZIGZAG, "pga", 1e9)

@@ -8,7 +8,6 @@ import pytest
 from rocking import motions
 from rocking.errors import InvalidValueError
 from rocking.motions import pulses
-from rocking.motions.integrals import significant_times
 
 RECORD = pulses.sine(3.0, 0.8).sampled(0.01)
 FUNCTIONS: dict[str, Callable[[Any], Any]] = {
@@ -33,7 +32,7 @@ FUNCTIONS: dict[str, Callable[[Any], Any]] = {
     "rotd_pga": lambda m: motions.rotd_pga(m, RECORD, 50.0),
     "scaled_to": lambda m: motions.scaled_to(m, "arias", 1.0),
     "significant_duration": motions.significant_duration,
-    "significant_times": significant_times,
+    "significant_times": motions.significant_times,
     "spectral_acceleration": lambda m: motions.spectral_acceleration(m, 0.5),
     "tapered": motions.tapered,
     "trimmed": lambda m: motions.trimmed(m, 0.1, 0.2),

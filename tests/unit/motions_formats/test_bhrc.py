@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
-from rocking.motions.formats import Component, Record, Source
-from rocking.motions.formats.bhrc import Bhrc
+from rocking.motions.formats import Component, Record, Source, formats
+
+BHRC = formats()["bhrc"]
 
 # 11 samples at 200 a second; the count stands at place 26 of the whole numbers, the duration at 3 of the real ones
 TYPED = """\
@@ -40,7 +41,7 @@ UNITS ARE SECONDS AND G/10
 
 
 def read(text: str = TYPED) -> Record:
-    return Bhrc().read(Source("1234-1.V1", text.replace("\n", "\r\n").encode()))
+    return BHRC.read(Source("1234-1.V1", text.replace("\n", "\r\n").encode()))
 
 
 def test_a_typed_component_is_read() -> None:
@@ -52,7 +53,7 @@ def test_a_typed_component_is_read() -> None:
     assert part.metadata["azimuth"] == "352"
     assert record.metadata["processing"] == "uncorrected (Volume 1)"
     assert record.metadata["station"] == "Town"
-    assert Bhrc().recognises(Source("a", TYPED.encode()))
+    assert BHRC.recognises(Source("a", TYPED.encode()))
 
 
 def test_three_components_are_read() -> None:
@@ -96,13 +97,13 @@ def test_what_is_written_is_read_back() -> None:
     """Six digits survive the change of unit."""
     rows = {name: np.sin(np.arange(50.0) + k) for k, name in enumerate("LVT")}
     given = Record("", tuple(Component(name, row, "g", 0.005) for name, row in rows.items()))
-    for part in Bhrc().read(Source("w", Bhrc().write(given))).components:
+    for part in BHRC.read(Source("w", BHRC.write(given))).components:
         np.testing.assert_allclose(part.acceleration, 10.0 * rows[part.name], rtol=5.1e-6, atol=1e-12)
 
 
 def test_what_it_cannot_hold_is_refused() -> None:
     """Other names, and counts that do not fit into five characters."""
     with pytest.raises(RecordError, match="L, V and T"):
-        Bhrc().write(Record("", (Component("N", np.zeros(3), "g", 0.1),)))
+        BHRC.write(Record("", (Component("N", np.zeros(3), "g", 0.1),)))
     with pytest.raises(RecordError, match="99999"):
-        Bhrc().write(Record("", (Component("L", np.zeros(100_000), "g", 0.01),)))
+        BHRC.write(Record("", (Component("L", np.zeros(100_000), "g", 0.01),)))

@@ -1,4 +1,6 @@
-"""Columns without a header: shapes, times to the rounding of their digits, and nothing guessed."""
+"""Columns with and without names: shapes, times to the rounding of their digits, nothing guessed, damage refused."""
+
+import random
 
 import numpy as np
 import pytest
@@ -6,14 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rocking.errors import InvalidValueError, RecordError
-from rocking.motions.formats import Component, Record, Source
-from rocking.motions.formats.columns import Columns
+from rocking.motions.formats import Component, Record, Source, formats
 
-COLUMNS = Columns()
+COLUMNS = formats()["columns"]
 
 
-def _source(text: str) -> Source:
-    return Source("hand.txt", text.encode("latin-1"))
+def _source(text: str, alphabet: str = "latin-1") -> Source:
+    return Source("hand.txt", text.encode(alphabet))
 
 
 def test_one_value_a_line() -> None:
@@ -124,3 +125,176 @@ def test_writer_refuses_what_columns_cannot_hold(made_up) -> None:
         COLUMNS.write(Record("x", (two.components[0], short)))
     with pytest.raises(RecordError, match="1 to 3 components"):
         COLUMNS.write(made_up("a", "b", "c", "d"))
+
+
+VALUES = [0.125, -0.5, 0.25, 1.5, -2.0, 0.75]
+GERMAN = str.maketrans(".", ",")
+
+
+def _lines(gap: str, end: str = "\n") -> str:
+    return end.join(f"{0.01 * k:.2f}{gap}{value}" for k, value in enumerate(VALUES))
+
+
+@pytest.mark.parametrize("name", ["acc [g]", "acc (g)", "acc[ g ]", '"acc [g]"'])
+@pytest.mark.parametrize("gap", [",", ";", "\t", ", ", "; "])
+def test_a_unit_behind_the_name_is_taken(name: str, gap: str) -> None:
+    """Comma, semicolon or tab part names and numbers; with its unit and times a file says everything."""
+    source = _source(f"time{gap}{name}\n{_lines(gap)}\n")
+    assert COLUMNS.recognises(source)
+    (part,) = COLUMNS.read(source).components
+    assert (part.name, part.unit, part.time_step, part.acceleration.tolist()) == ("acc", "g", 0.01, VALUES)
+
+
+def test_a_name_without_a_unit_is_asked_for_it() -> None:
+    """Of ``time,acc`` the unit must be told; one that is told and stated differently is refused."""
+    bare = _source("time,acc\n" + _lines(","))
+    with pytest.raises(RecordError, match="does not state its unit; say units="):
+        COLUMNS.read(bare)
+    with pytest.raises(InvalidValueError, match="units must be one of"):
+        COLUMNS.read(bare, "m/s")
+    assert COLUMNS.read(bare, "gal").components[0].unit == "gal"
+    with pytest.raises(RecordError, match="states the unit g, you say gal"):
+        COLUMNS.read(_source("time,acc [g]\n" + _lines(",")), "gal")
+
+
+@pytest.mark.parametrize("gap", [";", "\t"])
+@pytest.mark.parametrize("alphabet", ["latin-1", "utf-8", "utf-8-sig"])
+def test_what_a_german_spreadsheet_writes(gap: str, alphabet: str) -> None:
+    """Semicolons or tabs, decimal commas, m/s2 with a raised two, and empty cells and rows at the end."""
+    end = f"{gap}\r\n"
+    table = f"Zeit [s]{gap}Beschleunigung [m/s\xb2]{end}{_lines(gap, end).translate(GERMAN)}{end}"
+    source = _source(f"{table}{gap}{gap}\r\n\r\n", alphabet)
+    assert COLUMNS.recognises(source)
+    (part,) = COLUMNS.read(source).components
+    assert (part.name, part.unit, part.time_step) == ("Beschleunigung", "m/s2", 0.01)
+    assert part.acceleration.tolist() == VALUES
+
+
+@pytest.mark.parametrize("gap", [";", "\t", "  "])
+def test_decimal_commas_without_names(gap: str) -> None:
+    """Where commas part nothing they are decimal points, without a line of names as well."""
+    (part,) = COLUMNS.read(_source(_lines(gap).translate(GERMAN)), "g").components
+    assert part.acceleration.tolist() == VALUES
+    assert part.time_step == 0.01
+
+
+@pytest.mark.parametrize(
+    ("unit", "read"),
+    [("m/s^2", "m/s2"), ("m/s/s", "m/s2"), ("cm/sec**2", "cm/s2"), ("Gal", "gal"), ("MM/S2", "mm/s2"), ("mg", "mg")],
+)
+def test_spellings_of_units(unit: str, read: str) -> None:
+    """Units are known in their usual spellings."""
+    assert COLUMNS.read(_source(f"acc ({unit})\n1\n2\n"), time_step=0.01).components[0].unit == read
+
+
+@pytest.mark.parametrize("unit", ["G", "Mg", "NS", "m/s2 filtered"])
+def test_what_is_no_unit_of_ours_is_asked_for(unit: str) -> None:
+    """A capital G may be something else: it is asked for, and stays in the name."""
+    source = _source(f"acc [{unit}]\n1\n2\n")
+    with pytest.raises(RecordError, match="say units="):
+        COLUMNS.read(source, time_step=0.01)
+    assert COLUMNS.read(source, "g", 0.01).components[0].name == f"acc [{unit}]"
+
+
+def test_what_is_no_acceleration_is_left_out_and_told() -> None:
+    """Velocities and displacements, by unit or by name, are no components; the metadata name them."""
+    rows = "\n".join(f"{0.01 * k:.2f},{v},{2 * v},{3 * v}" for k, v in enumerate(VALUES))
+    for names in ("time [s],a [g],v [m/s],d [m]", "time,a [g],velocity,Displacement", "t,a [g],x [V],y [counts]"):
+        record = COLUMNS.read(_source(f"{names}\n{rows}"))
+        (part,) = record.components
+        assert (part.name, part.acceleration.tolist()) == ("a", VALUES)
+        assert record.metadata["left out"] == ", ".join(names.split(",")[2:])
+        assert record.header == names
+
+
+def test_several_accelerations_keep_their_names_and_units() -> None:
+    """Each column has its own unit; a time may stand anywhere; without one the step is asked for."""
+    source = _source("NS [g];time;UD [cm/s2]\n1;0,00;4\n2;0,01;5\n3;0,02;6")
+    north, up = COLUMNS.read(source).components
+    assert (north.name, north.unit, north.acceleration.tolist()) == ("NS", "g", [1.0, 2.0, 3.0])
+    assert (up.name, up.unit, up.time_step) == ("UD", "cm/s2", 0.01)
+    bare = _source("NS [g] EW [g]\n1 2\n3 4\n")
+    with pytest.raises(RecordError, match="say time_step="):
+        COLUMNS.read(bare)
+    assert [part.acceleration.tolist() for part in COLUMNS.read(bare, None, 0.02).components] == [[1, 3], [2, 4]]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("x,y\n0.0,1\n0.1,2", "which of 'x', 'y' is the time"),
+        ("L V T\n1 2 3\n2 3 4", "which of 'L', 'V', 'T' is the time"),
+        ("T [s],a [g]\n0.0,1\n0.1,2", r"'T \[s\]' may be periods"),
+        ("period [s],Sa [m/s2]\n0.1,1\n0.2,2", "may be periods of a spectrum"),
+        ("time,elapsed time,acc\n0,0.0,1\n1,0.1,2", "'time', 'elapsed time' are both called a time; remove"),
+        (",time,acc\n0,0.0,1\n1,0.1,2", "column 1 has no name; name it, or remove it"),
+        ("time,acc,acc\n0.0,1,1\n0.1,2,2", "two columns are called 'acc'; rename or remove one"),
+        ("time [ms],acc\n0,1\n10,2", "must be in seconds"),
+        ("time,v [m/s]\n0.0,1\n0.1,2", "none of the columns 'time', 'v .m/s.' is an acceleration"),
+        ("time,a [ft/s2]\n0.0,1\n0.1,2", "none of the columns"),
+        ("time,a [g],x\n0.0,1,2\n0.1,2,3", "'x' states no unit: write one behind, or remove the column; say units="),
+        ("time,acc\n0,00,1,5\n0,01,2,5", "line 2: 2 numbers expected, as many as there are names, found 4; where comm"),
+        ("time;acc\n0,00;1.5\n0,01;2", "decimal commas here and decimal points on line 2"),
+        ("time;acc\n0,00;1\n0,01;1.234,5", "decimal commas here and decimal points on line 3"),
+        ("time;acc [g]\n0,00;1,234,567\n0,01;1", "line 2: number expected"),
+        ("time,acc [g]\n0.0,1\n0.1,\n0.2,1", "line 3: number expected, found ''"),
+        ("time,acc [g]\n0.0,1\n0.1,nan\n0.2,1", "line 3: number expected, found 'nan'"),
+        ("time,acc [g]\n0.0,1\n0.1,2\n0.3,1\n0.4,1", "not evenly spaced"),
+        ("time,acc [g]\n0.0,1", "at least 2 samples"),
+        ("time,acc [g]", "no line with numbers"),
+        ("acc\n1,5;2\n2,5;3", "line 2: number expected"),
+    ],
+)
+def test_what_is_not_clear_is_refused_in_words(text: str, words: str) -> None:
+    """The error names the columns and says what to write or remove."""
+    with pytest.raises(RecordError, match=words):
+        COLUMNS.read(_source(text), "g" if "units=" not in words else None)
+
+
+@pytest.mark.parametrize(
+    "first",
+    ["x5", "nan", "E.01", "NPTS=3", "Sampling rate 100 Hz", "a b c", "inf", "5g", "acc = g", "x0.5", "\xe9" + "5"],
+)
+def test_a_damaged_number_or_another_header_is_no_name(first: str) -> None:
+    """What may be a damaged first sample, or a header that states its own sampling, is not taken for a name."""
+    assert not COLUMNS.recognises(_source(f"{first}\n1\n2\n3\n"))
+    assert COLUMNS.recognises(_source("acc\n1\n2\n3\n"))
+
+
+def test_two_lines_of_words_are_no_columns() -> None:
+    """One line of names, not two; and not a bare sentence."""
+    for text in ("time,acc\ns,g\n0.0,1\n0.1,2", "hello world\n" * 5, "Header\n1 2\n"):
+        assert not COLUMNS.recognises(_source(text))
+
+
+def _damaged(text: str, chance: random.Random) -> str:
+    place = chance.randrange(len(text))
+    kinds = (
+        text[:place] + chance.choice(" \t;,.x7-#\n\0") + text[place:],
+        text[:place] + text[place + chance.choice((1, 1, 2, 9)) :],
+        text[:place],
+        text[:place] + chr(chance.randrange(256)) + text[place + 1 :],
+        text + text,
+    )
+    return chance.choice(kinds)
+
+
+@pytest.mark.parametrize("gap", [",", ";", "\t"])
+def test_damaged_copies_are_refused_or_have_a_sample_for_every_line(gap: str) -> None:
+    """Of 600 damaged copies none raises another error, and none loses a line of numbers between the first and last."""
+    values = np.random.default_rng(3).normal(size=40)
+    table = "\n".join(f"{0.02 * k:.2f}{gap}{value:.5f}" for k, value in enumerate(values))
+    good = f"time [s]{gap}acc [g]\n{table if gap == ',' else table.translate(GERMAN)}\n"
+    readers, chance, refused = formats(), random.Random(11), 0
+    for _ in range(600):
+        source = _source(_damaged(good, chance))
+        assert not any(one.recognises(source) for name, one in readers.items() if name != "columns")
+        try:
+            (part, *_) = COLUMNS.read(source).components
+        except RecordError:
+            refused += 1
+            continue
+        plain = [line for line in source.lines if line.strip() and line.strip()[0] not in "#%"]
+        assert part.acceleration.size == len(plain) - any(word in plain[0] for word in ("time", "acc", "[", "]"))
+        assert abs(part.time_step - 0.02) < 1e-12
+    assert refused > 200

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
-from rocking.motions.formats import Source
-from rocking.motions.formats.cosmos import Cosmos
+from rocking.motions.formats import Source, formats
 
-COSMOS = Cosmos()
+COSMOS = formats()["cosmos"]
 VALUES = [0.5, -1.25, 3.0, -12.345, 2.0, 0.0, 0.25, 1.0, -1.0, 0.125]
 
 

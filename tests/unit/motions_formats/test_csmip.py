@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
-from rocking.motions.formats import Component, Record, RecordFormat, Source
-from rocking.motions.formats.csmip_v1 import CsmipV1
-from rocking.motions.formats.csmip_v2 import CsmipV2
+from rocking.motions.formats import Component, Record, RecordFormat, Source, formats
 
-V1, V2 = CsmipV1(), CsmipV2()
+V1, V2 = formats()["csmip-v1"], formats()["csmip-v2"]
 ACCEL = [0.5, -1.25, 3.0, -1234.567, -23456.789, 0.0, 0.25, 1.0, -1.0, 0.125]
 VELOC = [0.0, 0.1, -5.5, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 DISPL = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.25]

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
-from rocking.motions.formats import Component, Record, Source
-from rocking.motions.formats.cwa import Cwa
+from rocking.motions.formats import Component, Record, Source, formats
+
+CWA = formats()["cwa"]
 
 TYPED = """\
 #Earthquake Information
@@ -32,7 +33,7 @@ TYPED = """\
 
 
 def read(text: str = TYPED) -> Record:
-    return Cwa().read(Source("1-ABC.dat", text.replace("\n", "\r\n").encode()))
+    return CWA.read(Source("1-ABC.dat", text.replace("\n", "\r\n").encode()))
 
 
 def test_three_components_are_read() -> None:
@@ -78,8 +79,8 @@ def test_damage_is_refused(old: str, new: str, message: str) -> None:
 def test_the_real_file(shared_records: Path) -> None:
     """2018 Hualien, station EAS: 6000 samples at 0.02 s, peaks as printed by the agency."""
     source = Source.of_path(shared_records / "cwa_taiwan" / "1-EAS.dat")
-    assert Cwa().recognises(source)
-    record = Cwa().read(source)
+    assert CWA.recognises(source)
+    record = CWA.read(source)
     assert [(part.name, part.acceleration.size, part.time_step, part.peak) for part in record.components] == [
         ("U", 6000, 0.02, 0.837),
         ("N", 6000, 0.02, 2.273),
@@ -91,7 +92,7 @@ def test_what_is_written_is_read_back() -> None:
     """Components in another order and unit come back as U, N, E to 0.0005 gal."""
     rows = {name: np.sin(np.arange(50.0) + k) for k, name in enumerate("ENU")}
     given = Record("", tuple(Component(name, row, "m/s2", 0.02) for name, row in rows.items()))
-    back = Cwa().read(Source("w", Cwa().write(given)))
+    back = CWA.read(Source("w", CWA.write(given)))
     assert [part.name for part in back.components] == ["U", "N", "E"]
     for part in back.components:
         np.testing.assert_allclose(part.acceleration, 100.0 * rows[part.name], rtol=0.0, atol=5.01e-4)
@@ -101,6 +102,6 @@ def test_what_it_cannot_hold_is_refused() -> None:
     """Other names, or numbers of six digits before the point."""
     row = np.array([0.0, 1.0])
     with pytest.raises(RecordError, match="U, N and E"):
-        Cwa().write(Record("", tuple(Component(name, row, "gal", 0.1) for name in "XYZ")))
+        CWA.write(Record("", tuple(Component(name, row, "gal", 0.1) for name in "XYZ")))
     with pytest.raises(RecordError, match="wrong unit"):
-        Cwa().write(Record("", tuple(Component(name, row * 1e5, "gal", 0.1) for name in "UNE")))
+        CWA.write(Record("", tuple(Component(name, row * 1e5, "gal", 0.1) for name in "UNE")))

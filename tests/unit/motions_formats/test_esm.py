@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
-from rocking.motions.formats import Source
-from rocking.motions.formats.esm import Esm
+from rocking.motions.formats import Source, formats
 from rocking.motions.formats.headers import check_peak_time
 
-ESM = Esm()
+ESM = formats()["esm"]
 # typed by hand: an older header without HEADER_FORMAT may have fewer keys
 HAND = """EVENT_NAME: SOMEWHERE
 NETWORK: XX

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
-from rocking.motions.formats import Component, Record, Source
-from rocking.motions.formats.geonet import GeonetV2A
+from rocking.motions.formats import Component, Record, Source, formats
+
+GEONET = formats()["geonet-v2a"]
 
 # 12 samples at 0.02 s; times in the text count from 0.04 s after the first one; some numbers touch each other
 TEXT = """\
@@ -55,14 +56,14 @@ def typed() -> str:
 
 
 def read(text: str) -> Record:
-    return GeonetV2A().read(Source("a.V2A", text.encode()))
+    return GEONET.read(Source("a.V2A", text.encode()))
 
 
 def test_three_components_are_read_by_columns() -> None:
     """Numbers that touch, series with fewer decimals than their peaks, and the shift of the stated times."""
     source = Source("a.V2A", typed().encode())
-    assert GeonetV2A().recognises(source)
-    record = GeonetV2A().read(source)
+    assert GEONET.recognises(source)
+    record = GEONET.read(source)
     assert [part.name for part in record.components] == ["N10E", "N80W", "Up"]
     part = record.components[2]
     assert part.acceleration.tolist() == [0, 0, 1, 2, 3, 4, 5, -12345.6, -12346.6, -22364.6, 7, 8]
@@ -113,17 +114,17 @@ def test_what_is_written_is_read_back() -> None:
     """Accelerations come back to 0.05 mm/s2."""
     rows = {name: np.sin(np.arange(50.0) + k) for k, name in enumerate(("N00E", "N90E", "Up"))}
     given = Record("", tuple(Component(name, row, "m/s2", 0.01) for name, row in rows.items()))
-    for part in GeonetV2A().read(Source("w", GeonetV2A().write(given))).components:
+    for part in GEONET.read(Source("w", GEONET.write(given))).components:
         np.testing.assert_allclose(part.acceleration, 1000.0 * rows[part.name], rtol=0.0, atol=0.0501)
     # peaks have as many decimals as in the files of the network
-    assert _decimals(GeonetV2A().write(given).decode()) == _decimals(typed())
+    assert _decimals(GEONET.write(given).decode()) == _decimals(typed())
 
 
 def test_velocities_and_displacements_are_written() -> None:
     """Of 1 m/s2 they are v = a t and, by the trapezoids of the samples, d = a t^2 / 2."""
     time = 0.02 * np.arange(10.0)
     given = Record("", tuple(Component(name, np.ones(10), "m/s2", 0.02) for name in ("N00E", "N90E", "Up")))
-    rows = [line.split() for line in GeonetV2A().write(given).decode().rstrip().split("\n")[-3:]]
+    rows = [line.split() for line in GEONET.write(given).decode().rstrip().split("\n")[-3:]]
     for row, expected, digit in zip(
         rows, (1e3 + 0 * time, 1e3 * time, 500.0 * time**2), (0.05, 0.005, 5e-4), strict=True
     ):
@@ -138,6 +139,6 @@ def test_what_it_cannot_hold_is_refused() -> None:
     """Fewer components, or numbers too wide for their columns."""
     row = np.array([0.0, 1.0, 0.0])
     with pytest.raises(RecordError, match="three components"):
-        GeonetV2A().write(Record("", (Component("Up", row, "m/s2", 0.1),)))
+        GEONET.write(Record("", (Component("Up", row, "m/s2", 0.1),)))
     with pytest.raises(RecordError, match="does not fit"):
-        GeonetV2A().write(Record("", tuple(Component(name, row * 1e4, "m/s2", 0.1) for name in "XYZ")))
+        GEONET.write(Record("", tuple(Component(name, row * 1e4, "m/s2", 0.1) for name in "XYZ")))

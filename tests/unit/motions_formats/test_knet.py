@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
-from rocking.motions.formats import Component, Record, Source
-from rocking.motions.formats.knet import Knet
+from rocking.motions.formats import Component, Record, Source, formats
+
+KNET = formats()["knet"]
 
 # 2000 gal are 1000 counts: 2 gal a count. Mean of the counts 1010, so the accelerations are -20, 20, 60, -60 ... gal
 COUNTS = [1000, 1020, 1040, 980, 1010, 1010, 1010, 1010, 1010, 1010]
@@ -35,7 +36,7 @@ Memo.
 
 
 def read(text: str = TYPED, **options: object) -> Record:
-    return Knet().read(Source("ABC001.NS", text.encode()), **options)  # type: ignore[arg-type]
+    return KNET.read(Source("ABC001.NS", text.encode()), **options)  # type: ignore[arg-type]
 
 
 def test_the_mean_of_the_whole_record_is_removed() -> None:
@@ -87,7 +88,7 @@ def test_units_that_contradict_are_refused() -> None:
 
 def test_recognition() -> None:
     """Three of four words at the top suffice, so a file that lost a line is not taken for a plain table."""
-    reader = Knet()
+    reader = KNET
     assert reader.recognises(Source("a", TYPED.encode()))
     assert reader.recognises(Source("a", TYPED.replace("Scale Factor", "Scale").encode()))
     assert not reader.recognises(Source("a", "\n".join(map(str, COUNTS)).encode()))
@@ -97,7 +98,7 @@ def test_what_is_written_is_read_back() -> None:
     """A record without mean comes back to the count of a 24-bit recorder."""
     time = np.arange(200) * 0.01
     given = 321.0 * np.sin(2.0 * np.pi * time)
-    (part,) = Knet().read(Source("w", Knet().write(Record("", (Component("E-W", given, "gal", 0.01),))))).components
+    (part,) = KNET.read(Source("w", KNET.write(Record("", (Component("E-W", given, "gal", 0.01),))))).components
     np.testing.assert_allclose(part.acceleration, given, rtol=0.0, atol=321.0 * 2.0**-22)
     assert part.name == "E-W"
 
@@ -105,8 +106,8 @@ def test_what_is_written_is_read_back() -> None:
 def test_what_it_cannot_hold_is_refused(made_up: Callable[..., Record]) -> None:
     """A mean would be lost, and parts of seconds cannot be stated."""
     with pytest.raises(RecordError, match="mean"):
-        Knet().write(Record("", (Component("a", np.array([1.0, 1.0, 1.0, 0.0]), "gal", 0.5),)))
+        KNET.write(Record("", (Component("a", np.array([1.0, 1.0, 1.0, 0.0]), "gal", 0.5),)))
     with pytest.raises(RecordError, match="whole seconds"):
-        Knet().write(made_up("a"))
+        KNET.write(made_up("a"))
     with pytest.raises(RecordError, match="wrong unit"):
-        Knet().write(Record("", (Component("a", np.array([1e9, -1e9]), "gal", 0.5),)))
+        KNET.write(Record("", (Component("a", np.array([1e9, -1e9]), "gal", 0.5),)))

@@ -13,9 +13,9 @@ import pytest
 
 from rocking.conventions import g
 from rocking.errors import InvalidValueError, MissingExtraError, RecordError
-from rocking.motions.formats import Component, Record, Source
-from rocking.motions.formats.miniseed import MiniSeed
+from rocking.motions.formats import Component, Record, RecordFormat, Source, formats
 
+MINISEED = formats()["miniseed"]
 WITHOUT = importlib.util.find_spec("obspy") is None
 COPIES = max(1, int(os.environ.get("ROCKING_FUZZ", "2000")) // 10)
 """Damaged copies; fewer than of a text format, since ObsPy takes longer over each: 200 unless ROCKING_FUZZ is set."""
@@ -50,26 +50,26 @@ def recorded(*rows: Any, codes: tuple[str, ...] = ("HNE",), late: float = 0.0) -
     return Source("a.mseed", content.getvalue())
 
 
-def reader(folder: Path, old: str = "", new: str = "") -> MiniSeed:
+def reader(folder: Path, old: str = "", new: str = "") -> RecordFormat:
     path = folder / "stations.xml"
     path.write_text(STATIONS.replace(old, new) if old else STATIONS, encoding="utf-8")
-    return MiniSeed.with_response(path)
+    return type(MINISEED).with_response(path)
 
 
 def test_recognition_needs_no_obspy() -> None:
     """Six digits and a quality letter begin a record; a number in a text does not."""
-    assert MiniSeed().recognises(Source("a", b"000001D XX".ljust(512, b"\0")))
+    assert MINISEED.recognises(Source("a", b"000001D XX".ljust(512, b"\0")))
     for content in (b"", b"000001", b"0000012 \n", b"12.345 D 1", b"Origin Time"):
-        assert not MiniSeed().recognises(Source("a", content))
+        assert not MINISEED.recognises(Source("a", content))
     with pytest.raises(RecordError, match="no miniSEED"):
-        MiniSeed().read(Source("a", b"nothing of the kind"))
+        MINISEED.read(Source("a", b"nothing of the kind"))
 
 
 @pytest.mark.skipif(not WITHOUT, reason="ObsPy is installed")
 def test_without_obspy_the_extra_is_named() -> None:
     """The error says what to install."""
     with pytest.raises(MissingExtraError, match=r"needs obspy: pip install '\.\[obspy\]'"):
-        MiniSeed().read(Source("a", b"000001D XX".ljust(512, b"\0")))
+        MINISEED.read(Source("a", b"000001D XX".ljust(512, b"\0")))
 
 
 def test_counts_alone_are_refused() -> None:
@@ -77,7 +77,7 @@ def test_counts_alone_are_refused() -> None:
     source = recorded(np.array(COUNTS, dtype=np.int32))
     for units in (None, "m/s2", "gal"):
         with pytest.raises(RecordError, match="with_response"):
-            MiniSeed().read(source, units=units)
+            MINISEED.read(source, units=units)
 
 
 def test_sensitivity_turns_counts_into_accelerations(tmp_path: Path) -> None:
@@ -113,8 +113,8 @@ def test_gaps_and_overlaps_are_refused() -> None:
     row = np.linspace(-1.0, 1.0, 100)
     for late in (1.5, 0.5):
         with pytest.raises(RecordError, match=r"XX\.ABC\.\.HNE has a gap"):
-            MiniSeed().read(recorded(row, row, late=late), units="m/s2")
-    (part,) = MiniSeed().read(recorded(row, row, late=1.0), units="m/s2").components
+            MINISEED.read(recorded(row, row, late=late), units="m/s2")
+    (part,) = MINISEED.read(recorded(row, row, late=1.0), units="m/s2").components
     assert part.acceleration.size == 200
 
 
@@ -122,32 +122,32 @@ def test_real_numbers_need_a_unit_and_come_back() -> None:
     """Several channels are several components, in double precision."""
     pytest.importorskip("obspy")
     given = Record("", tuple(Component(name, np.sin(np.arange(90.0) + k), "g", 0.005) for k, name in enumerate("ENZ")))
-    source = Source("w", MiniSeed().write(given))
-    back = MiniSeed().read(source, units="g")
+    source = Source("w", MINISEED.write(given))
+    back = MINISEED.read(source, units="g")
     assert [part.name for part in back.components] == ["E", "N", "Z"]
     for part, other in zip(back.components, given.components, strict=True):
         np.testing.assert_array_equal(part.acceleration, other.acceleration)
     with pytest.raises(RecordError, match="units="):
-        MiniSeed().read(source)
-    assert not MiniSeed.states_unit
+        MINISEED.read(source)
+    assert not MINISEED.states_unit
     with pytest.raises(RecordError, match="channel codes"):
-        MiniSeed().write(Record("", given.components[:1] * 2))
+        MINISEED.write(Record("", given.components[:1] * 2))
 
 
 @pytest.mark.parametrize("row", [[1.5], [1.0, np.nan, 2.0]])
 def test_few_samples_and_infinite_ones_are_refused(row: list[float]) -> None:
     """One alone has no step; NaN is no acceleration."""
     with pytest.raises(RecordError, match="at least 2 finite samples are needed"):
-        MiniSeed().read(recorded(row), units="g", time_step=0.01)
+        MINISEED.read(recorded(row), units="g", time_step=0.01)
 
 
 def test_records_that_state_more_samples_than_they_hold_are_refused() -> None:
     """A damaged count would make ObsPy read on behind the record: 32537 samples of 300, or a crash."""
     content = bytearray(recorded(np.sin(np.arange(300.0))).content)
-    assert MiniSeed().read(Source("a", bytes(content)), units="g").components[0].acceleration.size == 300
+    assert MINISEED.read(Source("a", bytes(content)), units="g").components[0].acceleration.size == 300
     content[30] = 127
     with pytest.raises(RecordError, match="states 32556 samples, it has room for 505"):
-        MiniSeed().read(Source("a", bytes(content)), units="g")
+        MINISEED.read(Source("a", bytes(content)), units="g")
 
 
 @pytest.mark.parametrize(
@@ -159,7 +159,7 @@ def test_room_by_encoding(encoding: int, room: int) -> None:
     content = bytearray(recorded(np.sin(np.arange(300.0))).content)
     content[52], content[30:32] = encoding, (room + 1).to_bytes(2, "big")
     with pytest.raises(RecordError, match=f"states {room + 1} samples, it has room for {room}; damaged"):
-        MiniSeed().read(Source("a", bytes(content)), units="g")
+        MINISEED.read(Source("a", bytes(content)), units="g")
 
 
 @pytest.mark.parametrize("order", "<>")
@@ -172,10 +172,10 @@ def test_every_encoding_has_room(encoding: str, order: str) -> None:
     obspy.Trace(np.zeros(5000, kind)).write(content, format="MSEED", encoding=encoding, byteorder=order)
     source = Source("a", content.getvalue())
     if kind in {np.float32, np.float64}:
-        assert MiniSeed().read(source, units="g").components[0].acceleration.size == 5000
+        assert MINISEED.read(source, units="g").components[0].acceleration.size == 5000
     else:
         with pytest.raises(RecordError, match="holds counts"):
-            MiniSeed().read(source)
+            MINISEED.read(source)
 
 
 def test_text_is_refused() -> None:
@@ -184,7 +184,7 @@ def test_text_is_refused() -> None:
     content = BytesIO()
     obspy.Trace(np.frombuffer(b"clock locked", dtype="S1")).write(content, format="MSEED", encoding="ASCII")
     with pytest.raises(RecordError, match="holds text"):
-        MiniSeed().read(Source("a", content.getvalue()), units="g")
+        MINISEED.read(Source("a", content.getvalue()), units="g")
 
 
 def test_damaged_files_give_no_other_error() -> None:
@@ -196,7 +196,7 @@ def test_damaged_files_give_no_other_error() -> None:
         content[chance.randrange(len(content) if chance.random() < 0.3 else 64)] ^= 1 << chance.randrange(8)
         cut = chance.choice([len(content)] * 3 + [chance.randrange(len(content))])
         try:
-            record = MiniSeed().read(Source("a", bytes(content[:cut])), units="g")
+            record = MINISEED.read(Source("a", bytes(content[:cut])), units="g")
         except RecordError:
             continue
         assert all(np.isfinite(part.acceleration).all() for part in record.components)
@@ -206,7 +206,7 @@ def test_the_real_file(shared_records: Path) -> None:
     """2019 Ridgecrest, CI.CLC HNE: 39001 samples at 0.01 s, 0.343 g by 213945 counts/(m/s2)."""
     pytest.importorskip("obspy")
     (path,) = (shared_records / "mseed").glob("*.mseed")
-    made = MiniSeed.with_response(shared_records / "stationxml" / "CI.CLC.xml")
+    made = type(MINISEED).with_response(shared_records / "stationxml" / "CI.CLC.xml")
     (part,) = made.read(Source.of_path(path)).components
     assert (part.acceleration.size, part.time_step) == (39001, 0.01)
     assert part.peak / g == pytest.approx(0.343, abs=5e-4)
@@ -216,6 +216,6 @@ def test_codes_are_cut_to_the_places_that_the_format_has() -> None:
     """Two characters for a network, five for a station (SEED 2.4 manual, Chapter 8, fixed section of data header)."""
     obspy = pytest.importorskip("obspy")
     part = Component("HNE", np.sin(np.arange(90.0)), "g", 0.005)
-    content = MiniSeed().write(Record("", (part,), "", {"network": "NETW", "station": "STATION"}))
+    content = MINISEED.write(Record("", (part,), "", {"network": "NETW", "station": "STATION"}))
     (trace,) = obspy.read(io.BytesIO(content), format="MSEED")
     assert (trace.stats.network, trace.stats.station) == ("NE", "STATI")

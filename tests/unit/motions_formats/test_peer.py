@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
-from rocking.motions.formats import Source
-from rocking.motions.formats.peer import Peer
+from rocking.motions.formats import Source, formats
 
-PEER = Peer()
+PEER = formats()["peer"]
 VALUES = [0.1, -0.25, 0.3, 0.0, 0.05, -0.01, 0.02]
 BODY = "  .1000000E+00 -.2500000E+00  .3000000E+00  .0000000E+00  .5000000E-01\n -.1000000E-01  .2000000E-01\n"
 TOP = "A DATABASE\nSOMEWHERE 01/17/94 1231, CELLAR, 360 (STATION 12)\nACCELERATION TIME HISTORY IN UNITS OF G\n"

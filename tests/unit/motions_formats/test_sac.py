@@ -11,8 +11,9 @@ import pytest
 
 from rocking.conventions import g
 from rocking.errors import MissingExtraError, RecordError
-from rocking.motions.formats import Component, Record, Source
-from rocking.motions.formats.sac import Sac
+from rocking.motions.formats import Component, Record, Source, formats
+
+SAC = formats()["sac"]
 
 WITHOUT = importlib.util.find_spec("obspy") is None
 COPIES = max(1, int(os.environ.get("ROCKING_FUZZ", "2000")) * 3 // 20)
@@ -41,23 +42,23 @@ VALUES = [0.0, 0.5, -1.25, 0.75, 0.25]
 def test_recognition_needs_no_obspy() -> None:
     """Both byte orders are known by their version; text and noise are not."""
     for order in "<>":
-        assert Sac().recognises(Source("a.sac", typed(VALUES, order)))
+        assert SAC.recognises(Source("a.sac", typed(VALUES, order)))
     for content in (b"", b"0.01 0.02\n" * 200, bytes(700), typed(VALUES)[:600]):
-        assert not Sac().recognises(Source("a.sac", content))
+        assert not SAC.recognises(Source("a.sac", content))
 
 
 @pytest.mark.skipif(not WITHOUT, reason="ObsPy is installed")
 def test_without_obspy_the_extra_is_named() -> None:
     """The error says what to install."""
     with pytest.raises(MissingExtraError, match=r"needs obspy: pip install '\.\[obspy\]'"):
-        Sac().read(Source("a.sac", typed(VALUES)), units="m/s2")
+        SAC.read(Source("a.sac", typed(VALUES)), units="m/s2")
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
 def test_a_typed_file_is_read(order: str) -> None:
     """Samples, step and peak in both byte orders; the unit is what the user says."""
     pytest.importorskip("obspy")
-    record = Sac().read(Source("a.sac", typed(VALUES, order)), units="g")
+    record = SAC.read(Source("a.sac", typed(VALUES, order)), units="g")
     (part,) = record.components
     assert part.acceleration.tolist() == VALUES
     assert (part.name, part.unit, part.time_step, part.stated_peak) == ("HNN", "g", 0.02, 1.25)
@@ -67,7 +68,7 @@ def test_the_unit_is_never_guessed() -> None:
     """Without units= it is refused."""
     pytest.importorskip("obspy")
     with pytest.raises(RecordError, match="units="):
-        Sac().read(Source("a.sac", typed(VALUES)))
+        SAC.read(Source("a.sac", typed(VALUES)))
 
 
 @pytest.mark.parametrize(
@@ -95,7 +96,7 @@ def test_files_at_odds_with_their_header_are_refused(numbers: dict[str, float], 
     """Both extremes, count, step, end, kind and quantity are checked."""
     pytest.importorskip("obspy")
     with pytest.raises(RecordError, match=message):
-        Sac().read(Source("a.sac", typed(VALUES, "<", **numbers)), units="g")
+        SAC.read(Source("a.sac", typed(VALUES, "<", **numbers)), units="g")
 
 
 @pytest.mark.parametrize("east", [139.0, -221.0, 359.0])
@@ -103,7 +104,7 @@ def test_places_on_earth_are_taken(east: float) -> None:
     """The control: longitudes of either convention."""
     pytest.importorskip("obspy")
     content = typed(VALUES, stla=35.0, stlo=east, evla=-90.0, evlo=140.0)
-    assert Sac().read(Source("a.sac", content), units="g").components[0].acceleration.tolist() == VALUES
+    assert SAC.read(Source("a.sac", content), units="g").components[0].acceleration.tolist() == VALUES
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
@@ -115,9 +116,9 @@ def test_each_place_has_its_own_limit(order: str, name: str, most: float) -> Non
     for sign in (1.0, -1.0):
         beyond, within = (float(np.nextafter(np.float32(sign * most), np.float32(sign * to))) for to in (1e3, 0.0))
         with pytest.raises(RecordError, match=f"header's {name} must be within {most:g} degrees of 0"):
-            Sac().read(Source("a.sac", typed(VALUES, order, **known | {name: beyond})), units="g")
+            SAC.read(Source("a.sac", typed(VALUES, order, **known | {name: beyond})), units="g")
         inside = typed(VALUES, order, **known | {name: within})
-        assert Sac().read(Source("a.sac", inside), units="g").components[0].acceleration.tolist() == VALUES
+        assert SAC.read(Source("a.sac", inside), units="g").components[0].acceleration.tolist() == VALUES
 
 
 def test_damaged_files_give_no_other_error() -> None:
@@ -129,7 +130,7 @@ def test_damaged_files_give_no_other_error() -> None:
         content[chance.randrange(len(content))] ^= 1 << chance.randrange(8)
         whole = bytes(content[: chance.choice([len(content)] * 3 + [chance.randrange(len(content))])])
         try:
-            (part,) = Sac().read(Source("a.sac", whole), units="g").components
+            (part,) = SAC.read(Source("a.sac", whole), units="g").components
         except RecordError:
             continue
         order = "<" if struct.unpack_from("<i", whole, 304)[0] in {6, 7} else ">"
@@ -143,18 +144,18 @@ def test_what_is_written_is_read_back() -> None:
     """Single precision survives."""
     pytest.importorskip("obspy")
     given = Record("", (Component("HNE", np.sin(np.arange(90.0)), "mg", 0.005),), "", {"station": "ABC"})
-    (part,) = Sac().read(Source("w", Sac().write(given)), units="mg").components
+    (part,) = SAC.read(Source("w", SAC.write(given)), units="mg").components
     np.testing.assert_allclose(part.acceleration, given.components[0].acceleration, rtol=6e-8)
     assert (part.name, part.time_step) == ("HNE", 0.005)
     with pytest.raises(RecordError, match="wrong unit"):
-        Sac().write(Record("", (Component("a", np.array([0.0, 1e38]), "g", 0.1),)))
+        SAC.write(Record("", (Component("a", np.array([0.0, 1e38]), "g", 0.1),)))
 
 
 def test_the_real_file(shared_records: Path) -> None:
     """2019 Ridgecrest, CJ.T001230 HNN: 15001 samples at 0.02 s; 0.00348981 g if it is m/s2."""
     pytest.importorskip("obspy")
     (path,) = (shared_records / "sac").glob("*.sac")
-    (part,) = Sac().read(Source.of_path(path), units="m/s2").components
+    (part,) = SAC.read(Source.of_path(path), units="m/s2").components
     assert (part.acceleration.size, part.time_step) == (15001, 0.02)
     assert part.peak / g == pytest.approx(0.00348981, rel=2e-6)
 
@@ -162,6 +163,6 @@ def test_the_real_file(shared_records: Path) -> None:
 def test_two_samples_are_a_record() -> None:
     """One interval is the least that has a time step; one sample has none."""
     pytest.importorskip("obspy")
-    assert Sac().read(Source("a", typed([0.5, -1.25], e=0.02)), units="g").components[0].acceleration.size == 2
+    assert SAC.read(Source("a", typed([0.5, -1.25], e=0.02)), units="g").components[0].acceleration.size == 2
     with pytest.raises(RecordError, match="at least 2"):
-        Sac().read(Source("a", typed([0.5], e=0.0)), units="g")
+        SAC.read(Source("a", typed([0.5], e=0.0)), units="g")

@@ -1,13 +1,18 @@
-"""SMC of the U.S. Geological Survey: 8 columns of 10 characters that may touch each other."""
+"""SMC: 8 columns of 10 characters that may touch each other, or Boore's 5 of 14."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from rocking.conventions import g
 from rocking.errors import RecordError
-from rocking.motions.formats import Component, Record, Source
-from rocking.motions.formats.smc import SmcBoore, SmcUsgs
+from rocking.motions.formats import Component, Record, Source, formats
+
+SMC_USGS = formats()["smc-usgs"]
+
+SMC_BOORE = formats()["smc-boore"]
 
 NONE, BLANK = -32768, 1.7e38
 SAMPLES = [
@@ -54,7 +59,7 @@ def source(lines: list[str], end: str = "\n") -> Source:
 
 def test_numbers_that_touch_are_read_by_columns() -> None:
     """Samples, step, name, unit and peak of a typed file; splitting on blanks would find other numbers."""
-    record = SmcUsgs().read(source(typed(), "\r\n"))
+    record = SMC_USGS.read(source(typed(), "\r\n"))
     (part,) = record.components
     np.testing.assert_array_equal(part.acceleration, VALUES)
     assert (part.name, part.unit, part.time_step, part.stated_peak) == ("360", "cm/s2", 0.005, 104.417)
@@ -68,7 +73,7 @@ def test_numbers_that_touch_are_read_by_columns() -> None:
     assert record.header.splitlines()[0].startswith("2 CORRECTED")
     bare = [line for line in typed() if not line.startswith("|")]
     bare[12] = bare[12][:70] + f"{0:10d}"  # the sixteenth whole number counts the lines of comment
-    np.testing.assert_array_equal(SmcUsgs().read(source(bare)).components[0].acceleration, VALUES)
+    np.testing.assert_array_equal(SMC_USGS.read(source(bare)).components[0].acceleration, VALUES)
     # the negative control: blanks are no separators here
     assert len("".join(SAMPLES[:8]).split()) != 8
 
@@ -95,7 +100,7 @@ def test_numbers_that_touch_are_read_by_columns() -> None:
 def test_files_at_odds_with_their_header_are_refused(change: dict[str, object], message: str) -> None:
     """Counts, extremes with sign and time, the printed peak, the rate and the kind are all checked."""
     with pytest.raises(RecordError, match=message):
-        SmcUsgs().read(source(typed(**change)))  # type: ignore[arg-type]
+        SMC_USGS.read(source(typed(**change)))  # type: ignore[arg-type]
 
 
 def test_a_damaged_sample_names_its_line() -> None:
@@ -103,28 +108,28 @@ def test_a_damaged_sample_names_its_line() -> None:
     lines = typed()
     lines[29] = lines[29].replace("-1.9234E+0", "**********")
     with pytest.raises(RecordError, match="line 30"):
-        SmcUsgs().read(source(lines))
+        SMC_USGS.read(source(lines))
 
 
 def test_other_units_and_steps_are_refused() -> None:
     """What the user says must not contradict the file."""
     with pytest.raises(RecordError, match="you say"):
-        SmcUsgs().read(source(typed()), units="g")
+        SMC_USGS.read(source(typed()), units="g")
     with pytest.raises(RecordError, match="you say"):
-        SmcUsgs().read(source(typed()), time_step=0.01)
-    assert SmcUsgs().read(source(typed()), units="gal", time_step=0.005).components[0].unit == "cm/s2"
+        SMC_USGS.read(source(typed()), time_step=0.01)
+    assert SMC_USGS.read(source(typed()), units="gal", time_step=0.005).components[0].unit == "cm/s2"
 
 
 def test_it_tells_the_two_kinds_of_smc_apart_and_survives_a_missing_line() -> None:
     """Whole number 47 decides; a file that lost a header line is still SMC, and refused by the reader."""
-    assert SmcUsgs().recognises(source(typed()))
-    assert not SmcBoore().recognises(source(typed()))
+    assert SMC_USGS.recognises(source(typed()))
+    assert not SMC_BOORE.recognises(source(typed()))
     lost = source(typed()[1:])
-    assert not SmcUsgs().recognises(lost)  # its first line says what it is
+    assert not SMC_USGS.recognises(lost)  # its first line says what it is
     shorter = source(typed()[:5] + typed()[6:])
-    assert SmcUsgs().recognises(shorter)
+    assert SMC_USGS.recognises(shorter)
     with pytest.raises(RecordError, match="header numbers expected"):
-        SmcUsgs().read(shorter)
+        SMC_USGS.read(shorter)
 
 
 @pytest.mark.parametrize("line", [*range(11, 17), *range(17, 27)])
@@ -132,30 +137,88 @@ def test_a_file_with_one_damaged_header_line_is_still_known(line: int) -> None:
     """One line of whole or real numbers out of six or ten may be damaged: the reader knows the file and names it."""
     lines = typed()
     lines[line] = "damaged " + lines[line][8:]
-    assert SmcUsgs().recognises(source(lines))
+    assert SMC_USGS.recognises(source(lines))
     with pytest.raises(RecordError, match=f"line {line + 1}: a full line of header numbers expected"):
-        SmcUsgs().read(source(lines))
+        SMC_USGS.read(source(lines))
 
 
 def test_what_is_written_is_read_back(made_up: Callable[..., Record]) -> None:
     """A record in m/s2 comes back in cm/s2 to the five digits of the format, with its name."""
     record = made_up("45", scale=3.0)
-    content = SmcUsgs().write(record)
+    content = SMC_USGS.write(record)
     assert {len(line) for line in content.decode().splitlines()[:11]} == {80}
-    (part,) = SmcUsgs().read(Source("written", content)).components
+    (part,) = SMC_USGS.read(Source("written", content)).components
     np.testing.assert_allclose(part.acceleration, 100.0 * record.components[0].acceleration, rtol=5.1e-5, atol=1e-9)
     assert (part.name, part.time_step) == ("45", 0.02)
 
 
 def test_the_azimuth_stands_where_the_format_has_it(made_up: Callable[..., Record]) -> None:
     """The fourteenth whole number is the azimuth of the component; the thirteenth, of the vertical, stays open."""
-    lines = SmcUsgs().write(made_up("90")).decode().split("\n")
+    lines = SMC_USGS.write(made_up("90")).decode().split("\n")
     assert [int(lines[12][10 * k : 10 * k + 10]) for k in (4, 5)] == [NONE, 90]
 
 
 def test_what_it_cannot_hold_is_refused(made_up: Callable[..., Record]) -> None:
     """Two components, or numbers of 1e10 cm/s2, do not fit."""
     with pytest.raises(RecordError, match="1 components"):
-        SmcUsgs().write(made_up("a", "b"))
+        SMC_USGS.write(made_up("a", "b"))
     with pytest.raises(RecordError, match="below 1e10"):
-        SmcUsgs().write(Record("", (Component("a", np.array([0.0, 1e10]), "cm/s2", 0.01),)))
+        SMC_USGS.write(Record("", (Component("a", np.array([0.0, 1e10]), "cm/s2", 0.01),)))
+
+
+def typed_by_boore(first: str = "0 UNKNOWN") -> str:
+    """A file typed by hand: 6 samples, the largest 1.25 at 0.02 s, the least -2.5 at 0.05 s."""
+    whole = ["    -32768"] * 48
+    whole[15], whole[16], whole[46] = "         1", "         6", "         8"
+    real = ["  0.1700000E+39"] * 50
+    real[1] = "  0.1000000E+03"
+    real[28:32] = ["  0.2000000E-01", "  0.1250000E+01", "  0.5000000E-01", " -0.2500000E+01"]
+    lines = [first] + ["*"] * 5 + ["*                                pk mtn =-2.500E+0"] + ["*"] * 4
+    lines += ["".join(whole[k : k + 8]) for k in range(0, 48, 8)] + ["".join(real[k : k + 5]) for k in range(0, 50, 5)]
+    lines += ["|", " 0.0000000E+00 1.0000000E+00 1.2500000E+00-1.0000000E-01 0.0000000E+00", "-2.5000000E+00"]
+    return "\n".join(lines) + "\n"
+
+
+def test_a_typed_file_is_read() -> None:
+    """Samples, step and peak; the kind UNKNOWN is kept in the metadata."""
+    source = Source("typed", typed_by_boore().encode())
+    assert SMC_BOORE.recognises(source)
+    assert not SMC_USGS.recognises(source)
+    record = SMC_BOORE.read(source)
+    (part,) = record.components
+    assert part.acceleration.tolist() == [0.0, 1.0, 1.25, -0.1, 0.0, -2.5]
+    assert (part.time_step, part.stated_peak, part.unit) == (0.01, 2.5, "cm/s2")
+    assert record.metadata["kind"] == "unknown"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("pk mtn =-2.500E+0", "pk mtn =-2.600E+0", "pk"),
+        ("0 UNKNOWN", "4 DISPLACEMENT", "displacement"),
+        (" -0.2500000E+01", " -0.2500010E+01", "minimum"),
+        ("-2.5000000E+00\n", "-2.5000000E+00\n 1.0000000E+00\n", "more"),
+        ("-2.5000000E+00\n", "", "1 columns of 14 characters expected"),
+    ],
+)
+def test_damage_is_refused(old: str, new: str, message: str) -> None:
+    """The text peak, the extremes to seven digits, the kind and the end of the file are checked."""
+    changed = typed_by_boore().replace(old, new, 1)
+    assert changed != typed_by_boore()
+    with pytest.raises(RecordError, match=message):
+        SMC_BOORE.read(Source("typed", changed.encode()))
+
+
+def test_the_real_file(shared_records: Path) -> None:
+    """1987 Whittier, Carson-Catskill: 1646 samples at 0.02 s, 0.0421708 g as in the database it was made from."""
+    (part,) = SMC_BOORE.read(Source.of_path(shared_records / "smc" / "A-CAT090.AT2.smc")).components
+    assert (part.acceleration.size, part.time_step) == (1646, 0.02)
+    assert 0.01 * part.peak / g == pytest.approx(0.0421708, abs=6e-8)
+
+
+def test_what_boore_writes_is_read_back(made_up: Callable[..., Record]) -> None:
+    """Eight digits survive."""
+    record = made_up("17", unit="cm/s2", scale=123.0)
+    (part,) = SMC_BOORE.read(Source("written", SMC_BOORE.write(record))).components
+    np.testing.assert_allclose(part.acceleration, record.components[0].acceleration, rtol=5.1e-8, atol=1e-9)
+    assert part.name == "17"
