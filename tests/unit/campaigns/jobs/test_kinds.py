@@ -37,6 +37,11 @@ def same(found, wanted, names):
     assert (found["outcome"] != 2).any()
 
 
+def plain(attributes):
+    """Attributes as they are read again: flags are arrays in a file."""
+    return {name: np.asarray(value).tolist() for name, value in attributes.items()}
+
+
 @pytest.mark.parametrize("chunk", [None, 10])
 def test_map_is_overturning_map(finished, tmp_path, chunk):
     """A map in chunks that cut through its rows, with stretched pulses, has every bit of the map of one call."""
@@ -49,6 +54,12 @@ def test_map_is_overturning_map(finished, tmp_path, chunk):
     for name in wanted.coords:
         assert np.array_equal(found[name], wanted[name])
         assert found[name].attrs["units"] == wanted[name].attrs["units"]
+    assert set(found.variables) == set(wanted.variables)
+    for name in wanted.variables:
+        assert plain(found[name].attrs) == plain(wanted[name].attrs)
+    # how much work it was, and how many lost contact, a campaign of any size does not say
+    attributes = {k: v for k, v in wanted.attrs.items() if not k.startswith("work_") and k != "contact"}
+    assert {k: found.attrs[k] for k in attributes} == attributes
 
 
 def test_map_of_bodies_and_restitutions(finished, tmp_path, text):

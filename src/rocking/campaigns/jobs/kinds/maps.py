@@ -53,6 +53,8 @@ def map_study(problem: StudyProblem) -> Study:
         planes = [Plane(question, *axes) for question in questions]
         histories = MapHistories.of(planes)
     several = {"restitution": len(planes)} if len(planes) > 1 else {}
+    # as of `overturning_map`; the provenance says which engine computes, and each restitution stands along its dimension
+    attributes = {k: v for k, v in questions[0].attributes({}).items() if k not in {"software", "engine", *several}}
     coordinates = {axis.name: along(axis.name, axis.values, axis.unit, axis.words) for axis in (y, x)}
     if several:
         coordinates["restitution"] = labels_along("restitution", problem.restitutions, "restitution")
@@ -60,7 +62,7 @@ def map_study(problem: StudyProblem) -> Study:
         sampled(histories),
         several | {y.name: y.values.size, x.name: x.values.size},
         coordinates,
-        {"body": repr(problem.bodies[0]), "motion": problem.motions[0].name},
+        attributes,
         rescale=histories.rescaled,
     )
     if table.refine is None:
