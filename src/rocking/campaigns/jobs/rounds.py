@@ -4,7 +4,7 @@ import json
 import shlex
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -111,24 +111,24 @@ def finished_rounds(folder: Path) -> dict[str, int] | None:
         raise CampaignDamagedError(f"{folder / FINISHED} is damaged ({error}); {advice}") from error
 
 
-@dataclass
 class Rounds:
-    """The rounds that a study asks for, one after another."""
+    """The rounds that a study asks for, one after another: computed where an executor is given, read where not.
 
-    folder: Path  # the campaign of the job
-    chunk: int | None = None  # histories of a chunk
-    # computes what is missing of a round; without it nothing is computed
-    advance: Callable[[Campaign], object] | None = None
-    stopping: Callable[[], bool] = lambda: False  # whether to stop before the next round
-    number: int = field(default=0, init=False)
-    histories: int = field(default=0, init=False)
+    Ctrl-C and SIGTERM between two rounds are noted.
+    """
+
+    def __init__(self, folder: Path, chunk: int | None = None, who: str | Executor | None = None, **how: Any) -> None:
+        self.folder, self.chunk, self.who, self.how = folder, chunk, who, how
+        self.number = self.histories = 0
+        self.done: list[Summary] = []
+        self.between = Interruption()
 
     def compute(self, histories: Histories) -> Arrays:
         """Return the results of the next round; as they were, if it was computed before."""
         path = round_folder(self.folder, self.number)
-        if self.stopping():
+        if self.between.asked():
             raise CampaignInterrupted(_stopped(self.folder, self.number))
-        if self.advance is None and not (path / NAME).exists():
+        if self.who is None and not (path / NAME).exists():
             raise CampaignIncompleteError(f"{path} is missing; go on with: {resume(self.folder)}")
         with _of_the_job(self.folder, self.number):
             results = self._results(opened(path, histories, self.chunk))
@@ -142,13 +142,31 @@ class Rounds:
         return {"rounds": self.number, "histories": self.histories}
 
     def _results(self, campaign: Campaign) -> Arrays:
-        if self.advance is None:
-            return campaign.results(*NEEDED)
-        with suppress(CampaignDamagedError):  # what is damaged is set aside, said, and computed again
-            if campaign.status(verify=False).complete:
-                return campaign.results(*NEEDED)
-        self.advance(campaign)
+        if self.who is not None:
+            with suppress(CampaignDamagedError):  # what is damaged is set aside, said, and computed again
+                if campaign.status(verify=False).complete:
+                    return campaign.results(*NEEDED)
+            self.advance(campaign)
         return campaign.results(*NEEDED)
+
+    def advance(self, campaign: Campaign) -> None:
+        """Compute what is missing of a round."""
+        # a round of one chunk has work for one only: others would be started for nothing
+        alone = {"executor": "serial", "workers": 1, "start_method": None} if campaign.plan.chunks == 1 else {}
+        self.between.__exit__()  # within a round Ctrl-C and SIGTERM are its campaign's, which knows how to stop
+        if self.between.asked():
+            raise CampaignInterrupted("between rounds")  # said in other words by whoever counts them
+        self.done.append(campaign.run(**({"executor": self.who} | self.how | alone)))
+        self.between = Interruption().__enter__()
+
+    def __enter__(self) -> "Rounds":
+        """Begin to note what comes between the rounds."""
+        self.between.__enter__()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Note it no longer."""
+        self.between.__exit__()
 
 
 @contextmanager
@@ -188,52 +206,23 @@ def replayed(search: Search, folder: Path) -> AdaptiveResult:
     return replace(result, attributes={**result.attributes, **more})
 
 
-class _RoundsRun:
-    """One run of the rounds that are missing; Ctrl-C and SIGTERM between them are noted."""
-
-    def __init__(self, who: str | Executor, **options: Any) -> None:
-        self.who, self.options = who, options
-        self.done: list[Summary] = []
-        self.between = Interruption()
-
-    def advance(self, campaign: Campaign) -> None:
-        # a round of one chunk has work for one only: others would be started for nothing
-        alone = {"workers": 1, "start_method": None} if campaign.plan.chunks == 1 else {}
-        self.between.__exit__()  # within a round Ctrl-C and SIGTERM are its campaign's, which knows how to stop
-        if self.between.asked():
-            raise CampaignInterrupted("between rounds")  # said in other words by whoever counts them
-        self.done.append(campaign.run("serial" if alone else self.who, **(self.options | alone)))
-        self.between = Interruption().__enter__()
-
-    def stopping(self) -> bool:
-        return self.between.asked()
-
-    def __enter__(self) -> "_RoundsRun":
-        self.between.__enter__()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.between.__exit__()
-
-
 def run_rounds(
     search: Search, folder: Path, chunk: int | None, executor: str | Executor = "serial", *,
     workers: int | None = None, progress: Callable[[Progress], object] | None = None, **options: Any,
 ) -> Summary:  # fmt: skip
     """Compute what is missing of all rounds, read the others, and return what was done in the former."""
     _check(executor, workers, search, options.get("start_method"))
-    run = _RoundsRun(executor, workers=workers, progress=progress, **options)
-    rounds = Rounds(folder, chunk, run.advance, run.stopping)
+    rounds = Rounds(folder, chunk, executor, workers=workers, progress=progress, **options)
     with ExitStack() as stack:
         with disk.guarded(folder):
             stack.enter_context(FolderLock(folder))
             disk.remove_unfinished(folder)
-        with run:
+        with rounds:
             search(rounds.compute)
         with disk.guarded(folder):
             disk.write_new(folder / FINISHED, (json.dumps(rounds.counts, indent=1) + "\n").encode())
     nothing = Summary(0, 0, 0, (), (), 0)
-    return _summed([nothing, *run.done], "computed", "resumed", "adopted", "set_aside", "retries", "seconds")
+    return _summed([nothing, *rounds.done], "computed", "resumed", "adopted", "set_aside", "retries", "seconds")
 
 
 def _check(executor: str | Executor, workers: int | None, search: Search, start_method: str | None) -> None:

@@ -78,7 +78,7 @@ def test_executors_are_tried_before_anything_is_computed(tmp_path):
     assert folder.run(Serial(1)).computed > 0
 
 
-class Stopping(rounds._RoundsRun):
+class Stopping(rounds.Rounds):
     """Runs two rounds, and stops within the third as its campaign would."""
 
     error: BaseException = CampaignInterrupted("stopped: all 1 chunks are safe; run the campaign again")
@@ -93,7 +93,7 @@ class Stopping(rounds._RoundsRun):
 def test_interruption_names_the_job(tmp_path, monkeypatch):
     """Ctrl-C within a round: the folder that is named is the one to resume, quoted where it has blanks."""
     folder = begun(tmp_path / "my map")
-    monkeypatch.setattr(rounds, "_RoundsRun", Stopping)
+    monkeypatch.setattr(rounds, "Rounds", Stopping)
     with pytest.raises(CampaignInterrupted) as told:
         folder.run(workers=1)
     assert str(told.value) == (
@@ -111,7 +111,7 @@ def test_full_disk_names_the_job(tmp_path, monkeypatch):
     cause = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     error = CampaignStorageError("inner: No space left on device; 0 of 1 chunks are safe; run the campaign again")
     error.__cause__ = cause
-    monkeypatch.setattr(rounds, "_RoundsRun", Stopping)
+    monkeypatch.setattr(rounds, "Rounds", Stopping)
     monkeypatch.setattr(Stopping, "error", error)
     with pytest.raises(CampaignStorageError) as told:
         folder.run(workers=1)

@@ -53,7 +53,7 @@ def map_study(problem: StudyProblem) -> Study:
         planes = [Plane(question, *axes) for question in questions]
         histories = MapHistories.of(planes)
     several = {"restitution": len(planes)} if len(planes) > 1 else {}
-    # as of `overturning_map`; the provenance says which engine computes, and each restitution stands along its dimension
+    # as of `overturning_map`; the provenance says which engine computes, a dimension which restitutions
     attributes = {k: v for k, v in questions[0].attributes({}).items() if k not in {"software", "engine", *several}}
     coordinates = {axis.name: along(axis.name, axis.values, axis.unit, axis.words) for axis in (y, x)}
     if several:
