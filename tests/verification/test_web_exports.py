@@ -38,10 +38,8 @@ from rocking.app.takeaway.table_files import column, table, written
 from rocking.app.takeaway.tables import table_of
 from rocking.motions.formats import read_motion
 from rocking.motions.motion import GroundMotion
-from rocking.reports.document import Paragraph, ReportTable, cell
-from rocking.reports.response_blocks import Image as Picture
-from rocking.reports.response_blocks import Listing, PagePart, Pages, Pair
-from rocking.reports.response_pdf import response_pdf
+from rocking.reports.document import Document, Listing, Pair, Paragraph, Picture, ReportSection, ReportTable, cell
+from rocking.reports.render import response_pdf
 
 SVG = "{http://www.w3.org/2000/svg}"
 DRAWN = {"svg", "g", "path", "defs", "style", "text", "tspan", "use", "clipPath", "rect", "metadata", "image", "title"}
@@ -248,7 +246,8 @@ def test_the_report_sets_a_name_as_it_is(name):
     table = ReportTable(shown, [shown, "v"], [[cell(shown), cell("1.0")]], shown)
     picture = Picture("body", shown)
     blocks = [Paragraph(shown, shown, "fair"), table, picture, Pair(picture, table), Listing(shown, shown)]
-    pages = Pages(shown or "-", shown, [Paragraph(shown)], [PagePart(shown or "-", blocks)], shown)
+    sections = [ReportSection(shown or "-", blocks)]
+    pages = Document(shown or "-", shown, sections, verdict=[Paragraph(shown)], footer=shown)
     empty = b'<svg xmlns="http://www.w3.org/2000/svg" width="10" height="10"><rect width="9" height="9"/></svg>'
     assert_says(response_pdf(pages, {"body": empty}), shown)
 

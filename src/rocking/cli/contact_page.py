@@ -10,7 +10,7 @@ from rocking.conventions import LENGTH_UNITS, Assumed, given_or_assumed
 from rocking.dynamics import ContactResponse, free_rocking, simulate
 from rocking.errors import RockingError
 from rocking.outcome import Outcome, Regime
-from rocking.reports.facts.response import finite, moved_facts, still_rocking_facts
+from rocking.reports.response_facts import finite, moved_facts, still_rocking_facts
 
 _FIRST = 12
 """Modes and impacts that are printed."""

@@ -12,7 +12,7 @@ from rocking.cli.options import in_unit
 from rocking.conventions import FEET, Foot, g
 from rocking.errors import InvalidValueError
 from rocking.evidence._coefficient_table import CoefficientRow, outside_evidence
-from rocking.reports.facts.impact import ImpactAnswer, impact_facts
+from rocking.reports.body_facts import ImpactAnswer, impact_facts
 from rocking.restitution import energy_balance
 from rocking.spec.construction import body_of
 from rocking.spec.document import SettingsTable

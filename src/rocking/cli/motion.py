@@ -36,7 +36,7 @@ def motion(
     from rocking.cli import motion_output
     from rocking.cli.inputs import motion_from
     from rocking.conventions import ACCELERATION_UNITS
-    from rocking.reports.facts.motion import MotionAnswer
+    from rocking.reports.motion_facts import MotionAnswer
 
     (units,) = options.units_of(units, ACCELERATION_UNITS)
     subject = motion_from(

@@ -16,7 +16,7 @@ from rocking.motions.intensity import Measure
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.plots.traces import traces
-from rocking.reports.facts.motion import MotionAnswer, motion_facts, spectrum_facts
+from rocking.reports.motion_facts import MotionAnswer, motion_facts, spectrum_facts
 
 _MOST_PERIODS = 1000
 

@@ -15,7 +15,7 @@ def paper(
 ) -> None:
     """Recompute the paper: every table, figure, erratum and claim, and the league of all models."""
     from rocking.cli import paper_output
-    from rocking.reports.reproduction import reproduce
+    from rocking.reports.paper_document import reproduce
 
     result = reproduce()
     if as_json:
@@ -24,7 +24,7 @@ def paper(
         if not as_json:
             paper_output.show(result)
         return
-    from rocking.reports.folder import write_folder
+    from rocking.reports.paper_folder import write_folder
 
     with paper_output.progress(quiet=as_json) as step:
         written, left_out = write_folder(result, out, step)

@@ -6,9 +6,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from rocking.evidence._claims import FAILS, HOLDS, IN_PART, UNRESOLVED
-from rocking.reports.folder import as_plain, steps
-from rocking.reports.paper_document import look_at
-from rocking.reports.reproduction import Reproduction
+from rocking.reports.paper_document import Reproduction, look_at
+from rocking.reports.paper_folder import as_plain, steps
 
 _STYLE = {HOLDS: "green", IN_PART: "yellow", FAILS: "red", UNRESOLVED: "cyan"}
 

@@ -22,7 +22,7 @@ from rocking.dynamics.space import SpatialResponse
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
 from rocking.motions.motion import GroundMotion
 from rocking.outcome import Outcome
-from rocking.reports.facts.response import other_facts, response_facts
+from rocking.reports.response_facts import other_facts, response_facts
 
 _PLANE = ("width", "height", "depth", "angle", "semi_diagonal", "free", "friction", "contact", "bounce", "linear")
 _RECORD = ("format", "units", "time_step", "component", "vertical", "vertical_file")

@@ -10,7 +10,7 @@ from rocking.conventions import given_or_assumed
 from rocking.dynamics.response import Response
 from rocking.motions.pulse import Pulse
 from rocking.outcome import Outcome
-from rocking.reports.facts.verdict import ModelAgreement
+from rocking.reports.response_facts import ModelAgreement
 
 _FIRST = 10
 """Impacts that are printed."""

@@ -8,7 +8,7 @@ from rocking.bodies import Solid
 from rocking.cli.cor_solid import base_facts, body_facts, show_body
 from rocking.dynamics.space import SpatialResponse
 from rocking.outcome import Outcome
-from rocking.reports.facts.response import finite
+from rocking.reports.response_facts import finite
 
 _FIRST = 12
 """Contacts and impacts that are printed."""

@@ -1,18 +1,24 @@
-"""A report as plain content, whatever it is rendered to: sections of paragraphs, tables and figures."""
+"""A report as plain content, whatever it is rendered to: sections of paragraphs, tables, pictures and listings."""
 
+import hashlib
+import platform
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
+from importlib.metadata import version
+from importlib.resources import files
+from typing import Any
 
-MARKS = ("good", "fair", "bad", "plain")
-"""What a cell or a verdict says: agrees, in part, does not, nothing to say."""
+import numpy as np
+
+_NUMBER = frozenset("+-\N{MINUS SIGN}0123456789")
 
 
 @dataclass(frozen=True, slots=True)
 class Cell:
     """One cell of a table."""
 
-    text: str  # what stands in it
-    mark: str = "plain"  # one of `MARKS`
+    text: str
+    mark: str = "plain"  # good, fair, bad or plain: agrees, in part, does not, nothing to say
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,17 +27,17 @@ class Paragraph:
 
     text: str
     lead: str = ""  # words set in bold before it
-    mark: str = "plain"  # one of `MARKS`; shown as a coloured bar or word
+    mark: str = "plain"  # as of a cell; shown as a coloured bar or word
 
 
 @dataclass(frozen=True, slots=True)
 class ReportTable:
     """A table with a caption."""
 
-    caption: str  # what it shows
+    caption: str
     header: Sequence[str]  # column names with units
     rows: Sequence[Sequence[Cell]]
-    note: str = ""  # A line below
+    note: str = ""  # a line below
     stem: str = ""  # name of its CSV file
 
 
@@ -40,11 +46,28 @@ class Picture:
     """A figure of the report."""
 
     stem: str  # name of its files, without suffix
-    caption: str  # what it shows
-    wide: bool = True  # whether it needs the full width
+    caption: str
+    width: int = 100  # share of the width of the page [%]
 
 
-Block = Paragraph | ReportTable | Picture
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """A picture, and a table to its right."""
+
+    left: Picture
+    right: ReportTable
+    share: int = 40  # share of the picture in the width [%]
+
+
+@dataclass(frozen=True, slots=True)
+class Listing:
+    """Text as a machine reads it, line by line."""
+
+    text: str
+    lead: str = ""  # words before it
+
+
+Block = Paragraph | ReportTable | Picture | Pair | Listing
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +75,7 @@ class ReportSection:
     """A section of the report."""
 
     title: str
-    blocks: Sequence[Block]  # its content
+    blocks: Sequence[Block]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,19 +88,25 @@ class Document:
         Title.
     subtitle : str
         A line below it.
+    sections : sequence of ReportSection
+        The content.
     look_at : sequence of (str, str)
         What to look at first: a short name and a sentence.
-    sections : sequence of Section
-        The content.
+    verdict : sequence of Paragraph
+        What matters most.
     provenance : dict of str to str
         Versions and sources.
+    footer : str
+        Small print of every page.
     """
 
     title: str
     subtitle: str
-    look_at: Sequence[tuple[str, str]]
     sections: Sequence[ReportSection]
+    look_at: Sequence[tuple[str, str]] = ()
+    verdict: Sequence[Paragraph] = ()
     provenance: dict[str, str] = field(default_factory=dict)
+    footer: str = ""
 
     @property
     def tables(self) -> list[ReportTable]:
@@ -85,7 +114,61 @@ class Document:
         blocks = (block for section in self.sections for block in section.blocks)
         return [block for block in blocks if isinstance(block, ReportTable) and block.stem]
 
+    def plain(self) -> dict[str, Any]:
+        """Return everything as plain values, for the templates of Typst.
+
+        Returns
+        -------
+        dict
+            Fields by name; each block with its ``kind``.
+        """
+        sections = [(each.title, [_plain(block) for block in each.blocks]) for each in self.sections]
+        return {
+            "title": self.title,
+            "subtitle": self.subtitle,
+            "footer": self.footer,
+            "look_at": [list(pair) for pair in self.look_at],
+            "verdict": [_plain(each) for each in self.verdict],
+            "sections": [{"title": title, "blocks": blocks} for title, blocks in sections],
+            "provenance": [f"{name}: {value}." for name, value in self.provenance.items()],
+        }
+
+
+def _plain(block: Block) -> dict[str, Any]:
+    if isinstance(block, Pair):
+        return {"kind": "pair", "left": _plain(block.left), "right": _plain(block.right), "share": block.share}
+    if isinstance(block, Picture):
+        return {"kind": "picture", "file": f"{block.stem}.svg", **asdict(block)}
+    if isinstance(block, ReportTable):
+        numbers = [_numeric([row[k] for row in block.rows]) for k in range(len(block.header))]
+        return {"kind": "table", "numbers": numbers, **asdict(block)}
+    return {"kind": type(block).__name__.lower(), **asdict(block)}
+
+
+def _numeric(cells: Sequence[Cell]) -> bool:
+    """Tell whether a column holds numbers, which are set flush right."""
+    return bool(cells) and all(not each.text or each.text[0] in _NUMBER for each in cells)
+
 
 def cell(text: object, mark: str = "plain") -> Cell:
     """Return a cell from anything that prints."""
     return Cell(str(text), mark)
+
+
+def made_with() -> dict[str, str]:
+    """Return what made a result: versions, and the fingerprints of the data."""
+    import scipy
+
+    from rocking.evidence.measurements import provenance
+
+    source, data = provenance(), files("rocking.evidence").joinpath("data")
+    prints = [
+        f"{name} {hashlib.sha256(data.joinpath(name).read_bytes()).hexdigest()[:12]}"
+        for name in (f"mao2024_table{i}.csv" for i in (1, 2, 3))
+    ]
+    return {
+        "Made with": f"rocking {version('rocking')}, Python {platform.python_version()}, numpy {np.__version__}, "
+        f"scipy {scipy.__version__}",
+        "Measurements": f"{source['source']}, doi:{source['doi']}, {source['licence']}",
+        "SHA-256": ", ".join(prints),
+    }

@@ -1,8 +1,7 @@
 """The report of an inventory: the ranked table with its lights, and what they do and do not say."""
 
 from rocking.conventions import g
-from rocking.reports.document import Cell, Document, Paragraph, ReportSection, ReportTable, cell
-from rocking.reports.provenance import made_with
+from rocking.reports.document import Cell, Document, Paragraph, ReportSection, ReportTable, cell, made_with
 from rocking.statistics.counts import share_interval
 from rocking.studies.inventory.assessment import Assessment, DirectionResult, Verdict
 from rocking.studies.inventory.lights import Light, percent
@@ -15,20 +14,18 @@ _MOST_NAMED = 5
 
 
 def inventory_document(assessment: Assessment) -> Document:
-    """Return the report of an inventory.
-
-    Returns for the renderers of HTML and PDF.
-    """
-    sections = [_ranking(assessment), _numbers(assessment), _meaning(assessment), _shaking(assessment), _limits()]
-    if assessment.not_assessed:
-        sections.insert(1, _not_assessed(assessment))
+    """Return the report of an inventory."""
+    refused = [_not_assessed(assessment)] if assessment.not_assessed else []
+    limits = ReportSection("What is not covered", [Paragraph(each) for each in LIMITS])
+    numbers, meaning, shaking = _numbers(assessment), _meaning(assessment), _shaking(assessment)
+    sections = [_ranking(assessment), *refused, numbers, meaning, shaking, limits]
     rows = len(assessment.verdicts)
     return Document(
         "Which objects stay standing",
         f"{assessment.source}: {rows} object{'' if rows == 1 else 's'} assessed at {assessment.hazard.words()}",
-        _look_at(assessment),
         [section for section in sections if section.blocks],
-        {"Made with": made_with()["Made with"], "Restitution": assessment.restitution},
+        look_at=_look_at(assessment),
+        provenance={"Made with": made_with()["Made with"], "Restitution": assessment.restitution},
     )
 
 
@@ -44,10 +41,9 @@ def light_words(light: Light) -> str:
 
 def _look_at(assessment: Assessment) -> list[tuple[str, str]]:
     counts = assessment.counts()
-    seen = ", ".join(f"{number} {light.word}" for light, number in counts.items())
-    lines = [
-        ("The lights", f"{seen}" + (f", {len(assessment.not_assessed)} not assessed" * bool(assessment.not_assessed)))
-    ]
+    lights = ", ".join(f"{number} {light.word}" for light, number in counts.items())
+    refused = len(assessment.not_assessed)
+    lines = [("The lights", lights + f", {refused} not assessed" * bool(refused))]
     red = [verdict.item.name for verdict in assessment.verdicts if verdict.light is Light.RED]
     if red:
         more = f" and {len(red) - _MOST_NAMED} more" if len(red) > _MOST_NAMED else ""
@@ -88,10 +84,9 @@ def _not_assessed(assessment: Assessment) -> ReportSection:
 
 def _numbers(assessment: Assessment) -> ReportSection:
     header = [
-        "object", "along", "light", "stays still up to [g]", "lifted [%]", "overturned", "95 % interval [%]",
-        "median", "84 %", f"light by {assessment.comparison}",
+        "object", "along", "light", "stays still up to [g]", "lifted [%]", "overturned",
+        f"{percent(assessment.thresholds.level)} interval [%]", "median", "84 %", f"light by {assessment.comparison}",
     ]  # fmt: skip
-    header[6] = f"{percent(assessment.thresholds.level)} interval [%]"
     pairs = [
         (each, one, two) for each in assessment.verdicts for one, two in zip(each.results, each.compared, strict=True)
     ]
@@ -149,7 +144,3 @@ def _shaking(assessment: Assessment) -> ReportSection:
     if assessment.ignored:
         blocks.append(Paragraph(", ".join(assessment.ignored), "Columns of the list that were not read:"))
     return ReportSection("The shaking", blocks)
-
-
-def _limits() -> ReportSection:
-    return ReportSection("What is not covered", [Paragraph(each) for each in LIMITS])

@@ -1,17 +1,30 @@
-"""The report of `rocking paper`: what stands in it, section by section."""
+"""The report of `rocking paper`: what is recomputed, and what stands in the report, section by section."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
-from rocking.evidence._claims import FAILS, HOLDS, IN_PART, UNRESOLVED, Claim
-from rocking.evidence._league import LeagueRow
-from rocking.evidence.explanation import explanation
-from rocking.evidence.measurements import BANDS, GROUPS
-from rocking.evidence.tables import Entry, TableRow
-from rocking.reports.document import Cell, Document, Paragraph, Picture, ReportSection, ReportTable, cell
-from rocking.reports.error_tables import error_blocks
-from rocking.reports.explanation_blocks import explanation_blocks
-from rocking.reports.provenance import made_with
-from rocking.reports.reproduction import Reproduction
+from rocking.evidence._claims import FAILS, HOLDS, IN_PART, UNRESOLVED, Claim, claims
+from rocking.evidence._errata import Erratum, errata
+from rocking.evidence._league import LeagueRow, league
+from rocking.evidence._verdict import verdict
+from rocking.evidence.agreement import concordance, correlation, relative_error, zone
+from rocking.evidence.calibration import Calibration, calibrate
+from rocking.evidence.coverage import Coverage, coverage
+from rocking.evidence.explanation import Explanation, Ranked, explanation
+from rocking.evidence.measurements import BANDS, GROUPS, datasets
+from rocking.evidence.tables import Entry, TableRow, recomputed
+from rocking.reports.document import (
+    Block,
+    Cell,
+    Document,
+    Paragraph,
+    Picture,
+    ReportSection,
+    ReportTable,
+    cell,
+    made_with,
+)  # fmt: skip
+from rocking.restitution import Housner, Ked
 
 MARK = {HOLDS: "good", IN_PART: "fair", FAILS: "bad"}
 
@@ -20,49 +33,84 @@ _COLUMNS = {"relative_error": "relative error", "housner": "r_H", "ked": "r_r (K
 NO_FIGURE_4 = "Figure 4 of the paper is a photograph of the tested blocks and is not reproduced."
 
 FIGURES = (
-    ("figure_1", "Figure 1. The classical model: a block, its feet O and O', its centre of mass.", False),
+    ("figure_1", "Figure 1. The classical model: a block, its feet O and O', its centre of mass.", 62),
     (
         "figure_2",
         "Figure 2. KED stage by stage: kinetic energy per volume and velocities before the impact, after the "
         "vertical part is lost, after the part along O'S is lost, and after redistribution.",
-        True,
+        100,
     ),
     (
         "figure_3",
         "Figure 3. Slenderness against r: both models and Table 2; bars are |r_r - r_e|, as in the paper.",
-        False,
+        62,
     ),
-    ("figure_5", "Figure 5. The same for the groups S, M and L of Table 3; S and L are moved sideways by 0.09.", False),
+    ("figure_5", "Figure 5. The same for the groups S, M and L of Table 3; S and L are moved sideways by 0.09.", 62),
     (
         "figure_6",
         "Figure 6. Relative errors of both models, Table 2, with zones I (< 1 %), II (1-5 %), III (> 5 %).",
-        False,
+        62,
     ),
-    ("figure_7", "Figure 7. Relative errors for the groups (a) S, (b) M, (c) L.", True),
-    ("figure_8", "Figure 8. Absolute errors against mass, Table 3.", False),
-    ("figure_9", "Figure 9. Relative errors at equal slenderness for the three groups, both models.", False),
+    ("figure_7", "Figure 7. Relative errors for the groups (a) S, (b) M, (c) L.", 100),
+    ("figure_8", "Figure 8. Absolute errors against mass, Table 3.", 62),
+    ("figure_9", "Figure 9. Relative errors at equal slenderness for the three groups, both models.", 62),
 )
+
+
+TABLES = {
+    "Table 1": ("table1",),
+    "Table 2": ("table2",),
+    "Table 3": ("S", "M", "L"),
+}
+"""The paper's tables and the data sets they hold."""
+
+PRINTED_CORRELATION = {"table2": "0.946", "S": "0.998", "M": "0.996", "L": "0.998"}
+"""Section 3.2 of the paper."""
+
+_TITLES = {"table2": "Table 2", "S": "Table 3, S", "M": "Table 3, M", "L": "Table 3, L"}
+_MODELS = (("Housner", Housner()), ("KED", Ked()))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Reproduction:
+    """The paper, recomputed."""
+
+    tables: dict[str, tuple[TableRow, ...]]  # Table to rows, printed beside recomputed
+    claims: tuple[Claim, ...]  # every claim with its verdict
+    errata: tuple[Erratum, ...]  # what recomputing found
+    league: tuple[LeagueRow, ...]  # every model against every measurement
+    calibration: Calibration  # the calibrated default
+    coverage: Coverage  # how its intervals cover what they have not seen
+    verdict: tuple[str, ...]  # what the evidence says, in words
+
+
+def reproduce() -> Reproduction:
+    """Recompute the paper."""
+    standings = league()
+    tables = {title: tuple(row for name in names for row in recomputed(name)) for title, names in TABLES.items()}
+    return Reproduction(tables, claims(), errata(), standings, calibrate(), coverage(), verdict(standings))
 
 
 def paper_document(result: Reproduction) -> Document:
     """Return the report."""
+    sections: dict[str, Sequence[Block]] = {
+        "Verdict": [Paragraph(sentence) for sentence in result.verdict],
+        "Claims": _claims(result.claims),
+        "League table": _league(result.league),
+        "What explains the measurements": explanation_blocks(explanation()),
+        "Calibrated default": _calibration(result),
+        "Tables": [_paper_table(title, rows) for title, rows in result.tables.items()],
+        "Figures": [Paragraph(NO_FIGURE_4), *(Picture(*figure) for figure in FIGURES)],
+        "Correlations and error zones": error_blocks(),
+        "Errata": _errata(result.errata),
+    }
     return Document(
         "Mao et al. (2024), recomputed",
         "Coefficient of restitution of rocking bodies: every table, figure and claim of Buildings 14(7) 2119, "
         "doi:10.3390/buildings14072119, and all models against its 39 measurements",
-        look_at(result),
-        [
-            ReportSection("Verdict", [Paragraph(sentence) for sentence in result.verdict]),
-            ReportSection("Claims", _claims(result.claims)),
-            ReportSection("League table", _league(result)),
-            ReportSection("What explains the measurements", explanation_blocks(explanation())),
-            ReportSection("Calibrated default", _calibration(result)),
-            ReportSection("Tables", [_paper_table(title, rows) for title, rows in result.tables.items()]),
-            ReportSection("Figures", [Paragraph(NO_FIGURE_4), *(Picture(*figure) for figure in FIGURES)]),
-            ReportSection("Correlations and error zones", error_blocks()),
-            ReportSection("Errata", _errata(result)),
-        ],
-        made_with(),
+        [ReportSection(title, blocks) for title, blocks in sections.items()],
+        look_at=look_at(result),
+        provenance=made_with(),
     )
 
 
@@ -89,34 +137,22 @@ def look_at(result: Reproduction) -> list[tuple[str, str]]:
     ]
 
 
-def _claims(found: Sequence[Claim]) -> list[ReportTable]:
+def _claims(judged: Sequence[Claim]) -> list[Block]:
     rows = [
-        [
-            cell(claim.section),
-            cell(claim.quote),
-            cell(claim.verdict, MARK.get(claim.verdict, "plain")),
-            cell(claim.evidence),
-            cell(claim.test),
-        ]
-        for claim in found
-    ]
-    return [
-        ReportTable(
-            "Claims of sections 3 and 4", ["section", "claim", "verdict", "number", "test"], rows, stem="claims"
-        )
-    ]
+        [cell(one.section), cell(one.quote), cell(one.verdict, MARK.get(one.verdict, "plain")), cell(one.evidence),
+         cell(one.test)]
+        for one in judged
+    ]  # fmt: skip
+    header = ["section", "claim", "verdict", "number", "test"]
+    return [ReportTable("Claims of sections 3 and 4", header, rows, stem="claims")]
 
 
-def _errata(result: Reproduction) -> list[Paragraph | ReportTable]:
+def _errata(checked: Sequence[Erratum]) -> list[Block]:
     rows = [
-        [
-            cell(each.name),
-            cell(each.statement),
-            cell(each.evidence),
-            cell("found" if each.found else "not found", "plain" if each.found else "bad"),
-        ]
-        for each in result.errata
-    ]
+        [cell(one.name), cell(one.statement), cell(one.evidence),
+         cell("found" if one.found else "not found", "plain" if one.found else "bad")]
+        for one in checked
+    ]  # fmt: skip
     return [
         Paragraph("Each was found by computation on the printed tables; nothing is corrected in the data."),
         ReportTable("Errata", ["where", "what", "numbers", ""], rows, stem="errata"),
@@ -150,8 +186,10 @@ def _pair(entry: Entry) -> list[Cell]:
     ]
 
 
-def _league(result: Reproduction) -> list[Paragraph | ReportTable | Picture]:
-    rows = result.league
+def _league(rows: Sequence[LeagueRow]) -> list[Block]:
+    whole = ["model", "fitted", "RMSE", "95 % bootstrap", "bias", "loss", "log loss", "Lin", "LOO", "LOG", "BIC"]
+    groups = ["Table 1" if name == "table1" else name for name in GROUPS]
+    split = ["model", *groups, *(name for name, _, _ in BANDS), "RMSE minus KED's, 95 %"]
     return [
         Paragraph(
             "RMSE and bias (model minus experiment) of r; errors of the energy loss 1 - r^2, absolute and logarithmic; "
@@ -160,31 +198,14 @@ def _league(result: Reproduction) -> list[Paragraph | ReportTable | Picture]:
         ),
         ReportTable(
             "All models, all 39 measurements",
-            [
-                "model",
-                "fitted",
-                "RMSE",
-                "95 % bootstrap",
-                "bias",
-                "loss",
-                "log loss",
-                "Lin",
-                "LOO",
-                "LOG",
-                "BIC",
-            ],
+            whole,
             [_league_row(row) for row in rows],
             "Bootstrap: 4000 resamples of specimens within their data sets, fixed seed; fitted values are kept.",
             "league",
         ),
         ReportTable(
             "RMSE of r by data set and slenderness band",
-            [
-                "model",
-                *("Table 1" if name == "table1" else name for name in GROUPS),
-                *(name for name, _, _ in BANDS),
-                "RMSE minus KED's, 95 %",
-            ],
+            split,
             [_split_row(row) for row in rows],
             stem="league_by_band",
         ),
@@ -213,8 +234,8 @@ def _split_row(row: LeagueRow) -> list[Cell]:
     return [cell(row.name), *(cell(f"{value:.4f}") for value in values), cell(f"{low:+.4f} to {high:+.4f}", mark)]
 
 
-def _calibration(result: Reproduction) -> list[Paragraph | ReportTable | Picture]:
-    facts = result.calibration.summary
+def _calibration(result: Reproduction) -> list[Block]:
+    summary = result.calibration.summary
     words = {
         "eta": "interface factor",
         "k": "impulse position over half base",
@@ -223,7 +244,7 @@ def _calibration(result: Reproduction) -> list[Paragraph | ReportTable | Picture
     }
     rows = [
         [cell(name), cell(words[name]), *(cell(f"{fact[key]:.4f}") for key in ("mean", "sd", "low", "high"))]
-        for name, fact in facts.items()
+        for name, fact in summary.items()
     ]
     return [
         Paragraph(
@@ -233,4 +254,101 @@ def _calibration(result: Reproduction) -> list[Paragraph | ReportTable | Picture
         ),
         ReportTable("Posterior", ["parameter", "meaning", "mean", "sd", "2.5 %", "97.5 %"], rows, stem="calibration"),
         Picture("calibration", "Posterior of eta and k, and the predictive band with all measurements."),
+    ]
+
+
+def error_blocks() -> list[Block]:
+    """Return correlations, concordances and zones of both models, data set by data set."""
+    return [
+        Paragraph(
+            "Relative errors are |r_e - r| / r_e, as in the paper; zone I is below 1 %, II from 1 to 5 %, III above. "
+            "The true r_H are used. Pearson's correlation hardly tells the models apart; Lin's concordance does."
+        ),
+        ReportTable(
+            "Correlation, concordance and zones",
+            ["data", "model", "correlation printed", "correlation", "Lin", "zone I", "zone II", "zone III", "largest"],
+            [_measures(name, word, model) for name in _TITLES for word, model in _MODELS],
+            stem="correlations_and_zones",
+        ),
+        ReportTable(
+            "Relative errors and zones of Figures 6 and 7",
+            ["data", "block or interface", "h/b", "Housner", "zone", "KED", "zone"],
+            [row for name in _TITLES for row in _errors(name)],
+            stem="relative_errors",
+        ),
+    ]
+
+
+def _measures(name: str, word: str, model: Housner | Ked) -> list[Cell]:
+    data = datasets()[name]
+    r = model.of_slenderness(data.slenderness)
+    error = relative_error(r, data.coefficient)
+    zones = zone(error)
+    return [
+        cell(_TITLES[name]),
+        cell(word),
+        cell(PRINTED_CORRELATION[name] if word == "KED" else ""),
+        cell(f"{correlation(r, data.coefficient):.4f}"),
+        cell(f"{concordance(r, data.coefficient):.4f}"),
+        *(cell(zones.count(each)) for each in ("I", "II", "III")),
+        cell(f"{100.0 * float(error.max()):.1f} %"),
+    ]
+
+
+def _errors(name: str) -> list[list[Cell]]:
+    data = datasets()[name]
+    errors = [relative_error(model.of_slenderness(data.slenderness), data.coefficient) for _, model in _MODELS]
+    rows = []
+    for i in range(len(data)):
+        line = [cell(_TITLES[name]), cell(data.labels[i]), cell(f"{data.slenderness[i]:g}")]
+        for error in errors:
+            where = zone(error)[i]
+            line += [cell(f"{100.0 * float(error[i]):.2f} %"), cell(where, "bad" if where == "III" else "plain")]
+        rows.append(line)
+    return rows
+
+
+def explanation_blocks(compared: Explanation) -> list[Block]:
+    """Return what explains the measurements."""
+    header = [
+        "explanation", "what it says", "points", "fitted", "RMSE", "BIC", "behind", "left-out score", "over one bed",
+    ]  # fmt: skip
+    return [
+        *(Paragraph(sentence) for sentence in compared.verdict),
+        Paragraph(
+            "The contact bed resolves an impact in time on springs and dashpots along the base. Each explanation is "
+            "fitted to the 39 measurements by maximum likelihood of the printed digits, with a scatter "
+            "s (1 - r)^gamma; BIC counts its parameters, the number of contact points and the two of the scatter. The "
+            "left-out score is the sum over the measurements of the logarithm of the probability of each by a fit that "
+            "has not seen it."
+        ),
+        ReportTable(
+            "Explanations of the measurements by the contact bed",
+            header,
+            [_explanation(each, compared.unresolved) for each in compared.ranked],
+            "Over one bed: with its standard error over the measurements.",
+            "explanations",
+        ),
+        Picture("bed_dependence", "Coefficient of restitution of the contact bed: slenderness, hardness, damping."),
+        Picture(
+            "explanations",
+            "BIC above the best, and left-out score above that of one bed for all, with two standard errors.",
+        ),
+        Picture("explanation_residuals", "What one bed and the best explanation leave over."),
+    ]
+
+
+def _explanation(each: Ranked, best: tuple[str, ...]) -> list[Cell]:
+    fit = each.fit
+    fitted = ", ".join(f"{name} = {value:.4g}" for name, value in fit.values.items())
+    return [
+        cell(each.name, "good" if each.name in best else "plain"),
+        cell(fit.physics.sentence),
+        cell(str(fit.points)),
+        cell(fitted),
+        cell(f"{fit.rmse:.4f}"),
+        cell(f"{fit.bic:.1f}"),
+        cell(f"{each.behind:.1f}"),
+        cell(f"{each.score:.1f}"),
+        cell(f"{each.gain:+.1f} +- {each.gain_error:.1f}"),
     ]

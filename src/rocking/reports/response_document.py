@@ -5,26 +5,30 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rocking.bodies import Body
-from rocking.conventions import FEET, g
+from rocking.conventions import FEET, Foot, g, given_or_assumed
 from rocking.dynamics.response import Motion, Response
+from rocking.evidence._coefficient_table import CALIBRATED, CoefficientRow
 from rocking.motions.intensity import Measure
 from rocking.outcome import Outcome
-from rocking.reports.document import Paragraph, ReportTable, cell
-from rocking.reports.facts.body import side_facts
-from rocking.reports.facts.impact import ImpactAnswer
-from rocking.reports.facts.verdict import ModelAgreement
-from rocking.reports.facts.words import restitution_words
-from rocking.reports.response_blocks import Block, Image, Listing, PagePart, Pages, Pair
-from rocking.reports.response_tables import (
-    coefficients_table,
-    impacts_table,
-    measures_table,
-    outcomes_table,
-)
+from rocking.reports.body_facts import ImpactAnswer, side_facts
+from rocking.reports.document import (
+    Block,
+    Cell,
+    Document,
+    Listing,
+    Pair,
+    Paragraph,
+    Picture,
+    ReportSection,
+    ReportTable,
+    cell,
+)  # fmt: skip
+from rocking.reports.response_facts import OUTCOME_WORDS, ModelAgreement, outcome_facts, restitution_words
 
 _MARKS = {Outcome.OVERTURNED: "bad", Outcome.ROCKED: "good", Outcome.NO_UPLIFT: "good"}
 _KINDS = {"Block": "A rocking block", "MassPoints": "Rocking point masses"}
 _LONGEST_LISTING = 12_000
+_MOST_IMPACTS = 24
 
 
 @dataclass(frozen=True)
@@ -55,43 +59,41 @@ PICTURES = ("body", "coefficients", "motion", "response")
 """Stems of the pictures of a report; ``motion`` is left out for free rocking."""
 
 
-def response_pages(asked: ReportSubject, found: ReportResults) -> Pages:
+def response_document(subject: ReportSubject, results: ReportResults) -> Document:
     """Return the report."""
-    body = found.impact.body
-    title = asked.name or _KINDS.get(type(body).__name__, "A rocking body")
-    parts = [
-        PagePart(
-            "The body", [Pair(Image("body", "The body on its feet O and O', with its centre of mass C"), _body(found))]
-        ),
-        PagePart("What an impact costs", _impact(found)),
-        PagePart("The ground", _ground(found)),
-        PagePart("The response", _response(found)),
-        PagePart("To do it again", _again(asked, next(iter(found.responses.values())))),
+    title = subject.name or _KINDS.get(type(results.impact.body).__name__, "A rocking body")
+    body = Picture("body", "The body on its feet O and O', with its centre of mass C")
+    sections = [
+        ReportSection("The body", [Pair(body, _body(results))]),
+        ReportSection("What an impact costs", _impact(results)),
+        ReportSection("The ground", _ground(results)),
+        ReportSection("The response", _response(results)),
+        ReportSection("To do it again", _again(subject, next(iter(results.responses.values())))),
     ]
-    about = f"{asked.software}, inputs {asked.fingerprint[:16]}"
-    return Pages(title, _subtitle(asked, found), _verdict(found), parts, about)
+    about = f"{subject.software}, inputs {subject.fingerprint[:16]}"
+    return Document(title, _subtitle(subject, results), sections, verdict=_verdict(results), footer=about)
 
 
-def _subtitle(asked: ReportSubject, found: ReportResults) -> str:
-    first = next(iter(found.responses.values()))
-    ground = "let go, the ground at rest" if found.motion is None else f"under {found.motion.name}"
+def _subtitle(subject: ReportSubject, results: ReportResults) -> str:
+    first = next(iter(results.responses.values()))
+    ground = "let go, the ground at rest" if results.motion is None else f"under {results.motion.name}"
     if first.scale != 1.0:
         ground = f"{ground}, scaled by {first.scale:g}"
-    return ground[:1].upper() + ground[1:] + (f". {asked.date}" if asked.date else "")
+    return ground[:1].upper() + ground[1:] + (f". {subject.date}" if subject.date else "")
 
 
-def _verdict(found: ReportResults) -> list[Paragraph]:
-    label, first = next(iter(found.responses.items()))
+def _verdict(results: ReportResults) -> list[Paragraph]:
+    label, first = next(iter(results.responses.items()))
     words = first.summary[:1].upper() + first.summary[1:] + "."
-    made = [Paragraph(words, f"With {restitution_words(label)}:", _MARKS.get(first.outcome, "plain"))]
-    verdict = ModelAgreement.of({restitution_words(label): one for label, one in found.responses.items()})
-    if len(found.responses) > 1:
-        made.append(Paragraph(verdict.sentence, "", "fair" if verdict.decides else "plain"))
-    return made
+    own = Paragraph(words, f"With {restitution_words(label)}:", _MARKS.get(first.outcome, "plain"))
+    verdict = ModelAgreement.of({restitution_words(label): one for label, one in results.responses.items()})
+    if len(results.responses) == 1:
+        return [own]
+    return [own, Paragraph(verdict.sentence, "", "fair" if verdict.decides else "plain")]
 
 
-def _body(found: ReportResults) -> ReportTable:
-    body, gravity = found.impact.body, found.impact.gravity
+def _body(results: ReportResults) -> ReportTable:
+    body, gravity = results.impact.body, results.impact.gravity
     x, y = body.centre
     rows = [
         ("mass", f"{body.mass:.5g} kg"),
@@ -121,46 +123,131 @@ def _sides(body: Body, gravity: float) -> list[tuple[str, str]]:
     return rows
 
 
-def _impact(found: ReportResults) -> list[Block]:
-    tables = [coefficients_table(found.impact, foot) for foot in found.impact.tables]
-    rows = [row for table in found.impact.tables.values() for row in table]
-    said = dict.fromkeys(f"{restitution_words(row.name)}: {warning}" for row in rows for warning in row.warnings)
-    picture = Image("coefficients", "Every model for this body, and where it lies among the published measurements")
-    return [picture, *tables, *(Paragraph(words, "", "fair") for words in said)]
+def _impact(results: ReportResults) -> list[Block]:
+    tables = [_coefficients(results.impact, foot) for foot in results.impact.tables]
+    rows = [row for table in results.impact.tables.values() for row in table]
+    notes = dict.fromkeys(f"{restitution_words(row.name)}: {warning}" for row in rows for warning in row.warnings)
+    picture = Picture("coefficients", "Every model for this body, and where it lies among the published measurements")
+    return [picture, *tables, *(Paragraph(words, "", "fair") for words in notes)]
 
 
-def _ground(found: ReportResults) -> list[Block]:
-    if found.motion is None:
+def _ground(results: ReportResults) -> list[Block]:
+    if results.motion is None:
         return [Paragraph("Free rocking: the body is let go, and the ground stays at rest.")]
     caption = "Acceleration, velocity and displacement of the ground, and the response spectrum for 5 % damping"
-    return [Image("motion", caption, 74), measures_table(found.measures)]
+    return [Picture("motion", caption, 74), _measures(results.measures)]
 
 
-def _response(found: ReportResults) -> list[Block]:
-    several = len(found.responses) > 1
+def _response(results: ReportResults) -> list[Block]:
+    several = len(results.responses) > 1
     caption = "The models over one another" if several else "Rotation, velocity, energy and the friction that is taken"
-    first_label, first = next(iter(found.responses.items()))
-    blocks: list[Block] = [Image("response", caption, 80), outcomes_table(found.responses, found.friction)]
-    blocks += [Paragraph(why, f"{restitution_words(label)}:", "fair") for label, why in found.refused.items()]
-    for label, response in found.responses.items():
+    first_label, first = next(iter(results.responses.items()))
+    blocks: list[Block] = [Picture("response", caption, 80), _outcomes(results.responses, results.friction)]
+    blocks += [Paragraph(why, f"{restitution_words(label)}:", "fair") for label, why in results.refused.items()]
+    for label, response in results.responses.items():
         blocks += [
-            Paragraph(words, f"{restitution_words(label)}:", "fair") for words in response.doubts(found.friction)
+            Paragraph(words, f"{restitution_words(label)}:", "fair") for words in response.doubts(results.friction)
         ]
-    return [*blocks, impacts_table(first_label, first)] if first.impacts.size else blocks
+    return [*blocks, _impacts(first_label, first)] if first.impacts.size else blocks
 
 
-def _again(asked: ReportSubject, first: Response) -> list[Block]:
-    toml = asked.toml
+def _again(subject: ReportSubject, first: Response) -> list[Block]:
+    toml = subject.toml
     if len(toml) > _LONGEST_LISTING:
         toml = toml[:_LONGEST_LISTING] + "\n# ... cut off here: the file itself has all of it"
     return [
         Listing(toml.rstrip("\n"), "This file, saved as response.toml beside the record if there is one:"),
-        Listing("\n".join(asked.commands), "gives the same numbers on the command line:"),
-        Paragraph(f"{asked.software}; SHA-256 of the inputs: {asked.fingerprint}.", "Made with"),
+        Listing("\n".join(subject.commands), "gives the same numbers on the command line:"),
+        Paragraph(f"{subject.software}; SHA-256 of the inputs: {subject.fingerprint}.", "Made with"),
         Paragraph(_how(first), "Computed with"),
     ]
 
 
 def _how(first: Response) -> str:
-    told = "; ".join(f"{name.replace('_', ' ')} {value}" for name, value in first.settings.stated.items())
-    return f"engine {first.engine}; {told}; energy adds up to {first.energy.closure:.1e} of its largest."
+    settings = "; ".join(f"{name.replace('_', ' ')} {value}" for name, value in first.settings.stated.items())
+    return f"engine {first.engine}; {settings}; energy adds up to {first.energy.closure:.1e} of its largest."
+
+
+def _coefficients(answer: ImpactAnswer, foot: Foot) -> ReportTable:
+    header = ["model", "r [-]", "95 % interval", "impulse k [-]", "energy lost", "friction needed [-]", "notes"]
+    rows = [_coefficient(row) for row in answer.tables[foot]]
+    note = (
+        "r: velocity after the impact over velocity before. The interval is that of one measured body, from each "
+        "model's misfit to the published measurements. k: place of the impulse over half the base."
+    )
+    where = f", landing on the {foot} foot" if len(answer.tables) > 1 else ""
+    return ReportTable(f"Coefficient of restitution{where}", header, rows, note)
+
+
+def _measures(measures: Mapping[str, Measure]) -> ReportTable:
+    rows = [[cell(one.name), cell(f"{one.value:.5g}"), cell(one.unit), cell(_in_g(one))] for one in measures.values()]
+    return ReportTable("Intensity of the motion", ["measure", "value", "unit", "in g"], rows)
+
+
+def _outcomes(responses: Mapping[str, Response], friction: float) -> ReportTable:
+    header = [
+        "restitution", "r left", "r right", "outcome", "peak [deg]", "peak / \N{GREEK SMALL LETTER ALPHA} [-]",
+        "impacts", "friction taken [-]", "friction at impacts [-]",
+    ]  # fmt: skip
+    rows = [_outcome(label, response, friction) for label, response in responses.items()]
+    note = (
+        "A peak beyond 1 means that the centre of mass passed the foot and came back. Friction taken: largest ratio of "
+        "horizontal to vertical force while the body stands on one foot; "
+        f"{friction:g} was {given_or_assumed(friction)}."
+    )
+    return ReportTable("How it ends", header, rows, note)
+
+
+def _impacts(label: str, response: Response) -> ReportTable:
+    header = ["impact", "time [s]", "velocity before [rad/s]", "after [rad/s]", "r [-]", "onto"]
+    shown = response.impacts[:_MOST_IMPACTS].tolist()
+    rows = [
+        [cell(k), cell(f"{time:.6f}"), cell(_signed(before)), cell(_signed(after)), cell(f"{r:.6f}"), cell(onto)]
+        for k, (time, before, after, r, onto) in enumerate(shown, start=1)
+    ]
+    rest = response.impacts.size - len(shown)
+    note = f"{rest} more, smaller and smaller; the table of impacts has them all." if rest > 0 else ""
+    return ReportTable(f"Impacts with {restitution_words(label)}", header, rows, note)
+
+
+def _coefficient(row: CoefficientRow) -> list[Cell]:
+    fact = row.implication
+    return [
+        cell(restitution_words(row.name)),
+        cell(f"{row.coefficient:.5f}"),
+        cell(f"{row.low:.3f} to {row.high:.3f}"),
+        cell(f"{fact.impulse_ratio:.3f}"),
+        cell(f"{100.0 * fact.energy_loss:.2f} %"),
+        cell(f"{fact.friction_demand:.3f}"),
+        cell("see below" if row.warnings else ("fitted" if row.name == CALIBRATED else ""), "fair"),
+    ]
+
+
+def _outcome(label: str, response: Response, friction: float) -> list[Cell]:
+    facts, contact = outcome_facts(response), response.contact
+    fell = response.outcome is Outcome.OVERTURNED
+    word = OUTCOME_WORDS[response.outcome] + (f" to the {facts['overturned_to']}" if fell else "")
+    return [
+        cell(restitution_words(label)),
+        cell(f"{response.parameters.left.coefficient:.4f}"),
+        cell(f"{response.parameters.right.coefficient:.4f}"),
+        cell(word, _MARKS.get(response.outcome, "plain")),
+        cell("-" if fell else f"{math.degrees(response.peak_rotation):.4g}"),
+        cell("-" if fell else f"{facts['peak_rotation_over_alpha']:.4g}"),
+        cell(response.impacts.size),
+        _friction(contact.friction_of_motion, friction),
+        _friction(contact.friction_of_impacts, friction),
+    ]
+
+
+def _friction(value: float, given: float) -> Cell:
+    words = f"{value:.3f}" if math.isfinite(value) else "no surface has it"
+    return cell(words, "bad" if value > given else "plain")
+
+
+def _signed(value: float) -> str:
+    return f"{value:+.6f}".replace("-", "\N{MINUS SIGN}")
+
+
+def _in_g(measure: Measure) -> str:
+    return f"{measure.value / g:.4g}" if measure.unit == "m/s2" else ""

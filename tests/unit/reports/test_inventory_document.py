@@ -7,10 +7,9 @@ import sys
 import pytest
 
 from rocking.errors import MissingExtraError, RockingError
-from rocking.reports.html import render_html
 from rocking.reports.inventory_document import inventory_document
-from rocking.reports.inventory_folder import write_inventory
-from rocking.reports.inventory_spreadsheet import write_spreadsheet
+from rocking.reports.inventory_folder import write_inventory, write_spreadsheet
+from rocking.reports.render import render_html
 from rocking.studies.inventory.assessment import assess
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.lights import Thresholds

@@ -1,15 +1,19 @@
-"""Reports: text is text, nothing is fetched, both renderers take any content."""
+"""Reports: text is text, nothing is fetched, both renderers take any content; the section on explanations."""
 
 import sys
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from rocking.plots import paper_figure
-from rocking.reports import folder
+from rocking import Block
+from rocking.evidence.explanation import explanation
+from rocking.plots import body_picture, paper_figure
+from rocking.reports import paper_folder
 from rocking.reports.document import Document, Paragraph, Picture, ReportSection, ReportTable, cell
-from rocking.reports.html import render_html
-from rocking.reports.pdf import render_pdf
+from rocking.reports.paper_document import explanation_blocks
+from rocking.reports.render import render_html, render_pdf
 
 SVG = (
     '<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg" width="10" height="10">'
@@ -24,16 +28,23 @@ def document():
         Paragraph(WORDS, WORDS, "bad"),
         ReportTable(WORDS, [WORDS, "b"], [[cell(WORDS, "good"), cell(1)]], WORDS, "t"),
         Picture("one", WORDS),
-        Picture("two", WORDS, wide=False),
+        Picture("two", WORDS, width=62),
     ]
-    return Document(WORDS, WORDS, [(WORDS, WORDS)], [ReportSection(WORDS, blocks)], {"made with": WORDS})
+    sections = [ReportSection(WORDS, blocks)]
+    return Document(WORDS, WORDS, sections, look_at=[(WORDS, WORDS)], provenance={"made with": WORDS})
 
 
-def test_html_escapes_and_keeps_ids_apart(tmp_path):
-    """Words with markup stay words; ids of two pictures do not meet; nothing is linked from elsewhere."""
+@pytest.fixture
+def folder(tmp_path):
+    """A folder with the pictures of that report."""
     for stem in ("one", "two"):
         (tmp_path / f"{stem}.svg").write_text(SVG, encoding="utf-8")
-    html = render_html(document(), tmp_path)
+    return tmp_path
+
+
+def test_html_escapes_and_keeps_ids_apart(folder):
+    """Words with markup stay words; ids of two pictures do not meet; nothing is linked from elsewhere."""
+    html = render_html(document(), folder)
     assert "<script>" not in html
     assert "&lt;script&gt;" in html
     assert 'id="one-a"' in html
@@ -42,13 +53,11 @@ def test_html_escapes_and_keeps_ids_apart(tmp_path):
     assert "src=" not in html
 
 
-def test_pdf_takes_any_words(tmp_path):
+def test_pdf_takes_any_words(folder):
     """Typst markup in the content is not read as markup: the report still compiles."""
-    for stem in ("one", "two"):
-        (tmp_path / f"{stem}.svg").write_text(SVG, encoding="utf-8")
-    render_pdf(document(), tmp_path, tmp_path / "report.pdf")
-    assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
-    assert sorted(path.suffix for path in tmp_path.iterdir()) == [".pdf", ".svg", ".svg"]
+    render_pdf(document(), folder, folder / "report.pdf")
+    assert (folder / "report.pdf").read_bytes().startswith(b"%PDF")
+    assert sorted(path.suffix for path in folder.iterdir()) == [".pdf", ".svg", ".svg"]
 
 
 def test_tables_of_a_document():
@@ -64,21 +73,18 @@ def test_tables_of_a_document():
         ("matplotlib", ["results.json"], "no figures, and no report.html and report.pdf"),
     ],
 )
-def test_a_missing_package_costs_its_part_alone(missing, kept, said, tmp_path, monkeypatch):
+def test_a_missing_package_costs_its_part_alone(missing, kept, said, folder, monkeypatch):
     """Without an optional package the folder of `rocking paper` has everything else, and says what it has not."""
-    for stem in ("one", "two"):
-        (tmp_path / f"{stem}.svg").write_text(SVG, encoding="utf-8")
-    monkeypatch.setattr(folder, "paper_document", lambda _: document())
-    monkeypatch.setattr(folder, "as_plain", lambda *_: {})
-    monkeypatch.setattr(folder, "render_html", lambda content, _: render_html(content, tmp_path))
-    monkeypatch.setattr(folder, "render_pdf", lambda content, _, path: render_pdf(content, tmp_path, path))
+    monkeypatch.setattr(paper_folder, "paper_document", lambda _: document())
+    monkeypatch.setattr(paper_folder, "as_plain", lambda *_: {})
+    monkeypatch.setattr(paper_folder, "render_html", lambda content, _: render_html(content, folder))
+    monkeypatch.setattr(paper_folder, "render_pdf", lambda content, _, path: render_pdf(content, folder, path))
     figures = SimpleNamespace(paper_figures=dict)
     monkeypatch.setitem(sys.modules, "rocking.plots.paper_figures", figures)
     monkeypatch.setitem(sys.modules, missing, None)
     if missing == "matplotlib":
-        figures.paper_figures = lambda: {"three": lambda: paper_figure("figure_3")}
-    result = SimpleNamespace(league=None, calibration=None)
-    written, left_out = folder.write_folder(result, tmp_path / "out", lambda _: None)
+        figures.paper_figures = lambda: {"body": lambda: body_picture(Block(width=1.0, height=2.0))}
+    written, left_out = paper_folder.write_folder(None, folder / "out", lambda _: None)
     assert [path.name for path in written] == kept
     assert all(path.is_file() for path in written)
     assert len(left_out) == 1
@@ -94,3 +100,26 @@ def test_claims_need_no_labelled_arrays(monkeypatch):
         without.setitem(sys.modules, "xarray", None)
         judged = [judge() for judge in JUDGES]
     assert any("adapts better to large components" in claim.quote for claim in judged)
+
+
+def test_numbers_of_the_table():
+    """Every row has the name, BIC and error of its explanation, best first; the verdict comes before."""
+    found = explanation()
+    blocks = explanation_blocks(found)
+    (table,) = [block for block in blocks if isinstance(block, ReportTable)]
+    assert [row[0].text for row in table.rows] == [each.name for each in found.ranked]
+    assert [float(row[4].text) for row in table.rows] == pytest.approx([e.fit.rmse for e in found.ranked], abs=5e-5)
+    assert [float(row[5].text) for row in table.rows] == pytest.approx([e.fit.bic for e in found.ranked], abs=0.05)
+    words = [block.text for block in blocks if isinstance(block, Paragraph)]
+    assert tuple(words[: len(found.verdict)]) == found.verdict
+
+
+def test_pictures_of_the_section_are_drawn():
+    """Each picture of the section is among the figures of the report, and is not blank: more than 1 % is inked."""
+    pictures = [block.stem for block in explanation_blocks(explanation()) if isinstance(block, Picture)]
+    assert len(pictures) == 3
+    for stem in pictures:
+        canvas = FigureCanvasAgg(paper_figure(stem))
+        canvas.draw()
+        inked = (np.asarray(canvas.buffer_rgba())[..., :3].min(axis=2) < 200).mean()
+        assert 0.01 < inked < 0.9

@@ -7,7 +7,7 @@ import rocking as rk
 from rocking.conventions import DEFAULT_FRICTION, percent
 from rocking.dynamics.loss_of_contact import contact_words
 from rocking.dynamics.parameters import cut_words
-from rocking.reports.facts.response import response_facts
+from rocking.reports.response_facts import response_facts
 from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
 from rocking.studies.fragility.cloud_analysis import cloud
 from rocking.studies.inventory.assessment import assess

@@ -21,7 +21,7 @@ from rocking.bodies.formats.source import blamed
 from rocking.conventions import FEET, g
 from rocking.errors import BodyFileError
 from rocking.evidence._coefficient_table import outside_evidence
-from rocking.reports.facts.body import body_facts, outline_facts
+from rocking.reports.body_facts import body_facts, outline_facts
 
 router = APIRouter(prefix="/api", tags=["body"])
 _ABOUT = "The keys of `body` of `rocking cor --json`, the polygons that draw the body, and warnings in plain words."

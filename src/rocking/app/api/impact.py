@@ -11,10 +11,14 @@ from rocking.app.schemas.inputs import ImpactAsked
 from rocking.app.work import Remembered, sized
 from rocking.bodies import Block
 from rocking.conventions import g
-from rocking.reports.facts.body import outline_facts
-from rocking.reports.facts.evidence import curves_facts, measured_facts
-from rocking.reports.facts.impact import ImpactAnswer, impact_facts
-from rocking.reports.facts.stages import stages_facts
+from rocking.reports.body_facts import (
+    ImpactAnswer,
+    curves_facts,
+    impact_facts,
+    measured_facts,
+    outline_facts,
+    stages_facts,
+)
 
 router = APIRouter(prefix="/api", tags=["impact"])
 

@@ -18,7 +18,7 @@ from rocking.motions.intensity import Measure
 from rocking.motions.motion import GroundMotion
 from rocking.motions.spectrum import SHORTEST_PERIOD, response_spectrum
 from rocking.plots.traces import Traces, fine_samples, traces
-from rocking.reports.facts.motion import measures_of, motion_facts
+from rocking.reports.motion_facts import measures_of, motion_facts
 
 router = APIRouter(prefix="/api", tags=["motion"])
 

@@ -25,9 +25,8 @@ from rocking.motions.integrals import ground_displacement
 from rocking.motions.pulse import Pulse
 from rocking.outcome import Outcome
 from rocking.plots.animation_scene import DrawnShape, fall_of
-from rocking.reports.facts.body import body_facts, outline_facts
-from rocking.reports.facts.response import finite, moved_facts, response_facts
-from rocking.reports.facts.verdict import ModelAgreement
+from rocking.reports.body_facts import body_facts, outline_facts
+from rocking.reports.response_facts import ModelAgreement, finite, moved_facts, response_facts
 
 router = APIRouter(prefix="/api", tags=["response"])
 _ABOUT = """\
@@ -113,7 +112,7 @@ def answer_facts(
 ) -> dict[str, Any]:
     """Return one response as the API tells it.
 
-    window: the part of the time that is drawn [s]. Returns what `rocking.reports.facts.response.response_facts` says,
+    window: the part of the time that is drawn [s]. Returns what `rocking.reports.response_facts.response_facts` says,
     with ``label``, ``series`` and ``fall``.
     """
     facts = response_facts(response, question.assumed_friction)

@@ -15,7 +15,7 @@ from rocking.conventions import Foot, g
 from rocking.dynamics.response import Motion, Response
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
-from rocking.reports.facts.impact import ImpactAnswer
+from rocking.reports.body_facts import ImpactAnswer
 
 
 @dataclass(frozen=True)

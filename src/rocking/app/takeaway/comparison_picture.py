@@ -11,8 +11,7 @@ from rocking.dynamics.response import Response
 from rocking.outcome import Outcome
 from rocking.plots.response import ground_curve, motion_curves, over_slenderness, shown_until
 from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, model_styles, new_figure
-from rocking.reports.facts.verdict import ModelAgreement
-from rocking.reports.facts.words import restitution_words
+from rocking.reports.response_facts import ModelAgreement, restitution_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

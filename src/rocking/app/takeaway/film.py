@@ -11,7 +11,7 @@ import numpy as np
 from rocking.app.errors import Busy, Refused
 from rocking.dynamics.response import Response
 from rocking.errors import RockingError
-from rocking.reports.facts.words import restitution_words
+from rocking.reports.response_facts import restitution_words
 
 MEDIA_TYPES = {"html": "text/html; charset=utf-8", "gif": "image/gif"}
 """What a browser is told about an animation; it is saved, never shown as a page of this server."""

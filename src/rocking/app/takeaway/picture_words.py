@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from rocking.reports.facts.words import restitution_words
+from rocking.reports.response_facts import restitution_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,10 +9,10 @@ from rocking.app.takeaway.pictures import figure_of
 from rocking.app.takeaway.plain_text import plain_line
 from rocking.motions.intensity import Measure
 from rocking.plots.traces import fine_samples
-from rocking.reports.facts.motion import measures_of
-from rocking.reports.response_document import PICTURES, ReportResults, response_pages
+from rocking.reports.motion_facts import measures_of
+from rocking.reports.render import response_pdf
+from rocking.reports.response_document import PICTURES, ReportResults, response_document
 from rocking.reports.response_document import ReportSubject as About
-from rocking.reports.response_pdf import response_pdf
 
 
 def report_of(asked: Evaluation, date: str) -> bytes:
@@ -33,7 +33,7 @@ def report_of(asked: Evaluation, date: str) -> bytes:
     )  # fmt: skip
     stems = [stem for stem in PICTURES if moved or stem != "motion"]
     pictures = {stem: drawn(partial(figure_of, stem, asked), "svg") for stem in stems}
-    return response_pdf(response_pages(about, found), pictures)
+    return response_pdf(response_document(about, found), pictures)
 
 
 def _measures(asked: Evaluation) -> dict[str, Measure]:

@@ -5,8 +5,7 @@ from collections.abc import Sequence
 from rocking.app.takeaway.table_files import column, table
 from rocking.bodies import Body
 from rocking.evidence._coefficient_table import CoefficientRow
-from rocking.reports.facts.body import body_facts
-from rocking.reports.facts.impact import ImpactAnswer
+from rocking.reports.body_facts import ImpactAnswer, body_facts
 from rocking.tables import Table
 
 Fact = tuple[str, str, float, str]

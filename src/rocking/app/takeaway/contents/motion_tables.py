@@ -8,7 +8,7 @@ from rocking.motions.integrals import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.motions.spectrum import SHORTEST_PERIOD, response_spectrum
 from rocking.plots.traces import fine_samples, traces
-from rocking.reports.facts.motion import measures_of
+from rocking.reports.motion_facts import measures_of
 from rocking.tables import Table
 
 DAMPING = 0.05

@@ -6,7 +6,7 @@ from rocking.app.takeaway.table_files import column, table
 from rocking.dynamics.plane.export import columns
 from rocking.dynamics.response import Response
 from rocking.quantities import QUANTITIES
-from rocking.reports.facts.response import outcome_facts
+from rocking.reports.response_facts import outcome_facts
 from rocking.tables import Table
 
 

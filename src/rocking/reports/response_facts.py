@@ -20,6 +20,8 @@ What the keys mean:
 """
 
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from rocking import plausibility
@@ -28,13 +30,19 @@ from rocking.dynamics.contact import ContactResponse
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.response import Motion, Response
 from rocking.motions.motion import GroundMotion
+from rocking.outcome import Outcome
+from rocking.restitution import models
+
+OUTCOME_WORDS = {
+    Outcome.OVERTURNED: "overturns",
+    Outcome.ROCKED: "stays standing",
+    Outcome.NO_UPLIFT: "is never lifted",
+}
+_EQUALS = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
 
 
 def response_facts(response: Response, friction: float, *, error_estimate: bool = True) -> dict[str, Any]:
-    """Return everything that is said of a response.
-
-    friction: coefficient of friction between body and ground [-].
-    """
+    """Return everything that is said of a response on a ground of a coefficient of friction [-]."""
     facts = {
         "body": rocker_facts(response),
         "motion": moved_facts(response.motion, response.scale),
@@ -54,10 +62,7 @@ def response_facts(response: Response, friction: float, *, error_estimate: bool 
 
 
 def credibility_facts(response: Response, friction: float) -> dict[str, Any]:
-    """Return what rocking without slip and flight takes.
-
-    friction: coefficient of friction between body and ground [-].
-    """
+    """Return what rocking without slip and flight takes, beside the coefficient of friction that there is [-]."""
     contact = response.contact
     return {
         "friction": {
@@ -93,10 +98,7 @@ def rocker_facts(response: Response) -> dict[str, Any]:
 
 
 def moved_facts(motion: Motion | None, scale: float) -> dict[str, Any] | None:
-    """Return what moved the ground.
-
-    scale: factor on it [-].
-    """
+    """Return what moved the ground, with the factor on it [-]."""
     if motion is None:
         return None
     return {
@@ -110,10 +112,7 @@ def moved_facts(motion: Motion | None, scale: float) -> dict[str, Any] | None:
 
 
 def outcome_facts(response: Response) -> dict[str, Any]:
-    """Return how a response ended.
-
-    Returns Outcome, its sentence, overturning, peak, and whether it still rocks.
-    """
+    """Return how a response ended: outcome, its sentence, overturning, peak, and whether it still rocks."""
     run = response.trajectory
     return {
         "outcome": response.outcome.name.lower(),
@@ -129,10 +128,7 @@ def outcome_facts(response: Response) -> dict[str, Any]:
 
 
 def still_rocking_facts(response: Response | ContactResponse) -> dict[str, float | str] | None:
-    """Return the last state of a body that does not yet rest.
-
-    Returns Time, rotation, angular velocity and a sentence; None if it rests or has overturned.
-    """
+    """Return the last state of a body that does not yet rest; None if it rests or has overturned."""
     if not response.still_rocking:
         return None
     return {
@@ -158,10 +154,7 @@ def other_facts(found: Response | str) -> dict[str, Any]:
 
 
 def coefficients_facts(parameters: RockingParameters) -> dict[str, float]:
-    """Return the coefficients of restitution of a body.
-
-    Returns by the foot on which it lands [-].
-    """
+    """Return the coefficients of restitution of a body by the foot on which it lands [-]."""
     return {"left": parameters.left.coefficient, "right": parameters.right.coefficient}
 
 
@@ -172,3 +165,54 @@ def finite(value: float) -> float | None:
     (1.5, None)
     """
     return float(value) if math.isfinite(value) else None
+
+
+@dataclass(frozen=True, slots=True)
+class ModelAgreement:
+    """What the models say together."""
+
+    decides: bool  # whether they end differently
+    sentence: str  # the same in words
+
+    @classmethod
+    def of(cls, responses: Mapping[str, Response]) -> "ModelAgreement":
+        """Compare responses."""
+        groups: dict[str, list[str]] = {}
+        for name, one in responses.items():
+            groups.setdefault(OUTCOME_WORDS[one.outcome], []).append(name)
+        rocking = ", ".join(name for name, one in responses.items() if one.still_rocking)
+        pulled = ", ".join(name for name, one in responses.items() if one.lost_contact)
+        doubts = f" Still rocking when the computation ends: with {rocking}." if rocking else ""
+        doubts += f" The ground would have to pull, and the verdict assumes contact: with {pulled}." if pulled else ""
+        if len(groups) > 1:
+            parts = ", ".join(f"{word} with {', '.join(names)}" for word, names in groups.items())
+            return cls(True, f"The model decides: the body {parts}.{doubts}")
+        (word,) = groups
+        return cls(False, f"With every one of these models the body {word}.{doubts}")
+
+
+def restitution_words(label: str) -> str:
+    """Return what a restitution is called: a model by its short name, a coefficient with its symbol.
+
+    >>> restitution_words("ked"), restitution_words("shifted-impulse:k=0.6").replace(chr(160), " ")
+    ('KED', 'shifted impulse, k = 0.6')
+    >>> restitution_words("0.9"), restitution_words("left 0.9, right 0.8")
+    ('r = 0.9', 'r: left 0.9, right 0.8')
+    """
+    factor, _, model = label.rpartition("*")
+    name, _, parameters = model.partition(":")
+    if name in (kinds := models()) and kinds[name].short_name:
+        named = [kinds[name].short_name, *(one.strip().replace("=", _EQUALS) for one in parameters.split(",") if one)]
+        times = f"{factor}\N{NO-BREAK SPACE}\N{MULTIPLICATION SIGN}\N{NO-BREAK SPACE}" if factor else ""
+        return times + ", ".join(named)
+    if label.startswith("left "):
+        return f"r: {label}"
+    return f"r = {label}" if _is_number(label) else label
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

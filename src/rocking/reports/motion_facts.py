@@ -1,4 +1,4 @@
-"""A motion in plain values: what it is, its intensity measures and its response spectrum."""
+"""A motion in plain values, SI units: what it is, its intensity measures and its response spectrum."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -22,10 +22,7 @@ class MotionAnswer:
 
     @classmethod
     def of(cls, motion: GroundMotion | Pulse, periods: Sequence[float], damping: float) -> "MotionAnswer":
-        """Measure a motion.
-
-        periods: periods of the spectrum [s]; damping: damping ratio of the spectrum, from 0 to below 1 [-].
-        """
+        """Measure a motion, with a spectrum at some periods [s] for a damping ratio from 0 to below 1 [-]."""
         samples = fine_samples(motion)
         spectrum = response_spectrum(samples, list(periods), damping)
         return cls(motion, samples, measures_of(motion, samples), spectrum)
@@ -45,18 +42,15 @@ def measures_of(
 
 
 def motion_facts(motion: GroundMotion | Pulse, samples: GroundMotion, measures: dict[str, Measure]) -> dict[str, Any]:
-    """Return what a motion is and how strong, as plain values.
-
-    Returns SI units, named in the keys where a quantity has one.
-    """
+    """Return what a motion is and how strong."""
     record = isinstance(motion, GroundMotion)
-    told = motion.metadata if isinstance(motion, GroundMotion) else {}
+    metadata = motion.metadata if isinstance(motion, GroundMotion) else {}
     return {
         "kind": "record" if record else "pulse",
         "name": motion.name,
-        **{key: told.get(key) for key in ("format", "event", "station", "component")},
-        "vertical_component": told.get("vertical component"),
-        "file_unit": told.get("unit"),
+        **{key: metadata.get(key) for key in ("format", "event", "station", "component")},
+        "vertical_component": metadata.get("vertical component"),
+        "file_unit": metadata.get("unit"),
         "samples": len(samples) if record else None,
         "time_step_s": samples.time_step if record else None,
         "duration_s": motion.duration,
@@ -68,10 +62,7 @@ def motion_facts(motion: GroundMotion | Pulse, samples: GroundMotion, measures: 
 
 
 def spectrum_facts(spectrum: ResponseSpectrum) -> dict[str, Any]:
-    """Return a response spectrum as plain values.
-
-    Returns SI units, named in the keys where a quantity has one.
-    """
+    """Return a response spectrum."""
     return {
         "damping_ratio": spectrum.damping,
         "period_s": spectrum.periods.tolist(),

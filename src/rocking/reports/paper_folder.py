@@ -3,16 +3,15 @@
 import csv
 import json
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from rocking.errors import MissingExtraError, RockingError
-from rocking.reports.document import Document, ReportTable
-from rocking.reports.html import render_html
-from rocking.reports.paper_document import paper_document
-from rocking.reports.pdf import render_pdf
-from rocking.reports.provenance import made_with
-from rocking.reports.reproduction import Reproduction
+from rocking.evidence.tables import TableRow
+from rocking.reports.document import Document, ReportTable, made_with
+from rocking.reports.paper_document import Reproduction, paper_document
+from rocking.reports.render import render_html, render_pdf
 
 Step = Callable[[str], None]
 
@@ -20,8 +19,7 @@ Step = Callable[[str], None]
 def write_folder(result: Reproduction, folder: Path, step: Step) -> tuple[list[Path], list[str]]:
     """Write report, tables, figures and numbers.
 
-    Returns written: the files to look at: report.html, report.pdf, results.json; left_out: what was not written,
-    because an optional package is missing, and how to install it.
+    Returns the files to look at, and what was not written since an optional package is missing, with how to install it.
     """
     pictures, tables = folder / "figures", folder / "tables"
     try:
@@ -32,7 +30,7 @@ def write_folder(result: Reproduction, folder: Path, step: Step) -> tuple[list[P
     written: list[Path] = []
     left_out: list[str] = []
     try:
-        _draw(result, pictures, step)
+        _draw(pictures, step)
     except MissingExtraError as error:
         left_out.append(f"no figures, and no report.html and report.pdf, which show them: {error}")
     document = paper_document(result)
@@ -67,29 +65,8 @@ def as_plain(result: Reproduction, document: Document | None = None) -> dict[str
             {"section": c.section, "claim": c.quote, "verdict": c.verdict, "evidence": c.evidence, "test": c.test}
             for c in result.claims
         ],
-        "errata": [
-            {"name": e.name, "statement": e.statement, "evidence": e.evidence, "found": e.found} for e in result.errata
-        ],
-        "tables": {
-            title: [
-                {
-                    "label": row.label,
-                    "slenderness_ratio": row.slenderness,
-                    "r_experiment": row.measured,
-                    **{
-                        f"{key}_{which}": value
-                        for key, entry in row.entries.items()
-                        for which, value in (
-                            ("printed", entry.printed),
-                            ("recomputed", entry.recomputed),
-                            ("agrees", entry.agrees),
-                        )
-                    },
-                }
-                for row in rows
-            ]
-            for title, rows in result.tables.items()
-        },
+        "errata": [asdict(erratum) for erratum in result.errata],
+        "tables": {title: [_row(row) for row in rows] for title, rows in result.tables.items()},
         "league": [row.as_dict() for row in result.league],
         "calibration": {
             "model": result.calibration.model().label,
@@ -101,11 +78,20 @@ def as_plain(result: Reproduction, document: Document | None = None) -> dict[str
     }
 
 
+def _row(row: TableRow) -> dict[str, Any]:
+    values = {
+        f"{key}_{which}": getattr(entry, which)
+        for key, entry in row.entries.items()
+        for which in ("printed", "recomputed", "agrees")
+    }
+    return {"label": row.label, "slenderness_ratio": row.slenderness, "r_experiment": row.measured, **values}
+
+
 def _write_html(document: Document, pictures: Path, path: Path) -> None:
     path.write_text(render_html(document, pictures), encoding="utf-8")
 
 
-def _draw(result: Reproduction, folder: Path, step: Step) -> None:
+def _draw(folder: Path, step: Step) -> None:
     from rocking.plots.paper_figures import paper_figures
     from rocking.plots.style import save
 

@@ -1,1 +1,0 @@
-"""What is said of a body, an impact, a motion and a response: plain values, the same in every door."""

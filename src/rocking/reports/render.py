@@ -1,0 +1,68 @@
+"""A report as one self-contained HTML file, or as a PDF set by Typst: nothing is fetched from elsewhere."""
+
+import json
+from collections.abc import Mapping
+from importlib.resources import files
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from rocking.errors import extra
+from rocking.reports.document import Document, Paragraph, ReportTable
+
+
+def render_html(document: Document, pictures: Path) -> str:
+    """Return a report as HTML, its pictures inside."""
+    jinja2 = extra("jinja2", "the HTML report")
+    environment = jinja2.Environment(
+        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.tests["paragraph"] = lambda block: isinstance(block, Paragraph)
+    environment.tests["table"] = lambda block: isinstance(block, ReportTable)
+    template = environment.from_string(_template("report.html.jinja").decode())
+    html: str = template.render(document=document, svg=lambda stem: _inline(pictures, stem))
+    return html
+
+
+def _inline(folder: Path, stem: str) -> object:
+    from markupsafe import Markup
+
+    text = (folder / f"{stem}.svg").read_text(encoding="utf-8")
+    # ids of different pictures must not meet in one page
+    body = text[text.index("<svg") :]
+    for attribute in ('id="', 'href="#', "url(#"):
+        body = body.replace(attribute, f"{attribute}{stem}-")
+    return Markup(body)
+
+
+def render_pdf(document: Document, pictures: Path, path: Path) -> None:
+    """Write a report as PDF."""
+    path.write_bytes(_pdf(document, "report.typ", pictures, []))
+
+
+def response_pdf(document: Document, pictures: Mapping[str, bytes]) -> bytes:
+    """Return the report of a response as PDF, the same for the same content."""
+    from matplotlib import get_data_path
+
+    with TemporaryDirectory(prefix="rocking-report-") as name:
+        folder = Path(name)
+        for stem, data in pictures.items():
+            (folder / f"{stem}.svg").write_bytes(data)
+        # its words in any script come from the fonts of the system; those of the pictures are always there
+        return _pdf(document, "response.typ", folder, [str(Path(get_data_path()) / "fonts" / "ttf")])
+
+
+def _pdf(document: Document, template: str, folder: Path, fonts: list[str]) -> bytes:
+    typst = extra("typst", "the PDF report")
+    source = folder / template
+    source.write_bytes(_template(template))
+    try:
+        inputs = {"document": json.dumps(document.plain())}
+        pdf = typst.compile(str(source), root=str(folder), sys_inputs=inputs, font_paths=fonts)
+    finally:
+        source.unlink()
+    assert isinstance(pdf, bytes)
+    return pdf
+
+
+def _template(name: str) -> bytes:
+    return files("rocking.reports").joinpath(name).read_bytes()
