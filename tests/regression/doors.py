@@ -10,7 +10,7 @@ from typing import Any
 import rocking as rk
 from rocking.cli import main
 from rocking.dynamics.space import SpatialStart
-from rocking.dynamics.space.batch.many import batch_in_space
+from rocking.dynamics.space.batch import batch_in_space
 
 simulate = rk.simulate
 simulate_many = rk.simulate_many

@@ -15,8 +15,8 @@ import numpy as np
 import rocking as rk
 from rocking.dynamics.plane import fast_engine as plane_engine
 from rocking.dynamics.space import SpatialBody, SpatialStart
-from rocking.dynamics.space.batch import engine as space_engine
-from rocking.dynamics.space.batch.many import batch_in_space
+from rocking.dynamics.space import fast_engine as space_engine
+from rocking.dynamics.space.batch import batch_in_space
 from rocking.restitution.bed import ContactBed, KelvinVoigt
 
 STEP = 0.015625

@@ -13,7 +13,7 @@ from rocking.conventions import g
 from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
 from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
-from rocking.dynamics.plane.run import run
+from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind, Trajectory
 from rocking.motions.segments import Segments
 

@@ -14,7 +14,7 @@ from rocking.dynamics import RockingParameters, RockingSide
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
 from rocking.dynamics.plane import batch, fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
-from rocking.dynamics.plane.fast_engine import run_fast
+from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.settings import Settings
 from rocking.motions.segments import Segments
 
@@ -124,16 +124,16 @@ def test_pieces_do_not_matter(piece: int, chunk: int, monkeypatch: pytest.Monkey
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_one_history_is_the_row_of_a_batch(kind: str) -> None:
-    """`run_fast` gives the bits of the batch; of a body that falls, all but what it does after the top."""
+    """`run` gives the bits of the batch; of a body that falls, all but what it does after the top."""
     table = table_of(kind)
     whole = table.run()
     columns = {"peak_velocity": "peak_angular_velocity"}
     for k in range(0, COUNT, 4):
         row = {name: float(values[k]) for name, values in table.values.items()}
         right, left = (RockingSide(row[f"alpha_{s}"], row[f"p_{s}"], 1.0, row[f"r_{s}"]) for s in ("right", "left"))
-        one = run_fast(
+        one = run(
             RockingParameters(right, left, ConstantRestitution(), ""), table.motions[table.motion[k]], Settings(),
-            scale=row["scale"], rotation=row["rotation"], velocity=row["velocity"],
+            scale=row["scale"], rotation=row["rotation"], velocity=row["velocity"], engine="fast",
         )  # fmt: skip
         names = ["peak_rotation", "peak_time", "overturning_time", "impacts", "uplifts", "side"]
         names += [] if one.outcome is rk.Outcome.OVERTURNED else ["peak_velocity", "truncation"]

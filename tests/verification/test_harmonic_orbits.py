@@ -20,7 +20,7 @@ import rocking as rk
 from rocking import conventions
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.parameters import RockingParameters, RockingSide
-from rocking.dynamics.plane.run import run
+from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.dynamics.settings import Settings
 

@@ -16,7 +16,7 @@ import rocking as rk
 from rocking.conventions import g
 from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
 from rocking.dynamics.plane import equations, fast_engine
-from rocking.dynamics.plane.run import run
+from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import Trajectory
 from rocking.motions.segments import Segments
 

@@ -10,7 +10,7 @@ from scipy import stats
 from rocking.dynamics import RandomRestitution, RockingParameters, RockingSide, Settings
 from rocking.dynamics.impact_laws import uniform
 from rocking.dynamics.plane import fast_engine
-from rocking.dynamics.plane.run import run
+from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.motions.segments import Segments
 

@@ -7,8 +7,6 @@ from rocking.conventions import g
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.parameters import RockingParameters, RockingSide
 from rocking.dynamics.plane import fast_engine, reference
-from rocking.dynamics.plane.fast_engine import run_fast
-from rocking.dynamics.plane.reference import Reference
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.dynamics.settings import Settings
 from rocking.motions.segments import Segments
@@ -35,9 +33,7 @@ def case(number):
 def run(name, number, rest_speed):
     parameters, segments = case(number)
     settings = Settings(rest_speed=rest_speed)
-    if name == "fast":
-        return run_fast(parameters, segments, settings)
-    return Reference(parameters, segments, settings).run()
+    return fast_engine.run(parameters, segments, settings, engine=name)
 
 
 def lifts(trajectory):

@@ -33,7 +33,7 @@ from scipy.integrate import solve_ivp
 from rocking.conventions import g
 from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
 from rocking.dynamics.plane import fast_engine
-from rocking.dynamics.plane.run import run
+from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.motions.segments import Segments
 

@@ -13,14 +13,13 @@ import pytest
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics import Settings
-from rocking.dynamics.space import SpatialBody, SpatialStart, attitude, pivot_motion
-from rocking.dynamics.space.batch import engine
-from rocking.dynamics.space.batch.course import course_of
-from rocking.dynamics.space.batch.many import batch_in_space
+from rocking.dynamics.space import SpatialBody, SpatialStart, attitude, fast_engine, pivot_motion
+from rocking.dynamics.space.batch import batch_in_space
+from rocking.dynamics.space.fast_engine import steps_of
 from rocking.dynamics.space.ground import ground_of
 from rocking.outcome import Outcome
 
-pytestmark = pytest.mark.skipif(not engine.available(), reason="the batch engine was not built")
+pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the batch engine was not built")
 
 CASES = 1000 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 20
 STEP, LENGTH = 0.02, 8.0
@@ -115,7 +114,7 @@ def _first_three(body, motion, scale, law):
     """Largest difference of times [s] and attitudes [-] at the first three impacts."""
     slow = rk.simulate(body, motion, law, scale=scale, duration=LENGTH)
     ground = ground_of(*motion, until=LENGTH)
-    course = course_of(body, ground, LENGTH, law, scale=scale)
+    course = steps_of(body, ground, LENGTH, law, scale=scale)
     hits = course[course["kind"] == 1][:3]
     times = slow.impacts["time"][:3]
     if len(times) == 0:
@@ -142,7 +141,7 @@ def test_a_gyroscopic_term_left_out_is_rejected(monkeypatch):
         self.gyroscopic = np.zeros_like(self.gyroscopic)
 
     tilted = SpatialStart(0.15, 0.6, angular_velocity=(0.0, 0.0, 0.8))
-    course = course_of(TOWER, ground_of(), 3.0, start=tilted)
+    course = steps_of(TOWER, ground_of(), 3.0, start=tilted)
     hit = course[course["kind"] == 1]["time"][0]
     first = {"tilt": 0.15, "azimuth": 0.6, "angular_velocity": (0.0, 0.0, 0.8)}
     assert abs(_let_go(first, "housner").impacts["time"][0] - hit) < 1e-10
@@ -156,7 +155,7 @@ def test_energy_and_vertical_momentum_about_a_vertex_stay():
         SpatialStart(0.2, 0.7, angular_velocity=(0.0, 0.0, 0.5)),
         Settings(longest_step=0.05, mechanics="space, many"),
     )
-    course = course_of(TOWER, ground_of(), 3.0, start=start, settings=fine)
+    course = steps_of(TOWER, ground_of(), 3.0, start=start, settings=fine)
     until = int(np.flatnonzero(course["kind"] == 1)[0])
     steps = course[1:until]
     assert len(steps) > 30
@@ -183,7 +182,7 @@ def test_a_prism_in_a_plane_is_the_plane_solution(axis, space, plane):
     block = rk.Block(width=(1.0, 1.3)[axis], height=4.0)
     expected = rk.simulate(block, both, plane, engine="reference")
     parts = (along, None, up) if axis == 0 else (None, along, up)
-    course = course_of(TOWER, ground_of(*parts), along.duration, space)
+    course = steps_of(TOWER, ground_of(*parts), along.duration, space)
     hits = course[course["kind"] == 1]
     wanted = expected.impacts["time"]
     count = min(10, np.sum(wanted < along.duration))
@@ -192,7 +191,7 @@ def test_a_prism_in_a_plane_is_the_plane_solution(axis, space, plane):
     peaks = batch_in_space(TOWER, parts, space, scales=[1.0, 1.001]).peak_tilt.ravel()
     assert peaks[0] == pytest.approx(expected.peak_rotation, abs=1e-9)
     assert abs(peaks[1] - expected.peak_rotation) > 1e-7  # negative control
-    other = course_of(TOWER, ground_of(*parts), along.duration, 0.8)  # negative control
+    other = steps_of(TOWER, ground_of(*parts), along.duration, 0.8)  # negative control
     assert np.abs(other[other["kind"] == 1]["time"][:3] - wanted[:3]).max() > 1e-3
 
 
@@ -203,7 +202,7 @@ def test_a_prism_in_a_plane_is_the_plane_solution(axis, space, plane):
 )
 def test_the_period_about_an_edge_is_the_elliptic_integral(share, period):
     """A quarter of the exact period to the first impact, REF 3.2, to 1e-9."""
-    batch = course_of(
+    batch = steps_of(
         TOWER,
         ground_of(),
         0.3 * period,
@@ -216,7 +215,7 @@ def test_the_period_about_an_edge_is_the_elliptic_integral(share, period):
 def test_a_prism_over_its_diagonal_keeps_59_over_71():
     """Corner to opposite corner of a prism 1 x 1 x 4, REF 1.6: the ratio of velocities to 1e-11."""
     prism = SpatialBody.box(1.0, 1.0, 4.0)
-    course = course_of(prism, ground_of(), 2.0, start=SpatialStart(0.1, 0.25 * math.pi))
+    course = steps_of(prism, ground_of(), 2.0, start=SpatialStart(0.1, 0.25 * math.pi))
     hit = course[course["kind"] == 1][0]
     assert math.sqrt(hit["after"] / hit["before"]) == pytest.approx(59.0 / 71.0, abs=1e-11)
 
@@ -225,7 +224,7 @@ def test_ked_is_that_of_the_reference_engine_on_tilted_landings():
     """The moments handed to the compiled engine give the energies of the reference engine at every impact to 1e-8."""
     start = {"tilt": 0.12, "azimuth": 0.5}
     slow = _let_go(start, "ked").impacts
-    course = course_of(TOWER, ground_of(), 3.0, "ked-3d", start=SpatialStart(**start))
+    course = steps_of(TOWER, ground_of(), 3.0, "ked-3d", start=SpatialStart(**start))
     hits = course[course["kind"] == 1]
     count = min(8, len(slow))
     assert count > 3
@@ -253,7 +252,7 @@ def test_a_tighter_tolerance_changes_little():
     """Peaks at tolerances 1e-11 and 1e-15 agree to 1e-8 up to the first impacts; the attitude stays a rotation."""
     start, ground = SpatialStart(0.2, 0.7, angular_velocity=(0.1, 0.0, 0.5)), ground_of()
     tight = [Settings(tolerance=tolerance, mechanics="space, many") for tolerance in (1e-11, 1e-15)]
-    runs = [course_of(TOWER, ground, 2.0, start=start, settings=given) for given in tight]
+    runs = [steps_of(TOWER, ground, 2.0, start=start, settings=given) for given in tight]
     hits = [run[run["kind"] == 1]["time"][:3] for run in runs]
     np.testing.assert_allclose(hits[0], hits[1], atol=1e-8)
     for run in runs:

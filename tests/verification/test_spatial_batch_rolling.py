@@ -11,14 +11,13 @@ import pytest
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics import Settings
-from rocking.dynamics.space import SpatialBody, SpatialStart, attitude
-from rocking.dynamics.space.batch import engine
-from rocking.dynamics.space.batch.course import course_of
-from rocking.dynamics.space.batch.many import batch_in_space
+from rocking.dynamics.space import SpatialBody, SpatialStart, attitude, fast_engine
+from rocking.dynamics.space.batch import batch_in_space
+from rocking.dynamics.space.fast_engine import steps_of
 from rocking.dynamics.space.ground import ground_of
 from rocking.errors import InvalidValueError
 
-pytestmark = pytest.mark.skipif(not engine.available(), reason="the batch engine was not built")
+pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the batch engine was not built")
 
 G = 9.81
 RADIUS, HEIGHT = 0.25, 1.0
@@ -30,7 +29,7 @@ def _tilts(theta, rate, spin, duration=2.0):
     axis = np.array([math.sin(theta), 0.0, math.cos(theta)])
     velocity = rate * np.array([0.0, 0.0, 1.0]) + (spin - rate * math.cos(theta)) * axis
     start = SpatialStart(theta, angular_velocity=tuple(velocity.tolist()))
-    course = course_of(
+    course = steps_of(
         CYLINDER, ground_of(), duration, start=start, settings=Settings(gravity=G, mechanics="space, many")
     )
     return np.arccos(course["rotation"][:, 2, 2][course["time"] < duration])
@@ -58,7 +57,7 @@ def test_steady_wobbles_keep_their_tilt(theta, still, circling):
 def test_energy_stays_while_it_rolls():
     """Two seconds of rolling without slip on ground at rest: energy to 1e-11."""
     start = SpatialStart(0.1, 0.3, angular_velocity=(0.2, 0.1, 0.6))
-    course = course_of(CYLINDER, ground_of(), 2.0, start=start)
+    course = steps_of(CYLINDER, ground_of(), 2.0, start=start)
     course = course[course["kind"] == -1]
     assert set(course["contact"]) == {3.0}
     up, w = course["rotation"][:, 2], course["velocity"]
@@ -75,7 +74,7 @@ def test_free_rolling_is_that_of_the_reference_engine(spin):
     """Attitudes over four seconds of rolling, by two engines, to 1e-7."""
     start = {"tilt": 0.1, "azimuth": 0.3, "angular_velocity": spin}
     slow = rk.free_rocking(CYLINDER, restitution="housner", start=SpatialStart(**start), duration=4.0)
-    course = course_of(CYLINDER, ground_of(), 4.0, start=SpatialStart(**start))
+    course = steps_of(CYLINDER, ground_of(), 4.0, start=SpatialStart(**start))
     course = course[(course["kind"] == -1) & (course["time"] < 4.0)]
     assert np.abs(slow.at(course["time"]).rotation - course["rotation"]).max() < 1e-7
     assert attitude.tilt(slow.quaternion).max() > 0.05
@@ -99,7 +98,7 @@ def test_ked_on_a_rim_is_that_of_the_plane():
     """A cylinder let go over its rim falls flat on the far side: REF 1.6 (9 digits) at three impacts, both engines."""
     body, start = SpatialBody.cylinder(1.0, 4.0), {"tilt": 0.08, "azimuth": 0.7}
     slow = rk.free_rocking(body, start=SpatialStart(**start), duration=2.5)
-    course = course_of(body, ground_of(), 2.5, "ked-3d", start=SpatialStart(**start))
+    course = steps_of(body, ground_of(), 2.5, "ked-3d", start=SpatialStart(**start))
     hits = course[course["kind"] == 1]
     for ratio in (hits["after"] / hits["before"], slow.impacts["energy_after"] / slow.impacts["energy_before"]):
         # the rim rolls down to tilts of 1e-11, where rounding turns the last bit of the motion sideways

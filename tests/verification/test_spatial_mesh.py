@@ -10,9 +10,8 @@ import pytest
 
 import rocking as rk
 from rocking.bodies.solid import Part, RoundBase, Solid, box, revolution
-from rocking.dynamics.space import SpatialBody, SpatialStart, reference
-from rocking.dynamics.space.batch import engine
-from rocking.dynamics.space.batch.many import batch_in_space
+from rocking.dynamics.space import SpatialBody, SpatialStart, fast_engine, reference
+from rocking.dynamics.space.batch import batch_in_space
 from rocking.restitution.space import edge_coefficient
 
 RADIUS, LENGTH = 0.3, 1.2
@@ -24,7 +23,7 @@ MOTION = (
     rk.GroundMotion(0.225 * np.sin(2.0 * np.pi * TIME / 0.7 + 0.8), 0.01),
 )
 CORNERS = np.array([8, 16, 32, 64])
-built = pytest.mark.skipif(not engine.available(), reason="the batch engine was not built")
+built = pytest.mark.skipif(not fast_engine.available(), reason="the batch engine was not built")
 
 
 def statue(corners):

@@ -10,14 +10,13 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.space import SpatialBody, reference
-from rocking.dynamics.space.batch import engine
-from rocking.dynamics.space.batch.many import batch_in_space
+from rocking.dynamics.space import SpatialBody, fast_engine, reference
+from rocking.dynamics.space.batch import batch_in_space
 from rocking.outcome import Outcome, Status
 
 STEP, LENGTH = 0.02, 8.0
 LAWS = ["housner-3d", "horizontal-momentum-3d", 0.9]
-built = pytest.mark.skipif(not engine.available(), reason="the batch engine was not built")
+built = pytest.mark.skipif(not fast_engine.available(), reason="the batch engine was not built")
 
 
 def _record(rng):

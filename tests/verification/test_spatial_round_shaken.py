@@ -12,11 +12,18 @@ import pytest
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics.space import SpatialBody, SpatialStart, attitude, contact_mode, event_functions, loss_of_contact
-from rocking.dynamics.space.batch import engine
-from rocking.dynamics.space.batch.course import course_of
-from rocking.dynamics.space.batch.many import batch_in_space
+from rocking.dynamics.space import (
+    SpatialBody,
+    SpatialStart,
+    attitude,
+    contact_mode,
+    event_functions,
+    fast_engine,
+    loss_of_contact,
+)
+from rocking.dynamics.space.batch import batch_in_space
 from rocking.dynamics.space.event_functions import Step
+from rocking.dynamics.space.fast_engine import steps_of
 from rocking.dynamics.space.ground import ground_of
 from rocking.dynamics.space.rolling import RollingFlow
 from rocking.outcome import Outcome, Status
@@ -25,7 +32,7 @@ STEP, LENGTH, G = 0.02, 8.0, 9.81
 LAWS = ["housner-3d", "horizontal-momentum-3d", 0.9, 0.98]
 CYLINDER = SpatialBody.cylinder(0.5, 2.0)
 CAMPAIGN = os.environ.get("ROCKING_CAMPAIGN") == "1"
-built = pytest.mark.skipif(not engine.available(), reason="the batch engine was not built")
+built = pytest.mark.skipif(not fast_engine.available(), reason="the batch engine was not built")
 
 
 def _record(rng):
@@ -195,7 +202,7 @@ def test_energy_closes_under_records(seed):
 def test_energy_of_the_batch_stays_after_the_record():
     """Free rolling for four seconds after a record, near-flat passages included: energy to 1e-9."""
     body, motion, scale = _case(79)
-    course = course_of(body, ground_of(*motion), LENGTH + 4.0, scale=scale)
+    course = steps_of(body, ground_of(*motion), LENGTH + 4.0, scale=scale)
     free = course[(course["kind"] == -1) & (course["time"] > LENGTH)]
     assert set(free["contact"]) == {3.0}
     up, w = free["rotation"][:, 2], free["velocity"]

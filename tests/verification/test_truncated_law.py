@@ -17,7 +17,7 @@ from rocking.dynamics import RandomRestitution, RockingParameters, RockingSide, 
 from rocking.dynamics.impact_laws import uniform
 from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
-from rocking.dynamics.plane.run import run
+from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.evidence._restitution_distribution import restitution_distribution

@@ -12,7 +12,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.components import components_of, in_plane, in_space
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
 from rocking.dynamics.loss_of_contact import contact_words, flags
-from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.parameters import SIDES, RockingParameters
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.errors import InvalidValueError
@@ -169,7 +169,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
 
 
 def _in_space(bodies: list[Any], motions: Any, restitution: Any, scale: Any, start: Any, *how: Any) -> "xr.Dataset":
-    from rocking.dynamics.space.batch.many import batch_in_space
+    from rocking.dynamics.space.batch import batch_in_space
 
     several = list(motions) if isinstance(motions, Sequence) else [motions]
     components = [None if motion is None else components_of(motion) for motion in several]
@@ -190,7 +190,7 @@ def _twin(results: dict[str, Any], again: dict[str, Any]) -> dict[str, FloatArra
 def _pieces(
     all_parameters: list[list[RockingParameters]], scales: np.ndarray, shape: tuple[int, ...]
 ) -> "Callable[[int, int], Rows]":
-    from rocking.dynamics.plane.batch import SIDES, Rows
+    from rocking.dynamics.plane.batch import Rows
 
     table = {
         f"{short}_{side}": np.array([[getattr(getattr(r, side), name) for r in row] for row in all_parameters])

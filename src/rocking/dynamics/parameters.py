@@ -17,6 +17,13 @@ _ROUNDING = 1e-9
 _SAID = 1e-4
 
 
+SIDES = (
+    ("alpha", "slenderness_angle"), ("p", "frequency_parameter"), ("r", "coefficient"), ("q", "inertia_ratio"),
+    ("share", "share"),
+)  # fmt: skip
+"""What rows call the properties of a `RockingSide`."""
+
+
 @dataclass(frozen=True)
 class RockingSide:
     """One side of a rocking body.

@@ -11,8 +11,8 @@ from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.loss_of_contact import flags
-from rocking.dynamics.parameters import RockingParameters
-from rocking.dynamics.plane.batch import SIDES, Batch, Rows
+from rocking.dynamics.parameters import SIDES, RockingParameters
+from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import Arrays, instruction_set
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings

@@ -12,7 +12,7 @@ from rocking.dynamics import Outcome, RockingParameters, RockingSide
 from rocking.dynamics.impact_laws import ConstantRestitution, SpeedRestitution
 from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.event_functions import Push, RestoringMoments, comes_to_rest
-from rocking.dynamics.plane.fast_engine import run_fast
+from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.reference import Reference
 from rocking.dynamics.settings import Settings
 from rocking.motions.segments import Segments
@@ -223,15 +223,15 @@ def test_beyond_balance_it_returns_where_a_push_to_come_is_strong_enough(
     segments = Segments.between_samples(0.02, acceleration, None)
     start = {"rotation": sign * (UNEVEN.side(sign).slenderness_angle + 0.05), "velocity": sign * 1e-3}
     settings = Settings(linear=linear)
-    run = (
-        run_fast(UNEVEN, segments, settings, **start)
+    history = (
+        run(UNEVEN, segments, settings, **start)
         if name == "fast"
         else Reference(UNEVEN, segments, settings, to_the_ground=False).run(*start.values())
     )
-    assert (run.impacts > 0) is returns
-    assert returns or run.outcome is Outcome.OVERTURNED
+    assert (history.impacts > 0) is returns
+    assert returns or history.outcome is Outcome.OVERTURNED
     if not returns and name == "reference":
-        assert np.nanmax(np.abs(run.rotation)) < UNEVEN.side(sign).slenderness_angle + 0.06
+        assert np.nanmax(np.abs(history.rotation)) < UNEVEN.side(sign).slenderness_angle + 0.06
 
 
 def end_of_flights(speed: float, moments: dict[int, np.ndarray], step: float) -> float:

@@ -1,6 +1,5 @@
 """Many histories: arrays of bodies, motions, scales and coefficients, by the fast engine or one by one."""
 
-import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -9,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FEET, FloatArray
+from rocking.dynamics import compiled
 from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, RockingSide
 from rocking.dynamics.plane import fast_engine
@@ -26,12 +26,6 @@ ROWS = (
     "share_right", "share_left", "scale", "rotation", "velocity",
 )  # fmt: skip
 """Numbers that make a history, beside the number of its motion and its stream."""
-
-SIDES = (
-    ("alpha", "slenderness_angle"), ("p", "frequency_parameter"), ("r", "coefficient"), ("q", "inertia_ratio"),
-    ("share", "share"),
-)  # fmt: skip
-"""What rows call the properties of a `RockingSide`."""
 
 SIDES_UNTOLD = {"q_right": np.nan, "q_left": np.nan, "share_right": 1.0, "share_left": 1.0}
 """What is taken where a side is not told whole: forces of the ground are not known, draws are from all of a law."""
@@ -78,7 +72,7 @@ class Batch:
 
     def __post_init__(self) -> None:
         """Check the threads."""
-        _check_threads(self.threads)
+        compiled.check_threads(self.threads)
 
     def run(
         self,
@@ -92,10 +86,8 @@ class Batch:
         Returns results: one array for each key of `fast_engine.RESULTS`; work: steps that were taken; empty
         for the reference engine.
         """
-        given: object = progress
-        if given is not None and not callable(given):
-            raise InvalidValueError(f"progress must be a function of the histories done, or None, got {given!r:.60}")
-        _check_threads(threads)
+        compiled.check_progress(progress)
+        compiled.check_threads(threads)
         if self.law.per_history:
             return self._constant.run(count, lambda a, b: drawn_rows(rows(a, b), self.law), progress, threads)
         quick = fast_engine.chosen(self.engine, self.law) == "fast"
@@ -112,7 +104,7 @@ class Batch:
             else:
                 done = fast_engine.module().run_batch(
                     library.handle, {**piece.values, "motion": piece.motion, "key": piece.stream}, out,
-                    order=self.settings.order, threads=threads or self.threads or _processors(), chunk=_CHUNK,
+                    order=self.settings.order, threads=threads or self.threads or compiled.processors(), chunk=_CHUNK,
                     **fast_engine.common(self.settings, self.law),
                 )  # fmt: skip
                 total = {name: total.get(name, 0) + value for name, value in done.items()}
@@ -198,17 +190,5 @@ def drawn_rows(rows: Rows, law: ImpactLaw) -> Rows:
     return replace(rows, values=rows.values | drawn)
 
 
-def _check_threads(threads: object) -> None:
-    if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
-        raise InvalidValueError(f"threads must be a whole number >= 1, got {threads!r}")
-
-
 def _repeated(values: Any, count: int, dtype: Any) -> np.ndarray:
     return np.ascontiguousarray(np.broadcast_to(np.asarray(values, dtype=dtype), (count,)))
-
-
-def _processors() -> int:
-    try:
-        return len(os.sched_getaffinity(0))
-    except AttributeError:
-        return os.cpu_count() or 1

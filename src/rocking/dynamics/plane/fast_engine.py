@@ -1,20 +1,20 @@
 """The fast engine of pure rocking: whether it is there, arrays in and out, and one history with all its samples."""
 
 import math
-import os
 from functools import cache
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from rocking import checks, errors
-from rocking.conventions import FloatArray
+from rocking import checks
+from rocking.conventions import FEET, FloatArray
+from rocking.dynamics import compiled
 from rocking.dynamics.impact_laws import ImpactLaw
-from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.parameters import SIDES, RockingParameters
 from rocking.dynamics.plane.trajectory import Event, EventKind, Trajectory
 from rocking.dynamics.settings import Settings
-from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
+from rocking.errors import InvalidValueError, MissingExtraError
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, Status
 
@@ -29,9 +29,6 @@ RESULTS: dict[str, Any] = {
 }  # fmt: skip
 """What the fast engine reports for every history."""
 
-
-ENGINES = ("auto", "fast", "reference")
-"""What can be asked for."""
 
 _NOT_BUILT = (
     "the fast engine was not built: it takes a C++17 compiler when rocking is installed (in a checkout, `make engine`)"
@@ -49,39 +46,20 @@ def _module() -> ModuleType | None:
 
 
 def available() -> bool:
-    """Return whether the fast engine was built with this installation.
-
-    Returns true if it is there; otherwise the reference engine serves.
-    """
+    """Return whether the fast engine was built with this installation; otherwise the reference engine serves."""
     return _module() is not None
 
 
 def chosen(asked: str, law: ImpactLaw | None = None) -> str:
     """Return which engine will run, and say so once if it is not the one that users expect."""
-    asked = checks.one_of("engine", asked, ENGINES)
-    if asked != "reference" and law is not None and not law.tabulated:
-        if asked == "fast":
+    if law is not None and not law.tabulated and asked != "reference":
+        if checks.one_of("engine", asked, compiled.ENGINES) == "fast":
             raise InvalidValueError(f"the fast engine knows tables, not {type(law).__name__}; engine must be reference")
         return "reference"
-    if asked == "fast":
+    engine = compiled.chosen_engine(asked, _module(), f"{_NOT_BUILT}; the reference engine runs instead")
+    if engine == "fast":
         module()
-    if asked == "auto" and not available():
-        errors.warn(f"{_NOT_BUILT}; the reference engine runs instead", SlowEngineWarning)
-        return "reference"
-    return "fast" if asked == "auto" else asked
-
-
-def instruction_sets() -> list[str]:
-    """Return what the fast engine can use on this processor, the fastest first."""
-    return list(module().instruction_sets())
-
-
-def instruction_set() -> str:
-    """Return what the fast engine will use: the environment variable ROCKING_ISA, or the fastest there is."""
-    wanted, known = os.environ.get("ROCKING_ISA", ""), instruction_sets()
-    if wanted and wanted not in known:
-        raise InvalidValueError(f"ROCKING_ISA must be one of {', '.join(known)}, got {wanted!r}")
-    return wanted or known[0]
+    return engine
 
 
 def module() -> ModuleType:
@@ -90,6 +68,16 @@ def module() -> ModuleType:
     if found is None:
         raise MissingExtraError(f'{_NOT_BUILT}; engine="reference" gives the same results, slowly')
     return found
+
+
+def instruction_sets() -> list[str]:
+    """Return what the fast engine can use on this processor, the fastest first."""
+    return list(module().instruction_sets())
+
+
+def instruction_set() -> str:
+    """Return what the fast engine will use."""
+    return compiled.chosen_instruction_set(instruction_sets())
 
 
 class Library:
@@ -170,10 +158,7 @@ def _jump(parts: list[FloatArray], samples: FloatArray, step: float) -> int:
 
 
 def empty_results(count: int) -> Arrays:
-    """Return arrays for the results of some histories.
-
-    Returns one array for each key of `RESULTS`.
-    """
+    """Return arrays for the results of some histories, one for each key of `RESULTS`."""
     return {name: np.empty(count, dtype) for name, dtype in RESULTS.items()}
 
 
@@ -186,33 +171,51 @@ def common(settings: Settings, law: ImpactLaw) -> Arrays:
     }  # fmt: skip
 
 
+_ORDER = 8
 _OUTCOMES, _STATUSES, _KINDS = list(Outcome), list(Status), {kind.value: kind for kind in EventKind}
 
 
-def run_fast(
+def run(
     parameters: RockingParameters,
     segments: Segments,
     settings: Settings,
     *,
+    engine: str = "auto",
     scale: float = 1.0,
     stream: int = 0,
     rotation: float = 0.0,
     velocity: float = 0.0,
 ) -> Trajectory:
-    """Return one history by the fast engine; the numbers are those that it gives within a batch, bit for bit.
+    """Return one history by the engine that was asked for; the fast one gives the bits that it gives within a batch.
 
-    segments: the motion, of degree 1 or 7 [m/s2]; scale: factor on the motion [-]; rotation, velocity: theta [rad] and
-    theta' [rad/s] at time zero.
+    segments: the motion [m/s2]; scale: factor on it [-]; rotation, velocity: theta [rad] and theta' [rad/s] at time 0.
     """
+    taken = chosen(engine, parameters.law)
+    if engine != "reference" and settings.order != _ORDER:
+        raise InvalidValueError(
+            f"order must be {_ORDER} for one history, got {settings.order}: orders 4 and 6 exist only in batches "
+            "(simulate_many), for nonlinear equations and motions without a vertical part"
+        )
+    if taken == "fast":
+        return _run_fast(parameters, segments, settings, scale, stream, rotation, velocity)
+    from rocking.dynamics.plane.reference import Reference
+
+    return Reference(parameters, segments, settings, scale=scale, stream=stream).run(rotation, velocity)
+
+
+def _run_fast(  # noqa: PLR0917 - as `run` has them
+    parameters: RockingParameters,
+    segments: Segments,
+    settings: Settings,
+    scale: float,
+    stream: int,
+    rotation: float,
+    velocity: float,
+) -> Trajectory:
     library = Library([segments])
-    values = {
-        "alpha_right": parameters.right.slenderness_angle, "alpha_left": parameters.left.slenderness_angle,
-        "p_right": parameters.right.frequency_parameter, "p_left": parameters.left.frequency_parameter,
-        "q_right": parameters.right.inertia_ratio, "q_left": parameters.left.inertia_ratio,
-        "r_right": parameters.right.coefficient, "r_left": parameters.left.coefficient,
-        "share_right": parameters.right.share, "share_left": parameters.left.share,
-        "scale": scale, "rotation": rotation, "velocity": velocity,
-    }  # fmt: skip
+    values = {"scale": scale, "rotation": rotation, "velocity": velocity} | {
+        f"{short}_{foot}": getattr(getattr(parameters, foot), name) for short, name in SIDES for foot in FEET
+    }
     rows = {name: np.array([value]) for name, value in values.items()}
     rows |= {"motion": np.zeros(1, np.int64), "key": np.array([stream], np.int64)}
     out = empty_results(1)

@@ -7,7 +7,7 @@ from typing import Any
 from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.dynamics.parameters import RockingParameters
-from rocking.dynamics.plane.run import run
+from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.response import Motion, Response
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError

@@ -17,8 +17,7 @@ from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.dynamics.loss_of_contact import contact_words, lost_contact
-from rocking.dynamics.parameters import RockingParameters
-from rocking.dynamics.plane.batch import SIDES
+from rocking.dynamics.parameters import SIDES, RockingParameters
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings, settings_of

@@ -10,8 +10,7 @@ from rocking import checks
 from rocking.conventions import FEET, FloatArray, g
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.loss_of_contact import lost_contact
-from rocking.dynamics.parameters import RockingParameters
-from rocking.dynamics.plane.batch import SIDES
+from rocking.dynamics.parameters import SIDES, RockingParameters
 from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, RockingError

@@ -9,10 +9,9 @@ import pytest
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics import Settings
-from rocking.dynamics.space import SpatialBody, SpatialStart
-from rocking.dynamics.space.batch import engine, run
-from rocking.dynamics.space.batch.laws import batch_law
-from rocking.dynamics.space.batch.many import batch_in_space
+from rocking.dynamics.space import SpatialBody, SpatialStart, fast_engine
+from rocking.dynamics.space.batch import batch_in_space
+from rocking.dynamics.space.fast_engine import batch_law
 from rocking.dynamics.space.ground import ground_of, joined
 from rocking.dynamics.space.impact_laws import FixedSpatial
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning, UnknownModelError
@@ -22,7 +21,7 @@ BOX = SpatialBody.box(0.5, 0.6, 2.0)
 PULSE = rk.pulses.sine(amplitude=4.0, period=0.8)
 TIME = np.arange(201) * 0.01
 RECORD = rk.GroundMotion(4.0 * np.sin(6.0 * TIME), 0.01), rk.GroundMotion(3.0 * np.cos(5.0 * TIME), 0.01)
-built = pytest.mark.skipif(not engine.available(), reason="the batch engine was not built")
+built = pytest.mark.skipif(not fast_engine.available(), reason="the batch engine was not built")
 
 
 def _same(first, second):
@@ -104,7 +103,7 @@ def test_threads_pieces_and_order_leave_the_bits(monkeypatch):
     first = batch_in_space(bodies, RECORD, scales=[0.6, 0.9], threads=1)
     assert _same(first, batch_in_space(bodies, RECORD, scales=[0.6, 0.9], threads=3))
     calls = []
-    monkeypatch.setattr(run, "PIECE", 5)
+    monkeypatch.setattr(fast_engine, "PIECE", 5)
     assert _same(first, batch_in_space(bodies, RECORD, scales=[0.6, 0.9], threads=2, progress=calls.append))
     assert calls == [5, 5, 2]
     back = batch_in_space(bodies[::-1], RECORD, scales=[0.9, 0.6])
@@ -226,7 +225,7 @@ def test_ked_without_matter_is_a_status():
 )
 def test_arguments_out_of_range_are_named(change, words):
     """Every refused argument appears in the message."""
-    if "threads" in change and not engine.available():
+    if "threads" in change and not fast_engine.available():
         pytest.skip("the batch engine was not built")
     with pytest.raises(InvalidValueError, match=words):
         batch_in_space(**({"bodies": BOX, "motions": PULSE} | change))
@@ -234,7 +233,7 @@ def test_arguments_out_of_range_are_named(change, words):
 
 def test_without_the_compiled_engine_the_reference_serves(monkeypatch):
     """Asked for by name it is an error that says what to do; otherwise a warning, and the reference engine."""
-    monkeypatch.setattr(engine, "_module", lambda: None)
+    monkeypatch.setattr(fast_engine, "_module", lambda: None)
     with pytest.raises(MissingExtraError, match="make engine"):
         batch_in_space(BOX, PULSE, engine="fast")
     with pytest.warns(SlowEngineWarning, match="row by row"):
@@ -246,7 +245,7 @@ def test_without_the_compiled_engine_the_reference_serves(monkeypatch):
 def test_an_instruction_set_that_is_not_there_is_refused(monkeypatch):
     """ROCKING_ISA chooses; every set gives the same outcomes."""
     found = []
-    for isa in engine.module().instruction_sets():
+    for isa in fast_engine.module().instruction_sets():
         monkeypatch.setenv("ROCKING_ISA", isa)
         found.append(batch_in_space(BOX, RECORD, scales=[0.5, 1.0, 2.0]))
         assert isa in found[-1].engine
@@ -285,7 +284,7 @@ def test_a_start_knows_whether_it_can_be(wrong):
     """Tilts from zero to below a quarter turn and finite numbers; anything else is refused by the row."""
     assert SpatialStart(0.2, 7.0, -3.0, (0.1, -20.0, 3.0)).valid
     assert not SpatialStart(**wrong).valid
-    if engine.available():
+    if fast_engine.available():
         batch = batch_in_space(BOX, None, start=[SpatialStart(**wrong), SpatialStart(0.02)], duration=0.1)
         assert batch.status.ravel().tolist()[0] == Status.INVALID.code
         assert batch.status.ravel().tolist()[1] == Status.GOOD.code

@@ -8,13 +8,12 @@ import pytest
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics.space import SpatialBody, SpatialStart
-from rocking.dynamics.space.batch import engine
-from rocking.dynamics.space.batch.many import batch_in_space
-from rocking.dynamics.space.batch.result import FLOATS, WHOLES
+from rocking.dynamics.space import SpatialBody, SpatialStart, fast_engine
+from rocking.dynamics.space.batch import batch_in_space
+from rocking.dynamics.space.fast_engine import FLOATS, WHOLES
 from rocking.errors import InvalidValueError
 
-pytestmark = pytest.mark.skipif(not engine.available(), reason="the batch engine was not built")
+pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the batch engine was not built")
 
 BOX = SpatialBody.box(0.5, 0.6, 2.0)
 PULSE = rk.pulses.sine(amplitude=4.0, period=0.8)

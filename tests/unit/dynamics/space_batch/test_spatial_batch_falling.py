@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.space import SpatialBody
-from rocking.dynamics.space.batch import engine
+from rocking.dynamics.space import SpatialBody, fast_engine
 from rocking.errors import InvalidValueError
 from rocking.plots.falling import falling_picture
 
-pytestmark = pytest.mark.skipif(not engine.available(), reason="the batch engine was not built")
+pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the batch engine was not built")
 
 BOX = SpatialBody.box(0.5, 0.4, 2.0)
 PULSE = rk.pulses.sine(amplitude=4.0, period=0.8)

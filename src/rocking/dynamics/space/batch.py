@@ -1,0 +1,295 @@
+"""Every body in space under every motion at every scale with every restitution and start: arrays, and their sources."""
+
+import hashlib
+import json
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking import checks, plausibility
+from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.compiled import check_progress
+from rocking.dynamics.exportable import Exportable, motion_provenance
+from rocking.dynamics.settings import Settings
+from rocking.dynamics.space import attitude, fast_engine
+from rocking.dynamics.space.attitude import SpatialStart
+from rocking.dynamics.space.body import SpatialBody
+from rocking.dynamics.space.fast_engine import Bodies, Progress, Results, RowTable, batch_law
+from rocking.dynamics.space.ground import SpatialGround, joined
+from rocking.dynamics.space.impact_laws import law_of
+from rocking.dynamics.space.reference import SpatialReference
+from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajectory
+from rocking.errors import InvalidValueError, RockingError, extra
+from rocking.outcome import ContactMode, Outcome, Status, of_results, overturned
+from rocking.quantities import attributes
+from rocking.tables import Column, Table
+from rocking.version import SOFTWARE
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+DIMENSIONS = ("body", "motion", "scale", "restitution", "start")
+"""Axes of the arrays of a batch, in order."""
+
+_LONG = 300.0
+_FEW = 100  # up to so many bodies are spelled out; of more of them the digest alone is kept
+
+
+@dataclass(frozen=True, eq=False)
+class SpatialBatch(Exportable):
+    """The results of a batch; every array has the shape (body, motion, scale, restitution, start).
+
+    >>> batch = SpatialBatch((1, 1, 1, 1, 1), {"outcome": np.array([2]), "status": np.array([0])}, "none")
+    >>> batch.overturned.item()
+    1.0
+    """
+
+    shape: tuple[int, int, int, int, int]
+    values: dict[str, np.ndarray] = field(repr=False)  # results by name, one after another; see `rocking.quantities`
+    engine: str  # which engine ran, and how
+    labels: dict[str, list[object]] = field(default_factory=dict, repr=False)  # motions, restitutions, scales
+    refused: dict[int, str] = field(default_factory=dict)  # why a body was refused, by its number
+    provenance: dict[str, Any] = field(default_factory=dict, repr=False)  # bodies, starts, settings as plain values
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Return an array by name, as the engine gives it: in `results` flags are NaN without a result."""
+        return self.values[name].reshape(self.shape)
+
+    def __len__(self) -> int:
+        """Return the number of histories."""
+        return int(np.prod(self.shape))
+
+    @property
+    def outcome(self) -> IntArray:
+        """Codes of `Outcome`."""
+        return self["outcome"]
+
+    @property
+    def status(self) -> IntArray:
+        """Codes of `Status`."""
+        return self["status"]
+
+    @property
+    def overturned(self) -> FloatArray:
+        """1 where it overturned, 0 where it did not, NaN where there is no result."""
+        return overturned(self.outcome)
+
+    @property
+    def still_rocking(self) -> FloatArray:
+        """1 where it stands, but does not yet rest when its history ends, 0 where not, NaN where there is no result."""
+        return of_results(self.outcome, self["still_rocking"])
+
+    @property
+    def results(self) -> dict[str, np.ndarray]:
+        """All results by name, one after another; of flags, no result is neither 1 nor 0."""
+        flags = {"overturned": self.overturned, "still_rocking": self.still_rocking}
+        return self.values | {name: flag.ravel() for name, flag in flags.items()}
+
+    @property
+    def peak_tilt(self) -> FloatArray:
+        """Largest tilt; a quarter turn if it overturned, NaN without result [rad]."""
+        return self["peak_tilt"]
+
+    @property
+    def direction(self) -> FloatArray:
+        """Direction in which it lies, from x towards y; NaN if it does not [rad]."""
+        return self["direction"]
+
+    @property
+    def _stated(self) -> dict[str, Any]:
+        refused = json.dumps({str(number): reason for number, reason in self.refused.items()})
+        return {"software": SOFTWARE, "engine": self.engine, "refused": refused, **self.provenance}
+
+    def exported(self) -> Table:
+        """Return what the tables and files of this batch hold: one row a history, with units and provenance."""
+        places = dict(zip(DIMENSIONS, np.unravel_index(np.arange(len(self)), self.shape), strict=True))
+        rows = {name: Column(places[name], "1", f"number of the {name}") for name in ("body", "motion", "start")}
+        for column, name in (("motion_name", "motion"), ("restitution", "restitution")):
+            labels = np.array([str(label) for label in self.labels[name]])
+            rows[column] = Column(labels[places[name]], "", f"name of the {name}")
+        rows["scale"] = Column(np.array(self.labels["scale"], dtype=np.float64)[places["scale"]], "1", "factor")
+        rows |= {name: Column.of(name, values) for name, values in self.results.items()}
+        return Table("history", rows, self._stated, no_unit="-")
+
+    def to_xarray(self) -> "xr.Dataset":
+        """Return the results over body, motion, scale, restitution and start, with units and provenance."""
+        xarray = extra("xarray", "a labelled dataset")
+        data = {
+            name: (DIMENSIONS, values.reshape(self.shape), attributes(name)) for name, values in self.results.items()
+        }
+        dataset: xr.Dataset = xarray.Dataset(
+            data, coords={name: (name, row) for name, row in self.labels.items()}, attrs=self._stated
+        )
+        return dataset
+
+
+def batch_in_space(  # noqa: PLR0913, PLR0917 - what the front door hands on
+    bodies: Any,
+    motions: Any = None,
+    restitution: Any = "housner-3d",
+    scales: Any = 1.0,
+    start: SpatialStart | Sequence[SpatialStart] | None = None,
+    settings: Settings | None = None,
+    duration: float | None = None,
+    engine: str = "auto",
+    threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> SpatialBatch:
+    """Return the outcome of every combination of bodies, motions, scales, restitutions and starts in space.
+
+    motions: tuples of components; scales: factors on them [-]; duration: how long to follow the bodies [s]; the
+    reference engine takes thousands of times as long as the compiled one.
+    """
+    settings = settings or Settings(mechanics="space, many")
+    several, refused = _bodies(bodies)
+    motion_list = _listed("motions", motions)
+    grounds, names = _grounds(motion_list, duration)
+    laws = [batch_law(each) for each in _listed("restitution", restitution)]
+    factors = np.atleast_1d(checks.real_array("scales", scales))
+    starts = [SpatialStart()] if start is None else _listed("start", start)
+    if factors.ndim != 1 or not factors.size or not all(isinstance(s, SpatialStart) for s in starts):
+        raise InvalidValueError("scales must be one number or a row of them, and start one or more SpatialStart")
+    for motion in motion_list:
+        plausibility.warn(plausibility.of_scaled(_components(motion), factors))
+    check_progress(progress)
+    shape = (len(several), len(grounds), factors.size, len(laws), len(starts))
+    horizons = np.array([[_horizon(body, each, duration, settings.gravity) for each in grounds] for body in several])
+    table = RowTable(shape, factors, laws, starts, horizons)
+    if fast_engine.chosen(engine) == "fast":
+        values, used = fast_engine.run_compiled(several, grounds, table, settings, threads, progress)
+    else:
+        values, used = _run_reference(several, grounds, table, settings, progress)
+    labels: dict[str, list[object]] = {
+        "motion": list(names), "scale": factors.tolist(), "restitution": [law.label for law in laws]
+    }  # fmt: skip
+    source = _provenance(several, motion_list, starts, settings, duration)
+    return SpatialBatch(shape, values, used, labels, refused, source)
+
+
+def _horizon(body: SpatialBody | None, ground: SpatialGround, duration: float | None, gravity: float) -> float:
+    if body is None:
+        return 0.0
+    if duration is not None:
+        return max(duration, ground.end)
+    return ground.end if ground.count else _LONG / body.frequency(gravity)
+
+
+def _listed(name: str, values: Any) -> list[Any]:
+    several = list(values) if isinstance(values, (list, np.ndarray)) else [values]
+    if not several:
+        raise InvalidValueError(f"{name} must be at least one, got none")
+    return several
+
+
+def _components(motion: Any) -> Sequence[Any]:
+    return motion if isinstance(motion, tuple) else (motion,)
+
+
+def _bodies(bodies: Any) -> tuple[list[SpatialBody | None], dict[int, str]]:
+    several: list[SpatialBody | None] = []
+    refused: dict[int, str] = {}
+    for number, body in enumerate(bodies if isinstance(bodies, Sequence) and not isinstance(bodies, str) else [bodies]):
+        try:
+            several.append(SpatialBody.of(body))
+        except RockingError as error:
+            several.append(None)
+            refused[number] = str(error)
+    if not several:
+        raise InvalidValueError("bodies must be at least one, got none")
+    return several, refused
+
+
+def _grounds(motions: list[Any], duration: float | None) -> tuple[list[SpatialGround], list[str]]:
+    until = np.inf if duration is None else checks.positive("duration", duration, "s")
+    grounds, names = [], []
+    for motion in motions:
+        components = tuple(_components(motion))
+        if len(components) > 3:
+            raise InvalidValueError(f"a motion has at most three components, x, y and vertical, got {len(components)}")
+        grounds.append(joined(components, until))
+        names.append(", ".join("none" if part is None else part.name for part in components))
+    return grounds, names
+
+
+def _run_reference(
+    bodies: Bodies, grounds: Sequence[SpatialGround], table: RowTable, settings: Settings, progress: Progress
+) -> tuple[Results, str]:
+    """Return the results of all rows by the reference engine."""
+    results, counts = fast_engine.empty_results(len(table))
+    own = Settings(
+        settings.gravity, rest_speed=settings.rest_speed, most_events=settings.most_events, mechanics="space"
+    )
+    for k in range(len(table)):
+        (numbers,), ((body, motion, _),) = table.piece(k, k + 1)
+        law = table.laws[int(np.unravel_index(k, table.shape)[3])]
+        results[k], counts[k] = _one(bodies[body], grounds[motion], law.law or law.label, numbers, own)
+        if progress is not None:
+            progress(1)
+    return fast_engine.named(results, counts), "reference, row by row"
+
+
+def _one(
+    body: SpatialBody | None, ground: SpatialGround, law: Any, row: FloatArray, settings: Settings
+) -> tuple[FloatArray, list[int]]:
+    refused = np.full(len(fast_engine.FLOATS), math.nan), [Outcome.FAILED.code, Status.INVALID.code, -1, -1, *[0] * 5]
+    if body is None or not (np.abs(row) <= 1e9).all():
+        return refused
+    scaled = SpatialGround(ground.times, row[1] * ground.coefficients)
+    try:
+        history = SpatialReference(body, scaled, law_of(law, body), settings).run(row[3:7], row[7:10], float(row[2]))
+    except RockingError:
+        return refused
+    return results_of(history)
+
+
+def results_of(history: SpatialTrajectory) -> tuple[FloatArray, list[int]]:
+    """Return a history of the reference engine as a row of a batch: floats, NaN without result, and whole numbers."""
+    last, events = history.pieces[-1], history.events
+    failed, over = history.outcome is Outcome.FAILED, history.outcome is Outcome.OVERTURNED
+    first = events[0].time if events else math.nan
+    ends = [np.linalg.norm(piece.at(np.array([0.0, piece.until]))[1], axis=1).max() for piece in history.pieces]
+    direction = float(attitude.azimuth(last.at(np.array([last.until]))[0][0])) if over else math.nan
+    lost = sum(event.before - event.after for event in history.impacts)
+    results = np.array([
+        history.peak_tilt, history.peak_time, math.nan if failed else float(max(ends)), history.overturning_time,
+        direction, first, last.end, history.held, lost,
+    ])  # fmt: skip
+    contact = history.fell_over
+    number = -1 if contact is None or not contact.points else contact.points[0]
+    uplifts = sum(event.kind is SpatialEventKind.UPLIFT for event in events)
+    still = history.outcome is Outcome.ROCKED and last.contact.mode is not ContactMode.REST
+    counts = [history.outcome.code, history.status.code, -1 if contact is None else contact.mode.code, number]
+    return results, [*counts, len(history.impacts), uplifts, len(events), len(history.pieces), int(still)]
+
+
+def _provenance(
+    bodies: Bodies, motions: list[Any], starts: list[SpatialStart], settings: Settings, duration: float | None
+) -> dict[str, Any]:
+    """Return of what a batch was computed, beside its labels; bodies and starts as JSON, and a digest of all bodies.
+
+    >>> facts = _provenance([SpatialBody.box(1.0, 1.0, 4.0)], [None], [SpatialStart()], Settings(), None)
+    >>> facts["duration_s"], len(json.loads(facts["bodies"]))
+    ('to the end of the motion', 1)
+    """
+    spelled = json.dumps([None if body is None else _numbers(body) for body in bodies])
+    leaning = [[s.tilt, s.azimuth, s.yaw, *np.ravel(s.angular_velocity).tolist()] for s in starts if s.valid]
+    return {
+        "duration_s": "to the end of the motion" if duration is None else float(duration),
+        **{f"setting_{name}": value for name, value in settings.stated.items()},
+        "motions": json.dumps([[motion_provenance(part) for part in _components(motion)] for motion in motions]),
+        "starts": json.dumps(leaning),
+        **({"bodies": spelled} if len(bodies) <= _FEW else {}),
+        "bodies_sha256": hashlib.sha256(spelled.encode()).hexdigest(),
+    }
+
+
+def _numbers(body: SpatialBody) -> dict[str, Any]:
+    return {
+        "mass_kg": body.mass,
+        "centre_m": body.centre.tolist(),
+        "inertia_kg_m2": np.ravel(body.inertia).tolist(),
+        "base_m": np.ravel(body.base).tolist(),
+    }

@@ -1,0 +1,318 @@
+"""The compiled engine in space: bodies, motions and laws as the tables that it takes, and its results by name."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics import compiled
+from rocking.dynamics.settings import Settings
+from rocking.dynamics.space.attitude import SpatialStart
+from rocking.dynamics.space.body import SpatialBody
+from rocking.dynamics.space.ground import SpatialGround
+from rocking.dynamics.space.impact_laws import FixedSpatial, ModelLaw, SpatialImpactLaw, law_of
+from rocking.errors import InvalidValueError, MissingExtraError
+from rocking.restitution.space.impulse_position import HIGHEST, impulse_position
+
+PIECE = 1 << 15
+"""Histories handed to the engine at a time: memory beside the results does not grow with their number."""
+
+MOST_CORNERS = 64
+"""Most vertices of a base that the compiled engine takes."""
+
+FLOATS = (
+    "peak_tilt", "peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "end_time", "held", "lost",
+)  # fmt: skip
+WHOLES = ("outcome", "status", "over_contact", "over_number", "impacts", "uplifts", "events", "steps", "still_rocking")
+
+CODES = {"housner-3d": 0, "horizontal-momentum-3d": 1, "ked-3d": 3, "ked-3d-point": 4}
+"""Laws without a number of their own."""
+
+STEP = np.dtype([
+    ("time", "f8"), ("kind", "f8"), ("contact", "f8"), ("number", "f8"), ("before", "f8"), ("after", "f8"),
+    ("rotation", "f8", (3, 3)), ("velocity", "f8", (3,)),
+])  # fmt: skip
+"""Fields: [s]; -1 for the end of a step, else uplift 0, impact 1, change 2, rest 3; code of the contact; number of its
+edge or vertex; kinetic energies [J]; body axes to axes of the ground [-]; angular velocity in body axes [rad/s]."""
+
+Bodies = Sequence[SpatialBody | None]
+Results = dict[str, np.ndarray]
+Progress = Callable[[int], None] | None
+
+_FIXED = 2
+_MOMENTS = 117  # of a vertex or an edge for what ked-3d-point needs: 9, 27 and 81
+_ROUNDING = 1e-9
+_NOT_BUILT = (
+    "the batch engine in space was not built: it takes a C++17 compiler when rocking is installed (in a checkout, "
+    "`make engine`)"
+)
+
+
+@cache
+def _module() -> ModuleType | None:
+    try:
+        from rocking.dynamics import _spatial
+    except ImportError:
+        return None
+    return _spatial
+
+
+def available() -> bool:
+    """Return whether the compiled engine is there; if not, the reference engine serves row by row."""
+    return _module() is not None
+
+
+def module() -> ModuleType:
+    """Return the compiled module."""
+    found = _module()
+    if found is None:
+        raise MissingExtraError(f'{_NOT_BUILT}; engine="reference" gives the same results, slowly')
+    return found
+
+
+def chosen(asked: str) -> str:
+    """Return which engine will run, and say so if it is not the one that users expect."""
+    engine = compiled.chosen_engine(asked, _module(), f"{_NOT_BUILT}; the reference engine runs instead, row by row")
+    if engine == "fast":
+        module()
+    return engine
+
+
+def instruction_set() -> str:
+    """Return what the compiled engine will use."""
+    return compiled.chosen_instruction_set(list(module().instruction_sets()))
+
+
+@dataclass(frozen=True)
+class BatchLaw:
+    """An impact law as the compiled engine knows it: by number."""
+
+    law: SpatialImpactLaw | None  # what the reference engine takes; None where the body decides it
+    label: str  # its name, or its coefficient
+    code: int  # its number in the compiled engine
+    coefficient: float = 0.0  # r of a fixed coefficient, otherwise 0 [-]
+
+
+def batch_law(restitution: Any) -> BatchLaw:
+    """Return an impact law of a batch."""
+    law = law_of(restitution)
+    if isinstance(law, ModelLaw) and law.model.needs_solid and law.label in CODES:
+        return BatchLaw(None, law.label, CODES[law.label])
+    if isinstance(law, FixedSpatial):
+        return BatchLaw(law, law.label, _FIXED, law.coefficient)
+    if law.label in CODES and type(law).__module__.startswith("rocking."):
+        return BatchLaw(law, law.label, CODES[law.label])
+    raise InvalidValueError(
+        f"restitution in a batch must be one of {', '.join(CODES)}, or a coefficient in [0, 1], got {law.label!r:.60}; "
+        "one history, by simulate, takes any law"
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class RowTable:
+    """The rows of a batch: every combination of bodies, motions, scales, restitutions and starts."""
+
+    shape: tuple[int, int, int, int, int]  # numbers of bodies, motions, scales, restitutions and starts
+    scales: FloatArray  # factors on the motions [-]
+    laws: Sequence[BatchLaw]
+    starts: Sequence[SpatialStart]
+    horizons: FloatArray  # how long to follow each body [s]; shape (bodies, motions)
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return int(np.prod(self.shape))
+
+    def piece(self, first: int, last: int) -> tuple[FloatArray, IntArray]:
+        """Return some rows as the engine takes them.
+
+        Numbers are coefficient, scale, horizon, attitude and angular velocity in body axes, NaN for a start that is
+        none (shape (n, 10)); choices are body, motion and law (shape (n, 3)).
+        """
+        body, motion, scale, law, start = np.unravel_index(np.arange(first, last), self.shape)
+        none = np.full(7, np.nan)
+        states = [np.concatenate([s.quaternion, s.body_velocity]) if s.valid else none for s in self.starts]
+        numbers = np.empty((last - first, 10))
+        numbers[:, 0] = np.array([each.coefficient for each in self.laws])[law]
+        numbers[:, 1] = self.scales[scale]
+        numbers[:, 2] = self.horizons[body, motion]
+        numbers[:, 3:] = np.array(states)[start]
+        codes = np.array([each.code for each in self.laws], np.int64)
+        return numbers, np.column_stack([body, motion, codes[law]]).astype(np.int64)
+
+
+def run_compiled(
+    bodies: Bodies,
+    grounds: Sequence[SpatialGround],
+    table: RowTable,
+    settings: Settings,
+    threads: int | None,
+    progress: Progress,
+) -> tuple[Results, str]:
+    """Return the results of all rows, and which engine gave them."""
+    compiled.check_threads(threads)
+    stock = _stock(bodies, grounds, table, settings.gravity)
+    results, counts = empty_results(len(table))
+    limits = {"threads": threads or compiled.processors(), **_limits(settings)}
+    for first in range(0, len(table), PIECE):
+        last = min(first + PIECE, len(table))
+        stock.run(*table.piece(first, last), results[first:last], counts[first:last], **limits)
+        if progress is not None:
+            progress(last - first)
+    used = f"fast ({instruction_set()}; Taylor, order up to 16, tolerance {settings.tolerance:g})"
+    return named(results, counts), used
+
+
+def steps_of(
+    body: SpatialBody,
+    ground: SpatialGround,
+    horizon: float,
+    restitution: Any = "housner-3d",
+    *,
+    scale: float = 1.0,
+    start: SpatialStart | None = None,
+    settings: Settings | None = None,
+) -> np.ndarray:
+    """Return the steps and events of a history as the compiled engine computes it in any batch, bit for bit.
+
+    horizon: how long to follow the body [s]; scale: factor on the motion [-]. Fields of `STEP`, in order of time.
+    """
+    settings = settings or Settings(mechanics="space, many")
+    laws, starts, horizons = [batch_law(restitution)], [start or SpatialStart()], np.array([[horizon]])
+    table = RowTable((1, 1, 1, 1, 1), np.array([scale]), laws, starts, horizons)
+    stock = _stock([body], [ground], table, settings.gravity)
+    rows: FloatArray = stock.trace(*table.piece(0, 1), *empty_results(1), **_limits(settings))
+    return rows.view(STEP)[:, 0]
+
+
+def empty_results(count: int) -> tuple[FloatArray, IntArray]:
+    """Return room for the floats and the whole numbers of some rows; NaN is no result."""
+    return np.full((count, len(FLOATS)), np.nan), np.empty((count, len(WHOLES)), np.int64)
+
+
+def named(results: FloatArray, counts: IntArray) -> Results:
+    """Return the columns of the tables of results by name."""
+    columns: Results = {name: np.ascontiguousarray(counts[:, k]) for k, name in enumerate(WHOLES)}
+    return columns | {name: np.ascontiguousarray(results[:, k]) for k, name in enumerate(FLOATS)}
+
+
+def _stock(bodies: Bodies, grounds: Sequence[SpatialGround], table: RowTable, gravity: float) -> Any:
+    """Return bodies and motions as the compiled engine keeps them."""
+    codes = {law.code for law in table.laws}
+    numbers, corners, vertices = _body_table(bodies, gravity)
+    moments = _moment_table(bodies) if CODES["ked-3d-point"] in codes else np.zeros(0)
+    places, positions = _position_table(bodies if CODES["ked-3d"] in codes else [None] * len(bodies))
+    degree, motions, times, accelerations = _motion_table(grounds)
+    return module().Stock(
+        numbers, np.column_stack([corners, places]), vertices, moments, positions,
+        degree, motions, times, accelerations, instruction_set(),
+    )  # fmt: skip
+
+
+def _limits(settings: Settings) -> dict[str, Any]:
+    return {
+        "gravity": settings.gravity, "rest_speed": settings.rest_speed, "tolerance": settings.tolerance,
+        "longest": settings.longest_step, "most_events": settings.most_events,
+    }  # fmt: skip
+
+
+def _body_table(bodies: Bodies, gravity: float) -> tuple[FloatArray, IntArray, FloatArray]:
+    """Return bodies as numbers.
+
+    Mass, frequency, size, lift, radius, centre, inertia; NaN where there is no body (shape (n, 17)). First vertex and
+    number of vertices, none for a round base (shape (n, 2)). Vertices of all of them [m] (shape (m, 2)).
+    """
+    numbers, corners = np.full((len(bodies), 17), np.nan), np.zeros((len(bodies), 2), np.int64)
+    points: list[FloatArray] = []
+    used = 0
+    for k, body in enumerate(bodies):
+        if body is None:
+            continue
+        count = len(body.vertices)
+        if count > MOST_CORNERS:
+            raise InvalidValueError(
+                f"a base must have at most {MOST_CORNERS} vertices in a batch, got {count}; a round base is a radius, "
+                'and engine="reference" takes any number'
+            )
+        scalars = (body.mass, body.frequency(gravity), body.size, body.lift, body.radius)
+        numbers[k] = np.concatenate([scalars, body.centre, body.inertia.ravel()])
+        corners[k] = used, count
+        points.append(body.vertices[:, :2])
+        used += count
+    vertices = np.concatenate(points) if points else np.zeros((0, 2))
+    return numbers, corners, np.ascontiguousarray(vertices)
+
+
+def _moment_table(bodies: Bodies) -> FloatArray:
+    """Return the moments of the mass that ked-3d-point needs, for every vertex and then every edge of every body.
+
+    117 numbers each; NaN for a body whose distribution of mass is not known [kg, kg m, kg m2].
+    """
+    if any(body is not None and body.round for body in bodies):
+        raise InvalidValueError(
+            "ked-3d-point on a round base lands on any point of its rim: no moments there; take ked-3d, or "
+            'engine="reference" takes it'
+        )
+    rows = [_moments(body) for body in bodies if body is not None]
+    return np.concatenate(rows) if rows else np.zeros(0)
+
+
+def _moments(body: SpatialBody) -> FloatArray:
+    from rocking.bodies.solid import Corner, Edge
+    from rocking.restitution.space.integrals import kept_moments
+
+    if body.matter is None:
+        return np.full(2 * len(body.vertices) * _MOMENTS, np.nan)
+    solid, origin = body.matter.placed
+    places = body.vertices - origin
+    places[np.abs(places[:, 2]) <= _ROUNDING * solid.size, 2] = 0.0
+    edges = [Edge(place, along) for place, along in zip(places, body.edges, strict=True)]
+    landings: list[Corner | Edge] = [*map(Corner, places), *edges]
+    moments = [kept_moments(solid, onto) for onto in landings]
+    return np.concatenate([part.ravel() for each in moments for part in (each.second, each.third, each.fourth)])
+
+
+def _position_table(bodies: Bodies) -> tuple[IntArray, FloatArray]:
+    """Return where the impulse of a landing of the whole base acts, which ked-3d needs.
+
+    First interval and number of intervals, none for a body whose distribution of mass is not known (shape (n, 2)).
+    First and last azimuth of an interval [rad], and the coefficients of k over it [-] (shape (m, 3 + HIGHEST)).
+    """
+    places = np.zeros((len(bodies), 2), np.int64)
+    rows: list[list[float]] = []
+    for number, body in enumerate(bodies):
+        if body is None or body.matter is None:
+            continue
+        position = impulse_position(body.matter.placed[0])
+        places[number] = len(rows), len(position.breaks) - 1
+        for k, ends in enumerate(pairwise(position.breaks)):
+            row = [*ends, *position.piece(k)]
+            rows.append(row + [0.0] * (HIGHEST + 3 - len(row)))
+    return places, np.array(rows).reshape(-1, HIGHEST + 3)
+
+
+def _motion_table(grounds: Sequence[SpatialGround]) -> tuple[int, IntArray, FloatArray, FloatArray]:
+    """Return motions as numbers.
+
+    Degree of all of them: 1 or 7. First time, first acceleration, number of stretches (shape (n, 3)). Ends of the
+    stretches of all of them [s]. Accelerations by motion, stretch, power and axis [m/s2].
+    """
+    most = max(ground.coefficients.shape[2] for ground in grounds) - 1
+    if most > 7:
+        raise InvalidValueError(f"motions must be polynomials of degree at most 7, got {most}; sample them")
+    degree = 1 if most <= 1 else 7
+    places = np.zeros((len(grounds), 3), np.int64)
+    times, rows = [], []
+    at, first = 0, 0
+    for k, ground in enumerate(grounds):
+        row = np.zeros((ground.count, degree + 1, 3))
+        row[:, : ground.coefficients.shape[2]] = ground.coefficients.transpose(0, 2, 1)
+        places[k] = at, first, ground.count
+        at, first = at + len(ground.times), first + row.size
+        times.append(ground.times)
+        rows.append(row.ravel())
+    return degree, places, np.concatenate(times), np.concatenate(rows)
