@@ -20,7 +20,7 @@ COSINE = math.cos(math.atan(0.25)) ** 2
 def impact(open_page: Callable[..., Any]) -> Any:
     """Open the Impact view of the first body."""
     page = open_page(view="impact")
-    page.get_by_test_id("balance").wait_for()
+    page.get_by_test_id("ledger").wait_for()
     return page
 
 
@@ -82,13 +82,13 @@ def test_impulse_positions_stand_where_they_are_said_to_be(impact: Any) -> None:
 
 def test_the_energy_ledger_starts_whole_and_loses_twice(impact: Any) -> None:
     """Stage 1 leaves cos2-like 16/17 of the energy of a block of h/b 4; bars get shorter, the last loses nothing."""
-    words = impact.get_by_test_id("balance").get_attribute("aria-label")
+    words = impact.get_by_test_id("ledger").get_attribute("aria-label")
     shares = [float(each.split("\u202f")[0].split()[-1]) for each in words.split(":")[1].split(",")]
     # Horizontal part of a rotation about a corner: (4/3) h^2 of (4/3) (h^2 + b^2).
     assert shares[1] == pytest.approx(100.0 * 16.0 / 17.0, abs=0.05)
     assert shares[0] == 100.0
     assert shares[0] > shares[1] > shares[2] == shares[3]
-    widths = [each.bounding_box()["width"] for each in impact.get_by_test_id("balance").locator(".bar-kept").all()]
+    widths = [each.bounding_box()["width"] for each in impact.get_by_test_id("ledger").locator(".bar-kept").all()]
     assert widths[1] / widths[0] == pytest.approx(16.0 / 17.0, abs=0.005)
 
 
@@ -108,7 +108,7 @@ def test_sides_that_differ_can_be_chosen(open_page: Callable[..., Any]) -> None:
     inputs = {"body": {"units": "m", "trapezoid": {"base": 1.0, "top": 0.6, "height": 3.0, "lean": 0.3}}}
     text = base64.urlsafe_b64encode(json.dumps(inputs).encode()).decode().rstrip("=")
     page = open_page(f"in={text}&view=impact")
-    page.get_by_test_id("balance").wait_for()
+    page.get_by_test_id("ledger").wait_for()
     right = float(rows(page)["Housner"][0])
     page.get_by_role("radio", name="left foot").check()
     assert float(rows(page)["Housner"][0]) != pytest.approx(right, abs=1e-3)
@@ -118,7 +118,7 @@ def test_sides_that_differ_can_be_chosen(open_page: Callable[..., Any]) -> None:
 def test_a_squat_body_is_warned_of_in_words(open_page: Callable[..., Any], shot: Callable[..., Any]) -> None:
     """Far outside the measured slenderness there are sentences, and none for a body within it."""
     usual = open_page(view="impact")
-    usual.get_by_test_id("balance").wait_for()
+    usual.get_by_test_id("ledger").wait_for()
     assert usual.get_by_test_id("impact-warnings").locator(".note").count() == 0
     squat = open_page("view=impact&in=eyJib2R5Ijp7InVuaXRzIjoibSIsIndpZHRoIjoyLCJoZWlnaHQiOjEuNn19")
     squat.get_by_test_id("impact-warnings").locator(".note").first.wait_for()
@@ -142,7 +142,7 @@ def test_pictures_and_tables_are_saved(impact: Any) -> None:
 def test_phone(open_page: Callable[..., Any], shot: Callable[..., Any]) -> None:
     """At 360 px all pictures keep to the window and their words to the pictures."""
     page = open_page(view="impact", viewport={"width": 360, "height": 740}, color_scheme="dark")
-    page.get_by_test_id("balance").wait_for()
+    page.get_by_test_id("ledger").wait_for()
     cut = page.evaluate(
         "[...document.querySelectorAll('#view-impact svg text')].filter(each => {"
         " const box = each.getBoundingClientRect(); return box.width && (box.left < 0 || box.right > innerWidth); })"
@@ -190,7 +190,7 @@ def test_an_error_does_not_outlast_its_cause(open_page: Callable[..., Any]) -> N
     page.unroute("**/api/impact")
     page.locator("#tab-body").click()
     page.locator("#tab-impact").click()
-    page.get_by_test_id("balance").wait_for()
+    page.get_by_test_id("ledger").wait_for()
     expect(page.get_by_test_id("impact-refusal")).to_be_empty()
 
 

@@ -14,8 +14,8 @@ from rocking.restitution.space import (
     SpatialFlag,
     SpatialKed,
     impact_in_space,
-    impulse_position,
 )
+from rocking.restitution.space.impulse_position import impulse_position
 
 UP = np.array([0.0, 0.0, 1.0])
 BENT = rk.Section.from_points([(0, 0), (1.0, 0), (0.9, 2.2), (0.5, 2.6), (0.2, 1.4)])

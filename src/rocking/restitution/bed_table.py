@@ -66,14 +66,7 @@ DAMPED: Final = (0.001, 0.001, 0.0015, 0.002)
 
 
 def stated_error(points: int, damping: float, flatness: FloatArray | float) -> FloatArray:
-    """Return the stated error of the table.
-
-    damping: damping ratio, inside the table [-]; flatness: of the bodies, as in `BedTable` [-]. Returns largest
-    difference in r, of the shape of the flatness [-].
-
-    >>> stated_error(41, 0.7, [0.1, 0.38]).tolist()
-    [0.002, 0.013]
-    """
+    """Return the stated error of the table."""
     band = np.searchsorted(BANDS, damping, side="right") - 1
     errors = DAMPED if band == len(BANDS) - 1 else STATED_ERRORS[points][int(band)]
     return np.asarray(errors)[np.searchsorted(SQUATNESS, flatness, side="right") - 1]
@@ -90,11 +83,7 @@ class BedTable:
     positions: FloatArray  # kappa by point count, flatness, offset, damping and hardness [-]
 
     def plane(self, points: int, damping: FloatArray | float, hardness: FloatArray | float) -> FloatArray:
-        """Return the positions of one bed, or of one a body.
-
-        damping, hardness: inside their ranges [-]. Returns by flatness and offset, and by body where there are several
-        [-].
-        """
+        """Return the positions of one bed, or of one a body."""
         i, along = _between(self._logarithms[0], each(math.log, damping))
         j, across = _between(self._logarithms[1], each(math.log, hardness))
         beds = self.positions[POINTS.index(points)]
@@ -107,10 +96,7 @@ class BedTable:
         return each(math.log, self.damping), each(math.log, self.hardness)
 
     def position(self, plane: FloatArray, flatness: FloatArray, offset: FloatArray) -> FloatArray:
-        """Return the positions for bodies; those outside the table are given the value at its edge.
-
-        plane: from `plane` [-]; flatness, offset: of the bodies, of one shape [-]. Returns kappa, of that shape [-].
-        """
+        """Return the positions for bodies; those outside the table are given the value at its edge."""
         i, across = _between(self.flatness, flatness)
         j, along = _between(self.offset, offset)
         own = (np.arange(plane.shape[2]),) if plane.ndim == 3 else ()
@@ -125,10 +111,7 @@ class BedTable:
 
 
 def nodes() -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return the nodes of the table.
-
-    Returns as in `BedTable` [-].
-    """
+    """Return the nodes of the table."""
     return (
         # flatter bodies almost stop on two points, where r is not smooth
         np.linspace(0.005, 0.45, 15)[:13],

@@ -133,20 +133,7 @@ class ContactBedModel(InertiaModel):
         return inside and HARDNESS[0] <= self.hardness <= HARDNESS[1]
 
     def evaluate(self, body: Body, onto: Foot = "right") -> BedRestitution:
-        """Return the coefficient of a body with its flags and where it comes from.
-
-        Parameters
-        ----------
-        body : Body
-            The body.
-        onto : {"left", "right"}
-            The foot on which it lands.
-
-        Returns
-        -------
-        BedRestitution
-            Coefficient, raw value, flags, source and its stated error.
-        """
+        """Return the coefficient of a body with its flags and where it comes from."""
         found = super().evaluate(body, onto)
         geometry = ImpactGeometry.of_body(body, onto)
         read = bool(self._read(geometry))
@@ -156,18 +143,7 @@ class ContactBedModel(InertiaModel):
         return BedRestitution(found.model, found.raw, found.coefficient, found.flags, source, error)
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Angular momentum about the place of the impulse, and no more energy after than before.
-
-        Parameters
-        ----------
-        geometry : ImpactGeometry
-            Levers and inertia.
-
-        Returns
-        -------
-        ndarray
-            Coefficients, negative where the body stops [-].
-        """
+        """Angular momentum about the place of the impulse, and no more energy after than before."""
         read = self._read(geometry)
         r = self._from_table(geometry) if bool(read.any()) else np.empty_like(geometry.base_gyration)
         if not bool(read.all()):

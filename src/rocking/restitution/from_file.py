@@ -27,10 +27,7 @@ def file_of(word: str) -> str | None:
 
 
 def model_in_file(word: str, path: Path | None = None) -> RestitutionModel:
-    """Return the model that a word names; its class goes by the hash of the file, and its source with it.
-
-    Returns it can be pickled: another process, or machine, makes it of the same source without the file.
-    """
+    """Return the model that a word names; its class goes by the hash of the file, and its source with it."""
     found = _WORD.fullmatch(word)
     file = Path(file_of(word) or word) if path is None else path
     try:

@@ -61,8 +61,6 @@ def ring_integral(ring: FloatArray) -> float:
 
     By Green's theorem it is a quarter of the integral of y^4 d(phi) along the boundary, phi the polar angle: an
     elementary integral for every straight edge.
-
-    ring: vertices about the new foot [m]; counter-clockwise counts positive. Returns the integral [m4].
     """
     start, end = ring, np.roll(ring, -1, axis=0)
     length = np.sqrt(np.square(end - start).sum(axis=1))

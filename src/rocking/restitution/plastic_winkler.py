@@ -118,9 +118,6 @@ def land(kappa: float, back: float, stretches: FloatArray) -> Landing:
     The state is (v, omega, Int v dt, Int omega dt): a point x of the base descends while omega x > v, and is pushed
     with k_w times its indentation as long. Where the edge v / omega of the pressure passes an end of a stretch, the
     equations have a kink: there the integration stops and begins anew.
-
-    kappa: m b_new^2 / (I_C + m h^2) [-]; back: lever of the old foot [-]; stretches: where the base touches, from the
-    old foot (-back) to the new one (1) [-].
     """
     bed = _Bed(kappa, stretches)
     state: _State = (-back, 1.0, 0.0, 0.0)

@@ -67,9 +67,6 @@ class ShiftedImpulse(InertiaModel):
 
 
 def shifted(geometry: ImpactGeometry, k: FloatArray) -> FloatArray:
-    """Return the coefficients for arrays of impulse positions.
-
-    k: positions of the impulse; broadcast against the geometry [-]. Returns coefficients [-].
-    """
+    """Return the coefficients for arrays of impulse positions."""
     arm, gyration = k * geometry.new_lever, geometry.base_gyration
     return np.asarray((gyration - arm * geometry.old_lever) / (gyration + arm * geometry.new_lever))  # Eq. 3

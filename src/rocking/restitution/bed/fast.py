@@ -30,10 +30,7 @@ def available() -> bool:
 
 
 def one(setup: Setup, most_steps: int = MOST_STEPS) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
-    """Compute one impact with its history.
-
-    Returns columns `RESULTS`, `COUNTS`, `SAMPLES`; forces of the points at the samples [N]; contacts (point, on, off).
-    """
+    """Compute one impact with its history."""
     module = _module()
     assert module is not None
     results, counts = np.zeros((1, len(RESULTS))), np.zeros((1, len(COUNTS)), dtype=np.int64)
@@ -51,10 +48,7 @@ def one(setup: Setup, most_steps: int = MOST_STEPS) -> tuple[FloatArray, IntArra
 
 
 def many(setups: Sequence[Setup], threads: int) -> tuple[FloatArray, IntArray]:
-    """Compute many impacts; no row sees another, so that threads do not change a bit.
-
-    Returns columns `RESULTS` and `COUNTS`, a row an impact.
-    """
+    """Compute many impacts; no row sees another, so that threads do not change a bit."""
     module = _module()
     assert module is not None
     firsts: dict[int, int] = {}

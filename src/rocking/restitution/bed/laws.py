@@ -86,11 +86,7 @@ def force(law: LawNumbers, depth: FloatArray, speed: FloatArray, deepest: FloatA
 
 
 def stored(law: LawNumbers, depth: FloatArray, deepest: FloatArray) -> FloatArray:
-    """Return the elastic energy of one copy of a law.
-
-    depth: depths of the points [m]; deepest: greatest depths so far [m]. Returns energy that unloading would return
-    [J].
-    """
+    """Return the elastic energy of one copy of a law."""
     pressed = np.maximum(depth, 0.0)
     if law.kind is LawKind.PLASTIC:
         if law.rebound == 0.0:
@@ -101,21 +97,14 @@ def stored(law: LawNumbers, depth: FloatArray, deepest: FloatArray) -> FloatArra
 
 
 def depth_under(law: LawNumbers, load: float) -> float:
-    """Return how deep a static load presses one copy of a law.
-
-    load: force on it [N]. Returns Depth; zero for a law without stiffness [m].
-    """
+    """Return how deep a static load presses one copy of a law."""
     if law.stiffness == 0.0:
         return 0.0
     return float((max(load, 0.0) / law.stiffness) ** (1.0 / law.exponent))
 
 
 def depth_absorbing(law: LawNumbers, copies: float, energy: float, speed: float) -> float:
-    """Return how deep the law goes to take up an energy at a steady speed: the scale of depths of an impact.
-
-    copies: copies of it that work side by side [-]; energy: energy of the impact [J]; speed: landing speed [m/s].
-    Returns depth [m].
-    """
+    """Return how deep the law goes to take up an energy at a steady speed: the scale of depths of an impact."""
     order = law.exponent + 1.0
     candidates = []
     if law.stiffness > 0.0:

@@ -32,10 +32,7 @@ class Field:
         self.slip = 0
 
     def points(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return depths, their rates and the forces of all points.
-
-        Returns [m], [m/s], [N].
-        """
+        """Return depths, their rates and the forces of all points."""
         at, heights = self.bed.positions, self.bed.heights
         if self.bed.kinematics == "small":
             depth, rate = -(x[Y] - at * x[THETA] + heights), -(x[W] - at * x[OMEGA])
@@ -47,10 +44,7 @@ class Field:
         return depth, rate, value
 
     def forces(self, x: FloatArray) -> tuple[FloatArray, float, float]:
-        """Return accelerations, shear force and normal force.
-
-        Returns shear, normal: along and across the ground [N].
-        """
+        """Return accelerations, shear force and normal force."""
         _, _, value = self.points(x)
         r, g, a = self.setup.rigid, self.setup.gravity, self.setup.push
         m, h, normal = r.mass, r.height, float(value.sum())
@@ -98,10 +92,7 @@ class Field:
         return float(((value - spring) * rate)[depth > 0.0].sum())
 
     def energy(self, x: FloatArray) -> tuple[float, float]:
-        """Return mechanical and elastic energy.
-
-        Returns [J].
-        """
+        """Return mechanical and elastic energy."""
         r = self.setup.rigid
         m, h, u = r.mass, r.height, x[U] + r.height * x[OMEGA]
         kinetic = 0.5 * m * (u * u + x[W] ** 2) + 0.5 * r.inertia * x[OMEGA] ** 2
@@ -124,11 +115,7 @@ class Field:
 def one(
     setup: Setup, method: Method = "DOP853", tolerance: float | None = None
 ) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
-    """Compute one impact with its history.
-
-    tolerance: relative error of a step, by default a thousandth of the setup's [-]. Returns as `fast.one`; contacts
-    between the samples, which are not located.
-    """
+    """Compute one impact with its history."""
     from scipy.integrate import solve_ivp
 
     integrate: Any = solve_ivp  # its stubs know no callable objects

@@ -24,18 +24,12 @@ class RigidRocking:
 
     @classmethod
     def of_body(cls, body: Body, bed: ContactBed, gravity: float) -> "RigidRocking":
-        """Return the rigid rocking of a body.
-
-        gravity: vertical acceleration [m/s2].
-        """
+        """Return the rigid rocking of a body."""
         moments = body.local_moments
         return cls(moments.mass, moments.polar, moments.y, gravity, bed)
 
     def pivot(self, rotation: float) -> int:
-        """Return the point that touches at a rotation.
-
-        rotation: theta, positive when the new foot is the pivot [rad].
-        """
+        """Return the point that touches at a rotation."""
         return int(np.argmax(self._lifts(rotation)))
 
     def lift(self, rotation: float) -> float:
@@ -66,10 +60,7 @@ class RigidRocking:
         return float(self.inertia + self.mass * (self.height**2 + self.bed.positions[point] ** 2))
 
     def support(self, rotation: float, velocity: float) -> float:
-        """Return the force on the pivot while the body rocks.
-
-        rotation, velocity: theta [rad] and its rate [rad/s]. Returns vertical force [N].
-        """
+        """Return the force on the pivot while the body rocks."""
         point = self.pivot(rotation)
         s, h = float(self.bed.positions[point]), self.height
         small = self.bed.kinematics == "small"

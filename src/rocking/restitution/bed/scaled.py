@@ -57,10 +57,7 @@ class ScaledImpact:
 
 
 def resolved_coefficients(impacts: Sequence[ScaledImpact], *, threads: int = 1) -> FloatArray:
-    """Return coefficients of restitution resolved in time.
-
-    Returns theta_dot_after / theta_dot_before, by the next peak [-].
-    """
+    """Return coefficients of restitution resolved in time."""
     setups = [impact.setup for impact in impacts]
     r = np.full(len(setups), np.nan)
     # a chattering point can use up its steps: another step tolerance takes another way through

@@ -4,16 +4,12 @@ from rocking.restitution.space.energies import UnitEnergies, lost_density, unit_
 from rocking.restitution.space.horizontal_momentum import SpatialHorizontalMomentum
 from rocking.restitution.space.housner import SpatialHousner
 from rocking.restitution.space.impact import LeaningImpact, RigidImpact, SpatialImpact
-from rocking.restitution.space.impulse_position import ImpulsePosition, impulse_position
-from rocking.restitution.space.integrals import KeptMoments, kept_moments
 from rocking.restitution.space.interface import edge_coefficient, impact_in_space, spatial_model, spatial_models
 from rocking.restitution.space.ked import SpatialKedPoint, energy_left
 from rocking.restitution.space.ked_impulse import SpatialKed
 from rocking.restitution.space.model import SpatialFlag, SpatialModel, SpatialRestitution
 
 __all__ = [
-    "ImpulsePosition",
-    "KeptMoments",
     "LeaningImpact",
     "RigidImpact",
     "SpatialFlag",
@@ -28,8 +24,6 @@ __all__ = [
     "edge_coefficient",
     "energy_left",
     "impact_in_space",
-    "impulse_position",
-    "kept_moments",
     "lost_density",
     "spatial_model",
     "spatial_models",

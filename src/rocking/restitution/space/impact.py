@@ -94,21 +94,6 @@ class RigidImpact(ABC):
         """Kinetic energy of the horizontal velocities, what stage 1 of KED leaves [J]."""
         return self._energy(self.level)
 
-    def velocities(self, points: FloatArray) -> FloatArray:
-        """Return the velocities of points of the body before the impact.
-
-        Parameters
-        ----------
-        points : ndarray, shape (n, 3)
-            Points relative to the landing point [m].
-
-        Returns
-        -------
-        ndarray, shape (n, 3)
-            Velocities [m/s].
-        """
-        return times(points, self.spin.T) + self.landing_velocity
-
     @cached_property
     def _second(self) -> FloatArray:
         return self.moments.second_about(np.zeros(3))
@@ -132,23 +117,13 @@ class RigidImpact(ABC):
 
 
 def skew(vector: FloatArray) -> FloatArray:
-    """Return the matrix of a vector product from the left.
-
-    Returns K with ``K s = vector x s``.
-
-    >>> applied(skew(np.array([0.0, 0.0, 2.0])), np.array([1.0, 0.0, 0.0])).tolist()
-    [0.0, 2.0, 0.0]
-    """
+    """Return the matrix of a vector product from the left."""
     x, y, z = vector.tolist()
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def solved(inertia: FloatArray, momentum: FloatArray) -> FloatArray:
-    """Return the angular velocity that has a given angular momentum.
-
-    inertia: inertia tensor about the fixed point [kg m2]; momentum: angular momentum about it [kg m2/s]. Returns
-    angular velocity [rad/s].
-    """
+    """Return the angular velocity that has a given angular momentum."""
     return solution(inertia, momentum)
 
 

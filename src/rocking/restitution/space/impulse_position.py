@@ -29,15 +29,7 @@ _ARCS = 8
 class ImpulsePosition:
     """Position k of a landing of the whole base, for every direction in which a solid may land.
 
-    Parameters
-    ----------
-    solid : Solid
-        The body.
-
-    Attributes
-    ----------
-    breaks : list of float
-        Azimuths at which a foot changes, in order, the last one a turn after the first [rad].
+    `breaks` are the azimuths at which a foot changes, in order, the last one a turn after the first [rad].
     """
 
     def __init__(self, solid: Solid) -> None:
@@ -46,18 +38,7 @@ class ImpulsePosition:
         self._pieces: dict[int, list[float]] = {}
 
     def at(self, step: FloatArray) -> float:
-        """Return k of the landing in a direction.
-
-        Parameters
-        ----------
-        step : ndarray, shape (2,) or longer
-            From the old pivot to the new one, in the solid's own frame; its length does not matter.
-
-        Returns
-        -------
-        float
-            Of the half distance between the feet, towards the new one; above 1 beyond it [-].
-        """
+        """Return k of the landing in a direction, in the solid's own frame; above 1 beyond the new foot."""
         angle, breaks = math.atan2(float(step[1]), float(step[0])), self.breaks
         if angle < breaks[0]:
             angle += 2.0 * math.pi
@@ -66,36 +47,14 @@ class ImpulsePosition:
         return _value(self.piece(number), (2.0 * angle - low - high) / (high - low))
 
     def piece(self, number: int) -> list[float]:
-        """Return k between two neighbouring azimuths of `breaks`.
-
-        Parameters
-        ----------
-        number : int
-            Of the first of them.
-
-        Returns
-        -------
-        list of float
-            Chebyshev coefficients over the interval [-].
-        """
+        """Return Chebyshev coefficients of k between azimuth `number` of `breaks` and the next."""
         if number not in self._pieces:
             low, high = self.breaks[number : number + 2]
             self._pieces[number] = self._fitted(0.5 * (low + high), 0.5 * (high - low))
         return self._pieces[number]
 
     def exact(self, angle: float) -> float:
-        """Return k of the landing in a direction, straight from the integrals over the mass.
-
-        Parameters
-        ----------
-        angle : float
-            Azimuth of the direction, from x towards y [rad].
-
-        Returns
-        -------
-        float
-            As of `at`.
-        """
+        """Return k of the landing at an azimuth from x towards y [rad], straight from the integrals over the mass."""
         found, x, y = self.solid.local_moments, math.cos(angle), math.sin(angle)
         edge = np.array([-y, x, 0.0])
         new, old = (_reach(self.solid, sign * x, sign * y) for sign in (1.0, -1.0))
@@ -135,18 +94,6 @@ class ImpulsePosition:
 def impulse_position(solid: Solid) -> ImpulsePosition:
     """Return where the impulse of a landing of the whole base acts, kept for the solid.
 
-    Parameters
-    ----------
-    solid : Solid
-        The body.
-
-    Returns
-    -------
-    ImpulsePosition
-        k by direction.
-
-    Examples
-    --------
     >>> from rocking.bodies.solid import box
     >>> position = impulse_position(Solid(box(1.0, 1.0, 4.0)))
     >>> round(position.at(np.array([1.0, 0.0])), 9)

@@ -1,4 +1,19 @@
-"""Integrals over the mass of a solid that are homogeneous about the place it lands on."""
+"""Integrals over the mass of a solid that are homogeneous about the place it lands on.
+
+A product of features of degrees i and j about the landing point, divided by a squared length, is homogeneous; over the
+volume it is a sum over the surface (`samples`). About an edge and upright the one integral of the plane, Eq. 17 of
+Mao et al. 2024, is exact for extrusions along it.
+
+What stage 2 of KED keeps are moments that serve every velocity and every vertical. Stage 1 leaves the velocities
+``v = u + W s``, with s from the landing point, ``u = P c``, ``W = P [omega x]``, c the velocity of the landing point
+and P the projection onto the ground. Stage 2 keeps ``Q v`` of every mass point: ``Q = 1 - d d^T`` about a corner, d
+along s, and ``Q = a a^T`` about an edge e, a along e x s. Twice the energy left is
+``u_i u_j K_ij + 2 u_i W_jk K_ijk + W_ik W_jl K_ijkl`` with ``K = Int Q (x) (1, s, s s) dm``. The attitude of the body
+enters through P alone, so that the integrals are done once for every landing place.
+
+Kept are not the tensors but what they consist of: v along the direction that stage 2 removes, or allows, is
+``(linear . A u + quadratic . B W)/length``, with the components of s and their products; one symmetric matrix of those.
+"""
 
 import math
 from collections.abc import Callable
@@ -26,8 +41,6 @@ def line_moment(solid: Solid, edge: Edge) -> float:
     """Return ``Int z^4/(t^2 + z^2) dm`` about a line, the numerator of Eq. 17 (Mao et al. 2024) in space.
 
     For extrusions along the line it is the exact integral of the polygon times the length.
-
-    edge: the line on the ground, in the body's frame [m]. Returns the integral [kg m2].
     """
     return _line_moment(solid, *edge.point.tolist(), *edge.direction.tolist())
 
@@ -43,10 +56,7 @@ def _line_moment(solid: Solid, x: float, y: float, z: float, *direction: float) 
 
 
 def extruded_moment(part: Part, point: FloatArray, edge: FloatArray) -> float | None:
-    """Return the exact integral of a part that is extruded along the line; None for any other.
-
-    point, edge: A point of the line [m], and the unit vector along it [-]. Returns ``Int z^4/(t^2 + z^2) dm`` [kg m2].
-    """
+    """Return the exact integral of a part that is extruded along the line; None for any other."""
     prism = part.shape
     if not isinstance(prism, Prism) or not np.abs(np.cross(part.rotation[:, 2], edge)).max() <= _ALONG:
         return None
@@ -68,27 +78,18 @@ def _line_moment_part(part: Part, point: FloatArray, edge: FloatArray) -> float:
 
 
 def distance_to(edge: FloatArray) -> Distance:
-    """Return the function that measures distances to a line through the origin.
-
-    edge: unit vector along it [-]. Returns takes points (n, 3) and returns their distances [m].
-    """
+    """Return the function that measures distances to a line through the origin."""
     return lambda s: np.linalg.norm(np.cross(edge, s), axis=1)
 
 
 def norm(s: FloatArray) -> FloatArray:
-    """Return the distances of points from the origin.
-
-    s: points [m]. Returns distances [m].
-    """
+    """Return the distances of points from the origin."""
     norms: FloatArray = np.linalg.norm(s, axis=1)
     return norms
 
 
 def of_part(part: Part, point: FloatArray, features: Features, graded: tuple[Distance, Distance | None]) -> FloatArray:
-    """Return ``Int f f^T dm`` over a part: the sum of ``f f^T (s . dA)/(k + 3)``, degree k entry by entry.
-
-    point: the point about which the features are homogeneous [m].
-    """
+    """Return ``Int f f^T dm`` over a part: the sum of ``f f^T (s . dA)/(k + 3)``, degree k entry by entry."""
     distance, bound = graded
     shape, shift = part.shape, part.translation - point
     negligible = (_NEGLIGIBLE if isinstance(shape, Polyhedron) else _NEGLIGIBLE_ROUND) * shape.moments().mass
@@ -110,29 +111,16 @@ def _height_squared(s: FloatArray) -> FloatArray:
 
 _UP = np.array([0.0, 0.0, 1.0])
 _PAIRS = np.array([(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)])
-_CACHED = 256
 
 
 @dataclass(frozen=True, eq=False)
 class KeptMoments:
-    """Moments of the mass points with what stage 2 of KED keeps of their velocities.
+    """Moments of the mass points with what stage 2 of KED keeps of their velocities."""
 
-    Parameters
-    ----------
-    form : ndarray, shape (n + m, n + m)
-        Integrals of the products of n quadratic and m linear features over the squared length [kg m2 and kg m, kg].
-    directions : ndarray, shape (m, 3)
-        A: the directions of the linear features [-].
-    products : ndarray, shape (n, m, 3)
-        How each linear feature times s is made of the quadratic ones [-].
-    whole : tuple of float and two ndarray, optional
-        Mass, first and second moments about the landing point, from which the form is removed [kg, kg m, kg m2];
-        without, the form is what stays.
-    """
-
-    form: FloatArray
-    directions: FloatArray
-    products: FloatArray
+    form: FloatArray  # products of n quadratic and m linear features over the squared length; shape (n + m, n + m)
+    directions: FloatArray  # A: the directions of the linear features [-]; shape (m, 3)
+    products: FloatArray  # how each linear feature times s is made of the quadratic ones [-]; shape (n, m, 3)
+    # mass, first and second moments about the landing point, from which the form is removed; without, it is what stays
     whole: tuple[float, FloatArray, FloatArray] | None
 
     @property
@@ -166,38 +154,12 @@ class KeptMoments:
         return factors
 
     def coefficients(self, drift: FloatArray, gradient: FloatArray) -> FloatArray:
-        """Return what a field of velocities is made of, in the features of the form.
-
-        Parameters
-        ----------
-        drift : ndarray, shape (3,)
-            u [m/s].
-        gradient : ndarray, shape (3, 3)
-            W [1/s].
-
-        Returns
-        -------
-        ndarray, shape (n + m,)
-            Quadratic coefficients [1/s], then linear ones [m/s].
-        """
+        """Return a field of velocities u [m/s] + W s, W [1/s], in the features of the form, quadratic ones first."""
         quadratic = applied(self._factors.reshape(-1, 9), gradient.ravel())
         return np.concatenate([quadratic, applied(self.directions, drift)])
 
     def energy_left(self, drift: FloatArray, gradient: FloatArray) -> float:
-        """Return the kinetic energy of what stage 2 keeps of the velocities ``u + W s``.
-
-        Parameters
-        ----------
-        drift : ndarray, shape (3,)
-            u [m/s].
-        gradient : ndarray, shape (3, 3)
-            W [1/s].
-
-        Returns
-        -------
-        float
-            T'' [J].
-        """
+        """Return the kinetic energy of what stage 2 keeps of the velocities ``u + W s`` [J]."""
         state = self.coefficients(drift, gradient)
         along = dot(state, applied(self.form, state))  # Eq. 106
         if self.whole is None:
@@ -209,22 +171,8 @@ class KeptMoments:
 
 
 def kept_moments(solid: Solid, onto: Corner | Edge) -> KeptMoments:
-    """Return the moments of what stage 2 of KED keeps about a corner or an edge.
+    """Return the moments of what stage 2 of KED keeps about a corner or an edge in the solid's own frame [m].
 
-    Parameters
-    ----------
-    solid : Solid
-        The body.
-    onto : Corner or Edge
-        What it lands on, in the solid's own frame, whose origin is `Solid.origin` [m].
-
-    Returns
-    -------
-    KeptMoments
-        The moments, about the landing point.
-
-    Examples
-    --------
     About a corner two of three directions stay, so that the trace is twice the mass; about an edge it is the mass.
 
     >>> from rocking.bodies.solid import box
@@ -262,11 +210,7 @@ def _about_line(solid: Solid, x: float, y: float, z: float, *direction: float) -
 
 
 def edge_frame(direction: FloatArray) -> FloatArray:
-    """Return the axes of an edge: along it, level across it, and the third.
-
-    direction: unit vector along the edge, level in the frame of the body [-]. Returns rows e, f = n x e and g = e x f
-    [-].
-    """
+    """Return the axes of an edge as rows: e along it, f = n x e level across it, and g = e x f."""
     across = np.cross(_UP, direction)
     across /= math.sqrt(dot(across, across))
     return np.stack([direction, across, np.cross(direction, across)])

@@ -96,12 +96,9 @@ def _is_plane(impact: RigidImpact, edge: Edge, size: float) -> bool:
 
 
 def stage_velocities(impact: RigidImpact, points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the velocities of mass points before the impact, after stage 1 and after stage 2.
-
-    points: points in the body's frame [m]. Returns velocities [m/s] (shape (n, 3)).
-    """
+    """Return the velocities of mass points before the impact, after stage 1 and after stage 2."""
     arms = points - impact.onto.point
-    before = impact.velocities(arms)
+    before = times(arms, impact.spin.T) + impact.landing_velocity
     level = times(before, impact.level)
     if isinstance(impact.onto, Edge):
         allowed = _unit(np.cross(impact.onto.direction, arms))
