@@ -11,10 +11,7 @@ from rocking.errors import InvalidValueError
 
 
 def hash_of(values: np.ndarray) -> str:
-    """Return the SHA-256 of an array of numbers.
-
-    Returns 64 hexadecimal digits, the same on every machine.
-    """
+    """Return the SHA-256 of an array of numbers; 64 hexadecimal digits, the same on every machine."""
     little = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
     made = hashlib.sha256(str((little.dtype.str, little.shape)).encode())
     made.update(little.view(np.uint8).data)

@@ -126,20 +126,7 @@ class ConstantRestitution(ImpactLaw):
     seed: int = 0
 
     def factor(self, speed: float, stream: int, impact: int) -> float:
-        """Return one.
-
-        Parameters
-        ----------
-        speed : float
-            Not used [rad/s].
-        stream, impact : int
-            Not used.
-
-        Returns
-        -------
-        float
-            1.
-        """
+        """Return one."""
         return 1.0
 
 
@@ -184,20 +171,7 @@ class SpeedRestitution(ImpactLaw):
         object.__setattr__(self, "factors", _factors(self.factors, speeds.size))
 
     def factor(self, speed: float, stream: int, impact: int) -> float:
-        """Return the coefficient at a speed.
-
-        Parameters
-        ----------
-        speed : float
-            Angular velocity before the impact, without its sign [rad/s].
-        stream, impact : int
-            Not used.
-
-        Returns
-        -------
-        float
-            Coefficient or factor [-].
-        """
+        """Return the coefficient at a speed."""
         return interpolated(self.at, self.factors, speed)
 
 
@@ -316,23 +290,7 @@ class DrawnRestitution(ImpactLaw):
         return type(self).__module__.partition(".")[0] == "rocking"
 
     def table(self, onto: Foot | None = None) -> FloatArray:
-        """Return the quantiles for landing on a foot.
-
-        Parameters
-        ----------
-        onto : {"left", "right"}, optional
-            The foot, which a law of two tables needs.
-
-        Returns
-        -------
-        ndarray
-            Quantiles at equally spaced probabilities from 0 to 1 [-].
-
-        Raises
-        ------
-        InvalidValueError
-            If the law depends on the foot and none is given.
-        """
+        """Return the quantiles for landing on a foot, at equally spaced probabilities from 0 to 1 [-]."""
         if self.factors.ndim == 1:
             return np.asarray(self.factors)
         if onto is None:
@@ -340,37 +298,11 @@ class DrawnRestitution(ImpactLaw):
         return np.asarray(self.factors[int(checks.foot("onto", onto) == "left")])
 
     def quantile(self, probability: float, onto: Foot | None = None) -> float:
-        """Return what is not exceeded with a probability.
-
-        Parameters
-        ----------
-        probability : float
-            Probability [-].
-        onto : {"left", "right"}, optional
-            The foot, which a law of two tables needs.
-
-        Returns
-        -------
-        float
-            Coefficient or factor [-].
-        """
+        """Return what is not exceeded with a probability [-]."""
         return interpolated(self.at, self.table(onto), probability)
 
     def share_within(self, most: float, onto: Foot) -> float:
-        """Return the probability of draws up to a bound.
-
-        Parameters
-        ----------
-        most : float
-            The bound [-].
-        onto : {"left", "right"}
-            The foot on which the body lands.
-
-        Returns
-        -------
-        float
-            Probability [-].
-        """
+        """Return the probability of draws up to a bound [-]."""
         table = self.table(onto)
         k = int(np.searchsorted(table, most, side="right"))
         if k in {0, table.size}:
@@ -379,43 +311,11 @@ class DrawnRestitution(ImpactLaw):
         return float(self.at[k - 1] + (self.at[k] - self.at[k - 1]) * part)  # Eq. 42
 
     def factor(self, speed: float, stream: int, impact: int) -> float:
-        """Return the draw for an impact, of a law that is the same for both sides.
-
-        Parameters
-        ----------
-        speed : float
-            Not used [rad/s].
-        stream : int
-            Number of the history.
-        impact : int
-            Impacts that the history has had before; not used where all of them share the draw.
-
-        Returns
-        -------
-        float
-            Coefficient or factor [-].
-        """
+        """Return the draw for an impact, of a law that is the same for both sides."""
         return self.draw(stream, impact)
 
     def draw(self, stream: int, impact: int, onto: Foot | None = None, share: float = 1.0) -> float:
-        """Return the draw for an impact on a foot, from the lowest part of the distribution.
-
-        Parameters
-        ----------
-        stream : int
-            Number of the history.
-        impact : int
-            Impacts that the history has had before; not used where all of them share the draw.
-        onto : {"left", "right"}, optional
-            The foot, which a law of two tables needs.
-        share : float
-            Probability of that part: 1 for the whole distribution [-].
-
-        Returns
-        -------
-        float
-            Coefficient or factor [-].
-        """
+        """Return the draw for an impact on a foot, from the lowest share of the distribution [-]."""
         return self.quantile(share * uniform(self.seed, stream, 0 if self.per_history else impact), onto)  # Eq. 41
 
 

@@ -244,10 +244,7 @@ def _label(law: ImpactLaw, shares: Mapping[Foot, float], base: str) -> str:
 
 
 def coefficients_of(restitution: Any, body: Body) -> tuple[dict[str, float], str]:
-    """Return the coefficients for landing left and right, and what to call them.
-
-    Returns coefficients: by foot [-].
-    """
+    """Return the coefficients for landing left and right, and what to call them [-]."""
     if isinstance(restitution, (str, RestitutionModel)):
         found = model(restitution)
         return {foot: found.coefficient(body, foot) for foot in FEET}, found.label

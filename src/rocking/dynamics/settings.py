@@ -143,10 +143,7 @@ class Settings:
 
 
 def settings_of(gravity: float, options: dict[str, Any]) -> Settings:
-    """Return the settings of a call.
-
-    gravity: acceleration of gravity [m/s2].
-    """
+    """Return the settings of a call."""
     known = {field.name for field in fields(Settings)} - {"mechanics"}
     unknown = sorted(set(options) - known)
     if unknown:

@@ -51,24 +51,15 @@ class PlaneBase:
         return math.hypot(max(self.left, self.right), self.height)
 
     def lever(self, foot: int) -> float:
-        """Return the lever d of a foot.
-
-        Returns below zero for the left foot [m].
-        """
+        """Return the lever d of a foot; below zero for the left foot [m]."""
         return self.right if foot > 0 else -self.left
 
     def slenderness_angle(self, foot: int) -> float:
-        """Return alpha = atan(b / h) of a side.
-
-        Returns the angle [rad].
-        """
+        """Return alpha = atan(b / h) of a side [rad]."""
         return math.atan2(abs(self.lever(foot)), self.height)
 
     def arm(self, foot: int, rotation: float) -> tuple[float, float]:
-        """Return where a foot is, seen from the centre.
-
-        rotation: theta [rad]. Returns to the right and upwards [m].
-        """
+        """Return where a foot is, seen from the centre; to the right and upwards [m] (rotation: theta [rad])."""
         d, sine, cosine = self.lever(foot), math.sin(rotation), math.cos(rotation)
         return d * cosine - self.height * sine, -d * sine - self.height * cosine  # Eq. 58
 

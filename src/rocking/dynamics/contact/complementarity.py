@@ -8,8 +8,8 @@ from itertools import chain, combinations
 from typing import NamedTuple
 
 from rocking.dynamics.contact.base import ContactState, Mode, PlaneBase, along, away
-from rocking.dynamics.contact.event_functions import consistent, margins
-from rocking.dynamics.contact.mode_series import GroundSeries, ModeSeries, course
+from rocking.dynamics.contact.event_functions import consistent, event_functions
+from rocking.dynamics.contact.mode_series import GroundSeries, ModeSeries, mode_series
 from rocking.outcome import Status
 
 TOLERANCE = 1e-12
@@ -44,12 +44,11 @@ class NextMode(NamedTuple):
 def choose(base: PlaneBase, state: ContactState, ground: GroundSeries, friction: float) -> NextMode | Status:
     """Return the mode that follows a state.
 
-    friction: Coulomb's coefficient [-]. Returns the mode; where there is none, or where two of them move the body
-    differently, a status that says so.
+    Returns the mode; where there is none, or where two of them move the body differently, a status that says so.
     """
     weight = weight_of(ground)
-    tried = [(mode, course(base, state, mode, ground, friction, _ORDER)) for mode in candidates(base, state)]
-    possible = [(m, c, margins(base, m, c, friction, weight)) for m, c in tried if c.stiff > 0.0]
+    tried = [(mode, mode_series(base, state, mode, ground, friction, _ORDER)) for mode in candidates(base, state)]
+    possible = [(m, c, event_functions(base, m, c, friction, weight)) for m, c in tried if c.stiff > 0.0]
     for tolerance in _LADDER:
         good = [(m, c) for m, c, found in possible if consistent(found, 1.0, tolerance)]  # Eq. 20
         if good:
@@ -59,15 +58,12 @@ def choose(base: PlaneBase, state: ContactState, ground: GroundSeries, friction:
 
 
 def weight_of(ground: GroundSeries) -> float:
-    """Return the acceleration that contact forces are measured by.
-
-    Returns |g + a_z| + |a_x|, and at least a little [m/s2].
-    """
+    """Return the acceleration that contact forces are measured by; |g + a_z| + |a_x|, and at least a little [m/s2]."""
     return max(abs(ground.lift[0]) + abs(ground.push[0]), 1e-3)
 
 
 def _agree(one: ModeSeries, other: ModeSeries, size: float) -> bool:
-    """Whether two courses start alike, as they do where a margin is just zero."""
+    """Whether two modes start alike, as they do where an event function is just zero."""
     gap = max(
         abs(one.rotation[2] - other.rotation[2]) * size, abs(one.x[2] - other.x[2]), abs(one.rise[2] - other.rise[2])
     )

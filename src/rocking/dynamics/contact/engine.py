@@ -12,7 +12,7 @@ import numpy as np
 
 from rocking.dynamics.contact.base import BOTH, FLIGHT, REST, ContactState, Mode, PlaneBase, away, kept, kinetic
 from rocking.dynamics.contact.complementarity import TOLERANCE, NextMode, choose, weight_of
-from rocking.dynamics.contact.event_functions import Kind, consistent, first_end, margins, stirring
+from rocking.dynamics.contact.event_functions import ModeEnd, consistent, event_functions, excited_stretches, first_end
 from rocking.dynamics.contact.history import Blow, History, Log
 from rocking.dynamics.contact.impact_resolution import (
     GroundContact,
@@ -22,7 +22,7 @@ from rocking.dynamics.contact.impact_resolution import (
     strike,
     strike_with,
 )
-from rocking.dynamics.contact.mode_series import GroundSeries, ModeSeries, course, value
+from rocking.dynamics.contact.mode_series import GroundSeries, ModeSeries, mode_series, value
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import first_fall, shifted
 from rocking.motions.segments import Segments
@@ -36,10 +36,7 @@ _AFTER = 60.0
 
 
 class ContactEngine:
-    """One history.
-
-    segments: the motion [m/s2]; scale: factor on the motion [-].
-    """
+    """One history."""
 
     def __init__(
         self,
@@ -104,14 +101,14 @@ class ContactEngine:
         if self.mode == REST and self._skip():
             return
         ground = self._ground((1.0 - self.tau) * self.step)
-        full = course(self.base, self.state, self.mode, ground, self.law.friction, _ORDER)
+        full = mode_series(self.base, self.state, self.mode, ground, self.law.friction, _ORDER)
         part = self._trusted(full)
         if not part > 0.0:
             self.ended = Status.NOT_FINITE if full.stiff > 0.0 else Status.NO_CONTACT_FORCE
             return
         whole, here = full.shortened(part), ground.shortened(part)
         stretch = whole.unit * self.pace
-        found = margins(self.base, self.mode, whole, self.law.friction, weight_of(here))
+        found = event_functions(self.base, self.mode, whole, self.law.friction, weight_of(here))
         if full.stiff <= 0.0 or not consistent(found, stretch, self.tolerance):
             self._change()
             return
@@ -127,7 +124,7 @@ class ContactEngine:
             self._end(kind, whole, at)
 
     def _trusted(self, full: ModeSeries) -> float:
-        """Part of a course over which its last terms stay below the tolerance."""
+        """Part of a series over which its last terms stay below the tolerance."""
         if not all(np.isfinite(c).all() for c in (full.rotation, full.x, full.rise)):
             return 0.0
         if full.rotation.size <= _ORDER:
@@ -161,15 +158,15 @@ class ContactEngine:
 
     # ---- events -----------------------------------------------------------------------------------------------------
 
-    def _end(self, kind: Kind, whole: ModeSeries, at: float) -> None:
+    def _end(self, kind: ModeEnd, whole: ModeSeries, at: float) -> None:
         """Let a mode end."""
         self._count()
-        if kind is Kind.LYING:
+        if kind is ModeEnd.LYING:
             self.lies, self.ended = True, Status.GOOD
-        elif kind is Kind.LANDING:
+        elif kind is ModeEnd.LANDING:
             self._land(whole, at)
         else:
-            if kind is Kind.STICKING:
+            if kind is ModeEnd.STICKING:
                 self.state = kept(self.base, self.state, self.mode.feet, stick=True)
             self._change()
 
@@ -252,20 +249,20 @@ class ContactEngine:
     def _first_sample(self) -> None:
         if self.ended is None:
             ground = self._ground(self.step)
-            self.latest = course(self.base, self.state, self.mode, ground, self.law.friction, _ORDER)
+            self.latest = mode_series(self.base, self.state, self.mode, ground, self.law.friction, _ORDER)
         self.log.sample(0, self.state, self.mode, self.latest, 0.0)
 
     def _skip(self) -> bool:
         """Rest through stretches that cannot move the body; whether there were any."""
-        if not hasattr(self, "_stirring"):
-            self._stirring = stirring(self.base, self.push, self.lift, self.law.friction)
-        at = int(np.searchsorted(self._stirring, self.stretch))
-        until = int(self._stirring[at]) if at < self._stirring.size else self.count
+        if not hasattr(self, "_excited"):
+            self._excited = excited_stretches(self.base, self.push, self.lift, self.law.friction)
+        at = int(np.searchsorted(self._excited, self.stretch))
+        until = int(self._excited[at]) if at < self._excited.size else self.count
         if until <= self.stretch:
             return False
         while self.stretch < until:
             ground = self._ground((1.0 - self.tau) * self.step)
-            self.latest = course(self.base, self.state, REST, ground, self.law.friction, _ORDER)
+            self.latest = mode_series(self.base, self.state, REST, ground, self.law.friction, _ORDER)
             self.log.pass_through(self._now, self.latest, ground, 1.0, self.law.friction)
             self._move(1.0, self.state, 1.0)
         return True

@@ -20,87 +20,88 @@ _DEPTH = 7
 """Coefficients that are asked for a sign."""
 
 
-class Kind(Enum):
+class ModeEnd(Enum):
     """What ends a mode."""
 
     LANDING = "a foot lands"
-    RELEASE = "a foot carries no more"
+    LOSS_OF_CONTACT = "a foot carries no more"
     SLIPPING = "friction is used up"
     STICKING = "sliding comes to a stop"
     LYING = "the body lies"
 
 
-class Margin(NamedTuple):
+class EventFunction(NamedTuple):
     """A quantity that must not fall below zero."""
 
-    kind: Kind  # what happens where it does
+    kind: ModeEnd  # what happens where it does
     series: FloatArray
     exact: int  # how many leading coefficients carry no rounding, so that their sign counts however small they are
     scale: float  # size that rounding of the others is measured by
 
 
-def margins(base: PlaneBase, mode: Mode, course: ModeSeries, friction: float, weight: float) -> list[Margin]:
+def event_functions(
+    base: PlaneBase, mode: Mode, series: ModeSeries, friction: float, weight: float
+) -> list[EventFunction]:
     """Return what must stay above zero in a mode.
 
-    friction: Coulomb's coefficient [-]; weight: acceleration that forces are measured by, such as g + |a_x| + |a_z|
-    [m/s2].
+    weight: acceleration that forces are measured by, such as g + |a_x| + |a_z| [m/s2].
     """
-    found = [Margin(Kind.RELEASE, normal, 0, weight) for normal in course.normals.values()]
-    per_gap = weight * course.unit**2 / (1.0 if not mode.feet else base.size)
-    found += [Margin(Kind.LANDING, gap, 2, per_gap) for gap in course.gaps.values()]
-    if mode.slip and course.sliding is not None:
-        found.append(Margin(Kind.STICKING, mode.slip * course.sliding, 1, weight * course.unit))
+    found = [EventFunction(ModeEnd.LOSS_OF_CONTACT, normal, 0, weight) for normal in series.normals.values()]
+    per_gap = weight * series.unit**2 / (1.0 if not mode.feet else base.size)
+    found += [EventFunction(ModeEnd.LANDING, gap, 2, per_gap) for gap in series.gaps.values()]
+    if mode.slip and series.sliding is not None:
+        found.append(EventFunction(ModeEnd.STICKING, mode.slip * series.sliding, 1, weight * series.unit))
     elif mode.feet:
-        most = np.asarray(friction * sum(course.normals.values()))
+        most = np.asarray(friction * sum(series.normals.values()))
         scale = weight * (1.0 + friction)
-        found.append(Margin(Kind.SLIPPING, most - course.tangential, 0, scale))  # Eq. 69
-        found.append(Margin(Kind.SLIPPING, most + course.tangential, 0, scale))  # Eq. 69
+        found.append(EventFunction(ModeEnd.SLIPPING, most - series.tangential, 0, scale))  # Eq. 69
+        found.append(EventFunction(ModeEnd.SLIPPING, most + series.tangential, 0, scale))  # Eq. 69
     if mode.feet != BOTH:
-        quarter = padded([0.5 * math.pi], course.rotation.size)
-        found.append(Margin(Kind.LYING, quarter - course.rotation, 2, math.inf))
-        found.append(Margin(Kind.LYING, quarter + course.rotation, 2, math.inf))
+        quarter = padded([0.5 * math.pi], series.rotation.size)
+        found.append(EventFunction(ModeEnd.LYING, quarter - series.rotation, 2, math.inf))
+        found.append(EventFunction(ModeEnd.LYING, quarter + series.rotation, 2, math.inf))
     return found
 
 
-def leading(margin: Margin, stretch: float, tolerance: float) -> int:
-    """Return which coefficient decides the sign of a margin a moment after the start.
+def leading(function: EventFunction, stretch: float, tolerance: float) -> int:
+    """Return which coefficient decides the sign of a function a moment after the start.
 
-    stretch: duration of the course over the natural time of the body, so that all coefficients are measured alike [-];
+    stretch: duration of the series over the natural time of the body, so that all coefficients are measured alike [-];
     tolerance: below it, over the scale, a coefficient counts as zero [-]. Returns its number; -1 where all of them
     vanish.
     """
-    bound = tolerance * margin.scale
-    for k, c in enumerate(margin.series[:_DEPTH].tolist()):
-        size = abs(c) if k < margin.exact else abs(c) - bound * stretch ** (k - margin.exact)
+    bound = tolerance * function.scale
+    for k, c in enumerate(function.series[:_DEPTH].tolist()):
+        size = abs(c) if k < function.exact else abs(c) - bound * stretch ** (k - function.exact)
         if size > 0.0:
             return k
     return -1
 
 
-def consistent(found: list[Margin], stretch: float, tolerance: float) -> bool:
-    """Return whether all margins are above zero, or zero, for a while.
+def consistent(found: list[EventFunction], stretch: float, tolerance: float) -> bool:
+    """Return whether all event functions are above zero, or zero, for a while.
 
-    stretch: duration of the course over the natural time of the body [-]; tolerance: below it a coefficient counts as
+    stretch: duration of the series over the natural time of the body [-]; tolerance: below it a coefficient counts as
     zero [-].
     """
     decisive = ((m, leading(m, stretch, tolerance)) for m in found)
     return all(k < 0 or m.series[k] > 0.0 for m, k in decisive)
 
 
-def first_end(found: list[Margin], stretch: float, tolerance: float) -> tuple[float, Kind] | None:
-    """Return when the first margin falls below zero.
+def first_end(found: list[EventFunction], stretch: float, tolerance: float) -> tuple[float, ModeEnd] | None:
+    """Return when the first function falls below zero.
 
-    stretch: duration of the course over the natural time of the body [-]; tolerance: below it a coefficient counts as
+    stretch: duration of the series over the natural time of the body [-]; tolerance: below it a coefficient counts as
     zero [-]. Returns kind: what happens; None instead of both where nothing does.
     """
-    first: tuple[float, Kind] | None = None
-    for margin in found:
-        k = leading(margin, stretch, tolerance)
+    first: tuple[float, ModeEnd] | None = None
+    for function in found:
+        k = leading(function, stretch, tolerance)
         if k < 0:
             continue
-        at = first_fall(_trimmed(margin.series[k:]))
+        at = first_fall(_trimmed(function.series[k:]))
         if at is not None and (first is None or at < first[0]):
-            first = at, margin.kind
+            first = at, function.kind
     return first
 
 
@@ -109,11 +110,11 @@ def _trimmed(series: FloatArray) -> list[float]:
     return series[: kept[-1] + 1].tolist() if kept.size else [0.0]
 
 
-def stirring(base: PlaneBase, push: FloatArray, lift: FloatArray, friction: float) -> np.ndarray:
+def excited_stretches(base: PlaneBase, push: FloatArray, lift: FloatArray, friction: float) -> np.ndarray:
     """Return the stretches in which a body at rest might be lifted or moved.
 
-    push, lift: coefficients of a_x and g + a_z [m/s2]; friction: Coulomb's coefficient [-]. Returns numbers of the
-    stretches; in all others every margin stays above zero.
+    push, lift: coefficients of a_x and g + a_z [m/s2]. Returns numbers of the stretches; in all others every function
+    stays above zero.
     """
     turn = push * base.height
     # Eq. 69

@@ -24,7 +24,7 @@ class SmoothPiece(NamedTuple):
 
     start: float  # start, duration: when it starts and how long it lasts [s]
     duration: float
-    course: ModeSeries  # its series
+    series: ModeSeries  # its series
     at: float  # where it ends within the series, in (0, 1]
 
 
@@ -59,56 +59,50 @@ class Log:
         """Make room for the samples."""
         self.samples = np.full((self.count + 1, len(SAMPLED)), math.nan)
 
-    def pass_through(self, start: float, course: ModeSeries, ground: GroundSeries, at: float, friction: float) -> None:
-        """Add a piece to the books.
-
-        start: when it starts [s]; friction: Coulomb's coefficient [-].
-        """
-        self.pieces.append(SmoothPiece(start, at * course.unit, course, at))
+    def pass_through(self, start: float, series: ModeSeries, ground: GroundSeries, at: float, friction: float) -> None:
+        """Add a piece to the energy balance."""
+        self.pieces.append(SmoothPiece(start, at * series.unit, series, at))
         lift = np.array(ground.lift)
         lift[0] -= self.gravity
-        along = integral(np.array(ground.push), derivative(course.x), at)
-        up = integral(lift, derivative(course.rise), at)
+        along = integral(np.array(ground.push), derivative(series.x), at)
+        up = integral(lift, derivative(series.rise), at)
         self.work -= along + up  # Eq. 46
-        if course.sliding is not None and course.sliding.any():
-            self.friction_loss -= course.unit * integral(course.tangential, course.sliding, at)
-            self.slid += abs(course.unit * integral(np.ones(1), course.sliding, at))
-        self._raise_peak(course.rotation, at)
-        self._use(course, at, friction)
+        if series.sliding is not None and series.sliding.any():
+            self.friction_loss -= series.unit * integral(series.tangential, series.sliding, at)
+            self.slid += abs(series.unit * integral(np.ones(1), series.sliding, at))
+        self._raise_peak(series.rotation, at)
+        self._use(series, at, friction)
 
     def _raise_peak(self, rotation: FloatArray, at: float) -> None:
         turns = derivative(rotation)
         inside = turning_points(rotation.tolist(), at) if value(turns, 0.0) * value(turns, at) < 0.0 else []
         self.peak = max(self.peak, *(abs(value(rotation, instant)) for instant in (0.0, at, *inside)))
 
-    def _use(self, course: ModeSeries, at: float, friction: float) -> None:
+    def _use(self, series: ModeSeries, at: float, friction: float) -> None:
         for instant in (0.0, at):
-            normal = sum(value(c, instant) for c in course.normals.values())
-            tangential = abs(value(course.tangential, instant))
+            normal = sum(value(c, instant) for c in series.normals.values())
+            tangential = abs(value(series.tangential, instant))
             if tangential > 0.0 and normal > 0.0:
                 self.usage = max(self.usage, tangential / normal / friction if friction else 1.0)  # Eq. 78
 
-    def sample(self, row: int, state: ContactState, mode: Mode, course: ModeSeries | None, at: float) -> None:
+    def sample(self, row: int, state: ContactState, mode: Mode, series: ModeSeries | None, at: float) -> None:
         """Write a sample."""
         if row > self.count:
             return
         forces = [0.0, 0.0, 0.0]
-        if course is not None:
-            normals = [value(course.normals[f], at) if f in course.normals else 0.0 for f in (LEFT, RIGHT)]
-            forces = [value(course.tangential, at), *normals]
-        books = (self.work, self.friction_loss, self.impact_loss, self.slid)
-        self.samples[row] = (*state[:6], *forces, *books, mode.regime.code)
+        if series is not None:
+            normals = [value(series.normals[f], at) if f in series.normals else 0.0 for f in (LEFT, RIGHT)]
+            forces = [value(series.tangential, at), *normals]
+        energies = (self.work, self.friction_loss, self.impact_loss, self.slid)
+        self.samples[row] = (*state[:6], *forces, *energies, mode.regime.code)
 
     def strike(self, blow: Blow) -> None:
-        """Add an impact to the books."""
+        """Add an impact to the energy balance."""
         self.blows.append(blow)
         self.impact_loss += blow.loss
 
     def change(self, time: float, mode: Mode) -> None:
-        """Note that another mode starts.
-
-        time: when [s].
-        """
+        """Note that another mode starts."""
         if self.changes and self.changes[-1][0] == time:
             self.changes.pop()
         if not self.changes or self.changes[-1][1] != mode:
@@ -140,10 +134,7 @@ IMPACT = np.dtype(
 
 
 def regimes_of(history: History, base: PlaneBase) -> np.ndarray:
-    """Return the regimes of a history in order.
-
-    Returns of type `REGIME`; intervals of no duration are left out.
-    """
+    """Return the regimes of a history in order; of type `REGIME`; intervals of no duration are left out."""
     changes = history.log.changes
     ends = [*(time for time, _ in changes[1:]), history.end][: len(changes)]
     rows = [
@@ -183,8 +174,7 @@ def impacts_of(history: History, base: PlaneBase) -> np.ndarray:
 def places_of(history: History, time: FloatArray) -> FloatArray:
     """Return where the body is at some times.
 
-    time: times within it [s]. Returns x [m], rise [m] and theta [rad] along the last axis; at an instant between two
-    pieces the later one counts.
+    Returns x [m], rise [m] and theta [rad] along the last axis; at an instant between two pieces the later one counts.
     """
     pieces = history.log.pieces
     if not pieces:
@@ -194,7 +184,7 @@ def places_of(history: History, time: FloatArray) -> FloatArray:
     numbers = np.clip(np.searchsorted(starts, time, side="right") - 1, 0, len(pieces) - 1)
     for place, k in np.ndenumerate(numbers):
         piece = pieces[int(k)]
-        at = min(max((float(time[place]) - piece.start) / piece.course.unit, 0.0), piece.at)
-        series = (piece.course.x, piece.course.rise, piece.course.rotation)
+        at = min(max((float(time[place]) - piece.start) / piece.series.unit, 0.0), piece.at)
+        series = (piece.series.x, piece.series.rise, piece.series.rotation)
         found[place] = [np.polynomial.polynomial.polyval(at, c) for c in series]
     return found

@@ -65,8 +65,8 @@ class Struck(NamedTuple):
 def strike(base: PlaneBase, state: ContactState, friction: float, bounce: dict[int, float]) -> Struck | Status:
     """Return what an impact does.
 
-    friction: Coulomb's coefficient [-]; bounce: e_N of each foot that touches [-]. Returns the state after it with the
-    impulses; a status where there is no solution, where two of them differ, or where energy would be created.
+    bounce: e_N of each foot that touches [-]. Returns the state after it with the impulses; a status where there is no
+    solution, where two of them differ, or where energy would be created.
     """
     targets = {foot: -bounce[foot] * away(base, state, foot) for foot in state.touching}  # Eq. 70
     speed = largest_speed(base, state)
@@ -180,9 +180,9 @@ _IMPOSED_ROUNDING = 1e-12
 def strike_with(base: PlaneBase, state: ContactState, foot: int, friction: float, r: float) -> Struck | Status | None:
     """Return what a rocking impact does when its coefficient of restitution is imposed.
 
-    friction: Coulomb's coefficient [-]; r: theta_dot_after / theta_dot_before of the impact without slip [-]. Returns
-    the state after it with the impulses; a status where energy would be created; None where an impulse at that place
-    would pull, or press the old foot into the ground.
+    r: theta_dot_after / theta_dot_before of the impact without slip [-]. Returns the state after it with the impulses;
+    a status where energy would be created; None where an impulse at that place would pull, or press the old foot into
+    the ground.
     """
     place = foot * (1.0 - r) * (base.inertia + base.height**2)
     place /= abs(base.lever(-foot)) + r * abs(base.lever(foot))  # Eq. 4

@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, ContactState, Mode, PlaneBase, along, away
-from rocking.dynamics.contact.pivot_motion import turning
+from rocking.dynamics.contact.pivot_motion import pivot_motion
 from rocking.portable import convolved
 
 
@@ -43,8 +43,8 @@ def integral(first: FloatArray, second: FloatArray, at: float) -> float:
 def twice(acceleration: FloatArray, start: float, rate: float, unit: float) -> FloatArray:
     """Return the position that follows from an acceleration.
 
-    acceleration: coefficients over a unit of time [m/s2]; start, rate: position [m] and velocity [m/s] at the start;
-    unit: the unit of time [s]. Returns coefficients of the position, as many [m].
+    acceleration: coefficients over a unit of time [m/s2]; start, rate: position [m] and velocity [m/s] at the start.
+    Returns coefficients of the position, as many [m].
     """
     made = np.zeros(acceleration.size)
     made[0], made[1] = start, rate * unit
@@ -91,10 +91,7 @@ class ModeSeries:
         return ContactState(x, rise, rotation, u, w, spin, touching)
 
     def shortened(self, part: float) -> "ModeSeries":
-        """Return the beginning of the course.
-
-        Returns the same series of a shorter unit.
-        """
+        """Return the beginning of the series, of a shorter unit."""
         if part == 1.0:
             return self
         powers = part ** np.arange(self.rotation.size)
@@ -111,18 +108,15 @@ class ModeSeries:
         )
 
 
-def course(
+def mode_series(
     base: PlaneBase, state: ContactState, mode: Mode, ground: GroundSeries, friction: float, order: int
 ) -> ModeSeries:
-    """Return the course of a body in a mode.
-
-    friction: Coulomb's coefficient [-].
-    """
+    """Return how a body moves in a mode."""
     if not mode.feet:
         return _flight(base, state, ground, order)
     if len(mode.feet) == 2:
         return _flat(base, state, mode, ground, friction)
-    return _turning(base, state, mode, ground, friction, order)
+    return _pivoting(base, state, mode, ground, friction, order)
 
 
 def _flat(base: PlaneBase, state: ContactState, mode: Mode, ground: GroundSeries, friction: float) -> ModeSeries:
@@ -163,14 +157,14 @@ def _flight(base: PlaneBase, state: ContactState, ground: GroundSeries, order: i
     return ModeSeries(ground.unit, rotation, x, rise, np.zeros(size), gaps=gaps)
 
 
-def _turning(
+def _pivoting(
     base: PlaneBase, state: ContactState, mode: Mode, ground: GroundSeries, friction: float, order: int
 ) -> ModeSeries:
     """One foot carries: the other one rises as theta does."""
     (foot,) = mode.feet
     pull = mode.slip * friction if mode.slip else None
     arm = base.arm(foot, state.rotation)
-    found = turning(base.inertia, arm, (state.rotation, state.spin), ground, pull, order)
+    found = pivot_motion(base.inertia, arm, (state.rotation, state.spin), ground, pull, order)
     size = order + 1
     rotation, arm_x, arm_z = (padded(c, size) for c in (found.rotation, found.arm_x, found.arm_z))
     rise = -arm_z

@@ -16,7 +16,7 @@ from typing import NamedTuple
 _SMALLEST = 1e-22
 
 
-class Turning(NamedTuple):
+class PivotSeries(NamedTuple):
     """Series over a unit of time."""
 
     rotation: list[float]  # rotation, arm_x, arm_z: coefficients of theta [rad] and of the arm [m]
@@ -64,21 +64,21 @@ class _Slide:
         return self.found[-1]
 
 
-def turning(
+def pivot_motion(
     inertia: float,
     arm: tuple[float, float],
     motion: tuple[float, float],
     ground: tuple[Sequence[float], Sequence[float], float],
     pull: float | None,
     order: int,
-) -> Turning:
+) -> PivotSeries:
     """Return the series of a body that turns about one foot.
 
     inertia: j = I_C / m [m2]; arm: r_x and r_z at the start [m]; motion: theta [rad] and theta' [rad/s] at the start;
     ground: coefficients of a_x and of g + a_z over the unit of time [m/s2], and that unit [s]; pull: ``sigma mu`` where
     the foot slides; None where it sticks [-].
 
-    >>> found = turning(1.0, (0.0, -1.0), (0.0, 0.0), ([2.0], [10.0], 1.0), None, 2)
+    >>> found = pivot_motion(1.0, (0.0, -1.0), (0.0, 0.0), ([2.0], [10.0], 1.0), None, 2)
     >>> found.rotation  # theta'' = -a_x h / (j + h^2)
     [0.0, 0.0, -0.5]
     """
@@ -98,4 +98,4 @@ def turning(
         small = small + 1 if abs(spin[-1]) <= floor and k >= least else 0
         if small == 3:
             break
-    return Turning(rotation, x, z, law.stiff)
+    return PivotSeries(rotation, x, z, law.stiff)

@@ -83,10 +83,7 @@ def energy_of(response: "ContactResponse") -> ContactEnergy:
 
 
 def forces_of(response: "ContactResponse") -> ContactForces:
-    """Return the forces of a response.
-
-    Returns at its samples, as limits from before.
-    """
+    """Return the forces of a response; at its samples, as limits from before."""
     mass, friction = response.base.mass, response.law.friction
     tangential = response.sampled("tangential")
     left, right = response.sampled("normal_left"), response.sampled("normal_right")
@@ -336,10 +333,7 @@ _IMPACTS = (
 
 
 def columns(response: "ContactResponse") -> dict[str, FloatArray]:
-    """Return the samples of a response by name.
-
-    Returns all of one length, in the order of `SAMPLES`.
-    """
+    """Return the samples of a response by name; all of one length, in the order of `SAMPLES`."""
     energy, forces = response.energy, response.forces
     values = (
         response.time, response.displacement, response.rise, response.rotation, response.horizontal_velocity,
@@ -380,10 +374,7 @@ def provenance(response: "ContactResponse") -> dict[str, Any]:
 
 
 def exported(response: "ContactResponse") -> Table:
-    """Return what the files of a response hold.
-
-    Returns Samples, impacts, intervals of one regime, and provenance.
-    """
+    """Return what the files of a response hold; samples, impacts, intervals of one regime, and provenance."""
     samples = {name: Column.of(name, values) for name, values in columns(response).items()}
     impacts, regimes = response.impacts, response.regimes
     blows = {name: Column.of(name, impacts[name]) for name in _IMPACTS}

@@ -49,10 +49,7 @@ class DenseOutput:
     def of(
         cls, trajectory: Trajectory, segments: Segments, parameters: RockingParameters, settings: Settings, scale: float
     ) -> "DenseOutput":
-        """Return the intervals of a trajectory.
-
-        segments: its motion [m/s2]; scale: factor on the motion [-].
-        """
+        """Return the intervals of a trajectory."""
         time, before, after = _nodes(trajectory, segments.step)
         added = Inside(segments, parameters, settings, scale).added(trajectory, time, before, after)
         if added:
@@ -93,7 +90,7 @@ class DenseOutput:
     def places(self, time: FloatArray) -> IntArray:
         """Return the last interval that is over at each of some times.
 
-        time: times [s]. Returns numbers of intervals; the first one where none is over.
+        Returns numbers of intervals; the first one where none is over.
         """
         return np.maximum(np.searchsorted(self.end, time * (1.0 + 1e-14), side="right") - 1, 0)
 

@@ -40,8 +40,7 @@ class ResponseEnergy:
 def energy_of(dense_output: DenseOutput, time: FloatArray, mass: float, settings: Settings) -> ResponseEnergy:
     """Return the energy of a response.
 
-    time: times of the samples, the first one zero, and of a fall after the last of them [s]; mass: mass of the body
-    [kg].
+    time: times of the samples, the first one zero, and of a fall after the last of them [s].
     """
     kinetic, potential, work, lost = energies(dense_output, mass, settings)
     place = dense_output.places(time[1:])
@@ -63,7 +62,7 @@ def energies(
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return the energy of a response at both ends of its dense_output.
 
-    mass: mass of the body [kg]. Returns as `ResponseEnergy` has them [J] (shape (n, 2)).
+    Returns as `ResponseEnergy` has them [J] (shape (n, 2)).
     """
     unit = (mass * settings.gravity * dense_output.semi_diagonal)[:, None]
     alpha, p = dense_output.alpha[:, None], dense_output.p[:, None]
@@ -109,16 +108,13 @@ class GroundForces:
     def warnings(self, friction: float = 0.5) -> list[str]:
         """Return why pure rocking is not credible, in plain words; empty if it is.
 
-        friction: coefficient of friction between body and ground [-]. Returns loss of contact, and what `slips` says.
+        Returns loss of contact, and what `slips` says.
         """
         slips = self.slips(friction)
         return [f"the ground would have to pull: {LEAVES}; {_FOLLOWS}", *slips] if self.loses_contact else slips
 
     def slips(self, friction: float = 0.5) -> list[str]:
-        """Return why feet that do not slip are not credible, in plain words; empty if they are.
-
-        friction: coefficient of friction between body and ground [-].
-        """
+        """Return why feet that do not slip are not credible, in plain words; empty if they are."""
         friction = checks.positive("friction", friction)
         found = []
         if not self.loses_contact and self.friction_of_motion > friction:
@@ -161,8 +157,8 @@ def contact_of(
 def forces(dense_output: DenseOutput, gravity: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the forces of the ground at both ends of the intervals of a response.
 
-    gravity: acceleration of gravity [m/s2]. Returns horizontal, vertical: over the mass [N/kg] (shape (n, 2)); demand:
-    friction that rocking without slip takes; infinite where the ground would have to pull [-] (shape (n, 2)).
+    Returns horizontal, vertical: over the mass [N/kg] (shape (n, 2)); demand: friction that rocking without slip takes;
+    infinite where the ground would have to pull [-] (shape (n, 2)).
     """
     side = dense_output.side[:, None]
     f_x, f_z = equations.reactions(

@@ -23,8 +23,7 @@ def angular_acceleration(
 ) -> FloatArray:
     """Return the angular acceleration of the body.
 
-    rotation: theta [rad]; alpha: slenderness angle of that side [rad]; p: frequency parameter of that side [rad/s];
-    push: a_x / g [-]; weight: 1 + a_z / g [-]. Returns theta'' [rad/s2].
+    rotation: theta [rad]; push: a_x / g [-]; weight: 1 + a_z / g [-]. Returns theta'' [rad/s2].
 
     >>> angular_acceleration(0.0, 1, 0.2, 2.0, -0.3, linear=True).round(12).item()
     0.4
@@ -37,8 +36,7 @@ def angular_acceleration(
 def holding_moment(side: Any, alpha: Any, push: Any, weight: Any = 1.0, *, linear: bool = False) -> FloatArray:
     """Return the moment that keeps a body at rest from turning about a foot, over m g R; it lifts where this is < 0.
 
-    alpha: slenderness angle of that side [rad]; push: a_x / g [-]; weight: 1 + a_z / g [-]. Returns ``(1 + a_z / g)
-    sin(alpha) + s (a_x / g) cos(alpha)`` [-].
+    push: a_x / g [-]; weight: 1 + a_z / g [-]. Returns ``(1 + a_z / g) sin(alpha) + s (a_x / g) cos(alpha)`` [-].
 
     >>> import numpy as np
     >>> round(holding_moment(-1, np.arctan(0.25), 0.25).item(), 12)
@@ -51,8 +49,8 @@ def holding_moment(side: Any, alpha: Any, push: Any, weight: Any = 1.0, *, linea
 def energy(rotation: Any, angular_velocity: Any, alpha: Any, p: Any, *, linear: bool = False) -> FloatArray:
     """Return kinetic and potential energy above rest, over m g R.
 
-    rotation: theta or its size [rad]; angular_velocity: theta' [rad/s]; alpha: slenderness angle of the side [rad]; p:
-    frequency parameter of the side [rad/s]. Returns ``theta'^2 / (2 p^2) + cos(alpha - |theta|) - cos(alpha)`` [-].
+    rotation: theta or its size [rad]; angular_velocity: theta' [rad/s]. Returns ``theta'^2 / (2 p^2) + cos(alpha -
+    |theta|) - cos(alpha)`` [-].
     """
     size, angle = np.abs(rotation), np.asarray(alpha)
     kinetic = 0.5 * np.square(np.asarray(angular_velocity) / p)
@@ -63,10 +61,7 @@ def energy(rotation: Any, angular_velocity: Any, alpha: Any, p: Any, *, linear: 
 
 
 def energy_at_top(alpha: Any, *, linear: bool = False) -> FloatArray:
-    """Return the energy that a body needs to pass over its foot, over m g R.
-
-    alpha: slenderness angle of the side [rad]. Returns ``1 - cos(alpha)`` [-].
-    """
+    """Return the energy that a body needs to pass over its foot, over m g R; ``1 - cos(alpha)`` [-]."""
     angle = np.asarray(alpha)
     return np.asarray(0.5 * np.square(angle) if linear else 2.0 * np.square(np.sin(0.5 * angle)))  # Eq. 31
 
@@ -74,8 +69,7 @@ def energy_at_top(alpha: Any, *, linear: bool = False) -> FloatArray:
 def turning_rotation(energy_over_mgr: Any, alpha: Any, *, linear: bool = False) -> FloatArray:
     """Return the rotation at which a freely rocking body turns round.
 
-    energy_over_mgr: energy above rest, over m g R, not above that at the top [-]; alpha: slenderness angle of the side
-    [rad]. Returns |theta| [rad].
+    energy_over_mgr: energy above rest, over m g R, not above that at the top [-]. Returns |theta| [rad].
 
     >>> round(turning_rotation(energy(0.05, 0.0, 0.2, 3.0), 0.2).item(), 12)
     0.05
@@ -97,9 +91,9 @@ def reactions(  # noqa: PLR0917 - the state of body and ground, in the order of 
 ) -> tuple[FloatArray, FloatArray]:
     """Return the force of the ground on a rocking body, per unit mass.
 
-    rotation, angular_velocity, acceleration: theta [rad], theta' [rad/s], theta'' [rad/s2]; alpha: slenderness angle of
-    that side [rad]; semi_diagonal: R of that side [m]; horizontal: a_x [m/s2]; vertical: g + a_z [m/s2]. Returns
-    horizontal force, and vertical force which must stay above zero [N/kg].
+    rotation, angular_velocity, acceleration: theta [rad], theta' [rad/s], theta'' [rad/s2]; semi_diagonal: R of that
+    side [m]; horizontal: a_x [m/s2]; vertical: g + a_z [m/s2]. Returns horizontal force, and vertical force which must
+    stay above zero [N/kg].
     """
     psi = np.asarray(alpha) - np.asarray(side) * rotation
     outward = np.asarray(side) * acceleration  # |theta|''

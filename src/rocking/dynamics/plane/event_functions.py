@@ -51,10 +51,7 @@ class RestoringMoments:
         return moment
 
     def held(self, sign: int, stretch: int, tau: float) -> float:
-        """Return the holding moment on a side, over m g R.
-
-        Returns above zero where the body is held [-].
-        """
+        """Return the holding moment on a side, over m g R; above zero where the body is held [-]."""
         return value(self.moments[sign][stretch].tolist(), tau)
 
     def next_uplift(self, stretch: int, tau: float) -> tuple[int, float, int] | None:

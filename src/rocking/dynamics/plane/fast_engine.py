@@ -188,7 +188,7 @@ def run(
 ) -> Trajectory:
     """Return one history by the engine that was asked for; the fast one gives the bits that it gives within a batch.
 
-    segments: the motion [m/s2]; scale: factor on it [-]; rotation, velocity: theta [rad] and theta' [rad/s] at time 0.
+    rotation, velocity: theta [rad] and theta' [rad/s] at time 0.
     """
     taken = chosen(engine, parameters.law)
     if engine != "reference" and settings.order != _ORDER:

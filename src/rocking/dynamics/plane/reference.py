@@ -30,10 +30,7 @@ class _Ended(NamedTuple):
 
 
 class Reference:
-    """One history.
-
-    segments: the motion [m/s2]; scale: factor on the motion [-].
-    """
+    """One history."""
 
     def __init__(
         self,

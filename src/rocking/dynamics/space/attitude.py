@@ -57,17 +57,14 @@ def turn(axis: FloatArray | list[float], angle: float) -> FloatArray:
 def product(left: FloatArray, right: FloatArray) -> FloatArray:
     """Return the rotation `right` followed by the rotation `left`, both in axes of the ground.
 
-    left, right: unit quaternions [-]. Returns their Hamilton product [-].
+    Returns their Hamilton product [-].
     """
     scalar = left[0] * right[0] - dot(left[1:], right[1:])  # Eq. 80
     return np.concatenate([[scalar], left[0] * right[1:] + right[0] * left[1:] + cross(left[1:], right[1:])])
 
 
 def normalised(quaternion: FloatArray) -> FloatArray:
-    """Return a quaternion of unit length.
-
-    quaternion: not zero [-]. Returns of unit length [-].
-    """
+    """Return a quaternion with unit length."""
     return np.asarray(quaternion / norm(quaternion))
 
 
@@ -82,7 +79,7 @@ def flat(quaternion: FloatArray) -> FloatArray:
 def levelled(quaternion: FloatArray, axis: FloatArray) -> FloatArray:
     """Return an attitude turned by the least angle so that an axis of the body is horizontal.
 
-    quaternion: attitude [-]; axis: unit vector in body axes, nearly horizontal [-]. Returns attitude [-].
+    axis: unit vector in body axes, nearly horizontal [-]. Returns attitude [-].
     """
     direction = applied(matrix(quaternion), axis)
     rise = float(direction[2])
@@ -95,9 +92,7 @@ def levelled(quaternion: FloatArray, axis: FloatArray) -> FloatArray:
 
 
 def tilt(quaternion: FloatArray) -> FloatArray:
-    """Return the angles between the axis of the body and the vertical.
-
-    quaternion: attitudes [-]. Returns Tilt, from 0 to pi [rad].
+    """Return the tilts: angles between the axis of the body and the vertical, from 0 to pi [rad].
 
     >>> round(float(tilt(turn([1.0, 1.0, 0.0], 0.3))), 12)
     0.3
@@ -109,7 +104,7 @@ def tilt(quaternion: FloatArray) -> FloatArray:
 def azimuth(quaternion: FloatArray) -> FloatArray:
     """Return the directions in which bodies lean: of the horizontal part of their axis.
 
-    quaternion: attitudes [-]. Returns from x towards y, in (-pi, pi]; zero for a body that does not lean [rad].
+    Returns from x towards y, in (-pi, pi]; zero for a body that does not lean [rad].
     """
     s, x, y, z = np.moveaxis(quaternion, -1, 0)
     return each(math.atan2, y * z - s * x, x * z + s * y)  # Eq. 82

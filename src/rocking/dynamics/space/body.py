@@ -56,10 +56,7 @@ class Matter:
 
     @classmethod
     def of_solid(cls, solid: Solid, shift: FloatArray) -> "Matter":
-        """Return the matter of a solid.
-
-        shift: origin of the body's axes in the coordinates of the solid [m].
-        """
+        """Return the matter of a solid (shift: origin of the body's axes in the coordinates of the solid [m])."""
         return cls(partial(_same, solid), shift)
 
 

@@ -144,9 +144,8 @@ def forces(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the angular acceleration on a contact and the forces of the ground.
 
-    velocity: angular velocity, in body axes [rad/s]; up: vertical in body axes [-]; field: gravity less the
-    acceleration of the ground, in body axes [m/s2]. Returns acceleration: Angular, in body axes [rad/s2] (shape (3,));
-    supports: as of `supports` of the contact [N].
+    field: gravity less the acceleration of the ground, in body axes [m/s2]. Returns acceleration: Angular, in body axes
+    [rad/s2] (shape (3,)); supports: as of `supports` of the contact [N].
     """
     arm, inertia = body.centre - contact.pivot, body.inertia_about(contact.pivot)
     rate: FloatArray

@@ -85,7 +85,7 @@ def supports(
 def touching_point(body: SpatialBody, contact: ContactSet, up: FloatArray) -> FloatArray:
     """Return the point of the body that is on the ground.
 
-    up: vertical in body axes [-]. Returns the pivot; of a rolling body the lowest point of its rim, in body axes [m].
+    Returns the pivot; of a rolling body the lowest point of its rim, in body axes [m].
     """
     if contact.mode is not ContactMode.ROLLING:
         return contact.pivot
@@ -96,7 +96,7 @@ def touching_point(body: SpatialBody, contact: ContactSet, up: FloatArray) -> Fl
 def rise(body: SpatialBody, pivot: FloatArray, up: FloatArray) -> float:
     """Return how much higher the centre of mass is than at rest.
 
-    pivot: A point on the ground, in body axes [m]; up: vertical in body axes [-]. Returns rise [m].
+    pivot: A point on the ground, in body axes [m]. Returns rise [m].
     """
     arm = body.centre - pivot
     level2 = float(up[0] ** 2 + up[1] ** 2)

@@ -18,10 +18,7 @@ NOTHING = 1e-13
 
 
 def first_zero(series: FloatArray, *, started: bool, floor: float = 0.0) -> float | None:
-    """Return where a series first falls below zero.
-
-    Returns from 0 to 1; None if it does not fall.
-    """
+    """Return where a series first falls below zero; from 0 to 1; None if it does not fall."""
     terms = series.tolist()
     if started:
         small = NOTHING * max(map(abs, terms))
@@ -100,10 +97,7 @@ def watched(body: SpatialBody, contact: ContactSet) -> tuple[int, ...]:
 def first_contact(
     body: SpatialBody, contact: ContactSet, step: Step, touching: tuple[int, ...]
 ) -> tuple[float, int] | None:
-    """Return when a gap first closes.
-
-    Returns vertex: Which; None instead of both if no gap closes.
-    """
+    """Return when a gap first closes, and of which vertex; None if none does."""
     found: list[tuple[float, int]] = []
     floor = 0.5 * SLOW_OPENING * norm(step.field[:, 0]) * step.length**2
     for number in watched(body, contact):

@@ -179,7 +179,7 @@ def steps_of(
 ) -> np.ndarray:
     """Return the steps and events of a history as the compiled engine computes it in any batch, bit for bit.
 
-    horizon: how long to follow the body [s]; scale: factor on the motion [-]. Fields of `STEP`, in order of time.
+    horizon: how long to follow the body [s]. Fields of `STEP`, in order of time.
     """
     settings = settings or Settings(mechanics="space, many")
     laws, starts, horizons = [batch_law(restitution)], [start or SpatialStart()], np.array([[horizon]])

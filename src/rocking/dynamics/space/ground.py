@@ -50,10 +50,7 @@ class SpatialGround:
         return np.array([shifted(row.tolist(), to, width) for row in self.coefficients[stretch]])
 
     def at(self, time: FloatArray) -> FloatArray:
-        """Return the accelerations at some times.
-
-        time: times [s]. Returns where a motion jumps, the value after the jump [m/s2].
-        """
+        """Return the accelerations at some times; where a motion jumps, the value after the jump [m/s2]."""
         inside = (time >= 0.0) & (time < self.end)
         k = np.clip(np.searchsorted(self.times, time, side="right") - 1, 0, max(self.count - 1, 0))
         if not self.count:
@@ -69,8 +66,7 @@ def ground_of(
     """Return three motions with one clock as one.
 
     x, y, vertical: components; None for a direction without motion [m/s2]; until: when the ground is taken to stop, if
-    that is before the motions end [s]; scale: factor on all of them [-]. Returns the motion; no stretches if there is
-    none.
+    that is before the motions end [s]. Returns the motion; no stretches if there is none.
     """
     rows = [_component(name, motion) for name, motion in (("x", x), ("y", y), ("vertical", vertical))]
     ends = [times for times, _ in rows if times.size]

@@ -35,8 +35,8 @@ def response_in_space(
 ) -> SpatialResponse:
     """Return how a body rocks in space; without any component, when it is let go.
 
-    scale: factor on all components [-]; duration: how long to follow the body [s]; if not given, the motion and 15 / p
-    after it, on ground at rest until it rests or lies, or 300 / p.
+    duration: how long to follow the body [s]; if not given, the motion and 15 / p after it, on ground at rest until it
+    rests or lies, or 300 / p.
     """
     made = SpatialBody.of(body)
     scale = checks.within("scale", scale, -1e6, 1e6)

@@ -80,10 +80,7 @@ class ModelLaw:
         up: FloatArray,
         velocity: FloatArray,
     ) -> FloatArray:
-        """Return what the model's equation gives.
-
-        Returns angular velocity after, in body axes [rad/s].
-        """
+        """Return the angular velocity after that the model gives, in body axes [rad/s]."""
         onto = Corner(after) if axis is None else Edge(after, axis)
         return self.model.turned(LeaningImpact(body.moments, velocity, before, onto, up, body.matter))
 
@@ -141,10 +138,7 @@ class FixedSpatial:
         up: FloatArray,
         velocity: FloatArray,
     ) -> FloatArray:
-        """Return the scaled projection.
-
-        Returns angular velocity after, in body axes [rad/s].
-        """
+        """Return the scaled projection; angular velocity after, in body axes [rad/s]."""
         made = projected(body, before, after, axis, velocity)
         left = body.kinetic(after, made)
         if not left > 0.0:

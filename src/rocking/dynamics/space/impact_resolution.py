@@ -116,8 +116,7 @@ def settled(
 def started(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> tuple[ContactSet, tuple[int, ...]]:
     """Return the contact that initial conditions imply: the lowest of the touching points stay where they are.
 
-    velocity: angular velocity in body axes [rad/s]; up: vertical in body axes [-]. Returns edge, vertex or
-    rim; the face for a body that stands still on it.
+    Returns edge, vertex or rim; the face for a body that stands still on it.
     """
     if body.round:
         return _started_round(body, velocity, up), ()

@@ -38,10 +38,7 @@ class IntegrationState:
         after: float,
         impulses: FloatArray | None = None,
     ) -> None:
-        """Keep an event.
-
-        time: when [s]; before, after: kinetic energies [J]; impulses: of an impact [N s].
-        """
+        """Keep an event (before, after: kinetic energies [J]; impulses: of an impact [N s])."""
         self.events.append(
             SpatialEvent(time, kind, contact, before, after, np.zeros(0) if impulses is None else impulses)
         )

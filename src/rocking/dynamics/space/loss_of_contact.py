@@ -138,10 +138,7 @@ def next_uplift(
 
 
 def lifted(body: SpatialBody, state: SpatialState, edges: tuple[int, ...]) -> ContactSet | None:
-    """Return on what a body stands when it is lifted from rest.
-
-    Returns none if the ground would have to pull.
-    """
+    """Return on what a body stands when it is lifted from rest; none if the ground would have to pull."""
     if body.round:
         pressure = -state.field[2] * body.centre[:2] + body.centre[2] * state.field[:2]
         return contact_mode.rim(body, pressure) if state.field[2] < 0.0 else None

@@ -65,10 +65,9 @@ class PivotFlow:
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the Taylor series of a step, over a unit of time that is the step.
 
-        quaternion: attitude at the start [-]; velocity: angular velocity in body axes at the start [rad/s]; length:
-        duration of the step [s]; field: gravity less the acceleration of the ground over the step, coefficients by
-        power [m/s2]. Returns quaternions, velocities: coefficients by power (shape (order + 1, 4)); up: coefficients of
-        the vertical in body axes [-] (shape (order + 1, 3)).
+        field: gravity less the acceleration of the ground over the step, coefficients by power [m/s2]. Returns
+        quaternions, velocities: coefficients by power (shape (order + 1, 4)); up: coefficients of the vertical in body
+        axes [-] (shape (order + 1, 3)).
         """
         inertia, mobility, (x, y, z) = self.gyroscopic.tolist(), self.mobility.tolist(), self.arm.tolist()
         w, state = velocity.tolist(), [*quaternion.tolist(), *carried(quaternion, field)]
@@ -107,8 +106,7 @@ def terms_needed(rate: float, most: int) -> int:
 def trusted_part(quaternions: FloatArray, velocities: FloatArray, length: float, tolerance: float) -> float:
     """Return the part of a step over which the last two terms of its series stay below a tolerance.
 
-    length: duration of the step [s]; tolerance: for quaternions of unit length [-]. Returns from 0, where a coefficient
-    is not finite, to 1.
+    tolerance: for quaternions of unit length [-]. Returns from 0, where a coefficient is not finite, to 1.
     """
     if not (np.isfinite(quaternions).all() and np.isfinite(velocities).all()):
         return 0.0

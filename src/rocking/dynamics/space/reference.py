@@ -49,9 +49,8 @@ class SpatialReference:
     def run(self, quaternion: FloatArray, velocity: FloatArray, horizon: float) -> SpatialTrajectory:
         """Return the history from given initial conditions.
 
-        quaternion: attitude at time zero; the lowest points of the base are on the ground [-]; velocity: angular
-        velocity in body axes [rad/s]; horizon: how long to follow the body; longer where its fate is still open then
-        [s].
+        quaternion: attitude at time zero; the lowest points of the base are on the ground [-]; horizon: how long to
+        follow the body; longer where its fate is still open then [s].
         """
         self.horizon = horizon
         self.integration_state = IntegrationState(self.body, self.settings)

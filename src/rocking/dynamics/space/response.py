@@ -416,10 +416,7 @@ def provenance(response: "SpatialResponse") -> dict[str, Any]:
 
 
 def exported(response: "SpatialResponse") -> Table:
-    """Return what the files of a response in space hold.
-
-    Returns Samples, impacts, intervals of one contact, and provenance.
-    """
+    """Return what the files of a response in space hold; samples, impacts, intervals of one contact, and provenance."""
     known = ("time", "energy_before", "energy_after", "impulse", "pull")
     impacts = {name: Column.of(name, response.impacts[name]) for name in known}
     impacts["contact"] = Column(response.impacts["contact"], "", "contact that stays")

@@ -56,10 +56,7 @@ class StepPiece:
         return self.start + self.until * self.length
 
     def at(self, share: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return attitude, angular velocity and place of the pivot.
-
-        Returns at these times (shape (n, 4)).
-        """
+        """Return attitude, angular velocity and place of the pivot; at these times (shape (n, 4))."""
         by_power = powers(share, max(len(self.quaternions), len(self.places)))
         made = [times(by_power[:, : len(c)], c) for c in (self.quaternions, self.velocities, self.places)]
         made[0] /= np.linalg.norm(made[0], axis=1)[:, None]
@@ -118,10 +115,7 @@ class States:
         return applied(self.rotation, self.body_velocity)
 
     def point(self, point: FloatArray) -> FloatArray:
-        """Return where a point of the body is.
-
-        point: in body axes [m]. Returns relative to the ground, which carries the origin along [m].
-        """
+        """Return where a point of the body is; relative to the ground, which carries the origin along [m]."""
         moved = applied(self.rotation, point - self.pivot)
         moved[:, :2] += self.place
         return np.asarray(moved)
@@ -157,10 +151,7 @@ class States:
 
 
 def states_of(body: SpatialBody, trajectory: SpatialTrajectory, time: FloatArray) -> States:
-    """Return the states of a history; at an impact, after it.
-
-    time: times within it [s].
-    """
+    """Return the states of a history; at an impact, after it."""
     pieces = trajectory.pieces
     starts = np.array([piece.start for piece in pieces])
     place = np.clip(np.searchsorted(starts, time, side="right") - 1, 0, len(pieces) - 1)

@@ -22,10 +22,17 @@ from rocking.dynamics.contact.base import (
     kinetic,
 )
 from rocking.dynamics.contact.complementarity import NextMode, candidates, choose, weight_of
-from rocking.dynamics.contact.event_functions import Kind, Margin, consistent, first_end, leading, margins
+from rocking.dynamics.contact.event_functions import (
+    EventFunction,
+    ModeEnd,
+    consistent,
+    event_functions,
+    first_end,
+    leading,
+)
 from rocking.dynamics.contact.impact_resolution import Struck, strike, strike_with
-from rocking.dynamics.contact.mode_series import GroundSeries, course, derivative, integral, value
-from rocking.dynamics.contact.pivot_motion import turning
+from rocking.dynamics.contact.mode_series import GroundSeries, derivative, integral, mode_series, value
+from rocking.dynamics.contact.pivot_motion import pivot_motion
 from rocking.outcome import Regime, Status
 
 G = 9.80665
@@ -74,7 +81,7 @@ def test_series_satisfy_newton_and_euler(mode):
     """Forces from the series move the centre and turn the body: m x'' = F_t - m a_x, ..., at three instants."""
     mu, state = 0.3, _tilted(0.2, -0.5, mode.slip * 0.4)
     ground = GroundSeries([1.0, -0.5], [G + 0.4, 0.3], 0.05)
-    found = course(TALL, state, mode, ground, mu, 30)
+    found = mode_series(TALL, state, mode, ground, mu, 30)
     for at in (0.0, 0.4, 1.0):
         second = [value(derivative(derivative(c)), at) / 0.05**2 for c in (found.x, found.rise, found.rotation)]
         push, lift = 1.0 - 0.5 * at, G + 0.4 + 0.3 * at
@@ -90,7 +97,7 @@ def test_series_satisfy_newton_and_euler(mode):
 
 def test_shorter_course_is_the_same_course():
     """Half a course at 1 is the course at 1/2."""
-    found = course(TALL, _tilted(0.2, -0.5), Mode((RIGHT,)), STILL, 0.3, 30)
+    found = mode_series(TALL, _tilted(0.2, -0.5), Mode((RIGHT,)), STILL, 0.3, 30)
     assert found.shortened(0.5).state(1.0, (RIGHT,))[:6] == pytest.approx(found.state(0.5, (RIGHT,))[:6], rel=1e-13)
 
 
@@ -187,7 +194,7 @@ def test_a_slide_that_stops_does_not_turn_round_without_a_push():
 def test_margins_start_with_their_first_coefficient_that_is_not_rounding():
     """1e-15 counts as zero where rounding is possible, and as above zero where it is not."""
     series = np.array([1e-15, -1.0, 0.0])
-    rounded, exact = (Margin(Kind.RELEASE, series, n, 1.0) for n in (0, 1))
+    rounded, exact = (EventFunction(ModeEnd.LOSS_OF_CONTACT, series, n, 1.0) for n in (0, 1))
     assert leading(rounded, 1.0, 1e-12) == 1
     assert not consistent([rounded], 1.0, 1e-12)
     assert leading(exact, 1.0, 1e-12) == 0
@@ -198,11 +205,11 @@ def test_margins_start_with_their_first_coefficient_that_is_not_rounding():
 def test_first_end_is_the_earliest_zero():
     """Of 1 - 2 x and 1 - 4 x^2 ... the one that falls first, with its kind; none where nothing falls."""
     early, late = (
-        Margin(Kind.LANDING, np.array([1.0, -4.0]), 0, 1.0),
-        Margin(Kind.RELEASE, np.array([1.0, -2.0]), 0, 1.0),
+        EventFunction(ModeEnd.LANDING, np.array([1.0, -4.0]), 0, 1.0),
+        EventFunction(ModeEnd.LOSS_OF_CONTACT, np.array([1.0, -2.0]), 0, 1.0),
     )
-    assert first_end([late, early], 1.0, 1e-12) == (0.25, Kind.LANDING)
-    assert first_end([Margin(Kind.RELEASE, np.array([1.0, 2.0]), 0, 1.0)], 1.0, 1e-12) is None
+    assert first_end([late, early], 1.0, 1e-12) == (0.25, ModeEnd.LANDING)
+    assert first_end([EventFunction(ModeEnd.LOSS_OF_CONTACT, np.array([1.0, 2.0]), 0, 1.0)], 1.0, 1e-12) is None
 
 
 def test_kept_takes_out_rounding_exactly():
@@ -250,15 +257,15 @@ def test_what_counts_as_rounding_is_the_same_for_similar_bodies_and_steps(mode, 
         spin, slip = -0.5 / math.sqrt(size), mode.slip * 0.4 * math.sqrt(size)
         rise = base.rise_on(RIGHT, 0.2) + (0.1 * size if mode == FLIGHT else 0.0)
         state = ContactState(0.0, rise, 0.2, slip - r_z * spin, r_x * spin, spin, mode.feet)
-        found = course(base, state, mode, GroundSeries([1.0], [G + 0.4], unit), 0.3, 12)
-        made = margins(base, mode, found, 0.3, 12.0)
+        found = mode_series(base, state, mode, GroundSeries([1.0], [G + 0.4], unit), 0.3, 12)
+        made = event_functions(base, mode, found, 0.3, 12.0)
         return [(margin.kind, margin.series[margin.exact] / margin.scale) for margin in made]
 
     kinds, parts = zip(*measured(size, unit), strict=True)
     expected_kinds, expected = zip(*measured(1.0, 0.3), strict=True)
     assert kinds == expected_kinds
     assert parts == pytest.approx(expected, rel=1e-12)
-    assert all(part != 0.0 for kind, part in zip(kinds, parts, strict=True) if kind is not Kind.LYING)
+    assert all(part != 0.0 for kind, part in zip(kinds, parts, strict=True) if kind is not ModeEnd.LYING)
 
 
 @pytest.mark.parametrize(("foot", "spin"), [(RIGHT, 0.8), (LEFT, -0.8)])
@@ -297,5 +304,5 @@ def test_forces_are_measured_by_the_motion_of_the_moment():
 
 def test_a_push_that_sets_in_late_turns_a_body():
     """theta'' = -a_x h / (j + h^2) without weight: under a_x = t^5 theta is -t^7 / 84, all terms before it zero."""
-    found = turning(1.0, (0.0, -1.0), (0.0, 0.0), ([0.0, 0.0, 0.0, 0.0, 0.0, 1.0], [0.0], 1.0), None, 9)
+    found = pivot_motion(1.0, (0.0, -1.0), (0.0, 0.0), ([0.0, 0.0, 0.0, 0.0, 0.0, 1.0], [0.0], 1.0), None, 9)
     assert found.rotation == pytest.approx([0.0] * 7 + [-1.0 / 84.0, 0.0, 0.0], abs=1e-16)
