@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from rocking.studies._overturning_map import overturning_map
     from rocking.studies._rocking_spectrum import rocking_spectrum
     from rocking.studies.adaptive_grid import RefinedMap, refined_map
-    from rocking.studies.axis import Axis, axes
+    from rocking.studies.axis import axes
     from rocking.studies.boundaries import Polyline, boundary
     from rocking.studies.fragility import (
         cloud,
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
-    "Axis",
     "Histories",
     "HistoryTable",
     "Islands",
@@ -67,7 +66,6 @@ __all__ = [
 __getattr__, __dir__ = exports(
     __name__,
     {
-        "Axis": "rocking.studies.axis",
         "Histories": "rocking.studies.histories",
         "HistoryTable": "rocking.studies.histories",
         "Islands": "rocking.studies.islands",

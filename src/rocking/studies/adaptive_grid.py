@@ -27,7 +27,6 @@ class Plane:
     y: Axis
 
     def __post_init__(self) -> None:
-        """Check that the axes fit the question and each other."""
         if self.x.sets == self.y.sets:
             raise InvalidValueError(
                 f"x and y must set different things, got {self.x.name} and {self.y.name}: both set {self.x.sets}"
@@ -292,10 +291,12 @@ def refined_map(
 
     Parameters
     ----------
-    body, motion, x, y, restitution, gravity, progress, **options
+    body, motion, x, y, restitution
         As for `rocking.overturning_map`; the restitution not one drawn at random.
     levels : int
         Levels of refinement; each halves the spacing [-].
+    gravity, progress, **options
+        As for `rocking.overturning_map`.
 
     Returns
     -------

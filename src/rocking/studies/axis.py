@@ -26,45 +26,20 @@ BODY, RESTITUTION, TIME, AMPLITUDE, VELOCITY = range(5)
 
 @dataclass(frozen=True, eq=False)
 class Axis(ABC):
-    """A parameter of a map and its values.
-
-    Parameters
-    ----------
-    values : array_like
-        Increasing, in the unit of the axis.
-
-    Attributes
-    ----------
-    name, unit, words : str
-        What it is called, its unit, and what it means.
-    sets : str
-        What it decides; two axes of a map cannot decide the same thing.
-    stage : int
-        When it is applied: bodies first, then restitution, time, amplitude, velocity.
-    low, high : float
-        Allowed range.
-    low_is_allowed : bool
-        Whether the low end itself is.
-
-    Raises
-    ------
-    InvalidValueError
-        If the values are not finite, not within the range of the axis, or do not increase.
-    """
+    """A parameter of a map and its values: increasing, finite, within the range of the axis."""
 
     values: FloatArray
 
     name: ClassVar[str]
     unit: ClassVar[str]
-    words: ClassVar[str]
-    sets: ClassVar[str]
-    stage: ClassVar[int]
+    words: ClassVar[str]  # what it means
+    sets: ClassVar[str]  # what it decides; two axes of a map cannot decide the same thing
+    stage: ClassVar[int]  # when it is applied
     low: ClassVar[float] = 0.0
     high: ClassVar[float] = 1e9
     low_is_allowed: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        """Check the values."""
         values = np.atleast_1d(checks.real_array(self.name, self.values, self.unit)).copy()
         if values.ndim != 1 or not values.size:
             raise InvalidValueError(f"{self.name} must be a row of numbers, got shape {values.shape}")
@@ -82,59 +57,16 @@ class Axis(ABC):
         object.__setattr__(self, "values", values)
 
     @abstractmethod
-    def _changed(self, case: Case, values: FloatArray) -> Case:
-        """Return a case with this parameter changed."""
+    def applied(self, case: Case, values: FloatArray) -> Case:
+        """Return a case with this parameter changed, to a value for each of its variations."""
 
-    def _fits(self, question: Question) -> None:
+    def check(self, question: Question) -> None:
         """Refuse a question that has no such parameter."""
         if self.stage == TIME:
             question.check_stretching(self.name)
 
-    def applied(self, case: Case, values: FloatArray) -> Case:
-        """Return a case with this parameter changed.
-
-        Parameters
-        ----------
-        case : Case
-            The variations.
-        values : ndarray
-            The parameter of each.
-
-        Returns
-        -------
-        Case
-            The changed variations.
-        """
-        return self._changed(case, values)
-
-    def check(self, question: Question) -> None:
-        """Refuse a question that has no such parameter.
-
-        Parameters
-        ----------
-        question : Question
-            What is to be varied.
-
-        Raises
-        ------
-        InvalidValueError
-            If the body, the motion or the restitution does not have it.
-        """
-        self._fits(question)
-
     def check_beside(self, other: "Axis") -> None:  # noqa: B027 - most axes fit any other
-        """Refuse another axis whose values this one cannot go with.
-
-        Parameters
-        ----------
-        other : Axis
-            The other axis of the plane.
-
-        Raises
-        ------
-        InvalidValueError
-            If there is such a value.
-        """
+        """Refuse another axis whose values this one cannot go with."""
 
     @property
     def attributes(self) -> dict[str, str]:
@@ -194,16 +126,14 @@ class _BodyAxis(Axis):
 
     stage = BODY
 
-    def _changed(self, case: Case, values: FloatArray) -> Case:
-        """Return the case with the dimension that the axis is named after."""
+    def applied(self, case: Case, values: FloatArray) -> Case:
         return replace(case, geometry={**case.geometry, self.name: values})
 
 
 class _BlockAxis(_BodyAxis):
     """A dimension that only a block has."""
 
-    def _fits(self, question: Question) -> None:
-        """Refuse a body that is no block."""
+    def check(self, question: Question) -> None:
         if not isinstance(question.body, Block):
             raise InvalidValueError(f"{self.name} varies only for a Block, got {question.body!r:.60}")
 
@@ -226,8 +156,7 @@ class SlendernessRatio(_BlockAxis):
 
     name, unit, words, sets = "slenderness_ratio", "1", "slenderness ratio h/b of the block", "slenderness"
 
-    def _changed(self, case: Case, values: FloatArray) -> Case:
-        """Return the case with the angle of the ratio."""
+    def applied(self, case: Case, values: FloatArray) -> Case:
         return replace(case, geometry={**case.geometry, "slenderness_angle": np.arctan(1.0 / values)})
 
 
@@ -249,15 +178,13 @@ class RestitutionAxis(Axis):
     name, unit, words = "restitution", "1", "coefficient of restitution, ratio of velocities"
     sets, stage, high, low_is_allowed = "restitution", RESTITUTION, 1.0, True
 
-    def _fits(self, question: Question) -> None:
-        """Refuse a law of impact, whose factors would multiply the axis."""
+    def check(self, question: Question) -> None:
         if not isinstance(question.law, ConstantRestitution):
             raise InvalidValueError(
                 f"restitution is an axis: leave the law of impact out, got {type(question.law).__name__}"
             )
 
-    def _changed(self, case: Case, values: FloatArray) -> Case:
-        """Return the case with the coefficient; NaN, which the engine refuses, where it would create energy."""
+    def applied(self, case: Case, values: FloatArray) -> Case:
         body = case.question.body
         inertia = [body.side(foot).moment_of_inertia for foot in FEET]
         most = np.sqrt(min(inertia) / max(inertia)) * (1.0 + 1e-9)  # Eq. 29
@@ -276,13 +203,11 @@ class Period(_TimeAxis):
 
     name, unit, words = "period", "s", "period T_p of the pulse"
 
-    def _fits(self, question: Question) -> None:
-        """Refuse a motion without a period."""
-        super()._fits(question)
+    def check(self, question: Question) -> None:
+        super().check(question)
         main_period(question.motion)
 
-    def _changed(self, case: Case, values: FloatArray) -> Case:
-        """Return the case with the pulse stretched to the period."""
+    def applied(self, case: Case, values: FloatArray) -> Case:
         return replace(case, stretch=values / main_period(case.question.motion))
 
 
@@ -291,9 +216,8 @@ class FrequencyRatio(Period):
 
     name, unit, words = "frequency_ratio", "1", "omega_p / p, frequency of the pulse over that of the body"
 
-    def _changed(self, case: Case, values: FloatArray) -> Case:
-        """Return the case with the pulse stretched to the frequency."""
-        return super()._changed(case, 2.0 * np.pi / (values * case.frequency_parameter))
+    def applied(self, case: Case, values: FloatArray) -> Case:
+        return super().applied(case, 2.0 * np.pi / (values * case.frequency_parameter))
 
 
 class Duration(_TimeAxis):
@@ -301,8 +225,7 @@ class Duration(_TimeAxis):
 
     name, unit, words = "duration", "s", "duration of the motion, stretched in time"
 
-    def _changed(self, case: Case, values: FloatArray) -> Case:
-        """Return the case with the motion stretched to the duration."""
+    def applied(self, case: Case, values: FloatArray) -> Case:
         return replace(case, stretch=values / case.question.motion.duration)
 
 
@@ -311,17 +234,14 @@ class _AmplitudeAxis(Axis):
 
     sets, stage = "the amplitude of the motion", AMPLITUDE
 
-    def _fits(self, question: Question) -> None:
-        """Refuse a motion that is zero throughout."""
+    def check(self, question: Question) -> None:
         if not question.motion.peak > 0.0:
             raise InvalidValueError(f"the amplitude of {question.motion.name!r} cannot be set: it is zero throughout")
 
     def _factors(self, case: Case, values: FloatArray) -> FloatArray:
-        """Return the factors on the motion, which are the values themselves."""
         return values
 
-    def _changed(self, case: Case, values: FloatArray) -> Case:
-        """Return the case with the motion scaled."""
+    def applied(self, case: Case, values: FloatArray) -> Case:
         return replace(case, scale=self._factors(case, values), amplitude_is_set=True)
 
 
@@ -330,9 +250,8 @@ class Scale(_AmplitudeAxis):
 
     name, unit, words, low, high = "scale", "1", "factor on the motion", -1e6, 1e6
 
-    def _fits(self, question: Question) -> None:
-        """Doubt a motion that is stronger than any recorded."""
-        super()._fits(question)
+    def check(self, question: Question) -> None:
+        super().check(question)
         plausibility.warn(plausibility.of_scaled([question.motion], self.values))
 
 
@@ -341,13 +260,11 @@ class PeakAcceleration(_AmplitudeAxis):
 
     name, unit, words, high = "pga", "m/s2", "peak ground acceleration", 1e6
 
-    def _fits(self, question: Question) -> None:
-        """Doubt a motion that is stronger than any recorded."""
-        super()._fits(question)
+    def check(self, question: Question) -> None:
+        super().check(question)
         plausibility.warn(plausibility.of_acceleration(float(self.values.max())))
 
     def _factors(self, case: Case, values: FloatArray) -> FloatArray:
-        """Return the PGA over that of the motion."""
         return values / case.question.motion.peak
 
 
@@ -358,7 +275,6 @@ class AmplitudeRatio(_AmplitudeAxis):
     words = "a_p / (g tan alpha), or a_p / (g alpha) in the linear equations"
 
     def _factors(self, case: Case, values: FloatArray) -> FloatArray:
-        """Return the PGA over that of the motion."""
         return values * case.uplift_acceleration / case.question.motion.peak
 
 
@@ -369,17 +285,15 @@ class PeakVelocity(_AmplitudeAxis):
     words = "peak ground velocity, by scaling the motion, or by stretching its time where the other axis scales it"
 
     def check_beside(self, other: Axis) -> None:
-        """Refuse a scale of zero, at which no stretching gives a velocity."""
         if isinstance(other, Scale):
             _refuse_zero(other.values)
 
-    def _changed(self, case: Case, values: FloatArray) -> Case:
-        """Return the case with the velocity of the ground: acceleration times time."""
+    def applied(self, case: Case, values: FloatArray) -> Case:
         now = peak_velocity(case.question.motion)
         if case.amplitude_is_set:
             _refuse_zero(case.scale)
             return replace(case, stretch=values / (np.abs(case.scale) * now))
-        return super()._changed(case, values / (now * case.stretch))
+        return super().applied(case, values / (now * case.stretch))
 
 
 def _refuse_zero(scales: FloatArray) -> None:

@@ -85,7 +85,7 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
 
     Parameters
     ----------
-    body, motion, x, y, restitution, gravity, progress, **options
+    body, motion, x, y, restitution
         As for `rocking.overturning_map`; axes of at least two values, a restitution that is not drawn at random.
     by : {"verdict", "mode"}
         Whether to outline all that overturns, or what overturns after each number of impacts for itself; the line
@@ -94,6 +94,8 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
         Levels of refinement before marching; each halves the spacing [-].
     tolerance : float
         Width of the last bracket along an edge, over the coordinate [-].
+    gravity, progress, **options
+        As for `rocking.overturning_map`.
 
     Returns
     -------

@@ -269,7 +269,6 @@ class HistoryTable(Histories):
     values: dict[str, FloatArray]
 
     def __post_init__(self) -> None:
-        """Repeat what is given once, and check it."""
         count = max((np.size(v) for v in [self.motion, *self.values.values()]), default=0)
         whole = Rows.of(count, self.motion, **self.values)
         values = {name: _own(array, self.values.get(name)) for name, array in whole.values.items()}
@@ -313,7 +312,6 @@ class Product(Histories):
     scales: FloatArray
 
     def __post_init__(self) -> None:
-        """Check the shapes."""
         names = {name for name in ROWS if name[-5:] in {"right", "_left"}}
         shape = np.shape(next(iter(self.sides.values()), ()))
         unknown = {name: np.full(shape, value) for name, value in SIDES_UNTOLD.items()}

@@ -94,10 +94,7 @@ class Laboratory:
 
 
 def hardness_of(setup: Setup) -> float:
-    """Return the dimensionless landing speed of the new foot, v sqrt(k / m) / g.
-
-    Returns Hardness, as the model `contact-bed` takes it [-].
-    """
+    """Return the dimensionless landing speed of the new foot, v sqrt(k / m) / g."""
     return setup.start.speed * math.sqrt(setup.law.stiffness / setup.rigid.mass) / setup.rigid.gravity  # Eq. 130
 
 
@@ -108,10 +105,7 @@ def measured(laboratories: Iterable[Laboratory], *, threads: int = 1) -> tuple[S
 
 
 def coefficients(laboratories: Iterable[Laboratory], *, threads: int = 1) -> FloatArray:
-    """Return the coefficients of restitution of laboratories.
-
-    Returns theta_dot_after / theta_dot_before; NaN where an impact failed [-].
-    """
+    """Return the coefficients of restitution of laboratories; NaN where an impact failed."""
     return measured(laboratories, threads=threads)[1].coefficient
 
 
@@ -147,17 +141,14 @@ class LaboratoryStudy:
         self.dataset = dataset
 
     def __getattr__(self, name: str) -> Any:
-        """Return an attribute of the dataset."""
         if name.startswith("__") or name == "dataset":
             raise AttributeError(name)
         return getattr(self.dataset, name)
 
     def __getitem__(self, key: Any) -> Any:
-        """Return a variable of the dataset."""
         return self.dataset[key]
 
     def __repr__(self) -> str:
-        """Return the dataset in words."""
         return repr(self.dataset)
 
     @property
@@ -171,10 +162,7 @@ class LaboratoryStudy:
         return Table("value", samples, dict(self.dataset.attrs), no_unit="-")
 
     def to_dataframe(self) -> "pd.DataFrame":
-        """Return the study as a table.
-
-        Returns A row a value; columns such as ``peak_force [N]``; the provenance in its `attrs`.
-        """
+        """Return a row a value, with columns such as ``peak_force [N]`` and the provenance in `attrs`."""
         frame = to_dataframe(self.exported)
         frame.attrs.update(self.dataset.attrs)
         return frame
@@ -203,9 +191,7 @@ Change = Callable[[Laboratory, float], Laboratory]
 
 
 def slenderness_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against slenderness.
-
-    values: h/b [-].
+    """Return r against slenderness h/b.
 
     >>> slenderness_study([2.0, 4.0]).coefficient.round(2).values.tolist()
     [0.84, 0.96]
@@ -214,69 +200,44 @@ def slenderness_study(values: Any, laboratory: Laboratory | None = None) -> Labo
 
 
 def points_study(values: Sequence[int], laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against the number of contact points.
-
-    values: contact points, two or more [-].
-    """
+    """Return r against the number of contact points."""
     return study("points", "1", values, lambda lab, x: lab.but(points=whole("points", x, 2)), laboratory)
 
 
 def damping_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against the damping ratio of the bed.
-
-    values: zeta [-].
-    """
+    """Return r against the damping ratio of the bed."""
     return study("damping", "1", values, lambda lab, x: lab.but(damping=x), laboratory)
 
 
 def modulus_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against the modulus of the layer over its thickness.
-
-    values: E / t [Pa/m].
-    """
+    """Return r against the modulus of the layer over its thickness [Pa/m]."""
     return study("modulus_over_thickness", "Pa/m", values, lambda lab, x: lab.but(modulus_over_thickness=x), laboratory)
 
 
 def friction_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against the coefficient of friction of the base.
-
-    values: mu [-].
-    """
+    """Return r against the coefficient of friction of the base."""
     return study("friction", "1", values, lambda lab, x: lab.but(friction=Coulomb(x)), laboratory)
 
 
 def mass_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against the density of the block on a layer of given stiffness: mass alone, the size stays.
-
-    values: densities [kg/m3].
-    """
+    """Return r against the density [kg/m3] on a layer of given stiffness: mass alone, the size stays."""
     return study("density", "kg/m3", values, lambda lab, x: lab.but(density=x), layered(laboratory))
 
 
 def size_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against the width of blocks of one shape and density on one layer.
-
-    values: widths [m].
-    """
+    """Return r against the width [m] of blocks of one shape and density on one layer."""
     return study("width", "m", values, lambda lab, x: lab.but(width=x), layered(laboratory))
 
 
 def velocity_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against the rotation of release, and so against the landing velocity.
-
-    values: rotations over the slenderness angle, in (0, 1) [-].
-    """
+    """Return r against the rotation of release over the slenderness angle, and so against the landing velocity."""
     return study("release", "1", values, lambda lab, x: lab.but(release=x), laboratory)
 
 
 def study(
     name: str, unit: str, values: Any, change: Change, laboratory: Laboratory | None = None, *, threads: int = 1
 ) -> LaboratoryStudy:
-    """Return what emerges as one thing about the bed or the block changes.
-
-    Returns over `name`: coefficient, coefficient_by_energy, hardness [-], landing_velocity [rad/s], peak_force [N],
-    bed_loss and friction_loss [J], contacts, audit [-]; NaN where an impact failed.
-    """
+    """Return what emerges as one thing about the bed or the block changes; NaN where an impact failed."""
     xarray = extra("xarray", "the impact laboratory")
     row = np.atleast_1d(checks.real_array(name, values))
     if row.ndim != 1 or row.size == 0 or not bool(np.isfinite(row).all()):
@@ -303,9 +264,7 @@ def study(
 
 
 def whole(name: str, value: Any, least: int) -> int:
-    """Return a number that counts something.
-
-    least: the smallest that is allowed [-].
+    """Return a number that counts something, and is not below the least.
 
     >>> whole("points", 41.0, 2)
     41
@@ -329,11 +288,10 @@ SHAPES: tuple[Shape, ...] = ("convex", "concave", "tilted", "random")
 
 
 def profile(shape: Shape, amplitude: float, points: int, *, seed: int = 0) -> tuple[float, ...]:
-    """Return heights of contact points over the base line.
+    """Return heights [m] of contact points over the base line, apart by an amplitude [m].
 
-    shape: A parabola that bulges down in the middle, one that is hollow there, a slope with the new foot up, or
-    independent uniform heights in [0, amplitude] from the seed; amplitude: difference between the highest and the
-    lowest point, or its bound [m]. Returns heights [m].
+    A parabola that bulges down in the middle, one that is hollow there, a slope with the new foot up, or independent
+    uniform heights from the seed.
 
     >>> profile("concave", 0.001, 3)
     (0.0, 0.001, 0.0)
@@ -357,10 +315,7 @@ def profile(shape: Shape, amplitude: float, points: int, *, seed: int = 0) -> tu
 def profile_study(
     shape: Shape, amplitudes: Any, laboratory: Laboratory | None = None, *, seed: int = 0
 ) -> LaboratoryStudy:
-    """Return r against the unevenness of the base.
-
-    amplitudes: heights of the unevenness [m].
-    """
+    """Return r against the unevenness of the base [m]."""
 
     def uneven(start: Laboratory, amplitude: float) -> Laboratory:
         """Return the laboratory with a base of that unevenness."""
@@ -370,10 +325,7 @@ def profile_study(
 
 
 def random_profiles(amplitude: float, seeds: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r of bases with random unevenness.
-
-    amplitude: bound of the heights [m].
-    """
+    """Return r of bases with random unevenness up to an amplitude [m], by seed."""
 
     def rough(start: Laboratory, seed: float) -> Laboratory:
         """Return the laboratory with the base of a seed."""
@@ -383,16 +335,13 @@ def random_profiles(amplitude: float, seeds: Any, laboratory: Laboratory | None 
 
 
 def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return what the bed says about blocks of one shape that grow, on a flat and on a hollow base, beside KED.
+    """Return what the bed says about blocks of one shape that grow [m], on a flat and on a hollow base, beside KED.
 
     On a flat base of one layer r does not depend on the size at all (`size_study`): neither does KED. What can change
-    with size is a length that does not grow: here a hollow of fixed height under the base.
+    with size is a length that does not grow: here a hollow of fixed height [m] under the base.
 
-    widths: widths of the base [m]; hollow: height of the hollow [m]. Returns over `width`: flat, hollow, ked and
-    hollow_minus_ked [-].
-
-    >>> found = large_bodies_study([0.1, 1.0, 10.0])
-    >>> bool((found.hollow.diff("width") > 0.0).all())
+    >>> study = large_bodies_study([0.1, 1.0, 10.0])
+    >>> bool((study.hollow.diff("width") > 0.0).all())
     True
     """
     xarray = extra("xarray", "the impact laboratory")
@@ -404,10 +353,7 @@ def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laborat
 
 
 def large_bodies(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> dict[str, FloatArray]:
-    """Return the numbers of `large_bodies_study`, which need no labelled arrays.
-
-    widths: widths of the base [m]; hollow: height of the hollow [m]. Returns flat, hollow and ked, over the widths [-].
-    """
+    """Return flat, hollow and ked over widths [m]: `large_bodies_study` without labelled arrays."""
     start, row = layered(laboratory), np.atleast_1d(checks.positive_array("width", widths, "m"))
     beds = {"flat": start.but(profile=()), "hollow": start.but(profile=profile("concave", hollow, start.points))}
     found = {name: coefficients(bed.but(width=w) for w in row.tolist()) for name, bed in beds.items()}
@@ -428,13 +374,10 @@ class Convergence:
 def points_convergence(
     counts: Sequence[int] = (11, 21, 41, 81, 161), *, slenderness: float = 2.0, limit: float | None = None
 ) -> Convergence:
-    """Return the convergence of the viscous bed with its points.
+    """Return the convergence of the viscous bed with its points, each count with twice the intervals of the one before.
 
-    Dashpots without springs absorb an impact in one contact: no hop hides the order.
-
-    counts: contact points, three of them or more, each with twice the intervals of the one before [-]; slenderness: h/b
-    of the block [-]; limit: the exact r; by default extrapolated from the last two with order 2 [-]. Returns the order
-    is near 2 for half shares at the ends.
+    Dashpots without springs absorb an impact in one contact: no hop hides the order, near 2 for half shares at the
+    ends. The limit is the exact r; by default extrapolated from the last two with order 2.
 
     >>> points_convergence((21, 41, 81)).order.round(0).tolist()
     [2.0, 2.0]
@@ -452,10 +395,7 @@ def points_convergence(
 
 
 def step_convergence(tolerances: Any = (1e-4, 1e-5, 1e-6, 1e-7), laboratory: Laboratory | None = None) -> Convergence:
-    """Return the convergence of r with the tolerance of a step.
-
-    tolerances: falling, above 1e-11 [-]. Returns against a tolerance of 1e-12; the order is a power of the tolerance.
-    """
+    """Return the convergence of r with falling tolerances of a step, against 1e-12; the order is a power of them."""
     row = np.atleast_1d(checks.positive_array("tolerances", tolerances))
     start = laboratory or Laboratory()
     r = coefficients(start.but(tolerance=float(tolerance)) for tolerance in (*row, 1e-12))
@@ -478,12 +418,9 @@ def bed_speed_law(
     onto: Foot = "right",
     gravity: float = conventions.g,
 ) -> SpeedRestitution:
-    """Return r(speed) of a body on a bed of given stiffness, for `simulate`.
+    """Return r(speed) of a body on a bed of given frequency sqrt(k / m) / (2 pi) [Hz], for `simulate`.
 
     A speed stands for a hardness, v sqrt(k/m) / g with v = 2 w theta_dot; beyond the table r keeps its last value.
-
-    frequency: sqrt(k / m) / (2 pi) of the whole bed [Hz]; points: contact points, as `ContactBedModel` takes them [-];
-    damping: damping ratio [-]; gravity: acceleration of gravity [m/s2].
 
     >>> from rocking import Block
     >>> law = bed_speed_law(Block(width=0.2, height=0.4), 400.0)
@@ -499,20 +436,14 @@ def bed_speed_law(
 
 
 def impulse_position(coefficient: FloatArray, flatness: FloatArray, offset: FloatArray) -> FloatArray:
-    """Return where an impulse acts that gives a coefficient, from angular momentum about its position.
-
-    coefficient: theta_dot_after / theta_dot_before [-]; flatness, offset: of the bodies [-]. Returns kappa [-].
-    """
+    """Return where an impulse acts that gives a coefficient, from angular momentum about its position [-]."""
     gyration = 1.0 / flatness - 1.0
     arm = gyration * (1.0 - coefficient) / (1.0 + offset + coefficient * (1.0 - offset))  # Eq. 4
     return np.asarray(arm + offset)
 
 
 def resolved(cases: FloatArray, points: int, *, threads: int = 1) -> FloatArray:
-    """Return coefficients of restitution resolved in time.
-
-    cases: flatness, offset, damping, hardness [-]. Returns theta_dot_after / theta_dot_before, by the next peak [-].
-    """
+    """Return coefficients of cases (flatness, offset, damping, hardness), resolved in time, by the next peak."""
     impacts = [
         ScaledImpact(flatness, offset, points, damping, hardness)
         for flatness, offset, damping, hardness in cases.tolist()
@@ -535,10 +466,7 @@ def tabulated(*, threads: int = 1, progress: Callable[[int], None] | None = None
 
 
 def stored(table: BedTable) -> np.ndarray[tuple[int, ...], np.dtype[np.int16]]:
-    """Return the positions as they are shipped.
-
-    Returns whole multiples of `bed_table.STEP`, to be written with `numpy.save`.
-    """
+    """Return the positions as they are shipped: whole multiples of `bed_table.STEP`."""
     return np.asarray(np.rint(np.clip(table.positions, -3.9, 3.9) / STEP).astype(np.int16))
 
 

@@ -47,11 +47,9 @@ class Islands:
     axes: tuple[str, str]
 
     def __len__(self) -> int:
-        """Return the number of islands."""
         return len(self.islands)
 
     def __getitem__(self, index: int) -> Island:
-        """Return one of them."""
         return self.islands[index]
 
 

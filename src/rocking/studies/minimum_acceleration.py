@@ -76,7 +76,6 @@ class Transitions:
     lost_contact: FloatArray = field(default_factory=lambda: np.empty(0), repr=False)
 
     def __len__(self) -> int:
-        """Return the number of crossings."""
         return int(self.acceleration.size)
 
     @property
@@ -133,7 +132,6 @@ class Effort:
     tolerance: float = 1e-12  # width of the last brackets over the acceleration [-]
 
     def __post_init__(self) -> None:
-        """Check the values."""
         for name, low, high in (("points", 2, _MOST_POINTS), ("levels", 0, 12)):
             value: object = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
@@ -329,7 +327,7 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
     ----------
     bodies : sequence of Body
         The bodies; the restitution is evaluated for every one.
-    motion, restitution, lowest, highest, points, tolerance, levels, gravity, threads, progress, **settings
+    motion, restitution, lowest, highest, points, levels, tolerance, gravity, threads, progress, **settings
         As for `minimum_overturning_acceleration`.
 
     Returns

@@ -21,12 +21,10 @@ class MotionSet(ABC):
     """Motions by number. The same number is the same motion, to the last bit, whoever asks and when."""
 
     @abstractmethod
-    def __len__(self) -> int:
-        """Return how many there are."""
+    def __len__(self) -> int: ...
 
     @abstractmethod
-    def __getitem__(self, index: int) -> Motion:
-        """Return one of them."""
+    def __getitem__(self, index: int) -> Motion: ...
 
     @abstractmethod
     def description(self) -> dict[str, Any]:
@@ -78,11 +76,9 @@ class MotionList(MotionSet):
         self._motions: list[Motion] = found  # type: ignore[assignment]
 
     def __len__(self) -> int:
-        """Return how many there are."""
         return len(self._motions)
 
     def __getitem__(self, index: int) -> Motion:
-        """Return one of them."""
         return self._motions[index]
 
     @property
@@ -170,11 +166,9 @@ class SyntheticSet(MotionSet):
         self.time_step = checks.positive("time_step", step, "s")
 
     def __len__(self) -> int:
-        """Return how many there are."""
         return self.count
 
     def __getitem__(self, index: int) -> GroundMotion:
-        """Return one of them."""
         place = index + self.count if index < 0 else index
         if not 0 <= place < self.count:
             raise IndexError(f"motions are numbered 0 to {self.count - 1}, got {index}")

@@ -39,7 +39,6 @@ class Question:
     engine: str = "auto"  # which engine
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be asked."""
         if not isinstance(self.motion, (GroundMotion, Pulse)):
             raise InvalidValueError(f"motion must be a GroundMotion or a pulse, got {self.motion!r:.60}")
         _ = self.parameters

@@ -75,7 +75,6 @@ class FragilityCurve:
     repeated: Repeated | None = None
 
     def __post_init__(self) -> None:
-        """Check the numbers."""
         checks.positive(f"median of {self.state!r:.60}", self.median)
         checks.positive(f"dispersion of {self.state!r:.60}", self.dispersion)
 
@@ -148,7 +147,6 @@ class FragilityModel:
     without: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Check that the parts fit one another."""
         names = [curve.state for curve in self.curves]
         if not names or len(set(names)) < len(names):
             raise InvalidValueError(f"curves must be at least one, of different states, got {names}")

@@ -47,7 +47,6 @@ class IntensityLevel:
     value: float
 
     def __post_init__(self) -> None:
-        """Check kind and value."""
         if self.kind not in {"PGA", "PGV"}:
             raise InvalidValueError(f"a level is a PGA or a PGV, got {self.kind!r:.40}")
         unit, most = ("m/s2", 1000.0) if self.kind == "PGA" else ("m/s", 100.0)
@@ -55,7 +54,6 @@ class IntensityLevel:
         object.__setattr__(self, "value", value)
 
     def __str__(self) -> str:
-        """Return the level with its unit."""
         if self.kind == "PGV":
             return f"PGV {self.value:.4g} m/s"
         return f"PGA {self.value / g:.4g} g"

@@ -65,7 +65,6 @@ class Thresholds:
     level: float = 0.95
 
     def __post_init__(self) -> None:
-        """Check the numbers."""
         checks.within("rocking", self.rocking, 0.0, 1.0, open_low=True)
         checks.within("overturning_green", self.overturning_green, 0.0, 1.0, open_low=True, open_high=True)
         low = self.overturning_green

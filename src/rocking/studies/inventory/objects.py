@@ -73,7 +73,6 @@ class InventoryObject:
     row: int = 0
 
     def __post_init__(self) -> None:
-        """Check each value and how they fit one another."""
         given: object = self.name
         if not isinstance(given, str) or not given.strip():
             raise InvalidValueError("name must not be empty")

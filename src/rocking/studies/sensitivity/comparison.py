@@ -58,7 +58,6 @@ class Sensitivity:
     drawn: Collection[str] = field(default=(), kw_only=True)
 
     def __post_init__(self) -> None:
-        """Check that the results can be compared."""
         if self.baseline not in self.results:
             raise InvalidValueError(f"baseline must be one of {', '.join(self.results)}, got {self.baseline!r:.60}")
         shapes = {label: dict(found["outcome"].sizes) for label, found in self.datasets.items()}
@@ -365,10 +364,12 @@ def map_sensitivity(
 
     Parameters
     ----------
-    body, motion, x, y, **options
+    body, motion, x, y
         As for `rocking.overturning_map`; neither axis is the restitution.
     restitutions, baseline
         As for `sensitivity`.
+    **options
+        Those of `rocking.overturning_map`.
 
     Returns
     -------
@@ -411,10 +412,12 @@ def spectrum_sensitivity(
 
     Parameters
     ----------
-    motions, slenderness_angles, periods, **options
+    motions, slenderness_angles, periods
         As for `rocking.rocking_spectrum`.
     restitutions, baseline
         As for `sensitivity`.
+    **options
+        Those of `rocking.rocking_spectrum`.
 
     Returns
     -------
@@ -442,10 +445,12 @@ def fragility_sensitivity(
 
     Parameters
     ----------
-    body, motions, levels, **options
+    body, motions, levels
         As for `rocking.studies.multiple_stripe_analysis`.
     restitutions, baseline, repetitions, seed
         As for `sensitivity`; no repetitions, no intervals.
+    **options
+        Those of `rocking.studies.multiple_stripe_analysis`.
 
     Returns
     -------
