@@ -10,13 +10,11 @@ from rocking.bodies import Block
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.loss_of_contact import contact_words, flags
-from rocking.dynamics.plane.batch import PIECE
-from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError, extra
 from rocking.quantities import HISTORY, attributes
-from rocking.studies.histories import Histories, Product
+from rocking.studies.histories import Product, results_of
 from rocking.studies.motion_sets import MotionList
 from rocking.studies.question import Question, modes_of, peak_ratio, sides_of
 
@@ -94,7 +92,7 @@ def rocking_spectrum(
         given, {name: v[:, None] for name, v in sides.items()}, np.array([scale]),
         law=question.law, settings=settings, engine=engine,
     )  # fmt: skip
-    results = _computed(histories, threads, progress)
+    results = results_of(histories, threads=threads, progress=progress)
     shape = (len(given), angles.size, times.size)
     alpha = np.tile(sides["alpha_right"], len(given))
     results |= {"mode": modes_of(results), **flags(results)}
@@ -124,18 +122,6 @@ def _row(name: str, given: Any, unit: str) -> FloatArray:
     if values.ndim != 1 or not values.size:
         raise InvalidValueError(f"{name} must be a row of numbers [{unit}], got shape {values.shape}")
     return values
-
-
-def _computed(histories: Histories, threads: int | None, progress: Callable[[int], None] | None) -> Arrays:
-    """Return all results, piece by piece so that progress can be told."""
-    results = {name: np.empty(histories.count, dtype) for name, dtype in RESULTS.items()}
-    for first in range(0, histories.count, PIECE):
-        last = min(first + PIECE, histories.count)
-        for name, values in histories.run(first, last, threads=threads).items():
-            results[name][first:last] = values
-        if progress is not None:
-            progress(last - first)
-    return results
 
 
 def _attributes(question: Question, settings: Settings, scale: float, motions: MotionList) -> dict[str, Any]:

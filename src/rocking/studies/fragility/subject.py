@@ -17,7 +17,7 @@ from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.dynamics.loss_of_contact import contact_words, lost_contact
-from rocking.dynamics.parameters import SIDES, RockingParameters
+from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings, settings_of
@@ -29,6 +29,7 @@ from rocking.statistics.counts import pooled
 from rocking.statistics.lognormal import LognormalFit, fit_counts
 from rocking.studies.histories import HistoryTable, Product
 from rocking.studies.motion_sets import MotionList, MotionSet, digest
+from rocking.studies.question import sides_of
 from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
@@ -121,25 +122,20 @@ class Subject:
         return {"units": "1" if unit == "-" else unit, "long_name": self.measure.words}
 
     @property
-    def _sides(self) -> dict[str, float]:
-        return {
-            f"{short}_{foot}": getattr(getattr(self.parameters, foot), name)
-            for short, name in SIDES
-            for foot in ("right", "left")
-        }
+    def _sides(self) -> dict[str, FloatArray]:
+        return sides_of([self.parameters])
 
     def product(self, factors: FloatArray) -> Product:
         """Return the histories of every motion with factors [-]."""
-        sides = {name: np.array([[value]]) for name, value in self._sides.items()}
+        sides = {name: values[:, None] for name, values in self._sides.items()}
         return Product(
             self.motions, sides, factors, law=self.parameters.law, settings=self.settings, engine=self.engine
         )
 
     def table(self, motion: np.ndarray, factors: FloatArray) -> HistoryTable:
         """Return histories one by one: numbers of motions, and the factor on each [-]."""
-        values = {name: np.array([value]) for name, value in self._sides.items()}
         return HistoryTable(
-            self.motions, motion, values | {"scale": factors},
+            self.motions, motion, self._sides | {"scale": factors},
             law=self.parameters.law, settings=self.settings, engine=self.engine,
         )  # fmt: skip
 
@@ -151,7 +147,7 @@ class Subject:
             "measure_words": self.measure.words,
             "measure_unit": self.measure.unit,
             "restitution": self.parameters.label,
-            **{f"body_{name}": value for name, value in self._sides.items()},
+            **{f"body_{name}": float(values[0]) for name, values in self._sides.items()},
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in self.settings.stated.items()},
         }
 

@@ -1,27 +1,29 @@
 """The assessment: every object in both directions under every motion, the worse direction counts."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from rocking import checks
-from rocking.conventions import FEET, FloatArray, g
+from rocking.bodies import Block
+from rocking.conventions import FloatArray, g
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.loss_of_contact import lost_contact
-from rocking.dynamics.parameters import SIDES, RockingParameters
-from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome
 from rocking.statistics.counts import share_interval
-from rocking.studies.histories import Product
+from rocking.studies.histories import Product, results_of
 from rocking.studies.inventory.hazard import Hazard
 from rocking.studies.inventory.lights import Light, Thresholds
 from rocking.studies.inventory.objects import DIRECTIONS, Direction, InventoryObject, NotAssessed
 from rocking.studies.inventory.reading import Inventory
 from rocking.studies.motion_sets import MotionList
+from rocking.studies.question import sides_of
 
 
 @dataclass(frozen=True)
@@ -142,17 +144,10 @@ class Assessment:
 
 
 PIECE = 1 << 18
-"""Histories between two calls of the progress, and held in memory at once unless one object has more."""
+"""Histories held in memory at once unless one object has more."""
 
 # the one asked for and the one beside it
 _MODELS = 2
-
-
-@dataclass
-class _Bodies:
-    items: list[InventoryObject] = field(default_factory=list)
-    pairs: list[list[RockingParameters]] = field(default_factory=list)
-    refused: list[NotAssessed] = field(default_factory=list)
 
 
 def assess(
@@ -165,7 +160,7 @@ def assess(
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Assessment:
-    """Assess an inventory.
+    """Assess an inventory; `rocking.inventory` returns the same as a dataset.
 
     Parameters
     ----------
@@ -173,12 +168,8 @@ def assess(
         The objects.
     hazard : Hazard
         The motions; each acts in either direction by itself.
-    restitution : str, RestitutionModel, float or mapping
-        Model of impact; the verdict of Housner's stands beside it (of KED, if Housner's was asked for).
-    thresholds : Thresholds, optional
-        What the lights mean.
-    gravity : float
-        Acceleration of gravity [m/s2].
+    restitution, thresholds, gravity
+        As for `rocking.inventory`.
     threads : int, optional
         Threads of the fast engine.
     progress : callable, optional
@@ -202,14 +193,14 @@ def assess(
     >>> assess([vase], hazard).verdicts[0].light.word
     'green'
     """
-    asked = _Asked.of(inventory, hazard, restitution, thresholds, gravity)
-    found: list[Verdict | NotAssessed] = []
-    for block in _blocks(asked.inventory.objects, len(hazard.motions)):
-        bodies = asked.bodies(block)
-        found += bodies.refused
-        if bodies.items:
-            found += _verdicts(bodies, _run(asked.product(bodies), threads, progress), asked)
-    return asked.assessment(found)
+    assessor = _Assessor(inventory, hazard, restitution, thresholds, gravity)
+    rulings: list[Verdict | NotAssessed] = []
+    for objects in assessor.pieces():
+        product, items, refused = assessor.product(objects)
+        rulings += refused
+        if product is not None:
+            rulings += assessor.verdicts(items, product, results_of(product, threads=threads, progress=progress))
+    return assessor.assessment(rulings)
 
 
 def assessment_plan(
@@ -224,181 +215,119 @@ def assessment_plan(
 
     The histories are over motion, object and direction, one scale, and the two models of impact.
     """
-    asked = _Asked.of(inventory, hazard, restitution, thresholds, gravity)
-    bodies = asked.bodies(asked.inventory.objects)
-    if not bodies.items:
-        first = min([*asked.inventory.not_assessed, *bodies.refused], key=lambda each: each.row)
+    assessor = _Assessor(inventory, hazard, restitution, thresholds, gravity)
+    product, items, refused = assessor.product(assessor.inventory.objects)
+    if product is None:
+        first = min([*assessor.inventory.not_assessed, *refused], key=lambda each: each.row)
         raise InvalidValueError(f"no object can be assessed; line {first.row}: {first.reason}")
-    product = asked.product(bodies)
 
     def finish(results: Arrays) -> Assessment:
-        return asked.assessment([*bodies.refused, *_verdicts(bodies, _shaped(product, results), asked)])
+        return assessor.assessment([*refused, *assessor.verdicts(items, product, results)])
 
-    return product, finish, tuple(bodies.items)
+    return product, finish, tuple(items)
 
 
-@dataclass(frozen=True)
-class _Asked:
-    """What an assessment asks, checked."""
+class _Assessor:
+    """What an assessment is made with, checked, and its steps: bodies, histories, verdicts."""
 
-    inventory: Inventory
-    hazard: Hazard
-    restitution: Any
-    comparison: str
-    thresholds: Thresholds
-    gravity: float
-
-    @classmethod
-    def of(
-        cls, inventory: Inventory | Sequence[InventoryObject], hazard: Hazard, restitution: Any,
+    def __init__(
+        self, inventory: Inventory | Sequence[InventoryObject], hazard: Hazard, restitution: Any,
         thresholds: Thresholds | None, gravity: float,
-    ) -> "_Asked":  # fmt: skip
-        given = inventory if isinstance(inventory, Inventory) else Inventory(tuple(inventory))
-        if not given.objects and not given.not_assessed:
+    ) -> None:  # fmt: skip
+        self.inventory = inventory if isinstance(inventory, Inventory) else Inventory(tuple(inventory))
+        if not self.inventory.objects and not self.inventory.not_assessed:
             raise InvalidValueError("an inventory must have at least one object, got none")
         if isinstance(restitution, ImpactLaw):
             raise InvalidValueError(
                 "restitution of an inventory must be a model or a coefficient, not a law of impacts"
             )
-        other = "ked" if _is_housner(restitution) else "housner"
-        gravity = checks.positive("gravity", gravity, "m/s2")
-        made = cls(given, hazard, restitution, other, thresholds or Thresholds(), gravity)
-        _ = made.labels  # a wrong word is the user's slip, not that of every row: it is refused here
-        return made
+        self.hazard, self.thresholds = hazard, thresholds or Thresholds()
+        self.gravity = checks.positive("gravity", gravity, "m/s2")
+        is_housner = restitution == "housner" or getattr(restitution, "name", None) == "housner"
+        self.restitutions = (restitution, "ked" if is_housner else "housner")
+        # a wrong word is the user's slip, not that of every row: it is refused here
+        example = Block(width=1.0, height=4.0)
+        self.labels = [RockingParameters.of_body(example, each, self.gravity).label for each in self.restitutions]
 
-    @property
-    def labels(self) -> tuple[str, str]:
-        """The two models, in words."""
-        from rocking.bodies import Block
+    def pieces(self) -> Iterator[Sequence[InventoryObject]]:
+        """Yield objects whose histories fit into a piece: an inventory of any length takes no more memory."""
+        objects = self.inventory.objects
+        many = max(1, PIECE // (len(self.hazard.motions) * len(DIRECTIONS) * _MODELS))
+        for first in range(0, len(objects), many):
+            yield objects[first : first + many]
 
-        block = Block(width=1.0, height=4.0)
-        first, second = (
-            RockingParameters.of_body(block, r, self.gravity).label for r in (self.restitution, self.comparison)
-        )
-        return first, second
-
-    def bodies(self, objects: Sequence[InventoryObject]) -> _Bodies:
-        return _bodies(objects, self.restitution, self.comparison, self.gravity)
-
-    def product(self, bodies: _Bodies) -> Product:
+    def product(
+        self, objects: Sequence[InventoryObject]
+    ) -> tuple[Product | None, list[InventoryObject], list[NotAssessed]]:
+        """Return the histories of some objects, those that have any, and those that are refused."""
+        items: list[InventoryObject] = []
+        refused: list[NotAssessed] = []
+        parameters: list[RockingParameters] = []
+        for item in objects:
+            try:
+                parameters += [
+                    RockingParameters.of_body(item.body(way), restitution, self.gravity)
+                    for way in DIRECTIONS
+                    for restitution in self.restitutions
+                ]
+            except RockingError as error:
+                refused.append(NotAssessed(item.row, item.name, str(error)))
+            else:
+                items.append(item)
+        if not items:
+            return None, items, refused
+        sides = {name: values.reshape(-1, _MODELS) for name, values in sides_of(parameters).items()}
         settings = Settings(gravity=self.gravity)
-        return Product(MotionList(self.hazard.motions), _sides(bodies.pairs), np.ones(1), settings=settings)
+        return Product(MotionList(self.hazard.motions), sides, np.ones(1), settings=settings), items, refused
 
-    def assessment(self, found: Sequence[Verdict | NotAssessed]) -> Assessment:
-        """Return what is said of all objects, in order."""
-        verdicts = [each for each in found if isinstance(each, Verdict)]
-        refused = [*self.inventory.not_assessed, *(each for each in found if isinstance(each, NotAssessed))]
+    def verdicts(
+        self, items: Sequence[InventoryObject], product: Product, results: Arrays
+    ) -> Iterator[Verdict | NotAssessed]:
+        """Yield a verdict of each object: from outcome, rotation over the slenderness angle, and loss of contact."""
+        shape = (len(product.motions), len(items), len(DIRECTIONS), _MODELS)
+        outcome = results["outcome"].reshape(shape)
+        peak = np.abs(results["peak_rotation"].reshape(shape))
+        ratio = peak / product.sides["alpha_right"].reshape(shape[1:])
+        lost = lost_contact(results).reshape(shape)
+        for k, item in enumerate(items):
+            if (outcome[:, k] == Outcome.FAILED.code).all(axis=0).any():
+                yield NotAssessed(item.row, item.name, "no motion could be computed in one of its directions")
+                continue
+            by_model = [
+                tuple(
+                    self._direction(item, way, outcome[:, k, j, model], ratio[:, k, j, model], lost[:, k, j, model])
+                    for j, way in enumerate(DIRECTIONS)
+                )
+                for model in range(_MODELS)
+            ]
+            worse = max(by_model[0], key=lambda each: each.severity)
+            yield Verdict(item, *by_model, share_interval(worse.overturned, worse.count, self.thresholds.level))
+
+    def _direction(
+        self, item: InventoryObject, way: Direction, outcome: np.ndarray, ratio: FloatArray, lost: FloatArray
+    ) -> DirectionResult:
+        good = outcome != Outcome.FAILED.code
+        fell = outcome[good] == Outcome.OVERTURNED.code
+        lifted = outcome[good] != Outcome.NO_UPLIFT.code
+        middle, high = (_quantile(ratio[good], fell, share) for share in (0.5, 0.84))
+        counts = {"lifted": int(lifted.sum()), "overturned": int(fell.sum()), "count": int(good.sum())}
+        failed = int((~good).sum())
+        light = self.thresholds.light(high_rotation=high, failed=failed, **counts)
+        return DirectionResult(
+            way, item.uplift_acceleration(way, self.gravity), median_rotation=middle, high_rotation=high, light=light,
+            failed=failed, lost_contact=int(np.nansum(lost)), **counts,
+        )  # fmt: skip
+
+    def assessment(self, rulings: Sequence[Verdict | NotAssessed]) -> Assessment:
+        """Return verdicts and refusals of all objects, in order."""
+        verdicts = [each for each in rulings if isinstance(each, Verdict)]
+        refused = [*self.inventory.not_assessed, *(each for each in rulings if isinstance(each, NotAssessed))]
         verdicts.sort(key=lambda each: (each.worse.severity, -each.item.row), reverse=True)
         refused.sort(key=lambda each: each.row)
         return Assessment(
             tuple(verdicts), tuple(refused), self.hazard, self.thresholds, *self.labels,
             source=self.inventory.source, ignored=self.inventory.ignored, gravity=self.gravity,
         )  # fmt: skip
-
-
-def _blocks(objects: Sequence[InventoryObject], motions: int) -> Iterator[Sequence[InventoryObject]]:
-    """Yield objects in blocks whose histories fit into a piece: an inventory of any length takes no more memory."""
-    many = max(1, PIECE // (motions * len(DIRECTIONS) * _MODELS))
-    for first in range(0, len(objects), many):
-        yield objects[first : first + many]
-
-
-def _is_housner(restitution: Any) -> bool:
-    return restitution == "housner" or getattr(restitution, "name", None) == "housner"
-
-
-def _bodies(objects: Sequence[InventoryObject], restitution: Any, other: str, gravity: float) -> _Bodies:
-    bodies = _Bodies()
-    for item in objects:
-        try:
-            pairs = [
-                [RockingParameters.of_body(item.body(way), r, gravity) for r in (restitution, other)]
-                for way in DIRECTIONS
-            ]
-        except RockingError as error:
-            bodies.refused.append(NotAssessed(item.row, item.name, str(error)))
-            continue
-        bodies.items.append(item)
-        bodies.pairs.extend(pairs)
-    return bodies
-
-
-def _verdicts(bodies: _Bodies, tables: Mapping[str, np.ndarray], asked: _Asked) -> Iterator[Verdict | NotAssessed]:
-    """Yield what is said of each object of a block."""
-    limits, gravity = asked.thresholds, asked.gravity
-    for k, item in enumerate(bodies.items):
-        yield _verdict(item, {name: values[:, 2 * k : 2 * k + 2] for name, values in tables.items()}, limits, gravity)
-
-
-def _run(product: Product, threads: int | None, progress: Callable[[int], None] | None) -> Mapping[str, np.ndarray]:
-    kept = {name: np.empty(product.count, RESULTS[name]) for name in ("outcome", "peak_rotation", "least_force")}
-    for first in range(0, product.count, PIECE):
-        last = min(first + PIECE, product.count)
-        found = product.run(first, last, threads=threads)
-        for name, values in kept.items():
-            values[first:last] = found[name]
-        if progress is not None:
-            progress(last - first)
-    return _shaped(product, kept)
-
-
-def _shaped(product: Product, results: Arrays) -> Mapping[str, np.ndarray]:
-    """Return outcome, peak rotation over the slenderness angle, loss of contact, each by motion, body and model."""
-    motions, count, _, choices = product.shape
-    outcome, peak = (results[name].reshape(motions, count, choices) for name in ("outcome", "peak_rotation"))
-    lost = lost_contact(results).reshape(motions, count, choices)
-    return {"outcome": outcome, "ratio": np.abs(peak) / product.sides["alpha_right"], "lost": lost}
-
-
-def _sides(pairs: Sequence[Sequence[RockingParameters]]) -> dict[str, FloatArray]:
-    return {
-        f"{short}_{foot}": np.array(
-            [[getattr(getattr(parameters, foot), name) for parameters in pair] for pair in pairs]
-        )
-        for short, name in SIDES
-        for foot in FEET
-    }
-
-
-def _verdict(
-    item: InventoryObject, table: Mapping[str, np.ndarray], limits: Thresholds, gravity: float
-) -> Verdict | NotAssessed:
-    failed = table["outcome"] == Outcome.FAILED.code
-    if failed.all(axis=0).any():
-        return NotAssessed(item.row, item.name, "no motion could be computed in one of its directions")
-    found = [
-        tuple(
-            _direction(item, way, {name: values[:, k, choice] for name, values in table.items()}, limits, gravity)
-            for k, way in enumerate(DIRECTIONS)
-        )
-        for choice in range(_MODELS)
-    ]
-    worse = max(found[0], key=lambda each: each.severity)
-    return Verdict(item, found[0], found[1], share_interval(worse.overturned, worse.count, limits.level))
-
-
-def _direction(
-    item: InventoryObject, way: Direction, table: Mapping[str, np.ndarray], limits: Thresholds, gravity: float
-) -> DirectionResult:
-    outcome, ratio = table["outcome"], table["ratio"]
-    good = outcome != Outcome.FAILED.code
-    fell = outcome[good] == Outcome.OVERTURNED.code
-    lifted = outcome[good] != Outcome.NO_UPLIFT.code
-    middle, high = (_quantile(ratio[good], fell, share) for share in (0.5, 0.84))
-    counts = {"lifted": int(lifted.sum()), "overturned": int(fell.sum()), "count": int(good.sum())}
-    failed = int((~good).sum())
-    light = limits.light(high_rotation=high, failed=failed, **counts)
-    uplift = item.uplift_acceleration(way, gravity)
-    return DirectionResult(
-        way,
-        uplift,
-        median_rotation=middle,
-        high_rotation=high,
-        light=light,
-        failed=failed,
-        lost_contact=int(np.nansum(table["lost"])),
-        **counts,
-    )
 
 
 def _quantile(ratio: FloatArray, fell: np.ndarray, share: float) -> float | None:
