@@ -247,7 +247,9 @@ class _Assessor:
         self.restitutions = (restitution, "ked" if is_housner else "housner")
         # a wrong word is the user's slip, not that of every row: it is refused here
         example = Block(width=1.0, height=4.0)
-        self.labels = [RockingParameters.of_body(example, each, self.gravity).label for each in self.restitutions]
+        self.label, self.other_label = (
+            RockingParameters.of_body(example, each, self.gravity).label for each in self.restitutions
+        )
 
     def pieces(self) -> Iterator[Sequence[InventoryObject]]:
         """Yield objects whose histories fit into a piece: an inventory of any length takes no more memory."""
@@ -293,15 +295,16 @@ class _Assessor:
             if (outcome[:, k] == Outcome.FAILED.code).all(axis=0).any():
                 yield NotAssessed(item.row, item.name, "no motion could be computed in one of its directions")
                 continue
-            by_model = [
+            of_model, of_other = (
                 tuple(
                     self._direction(item, way, outcome[:, k, j, model], ratio[:, k, j, model], lost[:, k, j, model])
                     for j, way in enumerate(DIRECTIONS)
                 )
                 for model in range(_MODELS)
-            ]
-            worse = max(by_model[0], key=lambda each: each.severity)
-            yield Verdict(item, *by_model, share_interval(worse.overturned, worse.count, self.thresholds.level))
+            )
+            worse = max(of_model, key=lambda each: each.severity)
+            interval = share_interval(worse.overturned, worse.count, self.thresholds.level)
+            yield Verdict(item, of_model, of_other, interval)
 
     def _direction(
         self, item: InventoryObject, way: Direction, outcome: np.ndarray, ratio: FloatArray, lost: FloatArray
@@ -325,7 +328,7 @@ class _Assessor:
         verdicts.sort(key=lambda each: (each.worse.severity, -each.item.row), reverse=True)
         refused.sort(key=lambda each: each.row)
         return Assessment(
-            tuple(verdicts), tuple(refused), self.hazard, self.thresholds, *self.labels,
+            tuple(verdicts), tuple(refused), self.hazard, self.thresholds, self.label, self.other_label,
             source=self.inventory.source, ignored=self.inventory.ignored, gravity=self.gravity,
         )  # fmt: skip
 
