@@ -14,11 +14,8 @@ import pytest
 import rocking as rk
 from rocking import conventions
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_analysis
-from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
-from rocking.studies.fragility.cloud_analysis import cloud
-from rocking.studies.fragility.curves import model_of
-from rocking.studies.fragility.export import to_nrml
+from rocking.studies import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
+from rocking.studies.fragility import model_of, to_nrml
 
 HALF_SINE = {
     1: 1.3223965979078765668, 2: 1.8007239305607457817, 3: 2.2938723134392918526, 5: 3.2891467775230030447,

@@ -12,10 +12,13 @@ import pytest
 from scipy.optimize import brentq
 
 import rocking as rk
-from rocking.studies._overturning_map import overturning_map
-from rocking.studies.boundaries import boundary
-from rocking.studies.islands import safe_beyond_overturning, safe_islands
-from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
+from rocking.studies import (
+    boundary,
+    minimum_overturning_acceleration,
+    overturning_map,
+    safe_beyond_overturning,
+    safe_islands,
+)
 
 ALPHA = 0.12
 BLOCK = rk.Block.from_angle(ALPHA, 0.9)

@@ -15,9 +15,9 @@ from scipy.optimize import brentq
 
 import rocking as rk
 from rocking import conventions
+from rocking.dynamics import Settings
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.trajectory import EventKind
-from rocking.dynamics.settings import Settings
 from rocking.outcome import Outcome
 
 ENGINES = ("fast", "reference")

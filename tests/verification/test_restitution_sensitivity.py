@@ -12,12 +12,11 @@ from scipy import optimize, stats
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics import RockingParameters
-from rocking.dynamics.settings import Settings
+from rocking.dynamics import RockingParameters, Settings
 from rocking.outcome import Outcome
-from rocking.studies.histories import HistoryTable
-from rocking.studies.motion_sets import MotionList
-from rocking.studies.sensitivity import (
+from rocking.studies import (
+    HistoryTable,
+    MotionList,
     SampledRestitution,
     fragility_sensitivity,
     map_sensitivity,

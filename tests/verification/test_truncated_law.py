@@ -20,13 +20,11 @@ from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.errors import InvalidValueError, PlausibilityWarning
-from rocking.evidence._restitution_distribution import restitution_distribution
-from rocking.evidence.calibration import Calibration, calibrate
+from rocking.evidence import Calibration, calibrate, restitution_distribution
 from rocking.evidence.likelihood import scatter
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 from rocking.restitution import ShiftedImpulse, coefficient_of_restitution
-from rocking.studies import SampledRestitution
-from rocking.studies.fragility import multiple_stripe_analysis
+from rocking.studies import SampledRestitution, multiple_stripe_analysis
 
 # one false alarm in a million: the draws never change, so a failure is no accident
 ALARM = 1e-6

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.impact_laws import SpeedRestitution
+from rocking.dynamics import SpeedRestitution
 from rocking.errors import InvalidValueError
+from rocking.studies import axes
 from rocking.studies.adaptive_grid import Plane
-from rocking.studies.axis import Scale, axes, axis_of, main_period, peak_velocity
+from rocking.studies.axis import Scale, axis_of, main_period, peak_velocity
 from rocking.studies.variations import changed_body, reference_side
 
 BLOCK = rk.Block(width=0.6, height=2.4, depth=0.5, density=2000.0)

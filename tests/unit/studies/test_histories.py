@@ -9,7 +9,7 @@ import rocking as rk
 from rocking.dynamics import ImpactLaw, RandomRestitution, Settings
 from rocking.dynamics.plane.fast_engine import RESULTS
 from rocking.errors import InvalidValueError
-from rocking.motions.pulse import Pulse
+from rocking.motions import Pulse
 from rocking.restitution import model
 from rocking.studies import Histories, HistoryTable, MotionList, MotionSet, Product, SampledRestitution, histories
 from rocking.studies.motion_sets import digest

@@ -8,8 +8,8 @@ import pytest
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.quantities import HISTORY
-from rocking.studies._overturning_map import overturning_map
-from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, refined_map
+from rocking.studies import overturning_map, refined_map
+from rocking.studies.adaptive_grid import AdaptiveGrid, Plane
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 PULSE = rk.pulses.sine(3.0, 0.7)

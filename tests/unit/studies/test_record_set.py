@@ -9,14 +9,11 @@ import numpy as np
 import pytest
 
 from rocking.bodies import Block
-from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics import RockingParameters
 from rocking.errors import InvalidValueError
-from rocking.motions import peak_ground_velocity
-from rocking.motions.motion import GroundMotion
-from rocking.motions.synthetic.distributions import Uniform
-from rocking.motions.synthetic.families import families, family
-from rocking.studies.histories import Product
-from rocking.studies.motion_sets import MotionList, SyntheticSet
+from rocking.motions import GroundMotion, peak_ground_velocity
+from rocking.motions.synthetic import Uniform, families, family
+from rocking.studies import MotionList, Product, SyntheticSet
 
 
 @pytest.mark.parametrize("name", list(families()))

@@ -7,7 +7,7 @@ import pytest
 
 import rocking as rk
 from rocking.errors import InvalidValueError
-from rocking.studies._rocking_spectrum import rocking_spectrum
+from rocking.studies import rocking_spectrum
 
 ANGLES, PERIODS = [0.1, 0.2, 0.3], np.linspace(1.0, 9.0, 9)
 PULSES = [rk.pulses.sine(3.0, 0.6), rk.pulses.cosine(2.0, 0.9)]

@@ -9,11 +9,12 @@ from scipy.io import loadmat
 from scipy.special import ndtr
 from scipy.stats import norm
 
+from rocking.statistics import fit_lognormal
 from rocking.statistics.bootstrap import _order_statistic
 from rocking.statistics.goodness import STATISTICS, agreement_of, repeated_of
-from rocking.statistics.lognormal import fit_lognormal
-from rocking.studies.fragility.curves import FragilityModel, curve_of, with_common_dispersion, with_evidence
-from rocking.studies.fragility.export import table, to_csv, to_excel, to_mat, to_netcdf
+from rocking.studies.fragility import FragilityModel, to_csv, to_excel, to_mat, to_netcdf
+from rocking.studies.fragility.curves import curve_of, with_common_dispersion, with_evidence
+from rocking.studies.fragility.export import table
 
 LEVELS = np.exp(np.linspace(-1.0, 1.0, 9))
 TRIALS = np.full(9, 400)

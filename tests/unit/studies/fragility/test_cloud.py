@@ -13,8 +13,9 @@ import rocking as rk
 from rocking import conventions
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
-from rocking.statistics.least_squares import regression
-from rocking.studies.fragility.cloud_analysis import ClearShare, cloud, cloud_plan
+from rocking.statistics import regression
+from rocking.studies import cloud
+from rocking.studies.fragility.cloud_analysis import ClearShare, cloud_plan
 from rocking.studies.fragility.subject import Responses
 
 BLOCK = rk.Block(width=0.5, height=2.0)

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.errors import InvalidValueError
-from rocking.motions import intensity
-from rocking.motions.intensity import RockingScale, measure, measures, sampled, spectral_measure, spectral_period
-from rocking.studies.motion_sets import MotionList
+from rocking.motions import RockingScale, intensity, measure, measures, spectral_measure
+from rocking.motions.intensity import sampled, spectral_period
+from rocking.studies import MotionList
 
 BODY = RockingScale(threshold=2.5, frequency_parameter=1.6, gravity=9.80665)
 RECORD = rk.GroundMotion(np.sin(np.linspace(0.0, 12.0, 400)) * np.linspace(0.0, 3.0, 400), 0.01)

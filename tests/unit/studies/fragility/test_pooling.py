@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.motions.intensity import IntensityMeasure
+from rocking.motions import IntensityMeasure
 from rocking.outcome import Outcome
-from rocking.statistics.counts import count_outcomes, pooled
+from rocking.statistics import count_outcomes
+from rocking.statistics.counts import pooled
+from rocking.studies import MotionSet
+from rocking.studies.fragility import model_of
 from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_plan
 from rocking.studies.fragility.cloud_analysis import cloud_plan
-from rocking.studies.fragility.curves import model_of
-from rocking.studies.motion_sets import MotionSet
 
 LEVELS = np.array([1.0, 2.0, 3.5, 5.0])
 

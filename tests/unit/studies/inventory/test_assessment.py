@@ -9,17 +9,21 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from rocking.dynamics.impact_laws import RandomRestitution
+from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError, UnknownModelError
-from rocking.motions.motion import GroundMotion
+from rocking.motions import GroundMotion
 from rocking.outcome import Outcome
+from rocking.studies.inventory import (
+    Hazard,
+    IntensityLevel,
+    InventoryObject,
+    Thresholds,
+    assess,
+    parse_inventory,
+    table,
+)
 from rocking.studies.inventory import assessment as module
-from rocking.studies.inventory import table
-from rocking.studies.inventory.assessment import assess
-from rocking.studies.inventory.hazard import Hazard, IntensityLevel
-from rocking.studies.inventory.lights import Light, Thresholds
-from rocking.studies.inventory.objects import InventoryObject
-from rocking.studies.inventory.reading import parse_inventory
+from rocking.studies.inventory.lights import Light
 from rocking.studies.inventory.table import HEADER, as_csv, as_plain, rows
 from rocking.tables import escaped
 

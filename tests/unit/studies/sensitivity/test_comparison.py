@@ -9,15 +9,15 @@ import rocking as rk
 from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError
 from rocking.statistics import share_interval
-from rocking.studies.axis import RestitutionAxis
-from rocking.studies.sensitivity import (
+from rocking.studies import (
     SampledRestitution,
     Sensitivity,
     fragility_sensitivity,
     map_sensitivity,
-    sensitivity,
     spectrum_sensitivity,
 )
+from rocking.studies.axis import RestitutionAxis
+from rocking.studies.sensitivity import sensitivity
 
 xr = pytest.importorskip("xarray")
 BLOCK, PULSE = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.6)

@@ -7,14 +7,11 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.impact_laws import ImpactLaw
+from rocking.dynamics import ImpactLaw
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
-from rocking.studies.fragility._incremental_dynamic_analysis import (
-    incremental_dynamic_analysis,
-    incremental_dynamic_plan,
-)
-from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
+from rocking.studies import incremental_dynamic_analysis, multiple_stripe_analysis
+from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_plan
 from rocking.studies.fragility._overturning_intervals import OutcomeBrackets, brackets_of, intervals_of, refined
 
 BODY = rk.Block(width=0.4, height=1.6).with_feet(0.04, 0.4)

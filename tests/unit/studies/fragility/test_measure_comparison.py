@@ -10,8 +10,9 @@ from scipy import stats
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
-from rocking.studies.fragility.cloud_analysis import cloud, cloud_plan
-from rocking.studies.fragility.measure_comparison import compare_measures, replace_measure
+from rocking.studies import cloud, compare_measures
+from rocking.studies.fragility.cloud_analysis import cloud_plan
+from rocking.studies.fragility.measure_comparison import replace_measure
 
 BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
 RANDOM = np.random.default_rng(11)

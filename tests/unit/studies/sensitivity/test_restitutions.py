@@ -1,4 +1,4 @@
-"""Coefficients drawn once for every history: keyed by its number, in the fast engine and in the reference alike."""
+"""Restitutions by name, and coefficients drawn once for every history."""
 
 import pickle
 from dataclasses import replace
@@ -8,13 +8,13 @@ import pytest
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics import RandomRestitution, RockingParameters
+from rocking.dynamics import RandomRestitution, RockingParameters, SpeedRestitution
 from rocking.dynamics.impact_laws import uniform
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome, Status
-from rocking.studies.histories import HistoryTable, Product
-from rocking.studies.motion_sets import MotionList
-from rocking.studies.sensitivity.restitutions import SampledHistories, SampledRestitution, sampled, uniforms
+from rocking.restitution import Fixed
+from rocking.studies import HistoryTable, MotionList, Product, SampledRestitution
+from rocking.studies.sensitivity.restitutions import SampledHistories, label_of, named_choices, sampled, uniforms
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 PULSES = MotionList([rk.pulses.sine(3.0, period) for period in (0.5, 0.7, 0.9)])
@@ -209,3 +209,53 @@ def test_key_sees_the_classes_of_base_and_draw():
     assert SampledHistories.of(histories(), replace(LAW)).key() == keys[0]
     with pytest.raises(InvalidValueError, match=r"must say what makes it, by content\(\)"):
         SampledHistories.of(base, Halved(LAW.factors, 11)).key()
+
+
+@pytest.mark.parametrize(
+    ("choice", "label"),
+    [
+        ("housner", "housner"),
+        ("0.98*shifted-impulse:k=0.6", "0.98*shifted-impulse:k=0.6"),
+        (Fixed(0.9), "fixed:r=0.9"),
+        (0.85, "0.85"),
+        ({"left": 0.8, "right": 0.9}, "left 0.8, right 0.9"),
+        (SpeedRestitution([0.0, 1.0], [0.9, 0.8], times="ked"), "SpeedRestitution times ked"),
+        (SampledRestitution([0.8, 1.0], 3), "drawn per history, 0.9 [0.805, 0.995], seed 3"),
+        (RandomRestitution([0.8, 1.0], 3, times="ked"), "drawn per impact, 0.9 [0.805, 0.995], seed 3 times ked"),
+    ],
+)
+def test_every_choice_has_a_name(choice, label):
+    """Models, numbers, pairs and laws are named by what they are; draws with their median and 95 % range."""
+    assert label_of(choice) == label
+
+
+def test_a_dict_names_the_choices():
+    """Names that the user gives are kept, in their order."""
+    assert list(named_choices({"new": "ked", "old": "housner"})) == ["new", "old"]
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (["ked"], "at least two"),
+        (["ked", "ked"], "'ked'"),
+        ("ked", "list or a dict"),
+        (0.9, "list or a dict"),
+        ({"left": 0.8, "right": 0.9}, "one choice"),
+        (["ked", {"left": 0.9}], "by side"),
+        (["ked", None], "number"),
+        (["ked", float("nan")], "finite"),
+        ({"a": "ked", "b": "nonsense"}, "no restitution model"),
+    ],
+)
+def test_what_cannot_be_compared_is_refused(given, message):
+    """Fewer than two choices, equal names and what is no restitution are refused before anything is computed."""
+    with pytest.raises(RockingError, match=message):
+        named_choices(given)
+
+
+def test_equal_choices_can_be_compared_under_names():
+    """The same choice twice is allowed once it is named: the comparison must then find nothing."""
+    assert named_choices({"a": 0.9, "b": 0.9}) == {"a": 0.9, "b": 0.9}
+    with pytest.raises(InvalidValueError, match="name: choice"):
+        named_choices([0.9, 0.9])

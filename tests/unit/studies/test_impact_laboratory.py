@@ -1,9 +1,12 @@
-"""Studies of the contact bed: each shows what closed forms or the specification say it must."""
+"""The impact laboratory: closed forms, convergence, what r depends on, files and doors."""
 
+import csv
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import rocking as rk
 from rocking.bodies import Block
@@ -12,6 +15,7 @@ from rocking.restitution.bed import fast
 from rocking.studies.impact_laboratory import (
     SHAPES,
     Laboratory,
+    LaboratoryStudy,
     bed_speed_law,
     coefficients,
     damping_study,
@@ -167,3 +171,99 @@ def test_large_bodies_lose_the_hollow_and_not_the_difference_to_ked():
     assert abs(float(found.flat[-1] - found.ked[-1])) > 1e-3
     # negative control: without a hollow nothing changes with size
     assert np.ptp(large_bodies_study([0.1, 1.0], hollow=0.0).hollow.values) < 1e-5
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: profile("random", 1e-3, 5, seed=-1), "seed must be a whole number of at least 0, got -1"),
+        (lambda: profile("random", 1e-3, 5, seed=0.5), "seed must be a whole number of at least 0, got 0.5"),
+        (lambda: profile("random", 1e-3, 5, seed="a"), "seed must be a number"),
+        (lambda: profile("random", 1e-3, 5, seed=math.nan), "seed must be finite"),
+        (lambda: profile("convex", 1e-3, 2.5), "points must be a whole number of at least 2, got 2.5"),
+        (lambda: profile("convex", 1e-3, 1), "points must be a whole number of at least 2, got 1"),
+        (lambda: profile("convex", -1e-3, 5), "amplitude must be in"),
+        (lambda: profile("wavy", 1e-3, 5), "shape must be one of convex, concave, tilted, random"),
+    ],
+)
+def test_profile_studies(make, words):
+    """Seeds, points, amplitudes and shapes that are none are refused with their range."""
+    with pytest.raises(InvalidValueError, match=words):
+        make()
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: points_study([2.7, 3]), "points must be a whole number of at least 2, got 2.7"),
+        (lambda: points_study([1, 3]), "points must be a whole number of at least 2, got 1"),
+        (lambda: random_profiles(1e-3, [0, 1.5]), "seed must be a whole number of at least 0, got 1.5"),
+        (lambda: random_profiles(1e-3, [-1]), "seed must be a whole number of at least 0, got -1"),
+        (lambda: profile_study("random", [1e-3], seed=-1), "seed must be a whole number"),
+    ],
+)
+def test_studies(make, words):
+    """A study computes what its coordinate says, or nothing."""
+    pytest.importorskip("xarray")
+    with pytest.raises(InvalidValueError, match=words):
+        make()
+
+
+def test_whole_numbers_of_any_kind_are_taken():
+    """Integers of NumPy and floats without a fraction count; the same seed is the same base."""
+    heights = profile("random", 1e-3, 5, seed=3)
+    assert profile("random", 1e-3, np.int64(5), seed=3.0) == heights
+    assert profile("random", 1e-3, 5, seed=4) != heights
+
+
+@pytest.mark.skipif(not fast.available(), reason="the bed's fast engine was not built")
+def test_points_are_what_the_coordinate_says():
+    """Points given as floats: each result is that of a laboratory with so many points."""
+    pytest.importorskip("xarray")
+    start = Laboratory(slenderness=4.0)
+    found = points_study([2.0, 3.0], start)
+    assert found.points.values.tolist() == [2.0, 3.0]
+    alone = [points_study([count], start).coefficient.values[0] for count in (2, 3)]
+    assert found.coefficient.values.tolist() == alone
+    assert alone[0] != alone[1]
+
+
+STUDIES = {
+    "slenderness": lambda: slenderness_study([2.0, 4.0], Laboratory(points=5)),
+    "release": lambda: velocity_study([0.2, 0.6], Laboratory(points=5)),
+    "amplitude": lambda: profile_study("concave", [0.0, 1e-4], Laboratory(points=5)),
+    "width": lambda: large_bodies_study([0.1, 1.0], laboratory=Laboratory(points=5)),
+}
+
+
+@pytest.mark.parametrize("varied", STUDIES)
+def test_files_hold_the_same_numbers(varied: str, tmp_path: Path) -> None:
+    """CSV and netCDF read back give the bits of the dataset, with units in headings and attributes."""
+    found: LaboratoryStudy = STUDIES[varied]()
+    with found.to_csv(tmp_path / "study.csv").open(newline="", encoding="utf-8") as file:
+        heads, *rows = list(csv.reader(file))
+    with xr.open_dataset(found.to_netcdf(tmp_path / "study.nc"), engine="h5netcdf") as back:
+        assert back.identical(found.dataset)
+        assert back.attrs["software"].startswith("rocking ")
+        assert "points=5" in back.attrs["laboratory"]
+        assert all(back[name].attrs["units"] for name in back.variables)
+    assert heads[0].startswith(f"{varied} [")
+    frame = found.to_dataframe()
+    assert list(frame.columns) == heads
+    assert frame.attrs == found.dataset.attrs
+    for at, head in enumerate(heads):
+        name = head.split(" [")[0]
+        np.testing.assert_array_equal([float(row[at]) for row in rows], found[name].values)
+        np.testing.assert_array_equal(frame[head].to_numpy(), found[name].values)
+
+
+def test_units_of_a_study() -> None:
+    """Columns name their units, a number without one says so."""
+    heads = list(STUDIES["slenderness"]().to_dataframe().columns)
+    assert {"coefficient [-]", "landing_velocity [rad/s]", "peak_force [N]", "bed_loss [J]"} <= set(heads)
+
+
+def test_a_folder_that_is_not_there(tmp_path: Path) -> None:
+    """A path that cannot be written is refused, not created."""
+    with pytest.raises(InvalidValueError, match="no folder"):
+        STUDIES["slenderness"]().to_csv(tmp_path / "nowhere" / "study.csv")
