@@ -7,7 +7,7 @@ Strategies of hypothesis, which shrink what fails:
 - `polygons`: the ring of a star-shaped polygon with a base on y = 0, its centre above the base;
 - `sections`: such a `rocking.Section` on feet inside its base, at unequal distances from the centre;
 - `blocks`: a `rocking.Block` on unequal feet;
-- `samples`: lists of accelerations [m/s2], zeros, runs and jumps among them.
+- `accelerations`: lists of accelerations [m/s2], zeros, runs and jumps among them.
 
 From a seed or a `numpy.random.Generator`, the same at every call with the same seed:
 
@@ -70,7 +70,7 @@ def blocks(draw: Any, symmetric: bool = False) -> rk.Block:
     return block.with_feet(draw(inside) * block.width, (1.0 - draw(inside)) * block.width)
 
 
-def samples(least: int = 2, most: int = 30, peak: float = 9.0) -> st.SearchStrategy[list[float]]:
+def accelerations(least: int = 2, most: int = 30, peak: float = 9.0) -> st.SearchStrategy[list[float]]:
     """Accelerations of up to `peak` [m/s2]."""
     return st.lists(st.floats(-peak, peak), min_size=least, max_size=most)
 

@@ -68,10 +68,8 @@ def how_to_install(what: str, module: str, error: ImportError) -> str:
 
     Parameters
     ----------
-    what : str
-        What was asked for.
-    module : str
-        The optional dependency that it takes.
+    what, module : str
+        What was asked for, and the optional dependency that it takes.
     error : ImportError
         Why that cannot be imported; it may itself miss another package.
 
@@ -95,20 +93,13 @@ def extra(module: str, what: str) -> ModuleType:
 
     Parameters
     ----------
-    module : str
-        The dependency.
-    what : str
-        What it is needed for.
+    module, what : str
+        The dependency, and what it is needed for; one that is not installed raises `MissingExtraError`.
 
     Returns
     -------
     module
         The dependency.
-
-    Raises
-    ------
-    MissingExtraError
-        If it is not installed.
     """
     try:
         return import_module(module)

@@ -11,30 +11,15 @@ from rocking.outcome import ContactMode, Outcome, Regime, Status
 class Quantity:
     """What a number or word among the results is.
 
-    Parameters
-    ----------
-    name : str
-        What it is called in arrays, tables and files.
-    unit : str
-        Its unit, of the SI; ``1`` for numbers without one, empty for words.
-    meaning : str
-        What it is.
-    codes : dict of int to str
-        What whole numbers stand for, where they stand for something.
-    standard_name : str
-        Its name in the table of the CF conventions, where that has it: it knows nothing that rocks.
-
-    Examples
-    --------
     >>> QUANTITIES["peak_rotation"].attributes
     {'units': 'rad', 'long_name': 'rotation of largest size; a quarter turn if it overturned'}
     """
 
-    name: str
-    unit: str
+    name: str  # what it is called in arrays, tables and files
+    unit: str  # its unit, of the SI; 1 for numbers without one, empty for words
     meaning: str
-    codes: dict[int, str] = field(default_factory=dict)
-    standard_name: str = ""
+    codes: dict[int, str] = field(default_factory=dict)  # what whole numbers stand for
+    standard_name: str = ""  # its name in the table of the CF conventions, which knows nothing that rocks
 
     @property
     def attributes(self) -> dict[str, Any]:
@@ -48,18 +33,7 @@ class Quantity:
 
 
 def attributes(name: str) -> dict[str, Any]:
-    """Return what the files say of a result.
-
-    Parameters
-    ----------
-    name : str
-        A key of `QUANTITIES`.
-
-    Returns
-    -------
-    dict
-        Unit, meaning and codes, as xarray and the CF conventions name them.
-    """
+    """Return what the files say of a result: unit, meaning and codes, as xarray and the CF conventions name them."""
     return QUANTITIES[name].attributes
 
 

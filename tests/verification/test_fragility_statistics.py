@@ -8,6 +8,7 @@ import os
 
 import numpy as np
 import pytest
+from random_cases import lognormal_failures
 from scipy.optimize import brentq
 from scipy.special import ndtr, ndtri
 from scipy.stats import norm
@@ -70,7 +71,7 @@ def _truth(parameter):
 def _stripes(studies, seed=21):
     """Return levels and failures of many multiple-stripe studies: 8 stripes of 40 motions."""
     levels = MEDIAN * np.exp(np.linspace(-1.6, 1.6, 8) * DISPERSION)
-    return levels, np.random.default_rng(seed).binomial(40, ndtr(np.log(levels / MEDIAN) / DISPERSION), (studies, 8))
+    return levels, lognormal_failures(levels, 40, seed, MEDIAN, DISPERSION, studies)
 
 
 def _clouds(studies, seed=22):
@@ -78,7 +79,7 @@ def _clouds(studies, seed=22):
     random = np.random.default_rng(seed)
     levels = np.exp(np.log(MEDIAN) + 0.8 * random.normal(size=200))
     order = np.sort(levels)
-    return order, random.binomial(1, ndtr(np.log(order / MEDIAN) / DISPERSION), (studies, 200))
+    return order, lognormal_failures(order, 1, random, MEDIAN, DISPERSION, studies)
 
 
 def _profile_ends(levels, failures, trials, parameter, width=1.0):
@@ -167,7 +168,7 @@ def test_bands_cover_as_often_as_they_say():
 def test_recovers_known_parameters():
     """With a hundred thousand trials a stripe, median and dispersion come back within four standard errors."""
     levels = MEDIAN * np.exp(np.linspace(-1.5, 1.5, 8) * DISPERSION)
-    failures = np.random.default_rng(2).binomial(100_000, ndtr(np.log(levels / MEDIAN) / DISPERSION))
+    failures = lognormal_failures(levels, 100_000, 2, MEDIAN, DISPERSION)
     fit = fit_lognormal(levels, failures, [100_000] * 8)
     assert abs(fit.median - MEDIAN) < 4 * fit.standard_errors["median"] < 0.01
     assert abs(fit.dispersion - DISPERSION) < 4 * fit.standard_errors["dispersion"] < 0.01

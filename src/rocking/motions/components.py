@@ -8,6 +8,9 @@ from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion, checked_motion
 
+ANGLES = np.radians(np.arange(180.0))
+"""Directions for RotD: every degree over half a turn."""
+
 
 def with_vertical(horizontal: GroundMotion, vertical: GroundMotion) -> GroundMotion:
     """Return a motion with the samples of another one as its vertical part.
@@ -58,28 +61,6 @@ def with_vertical(horizontal: GroundMotion, vertical: GroundMotion) -> GroundMot
         {**horizontal.metadata, **_told(horizontal, vertical)},
         tuple(provenance),
     )
-
-
-def _check(which: str, motion: object) -> None:
-    if not isinstance(motion, GroundMotion):
-        raise InvalidValueError(
-            f"{which} must be a GroundMotion, got {type(motion).__name__}; a pulse is sampled first"
-        )
-    if motion.vertical is not None:
-        raise InvalidValueError(f"{which} must have no vertical part yet, got {motion!r:.200}; which one is meant?")
-
-
-def _told(horizontal: GroundMotion, vertical: GroundMotion) -> dict[str, str]:
-    name = vertical.metadata.get("component", "vertical")
-    if name.casefold() == horizontal.metadata.get("component", "horizontal").casefold():
-        # files that do not name their component: two of one name could not be written to one file
-        name += " (vertical)"
-    header = vertical.metadata.get("header")
-    return {"vertical component": name} | ({} if header is None else {"vertical header": header})
-
-
-ANGLES = np.radians(np.arange(180.0))
-"""Directions for RotD: every degree over half a turn."""
 
 
 def rotated(first: GroundMotion, second: GroundMotion, angle: float) -> tuple[GroundMotion, GroundMotion]:
@@ -145,6 +126,24 @@ def rotd_pga(first: GroundMotion, second: GroundMotion, percentile: float) -> fl
         return float(np.hypot(a, b).max())
     peaks = np.array([np.abs(math.cos(t) * a + math.sin(t) * b).max() for t in ANGLES])  # Eq. 156
     return float(np.percentile(peaks, percentile))
+
+
+def _check(which: str, motion: object) -> None:
+    if not isinstance(motion, GroundMotion):
+        raise InvalidValueError(
+            f"{which} must be a GroundMotion, got {type(motion).__name__}; a pulse is sampled first"
+        )
+    if motion.vertical is not None:
+        raise InvalidValueError(f"{which} must have no vertical part yet, got {motion!r:.200}; which one is meant?")
+
+
+def _told(horizontal: GroundMotion, vertical: GroundMotion) -> dict[str, str]:
+    name = vertical.metadata.get("component", "vertical")
+    if name.casefold() == horizontal.metadata.get("component", "horizontal").casefold():
+        # files that do not name their component: two of one name could not be written to one file
+        name += " (vertical)"
+    header = vertical.metadata.get("header")
+    return {"vertical component": name} | ({} if header is None else {"vertical header": header})
 
 
 def _matching(first: GroundMotion, second: GroundMotion) -> None:

@@ -18,9 +18,11 @@ _INVERSE = tuple(1.0 / math.factorial(k) for k in range(19))
 _LOG2 = (6.93147180369123816490e-01, 1.90821492927058770002e-10)
 _HALF_PI = (1.57079632673412561417e00, 6.07710050650619224932e-11)
 _LANES = 4
-
 NEIGHBOURS = 10
 """Oscillators that share an impulse; the compiled module has the same number."""
+
+LEAST_CYCLES = 1e-6
+"""Smallest corner of the high pass in cycles a step [-]: below, its long memory drowns in rounding."""
 
 
 @cache
@@ -171,31 +173,6 @@ def resonances(
     return total, squares
 
 
-def _shares(place: FloatArray, width: int) -> FloatArray:
-    """Return Lagrange's weights of neighbours at whole places around, a row for each place from 0 to 1."""
-    at = place + (width - 1) // 2
-    weights = np.ones((place.size, width))
-    for i in range(width):
-        for k in range(i):
-            weights[:, i] *= at - k
-        after, scale = np.ones_like(at), 1.0
-        for k in range(width - 1, i, -1):
-            after *= at - k
-        for k in range(width):
-            scale *= i - k if k != i else 1.0
-        weights[:, i] = (weights[:, i] * after) * (1.0 / scale)
-    return weights
-
-
-def _lanes(values: FloatArray) -> float:
-    a, b, c, d = values.reshape(-1, _LANES).sum(axis=0).tolist()
-    return float((a + b) + (c + d))
-
-
-LEAST_CYCLES = 1e-6
-"""Smallest corner of the high pass in cycles a step [-]: below, its long memory drowns in rounding."""
-
-
 def transition(omega: float, damping: float, step: float) -> FloatArray:
     """Return the matrix that takes displacement and velocity of free vibration over a step [rad/s, -, s].
 
@@ -227,3 +204,24 @@ def highpassed(acceleration: FloatArray, time_step: float, frequency: float) -> 
     (m00, m01), (m10, m11) = move.tolist()
     z, v = recurrence(move, (0.0, 0.0), end - (m00 * rest + m01 * speed), speed - (m10 * rest + m11 * speed))
     return acceleration - 2.0 * w * v - w * w * z  # Eq. 168
+
+
+def _shares(place: FloatArray, width: int) -> FloatArray:
+    """Return Lagrange's weights of neighbours at whole places around, a row for each place from 0 to 1."""
+    at = place + (width - 1) // 2
+    weights = np.ones((place.size, width))
+    for i in range(width):
+        for k in range(i):
+            weights[:, i] *= at - k
+        after, scale = np.ones_like(at), 1.0
+        for k in range(width - 1, i, -1):
+            after *= at - k
+        for k in range(width):
+            scale *= i - k if k != i else 1.0
+        weights[:, i] = (weights[:, i] * after) * (1.0 / scale)
+    return weights
+
+
+def _lanes(values: FloatArray) -> float:
+    a, b, c, d = values.reshape(-1, _LANES).sum(axis=0).tolist()
+    return float((a + b) + (c + d))

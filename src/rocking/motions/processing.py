@@ -14,6 +14,12 @@ from rocking.motions.integrals import significant_times, velocity_of
 from rocking.motions.intensity import RockingScale
 from rocking.motions.motion import LONGEST_STEP, SHORTEST_STEP, GroundMotion, checked_motion
 
+ROUNDING = 1e-6
+"""A ratio of times this close to a whole number is one."""
+
+MOST_SAMPLES = 100_000_000
+"""No motion has more samples: asking for more is a wrong unit."""
+
 
 def demeaned(motion: GroundMotion) -> GroundMotion:
     """Return the motion without its mean acceleration.
@@ -141,36 +147,6 @@ def bandpassed(motion: GroundMotion, low: float, high: float, order: int = 4) ->
 
     what = f"band-pass {low:g} to {high:g} Hz, Butterworth order {order}, forwards and backwards"
     return _each(motion, filtered, what)
-
-
-def _trend(samples: FloatArray, time_step: float, order: int, fit: str) -> FloatArray:
-    """Fit by polynomials that are orthogonal over the samples, from Stieltjes' recurrence: no matrix is solved."""
-    x, duration = np.linspace(0.0, 1.0, samples.size), (samples.size - 1) * time_step
-    velocity = fit == "velocity"
-    weight, values = (x, velocity_of(samples, time_step)) if velocity else (np.ones_like(x), samples)
-    trend, before, p, slope_before, slope = 0.0 * x, 0.0 * x, np.ones_like(x), 0.0 * x, 0.0 * x
-    last = 1.0
-    for _ in range(order if velocity else order + 1):
-        q = weight * p
-        size = (q * q).sum()
-        term = (p + x * slope) / duration if velocity else p
-        trend += (q * values).sum() / size * term
-        middle, ratio = (x * q * q).sum() / size, size / last
-        before, p, slope_before, slope = (
-            p,
-            (x - middle) * p - ratio * before,  # Eq. 153
-            slope,
-            p + (x - middle) * slope - ratio * slope_before,
-        )
-        last = size
-    return trend
-
-
-ROUNDING = 1e-6
-"""A ratio of times this close to a whole number is one."""
-
-MOST_SAMPLES = 100_000_000
-"""No motion has more samples: asking for more is a wrong unit."""
 
 
 def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
@@ -322,23 +298,6 @@ def padded(motion: GroundMotion, before: float, after: float | None = None) -> G
     return _each(motion, lambda a: np.pad(a, counts), what)
 
 
-def _whole(ratio: float) -> int:
-    return math.ceil(ratio - ROUNDING)
-
-
-def _coarse(samples: FloatArray, factor: int) -> FloatArray:
-    from scipy.signal import decimate
-
-    result: Any = decimate(samples, factor, ftype="fir", zero_phase=True)
-    return np.asarray(result, dtype=np.float64)
-
-
-def _each(motion: GroundMotion, change: Any, what: str, time_step: float | None = None) -> GroundMotion:
-    vertical = None if motion.vertical is None else change(motion.vertical)
-    step = motion.time_step if time_step is None else time_step
-    return motion.changed(what, acceleration=change(motion.acceleration), vertical=vertical, time_step=step)
-
-
 def scaled_to(motion: GroundMotion, measure: Any, target: float, body: RockingScale | None = None) -> GroundMotion:
     """Return the motion scaled to a measure of its intensity.
 
@@ -379,3 +338,43 @@ def scaled_to(motion: GroundMotion, measure: Any, target: float, body: RockingSc
     vertical = None if motion.vertical is None else motion.vertical * factor
     what = f"multiplied by {factor!r} so that {name} is {target:g} {one.unit}"
     return motion.changed(what, acceleration=motion.acceleration * factor, vertical=vertical)
+
+
+def _trend(samples: FloatArray, time_step: float, order: int, fit: str) -> FloatArray:
+    """Fit by polynomials that are orthogonal over the samples, from Stieltjes' recurrence: no matrix is solved."""
+    x, duration = np.linspace(0.0, 1.0, samples.size), (samples.size - 1) * time_step
+    velocity = fit == "velocity"
+    weight, values = (x, velocity_of(samples, time_step)) if velocity else (np.ones_like(x), samples)
+    trend, before, p, slope_before, slope = 0.0 * x, 0.0 * x, np.ones_like(x), 0.0 * x, 0.0 * x
+    last = 1.0
+    for _ in range(order if velocity else order + 1):
+        q = weight * p
+        size = (q * q).sum()
+        term = (p + x * slope) / duration if velocity else p
+        trend += (q * values).sum() / size * term
+        middle, ratio = (x * q * q).sum() / size, size / last
+        before, p, slope_before, slope = (
+            p,
+            (x - middle) * p - ratio * before,  # Eq. 153
+            slope,
+            p + (x - middle) * slope - ratio * slope_before,
+        )
+        last = size
+    return trend
+
+
+def _whole(ratio: float) -> int:
+    return math.ceil(ratio - ROUNDING)
+
+
+def _coarse(samples: FloatArray, factor: int) -> FloatArray:
+    from scipy.signal import decimate
+
+    result: Any = decimate(samples, factor, ftype="fir", zero_phase=True)
+    return np.asarray(result, dtype=np.float64)
+
+
+def _each(motion: GroundMotion, change: Any, what: str, time_step: float | None = None) -> GroundMotion:
+    vertical = None if motion.vertical is None else change(motion.vertical)
+    step = motion.time_step if time_step is None else time_step
+    return motion.changed(what, acceleration=change(motion.acceleration), vertical=vertical, time_step=step)

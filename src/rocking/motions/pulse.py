@@ -18,6 +18,12 @@ MOST_SAMPLES = 2_000_000
 """No pulse is sampled to more than this: asking for more is a wrong unit."""
 
 _PER_RADIAN = 8.0
+Wave = tuple[float, float, float]
+"""Amplitude [m/s2], circular frequency [rad/s] and phase [rad] of ``amplitude * sin(frequency * t + phase)``."""
+
+_SQRT3 = math.sqrt(3.0)
+# maximum of (3 - z^2) z exp(-z^2 / 2), at z^2 = 3 - sqrt(6)
+_PEAK = math.sqrt(6.0) * math.sqrt(3.0 - math.sqrt(6.0)) * math.exp(-0.5 * (3.0 - math.sqrt(6.0)))  # Eq. 161
 
 
 class Pulse(ABC):
@@ -184,17 +190,6 @@ class Pulse(ABC):
         )
 
 
-def _times(time: Any) -> FloatArray:
-    given = checks.real_array("time", time, "s")
-    if not np.isfinite(given).all():
-        raise InvalidValueError(f"time must be finite [s], got {given[~np.isfinite(given)][0]:g}")
-    return given
-
-
-Wave = tuple[float, float, float]
-"""Amplitude [m/s2], circular frequency [rad/s] and phase [rad] of ``amplitude * sin(frequency * t + phase)``."""
-
-
 @dataclass(frozen=True)
 class Sinusoids(Pulse):
     """A sum of sinusoids from time zero to `duration`."""
@@ -249,12 +244,6 @@ class Sinusoids(Pulse):
         return total
 
 
-_SQRT3 = math.sqrt(3.0)
-
-# maximum of (3 - z^2) z exp(-z^2 / 2), at z^2 = 3 - sqrt(6)
-_PEAK = math.sqrt(6.0) * math.sqrt(3.0 - math.sqrt(6.0)) * math.exp(-0.5 * (3.0 - math.sqrt(6.0)))  # Eq. 161
-
-
 @dataclass(frozen=True)
 class Ricker(Pulse):
     """A Ricker wavelet, symmetric or antisymmetric about its middle.
@@ -306,3 +295,10 @@ class Ricker(Pulse):
         z = t / unit
         part = (unit**2 * z, -unit * (z * z - 1.0), (z * z - 3.0) * z)[derivative]  # Eq. 161
         return self.amplitude / _PEAK * part * exponential(-0.5 * z * z)
+
+
+def _times(time: Any) -> FloatArray:
+    given = checks.real_array("time", time, "s")
+    if not np.isfinite(given).all():
+        raise InvalidValueError(f"time must be finite [s], got {given[~np.isfinite(given)][0]:g}")
+    return given

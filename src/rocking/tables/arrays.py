@@ -170,11 +170,6 @@ def to_mat(
     -------
     Path
         The file.
-
-    Raises
-    ------
-    InvalidValueError
-        If such a file does not take as much.
     """
     from scipy.io import savemat
 

@@ -133,11 +133,6 @@ def to_excel(
     dressed : bool
         Whether headings are bold and stay in sight, columns are as wide as they need, and numbers keep all digits
         (16 otherwise), which takes longer.
-
-    Raises
-    ------
-    InvalidValueError
-        If a sheet of Excel does not take as many rows.
     """
     for _, table in sheets:
         if len(table) > MOST_ROWS_OF_EXCEL:

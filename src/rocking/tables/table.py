@@ -176,11 +176,6 @@ class Table:
         -------
         Table
             The same as columns.
-
-        Raises
-        ------
-        InvalidValueError
-            If a number is not finite, or headings are the same.
         """
         if len(set(header)) < len(header):
             raise InvalidValueError(f"headings of a table must differ, got {', '.join(header)}")
@@ -334,12 +329,7 @@ def safe_cell(cell: Cell) -> Cell:
     Returns
     -------
     str, int, float or None
-        Text without control characters, and `escaped`; numbers stay.
-
-    Raises
-    ------
-    InvalidValueError
-        If a number is not finite.
+        Text without control characters, and `escaped`; numbers stay, and must be finite.
 
     Examples
     --------
@@ -385,17 +375,12 @@ def target_of(path: str | os.PathLike[str]) -> Path:
     Parameters
     ----------
     path : str or path
-        The file.
+        The file, in a folder that is there.
 
     Returns
     -------
     Path
         The file.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is no path, or a folder, or its folder is missing.
     """
     other: object = path
     if not isinstance(other, (str, os.PathLike)):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from random_cases import accelerations
 
 from rocking.errors import InvalidValueError
 from rocking.motions import (
@@ -120,10 +121,10 @@ def test_time_reversal_commutes_with_the_filter():
     np.testing.assert_allclose(forward.vertical, forward.acceleration[::-1], rtol=0.0, atol=1e-10)
 
 
-@given(st.lists(st.floats(-9.0, 9.0), min_size=2, max_size=12), st.integers(2, 7))
-def test_refining_by_whole_ratios_is_the_same_motion(samples, ratio):
+@given(accelerations(2, 12), st.integers(2, 7))
+def test_refining_by_whole_ratios_is_the_same_motion(row, ratio):
     """Velocity and displacement are those of the coarse motion, and its samples are kept."""
-    motion = GroundMotion(samples, 0.2)
+    motion = GroundMotion(row, 0.2)
     fine = resampled(motion, 0.2 / ratio)
     np.testing.assert_allclose(fine.acceleration[::ratio], motion.acceleration, rtol=0.0, atol=1e-13)
     np.testing.assert_allclose(ground_displacement(fine)[::ratio], ground_displacement(motion), rtol=0.0, atol=1e-12)

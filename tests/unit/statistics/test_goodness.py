@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from random_cases import lognormal_failures
 from scipy.special import ndtr
 
 from rocking.errors import InvalidValueError
@@ -38,7 +39,7 @@ def test_error_rate_is_nominal():
     random = np.random.default_rng(8)
     p_values = []
     for k in range(300):
-        z = random.binomial(25, ndtr(np.log(LEVELS) / 0.7))
+        z = lognormal_failures(LEVELS, 25, random, dispersion=0.7)
         found = fit_lognormal(LEVELS, z, [25] * 8).goodness(repetitions=99, seed=k)
         p_values.append([values["p_value"] for values in found.summary().values()])
     # four standard errors of a share of 0.1 among 300 are 0.07

@@ -26,6 +26,18 @@ _NO_NAME = re.compile(r"nan|inf(inity)?|null|none|n/?a|true|false", re.IGNORECAS
 _DAMAGED_NUMBER = re.compile(r"[^\W\d_][+-]?[\d.,]+([eEdD][+-]?\d*)?")
 # what states its own sampling is a header of another format, damaged: not to be passed over as a comment or as names
 _OTHER_FORMAT = re.compile(r"sample\s*rate|sampling|record\s*length|npts|ndata", re.IGNORECASE)
+_BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))")
+_SECONDS = {"s", "sec", "secs", "second", "seconds", "sek"}
+_TIMES = {"time", "times", "zeit", "temps", "tiempo", "tempo", "tid", "tijd"}
+_OTHER_WORDS = ("vel", "disp", "geschw", "verschieb", "rotation", "period", "freq")
+_OTHER_UNITS = {
+    *("m/s", "cm/s", "mm/s", "in/s", "ft/s", "m", "cm", "mm", "in", "ft", "in/s2", "ft/s2"),
+    *("rad", "deg", "rad/s", "deg/s", "rad/s2", "deg/s2", "s", "ms", "us", "min", "h", "hz", "khz"),
+    *("v", "mv", "n", "kn", "pa", "kpa", "mpa", "count", "counts", "cnt", "%", "%g", "-", "1"),
+}
+_OF_ANY_CASE = {unit for unit in ACCELERATION_UNITS if unit not in {"g", "mg", "g/10"}}
+_SPELT = {"m/s/s": "m/s2", "cm/s/s": "cm/s2", "mm/s/s": "mm/s2", "m.s-2": "m/s2", "cm.s-2": "cm/s2", "gals": "gal"}
+_UNITS = ", ".join(ACCELERATION_UNITS)
 
 
 @dataclass(frozen=True)
@@ -64,79 +76,6 @@ def readable(text: str) -> str:
 def states_sampling(text: str) -> bool:
     """Return whether a line speaks of a sampling, as headers of other formats do."""
     return _OTHER_FORMAT.search(text[:200]) is not None
-
-
-def _lines(source: Source, most: int | None) -> list[tuple[int, str]]:
-    lines: list[tuple[int, str]] = []
-    for line, text in enumerate(source.lines):
-        bare = (text if line else text.removeprefix(MARK)).strip(_BLANKS)
-        if bare and bare[0] not in "#%":
-            lines.append((line, bare))
-            if len(lines) == most:
-                break
-    while lines and not lines[-1][1].strip(",; \t"):  # empty rows of a spreadsheet
-        lines.pop()
-    return lines
-
-
-def _separator(text: str) -> str:
-    bare = _QUOTED.sub("", text)
-    return next((mark for mark in (";", "\t", ",") if mark in bare), " ")
-
-
-def _names(text: str, separator: str) -> tuple[str, ...] | None:
-    """Return the names that a line holds; None if it holds anything else, such as numbers or a damaged one."""
-    if "=" in text or states_sampling(text) or len(text) > 100 * MOST_NAMED:
-        return None
-    text = readable(text)
-    if separator == " " and '"' not in text:
-        cells = _UNIT_BEHIND.findall(text)
-    else:
-        cells = next(csv.reader([text], delimiter=separator, skipinitialspace=True), [])
-    names = tuple(" ".join(cell.split()) for cell in cells)
-    while names and not names[-1]:
-        names = names[:-1]
-    told = [name for name in names if name]
-    good = all(_NAME.fullmatch(name) and not _NO_NAME.fullmatch(name) for name in told)
-    # alone on its line, a letter with a number is rather a damaged number than a name
-    damaged = len(told) == 1 and _DAMAGED_NUMBER.fullmatch(told[0])
-    return names if told and good and not damaged else None
-
-
-def _separator_of_numbers(rows: list[str]) -> str:
-    """Return what parts rows of numbers; nothing where it may be blanks as well as commas."""
-    looked = rows[:_FIRST_ROWS]
-    if looked and ";" in looked[0]:
-        return ";"
-    commas, points = ("".join(looked).count(mark) for mark in ",.")
-    if commas and not points and all(map(_DECIMAL_COMMAS.fullmatch, looked)):
-        return "\t" if "\t" in looked[0] else " "
-    return ""
-
-
-def _cells(text: str, separator: str, names: tuple[str, ...] | None) -> list[str]:
-    if separator == "":
-        return _MIXED.split(text.rstrip(",").rstrip())
-    if separator == " ":
-        return text.split()
-    cells = [cell.strip() for cell in text.split(separator)]
-    while cells and not cells[-1] and (names is None or len(cells) > len(names)):
-        cells.pop()
-    return cells
-
-
-_BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))")
-_SECONDS = {"s", "sec", "secs", "second", "seconds", "sek"}
-_TIMES = {"time", "times", "zeit", "temps", "tiempo", "tempo", "tid", "tijd"}
-_OTHER_WORDS = ("vel", "disp", "geschw", "verschieb", "rotation", "period", "freq")
-_OTHER_UNITS = {
-    *("m/s", "cm/s", "mm/s", "in/s", "ft/s", "m", "cm", "mm", "in", "ft", "in/s2", "ft/s2"),
-    *("rad", "deg", "rad/s", "deg/s", "rad/s2", "deg/s2", "s", "ms", "us", "min", "h", "hz", "khz"),
-    *("v", "mv", "n", "kn", "pa", "kpa", "mpa", "count", "counts", "cnt", "%", "%g", "-", "1"),
-}
-_OF_ANY_CASE = {unit for unit in ACCELERATION_UNITS if unit not in {"g", "mg", "g/10"}}
-_SPELT = {"m/s/s": "m/s2", "cm/s/s": "cm/s2", "mm/s/s": "mm/s2", "m.s-2": "m/s2", "cm.s-2": "cm/s2", "gals": "gal"}
-_UNITS = ", ".join(ACCELERATION_UNITS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,6 +161,65 @@ class NamedColumns:
             raise source.error(None, f"{_silent(silent)}; say units= one of {_UNITS}")
         said = (replace(one, unit=acceleration_unit(source, one.unit, asked)) for one in self.accelerations)
         return replace(self, accelerations=tuple(said))
+
+
+def _lines(source: Source, most: int | None) -> list[tuple[int, str]]:
+    lines: list[tuple[int, str]] = []
+    for line, text in enumerate(source.lines):
+        bare = (text if line else text.removeprefix(MARK)).strip(_BLANKS)
+        if bare and bare[0] not in "#%":
+            lines.append((line, bare))
+            if len(lines) == most:
+                break
+    while lines and not lines[-1][1].strip(",; \t"):  # empty rows of a spreadsheet
+        lines.pop()
+    return lines
+
+
+def _separator(text: str) -> str:
+    bare = _QUOTED.sub("", text)
+    return next((mark for mark in (";", "\t", ",") if mark in bare), " ")
+
+
+def _names(text: str, separator: str) -> tuple[str, ...] | None:
+    """Return the names that a line holds; None if it holds anything else, such as numbers or a damaged one."""
+    if "=" in text or states_sampling(text) or len(text) > 100 * MOST_NAMED:
+        return None
+    text = readable(text)
+    if separator == " " and '"' not in text:
+        cells = _UNIT_BEHIND.findall(text)
+    else:
+        cells = next(csv.reader([text], delimiter=separator, skipinitialspace=True), [])
+    names = tuple(" ".join(cell.split()) for cell in cells)
+    while names and not names[-1]:
+        names = names[:-1]
+    told = [name for name in names if name]
+    good = all(_NAME.fullmatch(name) and not _NO_NAME.fullmatch(name) for name in told)
+    # alone on its line, a letter with a number is rather a damaged number than a name
+    damaged = len(told) == 1 and _DAMAGED_NUMBER.fullmatch(told[0])
+    return names if told and good and not damaged else None
+
+
+def _separator_of_numbers(rows: list[str]) -> str:
+    """Return what parts rows of numbers; nothing where it may be blanks as well as commas."""
+    looked = rows[:_FIRST_ROWS]
+    if looked and ";" in looked[0]:
+        return ";"
+    commas, points = ("".join(looked).count(mark) for mark in ",.")
+    if commas and not points and all(map(_DECIMAL_COMMAS.fullmatch, looked)):
+        return "\t" if "\t" in looked[0] else " "
+    return ""
+
+
+def _cells(text: str, separator: str, names: tuple[str, ...] | None) -> list[str]:
+    if separator == "":
+        return _MIXED.split(text.rstrip(",").rstrip())
+    if separator == " ":
+        return text.split()
+    cells = [cell.strip() for cell in text.split(separator)]
+    while cells and not cells[-1] and (names is None or len(cells) > len(names)):
+        cells.pop()
+    return cells
 
 
 def _plain(unit: str) -> str:

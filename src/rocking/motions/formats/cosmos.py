@@ -37,6 +37,8 @@ QUANTITY, UNIT, CHANNEL, AZIMUTH, COUNT = 1, 2, 49, 53, 69
 STEP, LENGTH, PEAK, PEAK_TIME = 61, 62, 63, 64
 # codes of the units that are accelerations; what the line before the data may call them
 _UNITS = {2: ("g", {"g"}), 4: ("cm/s2", {"cm/sec2", "cm/sec/sec", "cm/s2", "cm/s/s", "cm/sec^2", "gal"})}
+# header and data round apart: the peak is written in fewer digits than the samples
+_ROUNDING = {"cm/s2": 6e-4, "g": 1e-5}
 
 
 class DataLine(NamedTuple):
@@ -96,6 +98,45 @@ def known(value: float, unknown: float = UNKNOWN) -> float | None:
     return None if value == unknown else float(value)
 
 
+class Cosmos(RecordFormat):
+    """COSMOS files, volumes 0 to 2, of acceleration."""
+
+    name: ClassVar[str] = "cosmos"
+    title: ClassVar[str] = "COSMOS v1.20, Consortium of Organizations for Strong Motion Observation Systems"
+    suffixes: ClassVar[tuple[str, ...]] = (".v1", ".v2", ".v1c", ".v2c")
+    notes: ClassVar[str] = (
+        "Verified on the published test file: one channel, cm/sec2. Several channels in one file and data in g follow "
+        "the description of the format. Only units 02 (g) and 04 (cm/sec2) are read; counts and volts are refused."
+    )
+
+    def recognises(self, source: Source) -> bool:
+        """Return whether the first line states the format and its number of text lines."""
+        return source.is_text and begins_channel(source, 0)
+
+    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
+        """Return the record, with a component for each channel, named by its azimuth, or CHAN 1 where these repeat."""
+        first = 0
+        channels: list[Channel] = []
+        while not channels or begins_channel(source, first):
+            channel, first = _channel(source, first, units, time_step)
+            channels.append(channel)
+        check_end(source, first)
+        header = "\n".join("\n".join(lines) for lines, _, _ in channels)
+        texts = channels[0][0]
+        station = re.match(r"Statn No:\s*(\S+)\s+Code:\s*(\S+)\s+(.*)", texts[4])
+        metadata = {"event": texts[1][:39].strip(), "date": texts[1][39:].strip()}
+        if station:
+            metadata |= {"station number": station[1], "station code": station[2], "station": station[3].strip()}
+        return Record(self.name, distinct_names(channels), header, {k: v for k, v in metadata.items() if v})
+
+    def write(self, record: Record) -> bytes:
+        """Return the content of a COSMOS file, in cm/sec2 with 5 decimals."""
+        lines: list[str] = []
+        for row, values in enumerate(in_unit(record, self.name, "cm/s2", 99)):
+            lines += _lines(record, row, values.round(5))
+        return ("\n".join(lines) + "\n").encode("latin-1")
+
+
 def _after_comments(source: Source, line: int) -> int:
     comments = _COMMENTS.fullmatch(source.lines[line]) if line < len(source.lines) else None
     if comments is None:
@@ -138,49 +179,6 @@ def _data_line(source: Source, line: int) -> DataLine:
     return DataLine(
         whole(source, line, found[1], "count", 2), found[3], unit, code, *fortran_form(source, line, found[6])
     )
-
-
-# header and data round apart: the peak is written in fewer digits than the samples
-_ROUNDING = {"cm/s2": 6e-4, "g": 1e-5}
-
-
-class Cosmos(RecordFormat):
-    """COSMOS files, volumes 0 to 2, of acceleration."""
-
-    name: ClassVar[str] = "cosmos"
-    title: ClassVar[str] = "COSMOS v1.20, Consortium of Organizations for Strong Motion Observation Systems"
-    suffixes: ClassVar[tuple[str, ...]] = (".v1", ".v2", ".v1c", ".v2c")
-    notes: ClassVar[str] = (
-        "Verified on the published test file: one channel, cm/sec2. Several channels in one file and data in g follow "
-        "the description of the format. Only units 02 (g) and 04 (cm/sec2) are read; counts and volts are refused."
-    )
-
-    def recognises(self, source: Source) -> bool:
-        """Return whether the first line states the format and its number of text lines."""
-        return source.is_text and begins_channel(source, 0)
-
-    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, with a component for each channel, named by its azimuth, or CHAN 1 where these repeat."""
-        first = 0
-        channels: list[Channel] = []
-        while not channels or begins_channel(source, first):
-            channel, first = _channel(source, first, units, time_step)
-            channels.append(channel)
-        check_end(source, first)
-        header = "\n".join("\n".join(lines) for lines, _, _ in channels)
-        texts = channels[0][0]
-        station = re.match(r"Statn No:\s*(\S+)\s+Code:\s*(\S+)\s+(.*)", texts[4])
-        metadata = {"event": texts[1][:39].strip(), "date": texts[1][39:].strip()}
-        if station:
-            metadata |= {"station number": station[1], "station code": station[2], "station": station[3].strip()}
-        return Record(self.name, distinct_names(channels), header, {k: v for k, v in metadata.items() if v})
-
-    def write(self, record: Record) -> bytes:
-        """Return the content of a COSMOS file, in cm/sec2 with 5 decimals."""
-        lines: list[str] = []
-        for row, values in enumerate(in_unit(record, self.name, "cm/s2", 99)):
-            lines += _lines(record, row, values.round(5))
-        return ("\n".join(lines) + "\n").encode("latin-1")
 
 
 def _channel(source: Source, first: int, units: str | None, time_step: float | None) -> tuple[Channel, int]:

@@ -12,6 +12,12 @@ from rocking.conventions import ACCELERATION_UNITS, FloatArray
 from rocking.errors import RecordError
 from rocking.motions.formats.record import Component, Record, Source
 
+Channel = tuple[list[str], str, Component]
+"""Header lines of a channel, the one with its number and direction, and its samples."""
+
+LONGEST_LINE = 200
+"""Characters of a header line that patterns look at."""
+
 
 def acceleration_unit(source: Source, stated: str | None, asked: str | None) -> str:
     """Return the unit of a file's accelerations: what it states, or what the user says where it states nothing."""
@@ -92,17 +98,6 @@ def uniform_step(source: Source, times: FloatArray, unit: float) -> float:
     return step
 
 
-def _last_digit(words: list[str]) -> float:
-    plain: list[int] = []
-    powers: list[int] = []
-    for word in words:
-        digits, _, power = word.lower().replace("d", "e").replace(",", ".").partition("e")
-        (powers if power else plain).append(len(digits.partition(".")[2]) - int(power or 0))
-    # plain numbers may have lost zeros at their end, numbers with an exponent lose digits as they grow
-    places = min(powers) if powers else max(plain)
-    return float(10.0 ** -min(15, max(-3, places)))
-
-
 def check_count(source: Source, stated: int, found: int) -> None:
     """Refuse a file that holds another number of samples than its header states."""
     if stated != found:
@@ -159,13 +154,6 @@ def check_stated(source: Source, stated: float, found: float, rounding: float, w
         raise source.error(None, f"the header states a {what} of {stated:g}, the data have {found:g}")
 
 
-Channel = tuple[list[str], str, Component]
-"""Header lines of a channel, the one with its number and direction, and its samples."""
-
-LONGEST_LINE = 200
-"""Characters of a header line that patterns look at."""
-
-
 def distinct_names(channels: Sequence[Channel]) -> tuple[Component, ...]:
     """Return the components named by direction, or by channel number where directions repeat."""
     found = [re.search(r"CHAN\s*(\d+)\s*:\s*(.*?)\s*(?:DEG\b.*)?$", label, re.IGNORECASE) for _, label, _ in channels]
@@ -190,3 +178,14 @@ def names_in(texts: Sequence[str]) -> dict[str, str]:
         "station": texts[4].strip(),
     }
     return {key: value for key, value in found.items() if value}
+
+
+def _last_digit(words: list[str]) -> float:
+    plain: list[int] = []
+    powers: list[int] = []
+    for word in words:
+        digits, _, power = word.lower().replace("d", "e").replace(",", ".").partition("e")
+        (powers if power else plain).append(len(digits.partition(".")[2]) - int(power or 0))
+    # plain numbers may have lost zeros at their end, numbers with an exponent lose digits as they grow
+    places = min(powers) if powers else max(plain)
+    return float(10.0 ** -min(15, max(-3, places)))

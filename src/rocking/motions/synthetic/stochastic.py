@@ -24,6 +24,12 @@ MIDDLE = 0.45
 WIDEST, NARROWEST = 1.0, 1e4
 """Allowed shapes of the gamma distribution of the energy: from one that starts at once to a narrow burst."""
 
+FORGOTTEN = 27.0
+"""Decays of an impulse response after which it is left out: exp(-27) = 2e-12."""
+
+SPACING = 0.05
+"""Distance of the frequencies of oscillators that share impulses, over the slowest rate of decay [-]."""
+
 
 @dataclass(frozen=True)
 class GammaModulation:
@@ -157,23 +163,6 @@ def modulation_from_intensity(
     return GammaModulation(float(f"{size:.12g}"), 0.5 * (shape + 1.0), 0.5 * rate)
 
 
-def _quantile(shape: float, share: float) -> float:
-    from scipy.special import gammaincinv
-
-    return float(gammaincinv(shape, share))
-
-
-def _ratio(shape: float) -> float:
-    return (_quantile(shape, 0.95) - _quantile(shape, 0.05)) / _quantile(shape, MIDDLE)
-
-
-FORGOTTEN = 27.0
-"""Decays of an impulse response after which it is left out: exp(-27) = 2e-12."""
-
-SPACING = 0.05
-"""Distance of the frequencies of oscillators that share impulses, over the slowest rate of decay [-]."""
-
-
 @dataclass(frozen=True)
 class NonstationaryFilter:
     """Oscillator whose frequency drifts while it shapes the noise.
@@ -292,6 +281,16 @@ def nonstationary_motion(
     return GroundMotion(
         acceleration, step, name=f"synthetic, nonstationary, seed {seed}", metadata=parameters, provenance=(line,)
     )
+
+
+def _quantile(shape: float, share: float) -> float:
+    from scipy.special import gammaincinv
+
+    return float(gammaincinv(shape, share))
+
+
+def _ratio(shape: float) -> float:
+    return (_quantile(shape, 0.95) - _quantile(shape, 0.05)) / _quantile(shape, MIDDLE)
 
 
 def _unit_process(noise: FloatArray, omega: FloatArray, damping: float, step: float) -> FloatArray:
