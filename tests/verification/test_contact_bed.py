@@ -11,9 +11,11 @@ import pytest
 from rocking.bodies import Block
 from rocking.errors import InvalidValueError
 from rocking.restitution.bed import (
+    BaseFriction,
     BedImpact,
     BedStatus,
     ContactBed,
+    ContactLaw,
     Coulomb,
     Hertz,
     HuntCrossley,
@@ -28,8 +30,7 @@ from rocking.restitution.bed import (
     reference,
     setup_of,
 )
-from rocking.restitution.bed.contact_bed import BaseFriction
-from rocking.restitution.bed.laws import ContactLaw, LawNumbers
+from rocking.restitution.bed.laws import LawNumbers
 from rocking.restitution.bed.setup import RESULTS, Setup
 
 pytestmark = pytest.mark.skipif(not fast.available(), reason="the bed's fast engine was not built")

@@ -10,10 +10,10 @@ import pytest
 from rocking.bodies import Block
 from rocking.conventions import FloatArray, Foot
 from rocking.errors import InvalidValueError
-from rocking.restitution import model
+from rocking.restitution import ContactBedModel, model
 from rocking.restitution.bed import fast
 from rocking.restitution.bed_table import BANDS, POINTS, STEP, BedTable, bed_table, nodes, stated_error
-from rocking.restitution.contact_bed import CoefficientSource, ContactBedModel
+from rocking.restitution.contact_bed import CoefficientSource
 from rocking.studies.impact_laboratory import Laboratory, hardness_of, impulse_position, resolved
 
 needs_engine = pytest.mark.skipif(not fast.available(), reason="the bed's fast engine was not built")

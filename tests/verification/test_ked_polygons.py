@@ -15,7 +15,7 @@ from random_cases import polygons
 from scipy.integrate import dblquad
 
 import rocking as rk
-from rocking.restitution.ked import projected_moment
+from rocking.restitution import projected_moment
 
 # --- the oracle: horizontal slices, exact along x, 25-digit quadrature along y; nothing is summed a
 

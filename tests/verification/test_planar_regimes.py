@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.bodies import Block, Section
-from rocking.bodies.region import Region
+from rocking.bodies import Block, Region, Section
 from rocking.dynamics import simulate
 from rocking.dynamics.contact import (
     Regime,

@@ -4,10 +4,20 @@ import numpy as np
 import pytest
 
 from rocking import Section
-from rocking.bodies.solid import Part, Polyhedron, Solid, SupportPolygon, box, cylinder, ellipsoid, frustum, voxels
+from rocking.bodies.solid import (
+    Part,
+    Polyhedron,
+    Solid,
+    SupportPolygon,
+    box,
+    cylinder,
+    divided,
+    ellipsoid,
+    frustum,
+    voxels,
+)
 from rocking.bodies.solid.sampling import gauss_order
 from rocking.bodies.solid.surfaces import TriangleSurface, gauss
-from rocking.bodies.solid.units import divided
 from rocking.restitution.space import energy_left, impact_in_space, unit_energies
 
 BODIES = {

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from rocking.bodies.body import Body
+from rocking.bodies import Body
 from rocking.bodies.formats import body_file, body_from_toml, read_body, section_from_geojson, section_from_wkt
 from rocking.errors import RockingError
 

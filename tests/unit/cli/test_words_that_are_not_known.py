@@ -2,7 +2,7 @@
 
 import pytest
 
-from rocking.bodies.block import Block
+from rocking.bodies import Block
 from rocking.checks import decimal_comma, nearest
 from rocking.cli import main
 from rocking.errors import RockingError, UnknownModelError

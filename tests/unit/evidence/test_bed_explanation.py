@@ -12,7 +12,7 @@ from rocking.evidence.contenders import contact_bed
 from rocking.evidence.explanation import Explanation, Ranked, explanation
 from rocking.evidence.likelihood import interval_log_likelihood, scatter
 from rocking.evidence.measurements import GROUPS, all_measurements, datasets
-from rocking.restitution.contact_bed import ContactBedModel
+from rocking.restitution import ContactBedModel
 
 PHYSICS = {each.name: each for each in explanations()}
 

@@ -5,17 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from rocking.bodies import Block, MassPoints, Region, Section
-from rocking.bodies.shapes import trapezoid
+from rocking.bodies import Block, MassPoints, Region, Section, shapes
 from rocking.dynamics import free_rocking, simulate
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import sine
 from rocking.plots.animation_scene import DrawnShape, fall_of, scene_of
 
 BODIES = {
-    "leaning": Section([Region(trapezoid(0.5, 0.3, 1.8, lean=0.1), 2000.0)]),
-    "wide base": Section([Region(trapezoid(1.0, 0.2, 1.5, lean=0.05), 2000.0)]),
-    "overhang": Section([Region(trapezoid(0.4, 0.9, 1.2, lean=0.15), 2000.0)]),
+    "leaning": Section([Region(shapes.trapezoid(0.5, 0.3, 1.8, lean=0.1), 2000.0)]),
+    "wide base": Section([Region(shapes.trapezoid(1.0, 0.2, 1.5, lean=0.05), 2000.0)]),
+    "overhang": Section([Region(shapes.trapezoid(0.4, 0.9, 1.2, lean=0.15), 2000.0)]),
     "points": MassPoints([(0.2, 2.0), (0.0, 0.5), (-0.3, 1.4)], [1.0, 3.0, 0.7], feet=(-0.5, 0.7)),
 }
 

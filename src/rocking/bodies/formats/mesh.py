@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.formats.source import MOST_VERTICES, blamed, checked_file
+from rocking.bodies.solid._repair import Repaired, repaired
 from rocking.bodies.solid.polyhedron import Polyhedron
-from rocking.bodies.solid.repair import Repaired, repaired
 from rocking.bodies.solid.solid import Solid
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import BodyFileError, InvalidValueError, MissingExtraError, how_to_install

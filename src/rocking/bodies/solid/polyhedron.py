@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from rocking import checks
 from rocking.bodies.moments import SolidMoments, polyhedron_moments
-from rocking.bodies.solid.self_crossing import check_crossings, inside
+from rocking.bodies.solid._self_crossing import check_crossings, inside
 from rocking.bodies.solid.shape import Footprint, Shape, placed_points
 from rocking.bodies.solid.surfaces import Surface, TriangleSurface
 from rocking.conventions import BoolArray, FloatArray, IntArray

@@ -11,7 +11,7 @@ from rocking import checks, plausibility
 from rocking.bodies.body import assumed_density
 from rocking.bodies.moments import SolidMoments, combined
 from rocking.bodies.section import Section
-from rocking.bodies.solid.admissible import check_disjoint, check_possible
+from rocking.bodies.solid._admissible import check_disjoint, check_possible
 from rocking.bodies.solid.base import Base, RoundBase, SupportPolygon, hull
 from rocking.bodies.solid.part import Part, rotation_about
 from rocking.bodies.solid.prism import Prism

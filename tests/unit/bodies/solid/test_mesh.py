@@ -8,7 +8,7 @@ import pytest
 
 from rocking.bodies.formats.mesh import mesh_from_file, solid_from_mesh
 from rocking.bodies.solid import Polyhedron, box
-from rocking.bodies.solid.repair import WELD, repaired
+from rocking.bodies.solid._repair import WELD, repaired
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError
 
 trimesh = pytest.importorskip("trimesh")

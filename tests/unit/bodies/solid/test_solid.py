@@ -15,6 +15,7 @@ from rocking.bodies.solid import (
     box,
     cone,
     cylinder,
+    divided,
     ellipsoid,
     extrusion,
     frustum,
@@ -22,7 +23,6 @@ from rocking.bodies.solid import (
     rotation_about,
     voxels,
 )
-from rocking.bodies.solid.units import divided
 from rocking.errors import GeometryError, InvalidValueError
 
 

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rocking.bodies import Block, Section
-from rocking.bodies.region import Region
+from rocking.bodies import Block, Region, Section
 from rocking.dynamics.contact.base import (
     BOTH,
     FLIGHT,

@@ -1,6 +1,7 @@
-"""What describes a bed: laws, points, friction, and what is refused."""
+"""What describes a bed: laws against their formulas, points, friction, starts, and what is refused at its doors."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from rocking.restitution.bed import (
     laws,
     setup_of,
 )
+from rocking.restitution.bed.laws import LawKind, LawNumbers, force, stored
 from rocking.restitution.bed.reference import Field
 from rocking.restitution.bed.rigid import RigidRocking
 
@@ -29,20 +31,6 @@ BLOCK = Block(width=0.2, height=0.4)
 LAW = KelvinVoigt(1e8, damping_ratio=0.5)
 ZERO = np.zeros(1)
 G = 9.80665
-
-
-def test_kelvin_voigt_force() -> None:
-    """F = k d + c d', never below zero, nothing without depth."""
-    law = KelvinVoigt(2.0, damping=3.0).numbers(1.0)
-    depth, speed = np.array([0.5, 0.5, -0.5, 0.5]), np.array([1.0, -1.0, 9.0, 0.0])
-    assert laws.force(law, depth, speed, np.zeros(4)).tolist() == [4.0, 0.0, 0.0, 1.0]
-
-
-def test_hunt_crossley_force() -> None:
-    """F = k d^n (1 + chi d'), zero where the loss would pull."""
-    law = HuntCrossley(2.0, exponent=2.0, viscosity=0.5).numbers(1.0)
-    depth, speed = np.array([3.0, 3.0, -1.0]), np.array([1.0, -3.0, 5.0])
-    assert laws.force(law, depth, speed, np.zeros(3)).tolist() == [27.0, 0.0, 0.0]
 
 
 def test_plastic_unloading_returns_its_share() -> None:
@@ -303,3 +291,106 @@ def test_many_points_share_the_weight_at_the_start() -> None:
     law = KelvinVoigt(BLOCK.mass * (800.0 * math.pi) ** 2, damping_ratio=1.0)
     setups = [setup_of(BLOCK, ContactBed.uniform(BLOCK, n, law), angular_velocity=1.0) for n in (81, 161, 641)]
     assert np.ptp(bed_impacts(setups).coefficient) < 0.01
+
+
+K, C, CHI, N = 3.0e5, 700.0, 1.7, 1.5
+LAWS = {
+    "kelvin-voigt": LawNumbers(LawKind.KELVIN_VOIGT, K, C, 1.0, 0.0, 0.0),
+    "hunt-crossley": LawNumbers(LawKind.HUNT_CROSSLEY, K, 0.0, N, CHI, 0.0),
+    "plastic": LawNumbers(LawKind.PLASTIC, K, 0.0, 1.0, 0.0, 0.6),
+    "without rebound": LawNumbers(LawKind.PLASTIC, K, 0.0, 1.0, 0.0, 0.0),
+}
+
+
+def by_branches(name: str, d: float, v: float, deepest: float) -> float:
+    """Return the force of one point (docs/theory.md, Section 13; plastic unloading after Walton & Braun 1986)."""
+    if d <= 0.0:
+        return 0.0
+    if name == "kelvin-voigt":
+        return max(0.0, K * d + C * v)
+    if name == "hunt-crossley":
+        return K * d**N * max(0.0, 1.0 + CHI * v)
+    if name == "without rebound":
+        # only new ground resists
+        return K * d if d >= deepest and v > 0.0 else 0.0
+    if d >= deepest:
+        return K * d
+    return max(0.0, min(K * d, K / 0.36 * (d - 0.64 * deepest)))
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_force_of_every_branch(name: str) -> None:
+    """Above and in the ground, sinking and rising, on new ground, at its edge and on ground already pressed."""
+    depth, speed, deepest = (
+        part.ravel()
+        for part in np.meshgrid([-1e-3, 0.0, 2e-3, 5e-3, 7e-3], [-9.0, -0.3, 0.0, 0.3], [2e-3, 5e-3, 6.5e-3])
+    )
+    found = force(LAWS[name], depth, speed, deepest)
+    wanted = [by_branches(name, *each) for each in zip(depth, speed, deepest, strict=True)]
+    assert found == pytest.approx(np.array(wanted), rel=1e-14)
+    assert np.count_nonzero(wanted) >= 6
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_stored_energy_is_what_unloading_at_rest_gives_back(name: str) -> None:
+    """The integral of the force over the way out, without damping; nothing where there is no rebound."""
+    law, deepest = LAWS[name], 5e-3
+    depth = np.linspace(0.0, 4e-3, 400_001)
+    out = force(
+        LawNumbers(law.kind, K, 0.0, law.exponent, 0.0, law.rebound), depth, 0.0 * depth, np.full(depth.size, deepest)
+    )
+    given = np.trapezoid(out, depth)
+    assert stored(law, np.array([4e-3]), np.array([deepest])) == pytest.approx([given], rel=1e-8, abs=1e-12)
+    assert (given == 0.0) == (name == "without rebound")
+
+
+@pytest.mark.parametrize(("kinematics", "along"), [("exact", True), ("small", False)])
+def test_a_body_that_starts_on_a_raised_foot_turns_about_it(kinematics: Any, along: bool) -> None:
+    """The old foot, 40 mm above the base line, is at rest: v_B + omega x (s, zeta) = 0; small angles leave zeta out."""
+    body = Block(width=1.0, height=4.0)
+    rows = ContactBed.uniform(body, 3, KelvinVoigt(1e7, 1e4)).with_profile([0.04, 0.0, 0.02])
+    bed = replace(rows, kinematics=kinematics)
+    start = setup_of(body, bed, angular_velocity=9.0).start
+    _, _, u, w, omega = start.state
+    s, zeta = float(bed.positions[start.old_foot]), float(bed.heights[start.old_foot])
+    assert omega > 1.0
+    assert zeta != 0.0
+    assert w - s * omega == pytest.approx(0.0, abs=1e-12)
+    assert u + zeta * omega * along == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "numbers", [{"damping": -0.5}, {"damping_ratio": -0.5}, {"damping": 1.0, "damping_ratio": 1.0}]
+)
+def test_dashpots_that_push_are_refused(numbers):
+    """Damping is positive, and stated once."""
+    with pytest.raises(InvalidValueError, match="damping"):
+        KelvinVoigt(1e6, **numbers).numbers(1000.0)
+
+
+NARROW = Block(width=0.2, height=0.4).with_feet(0.02, 0.2)
+STUCK = ContactBed.uniform(NARROW, 2, KelvinVoigt(1e9, damping_ratio=1.0))
+
+
+@pytest.mark.parametrize("engine", ["cuda", "", None, "Fast", 1])
+def test_engines_that_do_not_exist(engine):
+    """Only the three engines are taken, and the sentence names them."""
+    with pytest.raises(InvalidValueError, match="engine must be one of auto, fast, reference, got"):
+        bed_impact(NARROW, STUCK, angular_velocity=1.0, engine=engine)
+
+
+@pytest.mark.parametrize(
+    "given", [3.0, None, "ab", (1.0,), (1.0, 2.0, 3.0), [[1.0, 2.0]], (1.0, math.nan), (math.inf, 0.0), ("1", 0.0)]
+)
+def test_accelerations_that_are_not_two_numbers(given):
+    """One number, three, words, infinities: each is refused by its name."""
+    for make in (bed_impact, setup_of):
+        with pytest.raises(InvalidValueError, match=r"ground[_ ]acceleration must be"):
+            make(NARROW, STUCK, angular_velocity=1.0, ground_acceleration=given)
+
+
+@pytest.mark.parametrize("given", [(0.5, -0.25), [0.5, -0.25], np.array([0.5, -0.25])])
+def test_two_numbers_in_any_row(given):
+    """A tuple, a list and an array mean the same: the push is the first, gravity changes by the second."""
+    setup = setup_of(NARROW, STUCK, angular_velocity=1.0, ground_acceleration=given, gravity=9.75)
+    assert (setup.push, setup.rigid.gravity) == (0.5, 9.5)

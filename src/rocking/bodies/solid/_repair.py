@@ -11,10 +11,10 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
+from rocking.bodies.solid._self_crossing import check_crossings, in_metres
+from rocking.bodies.solid._shells import oriented_shells, turned_consistently
 from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.polyhedron import Polyhedron, open_edges
-from rocking.bodies.solid.self_crossing import check_crossings, in_metres
-from rocking.bodies.solid.shells import oriented_shells, turned_consistently
 from rocking.conventions import FloatArray, IntArray, percent
 from rocking.errors import GeometryError
 

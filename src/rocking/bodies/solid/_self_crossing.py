@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from rocking.bodies.solid.piercing import DEPTH, pierced
+from rocking.bodies.solid._piercing import DEPTH, pierced
 from rocking.bodies.solid.surfaces import area_vectors
 from rocking.conventions import BoolArray, FloatArray
 from rocking.errors import GeometryError

@@ -3,7 +3,7 @@
 import numpy as np
 
 from rocking.bodies.moments import polyhedron_moments
-from rocking.bodies.solid.self_crossing import inside
+from rocking.bodies.solid._self_crossing import inside
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import GeometryError
 
