@@ -310,7 +310,7 @@ def _refuse_used(folder: Path) -> None:
         raise CampaignMismatchError(f"{folder}: not empty ({min(there)} ...); a campaign takes a folder of its own")
 
 
-def _histories(given: object) -> Histories:
-    if not isinstance(given, Histories):
-        raise InvalidValueError(f"histories must be a Table, a Product or another Histories, got {given!r:.60}")
-    return given
+def _histories(value: object) -> Histories:
+    if not isinstance(value, Histories):
+        raise InvalidValueError(f"histories must be a Table, a Product or another Histories, got {value!r:.60}")
+    return value

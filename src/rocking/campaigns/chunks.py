@@ -112,10 +112,10 @@ def seal(data: bytes) -> str:
 def range_of(data: bytes) -> tuple[int, int]:
     """Return from which up to but not including which history a shard says that it holds."""
     header = _read_header(data, _payload_at(data))
-    found = header.get("first"), header.get("last")
-    if not all(isinstance(each, int) for each in found):
+    ends = header.get("first"), header.get("last")
+    if not all(isinstance(each, int) for each in ends):
         raise CampaignDamagedError("its header does not say what it holds")
-    return found
+    return ends
 
 
 def unpack(data: bytes, chunk: Chunk, sealed: str | None = None) -> Arrays:

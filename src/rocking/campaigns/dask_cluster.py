@@ -37,9 +37,9 @@ class DaskExecutor(Executor):
     """
 
     def __init__(self, address: str, *, ahead: int = 2, timeout: float = 10.0) -> None:
-        given: object = address
-        if not isinstance(given, str) or not given:
-            raise InvalidValueError(f'address must be that of a scheduler, as in "tcp://host:8786", got {given!r:.60}')
+        value: object = address
+        if not isinstance(value, str) or not value:
+            raise InvalidValueError(f'address must be that of a scheduler, as in "tcp://host:8786", got {value!r:.60}')
         self.address, self.ahead, self.timeout = address, whole("ahead", ahead), timeout
 
     def run(self, job: WorkerTask, chunks: Iterator[Chunk], stop: Stop, retried: Retried) -> Iterator[Done]:
@@ -94,9 +94,9 @@ class _Window:
     def _landed(self) -> list[Any]:
         # asking the futures rather than waiting for one: a lost scheduler makes waiting raise, and these cancelled
         end = time.monotonic() + _LOOK
-        while not (found := [future for future in self._flying if future.done()]) and time.monotonic() < end:
+        while not (landed := [future for future in self._flying if future.done()]) and time.monotonic() < end:
             time.sleep(0.002)
-        return found
+        return landed
 
     def _kept(self, future: Any, chunk: Chunk) -> Done | None:
         """Write what came back; None if the cluster lost it."""

@@ -92,10 +92,10 @@ def make_folder(folder: Path) -> None:
 
 def remove_unfinished(folder: Path) -> int:
     """Remove files that were being written when their process ended; call it while nobody writes."""
-    found = list(folder.glob(f".*{_UNFINISHED}"))
-    for path in found:
+    unfinished = list(folder.glob(f".*{_UNFINISHED}"))
+    for path in unfinished:
         path.unlink(missing_ok=True)
-    return len(found)
+    return len(unfinished)
 
 
 def set_aside(path: Path) -> Path:

@@ -44,19 +44,19 @@ class Interruption:
     Outside of the main thread nothing is noted: signals never arrive there.
 
     >>> with Interruption() as interruption:
-    ...     interruption.asked()
+    ...     interruption.requested()
     False
     """
 
     _WATCHED = (signal.SIGINT, signal.SIGTERM)
 
     def __init__(self) -> None:
-        self._asked = False
+        self._requested = False
         self._before: dict[signal.Signals, Any] = {}
 
-    def asked(self) -> bool:
+    def requested(self) -> bool:
         """Return whether to stop."""
-        return self._asked
+        return self._requested
 
     def __enter__(self) -> "Interruption":
         if threading.current_thread() is threading.main_thread():
@@ -67,7 +67,7 @@ class Interruption:
         self._restore()
 
     def _note(self, number: int, frame: FrameType | None) -> None:
-        self._asked = True
+        self._requested = True
         self._restore()
 
     def _restore(self) -> None:
@@ -106,8 +106,8 @@ class Pace:
 
     def settled(self, seconds: float) -> float:
         """Return the seconds of a piece without what its first step took beyond its histories: code, motions."""
-        found, self._startup = self._startup, 0.0
-        return seconds - found if found < seconds else seconds
+        startup, self._startup = self._startup, 0.0
+        return seconds - startup if startup < seconds else seconds
 
 
 class Done(NamedTuple):

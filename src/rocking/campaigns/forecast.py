@@ -60,7 +60,7 @@ def trial(histories: Histories) -> Estimate:
     middle = count // 2
     size = int(_SHARE / max(_timed(histories, middle, min(middle + _WARM, count)), 1e-9))
     size = max(1, min(size, _RUN, histories.together if made else count, count))
-    found: list[float] = []
+    times: list[float] = []
     for place in range(1, _PLACES + 1):
         first = int(_spread(place) * (count - size + 1))
         first -= first % histories.together if made else 0
@@ -70,11 +70,11 @@ def trial(histories: Histories) -> Estimate:
             again = _timed(histories, first, last)
             used = np.unique(histories.rows(first, last).motion).size
             each = again + max(0.0, each - again) * (last - first) / used * min(1.0, len(histories.motions) / count)
-        found.append(each)
+        times.append(each)
         if time.perf_counter() - start > _LONGEST or count == size:
             break
-    best, number = float(np.mean(found)), len(found)
-    doubt = 2.0 * float(np.std(found, ddof=1)) / number**0.5 if number > 1 else 0.5 * best
+    best, number = float(np.mean(times)), len(times)
+    doubt = 2.0 * float(np.std(times, ddof=1)) / number**0.5 if number > 1 else 0.5 * best
     return Estimate(best, max(0.0, (1.0 - NOISE) * best - doubt), (1.0 + NOISE) * best + doubt)
 
 

@@ -116,8 +116,8 @@ class Identity:
         """Return the identity of a new campaign: the same wherever an engine of the same last digits makes it."""
         chosen = engine_of(histories)
         pieces = usual_chunk(histories) if size is None else size
-        told = histories.description()
-        return cls(Plan(histories.key(told), histories.count, pieces, chosen, software()), _plain(told))
+        content = histories.description()
+        return cls(Plan(histories.key(content), histories.count, pieces, chosen, software()), _plain(content))
 
     @classmethod
     def read(cls, folder: Path) -> "Identity":
@@ -145,15 +145,16 @@ class Identity:
 
     def refuse_other(self, folder: Path, histories: Histories) -> None:
         """Refuse histories, or a version of this package, that the campaign was not created with."""
-        given = Identity.of(histories, self.plan.size)
-        if given.plan.key != self.plan.key:
-            differences = _differences(self.histories, given.histories, "")
-            found = sorted(differences, key=lambda text: "..." in text)  # what a person can read comes first
-            shown = "; ".join(found[:_SHOWN]) + (f"; and {len(found) - _SHOWN} more" if len(found) > _SHOWN else "")
+        other = Identity.of(histories, self.plan.size)
+        if other.plan.key != self.plan.key:
+            differences = list(_differences(self.histories, other.histories, ""))
+            differences.sort(key=lambda text: "..." in text)  # what a person can read comes first
+            more = f"; and {len(differences) - _SHOWN} more" if len(differences) > _SHOWN else ""
+            shown = "; ".join(differences[:_SHOWN]) + more
             raise CampaignMismatchError(f"{folder}: this campaign is of other histories: {shown or 'their key'}")
-        if given.plan.software != self.plan.software:
-            raise CampaignMismatchError(_other(folder, "software", self.plan.software, given.plan.software))
-        was, now = self.plan.engine, given.plan.engine
+        if other.plan.software != self.plan.software:
+            raise CampaignMismatchError(_other(folder, "software", self.plan.software, other.plan.software))
+        was, now = self.plan.engine, other.plan.engine
         if was != now and kind_of(was) == kind_of(now):
             raise CampaignMismatchError(
                 f"{folder}: this machine computes other last digits: begun with engine {was}, here it is {now} "

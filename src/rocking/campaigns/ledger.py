@@ -107,8 +107,8 @@ class Ledger:
         """Return the finished pieces of chunks that are not whole yet, in order; none that was changed."""
         return self._records("SELECT * FROM pieces ORDER BY first")
 
-    def _records(self, asked: str) -> Iterator[LedgerEntry]:
-        for *values, checked in self._database.execute(asked):
+    def _records(self, query: str) -> Iterator[LedgerEntry]:
+        for *values, checked in self._database.execute(query):
             record = LedgerEntry(*values)
             if _sum(record) != checked:
                 raise CampaignDamagedError(ledger_damaged(self._folder, f"row {record.number!r:.20} has changed"))
@@ -116,10 +116,10 @@ class Ledger:
 
     def check(self, plan: Plan) -> None:
         """Refuse a ledger that is damaged or of another campaign."""
-        (found,) = self._database.execute("PRAGMA integrity_check(1)").fetchone()
+        (state,) = self._database.execute("PRAGMA integrity_check(1)").fetchone()
         (version,) = self._database.execute("PRAGMA user_version").fetchone()
-        if found != "ok" or version != FORMAT:
-            why = f"it is of version {version} of these files, not {FORMAT}" if found == "ok" else str(found)
+        if state != "ok" or version != FORMAT:
+            why = f"it is of version {version} of these files, not {FORMAT}" if state == "ok" else str(state)
             raise CampaignDamagedError(ledger_damaged(self._folder, " ".join(why.split())[:120]))
         whole = set()
         for record in self.records():
@@ -137,29 +137,29 @@ class Ledger:
 
     def finished(self) -> tuple[int, int]:
         """Return how many chunks are finished, and how many histories, those in pieces too."""
-        asked = f"SELECT (SELECT count(*) FROM chunks), (SELECT coalesce(sum(last - first), 0) FROM {_ALL})"
-        chunks, histories = self._database.execute(asked).fetchone()
+        query = f"SELECT (SELECT count(*) FROM chunks), (SELECT coalesce(sum(last - first), 0) FROM {_ALL})"
+        chunks, histories = self._database.execute(query).fetchone()
         return int(chunks), int(histories)
 
     def effort(self) -> tuple[float, int]:
         """Return the seconds of all workers for what is finished, and the attempts beyond the first."""
-        asked = "SELECT coalesce(sum(seconds), 0), coalesce(sum(attempts - 1), 0) FROM " + _ALL
-        found = self._database.execute(asked).fetchone()
-        return float(found[0]), int(found[1])
+        query = "SELECT coalesce(sum(seconds), 0), coalesce(sum(attempts - 1), 0) FROM " + _ALL
+        seconds, retries = self._database.execute(query).fetchone()
+        return float(seconds), int(retries)
 
     def costs(self, count: int, since: str = "") -> Costs:
         """Return what the histories have taken that are finished."""
-        found = Costs(count)
-        asked = "SELECT first, last, CASE WHEN finished >= ? THEN seconds ELSE 0.0 END FROM " + _ALL
-        rows = self._database.execute(asked, (since,)).fetchall()
+        costs = Costs(count)
+        query = "SELECT first, last, CASE WHEN finished >= ? THEN seconds ELSE 0.0 END FROM " + _ALL
+        rows = self._database.execute(query, (since,)).fetchall()
         if rows:
-            found.add(*(np.array(column) for column in zip(*rows, strict=True)))
-        return found
+            costs.add(*(np.array(column) for column in zip(*rows, strict=True)))
+        return costs
 
     def events(self, what: str) -> list[str]:
         """Return what happened of a kind."""
-        found = self._database.execute("SELECT detail FROM events WHERE what = ? ORDER BY id", (what,))
-        return [str(detail) for (detail,) in found]
+        rows = self._database.execute("SELECT detail FROM events WHERE what = ? ORDER BY id", (what,))
+        return [str(detail) for (detail,) in rows]
 
     def close(self) -> None:
         """Let go of the file."""

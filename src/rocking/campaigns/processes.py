@@ -163,13 +163,13 @@ class _Crew:
         watched: list[Any] = [m.connection for m in self._members] + [m.process.sentinel for m in self._members]
         ready = set(wait(watched, _LOOK))
         for member in list(self._members):
-            for found in member.answers(ready):
-                if found is None:
+            for answer in member.answers(ready):
+                if answer is None:
                     self._bury(member)
                     break
-                if isinstance(found, Failure):
-                    _raise(found)
-                yield found._replace(attempts=member.tasks.popleft()[1])
+                if isinstance(answer, Failure):
+                    _raise(answer)
+                yield answer._replace(attempts=member.tasks.popleft()[1])
 
     def close(self) -> None:
         """End all workers; what they have not finished is not wanted."""
@@ -230,16 +230,15 @@ def _processors() -> int:
 
 
 def chosen(executor: str | Executor, workers: int | None, start_method: str | None) -> Executor:
-    """Return the executor that was asked for."""
-    given: object = executor
-    if given != "processes" and start_method is not None:
+    """Return the executor of a name, or the one that is given."""
+    if executor != "processes" and start_method is not None:
         raise InvalidValueError(f'start_method={start_method!r} goes with executor="processes" only')
-    if isinstance(given, Executor):
+    if isinstance(executor, Executor):
         if workers is not None:
             raise InvalidValueError(f"workers={workers!r} goes with the name of an executor; the object has its own")
-        return given
-    if given == "serial":
+        return executor
+    if executor == "serial":
         return Serial(workers)
-    if given == "processes":
+    if executor == "processes":
         return Processes(workers, start_method or "spawn")
-    raise InvalidValueError(f'executor must be "serial", "processes" or an Executor, got {given!r:.60}')
+    raise InvalidValueError(f'executor must be "serial", "processes" or an Executor, got {executor!r:.60}')

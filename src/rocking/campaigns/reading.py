@@ -36,10 +36,10 @@ def pieces(folder: Path, plan: Plan) -> Iterator[HistoryRange]:
         yield HistoryRange(chunk.first, chunk.last, _read(folder, chunk, seals[number]))
 
 
-def digest(found: Iterator[HistoryRange]) -> str:
+def digest(ranges: Iterator[HistoryRange]) -> str:
     """Return the SHA-256 of results, names and types; it does not depend on how they are cut."""
     columns = {name: hashlib.sha256() for name in RESULTS}
-    for piece in found:
+    for piece in ranges:
         for name, values in piece.results.items():
             columns[name].update(np.ascontiguousarray(values, values.dtype.newbyteorder("<")).tobytes())
     text = "".join(f"{name} {np.dtype(RESULTS[name]).name} {made.hexdigest()}\n" for name, made in columns.items())

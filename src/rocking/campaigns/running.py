@@ -60,19 +60,19 @@ class Remaining(Iterator[Chunk]):
         if self._stop() or not self._free.any():
             raise StopIteration
         done = np.where(self._free > 0, 1.0 - self._free / np.diff(self._costs.edges), np.inf)
-        found = self._next(int(np.lexsort((self._rank, done))[0]))
-        self._out[found.first] = found
-        self._free -= self._costs.shares(found.first, found.last)
-        return found
+        piece = self._next(int(np.lexsort((self._rank, done))[0]))
+        self._out[piece.first] = piece
+        self._free -= self._costs.shares(piece.first, piece.last)
+        return piece
 
     def back(self, done: Chunk, seconds: float) -> None:
         """Take note of what was computed in some seconds, and put the rest of its piece back."""
         self._rate = (done.last - done.first) / max(seconds, 1e-9)
-        asked = self._out.pop(done.first, done)
-        if asked.last == done.last:
+        whole = self._out.pop(done.first, done)
+        if whole.last == done.last:
             return
-        self._gaps[done.number] = _joined([asked.piece(done.last, asked.last), *self._gaps.get(done.number, [])])
-        shares = self._costs.shares(done.last, asked.last)
+        self._gaps[done.number] = _joined([whole.piece(done.last, whole.last), *self._gaps.get(done.number, [])])
+        shares = self._costs.shares(done.last, whole.last)
         self._free += shares
         for part in np.flatnonzero(shares):
             self._chunks[part].append(done.number)
@@ -121,23 +121,23 @@ class Remaining(Iterator[Chunk]):
 
 def _gaps(chunk: Chunk, pieces: list[Chunk]) -> list[Chunk]:
     """Return what of a chunk is in none of its pieces."""
-    found, first = [], chunk.first
+    gaps, first = [], chunk.first
     for begin, end in [*(each[1:3] for each in pieces), (chunk.last, chunk.last)]:
         if first < begin:
-            found.append(chunk.piece(first, begin))
+            gaps.append(chunk.piece(first, begin))
         first = end
-    return found
+    return gaps
 
 
 def _joined(gaps: list[Chunk]) -> list[Chunk]:
     """Return gaps in order, those without anything between them as one."""
-    found: list[Chunk] = []
+    joined: list[Chunk] = []
     for gap in sorted(gaps):
-        if found and found[-1].last == gap.first:
-            found[-1] = gap.piece(found[-1].first, gap.last)
+        if joined and joined[-1].last == gap.first:
+            joined[-1] = gap.piece(joined[-1].first, gap.last)
         else:
-            found.append(gap)
-    return found
+            joined.append(gap)
+    return joined
 
 
 def run(
@@ -158,7 +158,7 @@ def run(
         with Ledger(folder, writable=True) as ledger:
             for sentence in anew:
                 ledger.note("damaged", None, sentence)
-            earlier = EarlierRun(folder / SHARDS, identity.plan, ledger).recover(interruption.asked)
+            earlier = EarlierRun(folder / SHARDS, identity.plan, ledger).recover(interruption.requested)
             before = ledger.finished()[0]
             meter.begin(before, ((record.first, record.last) for record in (*ledger.records(), *ledger.pieces())))
             job = WorkerTask(histories, identity.plan.engine, identity.plan.software, folder / SHARDS)
@@ -166,10 +166,10 @@ def run(
             run.merge_all()
             remaining = Remaining(
                 identity.plan, np.flatnonzero(~earlier.finished), earlier.pieces, histories.together, meter.costs,
-                sharers=lambda: executor.at_once, stop=interruption.asked, seed=order_seed,
+                sharers=lambda: executor.at_once, stop=interruption.requested, seed=order_seed,
             )  # fmt: skip
-            run.compute(executor, remaining, interruption.asked)
-        if interruption.asked():
+            run.compute(executor, remaining, interruption.requested)
+        if interruption.requested():
             raise CampaignInterrupted(f"stopped: {meter.sentence()} in {folder}; run the campaign again to go on")
         with suppress(OSError):  # damaged pieces that were set aside stay
             (folder / PIECES).rmdir()
@@ -219,10 +219,10 @@ class _CampaignRun:
         for each in pieces:
             path = path_of(self.job.folder, each)
             try:
-                found = shard.unpack(path.read_bytes(), each)
+                arrays = shard.unpack(path.read_bytes(), each)
             except (FileNotFoundError, CampaignDamagedError) as error:
                 raise CampaignDamagedError(f"{path}: {error}; run the campaign again: it is computed anew") from error
-            for name, values in found.items():
+            for name, values in arrays.items():
                 results[name][each.first - chunk.first : each.last - chunk.first] = values
         parts = [record for record in self.ledger.pieces() if record.number == number]
         seconds, attempts = sum(each.seconds for each in parts), sum(each.attempts - 1 for each in parts) + 1

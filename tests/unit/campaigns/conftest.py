@@ -37,6 +37,12 @@ def make() -> Callable[..., HistoryTable]:
 
 
 @pytest.fixture
+def campaign(tmp_path: Path, work: HistoryTable) -> Campaign:
+    """A campaign of 300 histories in 6 chunks, of which nothing is computed."""
+    return Campaign.create(tmp_path / "c", work, 50)
+
+
+@pytest.fixture
 def finished(tmp_path: Path) -> Campaign:
     """A campaign of 300 histories in 6 chunks that is through."""
     campaign = Campaign.create(tmp_path / "campaign", made(), 50)

@@ -2,15 +2,11 @@
 
 import os
 import signal
-from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
 
 import pytest
 
-from rocking.campaigns import Campaign, CampaignWorkerError, DaskExecutor, Progress
+from rocking.campaigns import Campaign, CampaignWorkerError, DaskExecutor
 from rocking.errors import InvalidValueError
-from rocking.studies import HistoryTable
 
 pytest.importorskip("distributed")
 pytestmark = pytest.mark.filterwarnings("default")  # those of the cluster are not ours
@@ -19,7 +15,7 @@ nameless = lambda: 0  # noqa: E731 (pickle refuses it in another way than a loca
 
 
 @pytest.fixture(scope="module")
-def cluster() -> Iterator[Any]:
+def cluster():
     """Three worker processes of one thread, which are restarted when they die."""
     from distributed import LocalCluster
 
@@ -27,11 +23,8 @@ def cluster() -> Iterator[Any]:
         yield made
 
 
-def test_cluster_gives_the_same_files(
-    cluster: Any, finished: Campaign, tmp_path: Path, work: HistoryTable, shards: Any
-) -> None:
+def test_cluster_gives_the_same_files(cluster, finished, campaign, shards):
     """Three workers, shuffled: byte by byte the shards of a serial run."""
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     summary = campaign.run(DaskExecutor(cluster.scheduler_address), order_seed=3)
     assert summary.computed == 6
     assert shards(campaign) == shards(finished)
@@ -44,14 +37,11 @@ def test_cluster_gives_the_same_files(
         ("identity", "software", "lambda: '9.9'", r"this worker has version 9\.9, the campaign was begun with"),
     ],
 )
-def test_worker_of_other_bits_is_refused(
-    cluster: Any, tmp_path: Path, work: HistoryTable, where: str, name: str, value: str, words: str
-) -> None:
+def test_worker_of_other_bits_is_refused(cluster, campaign, where, name, value, words):
     """A worker with another version, or of other last digits, is told so, and writes nothing."""
     from distributed import Client
 
     place = f"import rocking.campaigns.{where} as place; "
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     with Client(cluster, set_as_default=False) as client:
         client.run(exec, f"{place}place.kept = place.{name}; place.{name} = {value}")
         try:
@@ -62,13 +52,13 @@ def test_worker_of_other_bits_is_refused(
     assert not list((campaign.folder / "shards").iterdir())
 
 
-def test_worker_that_dies_costs_nothing(cluster: Any, tmp_path: Path, make: Any) -> None:
+def test_worker_that_dies_costs_nothing(cluster, tmp_path, make):
     """kill -9 of one of the workers while chunks are on their way: nothing is lost, and the results are the same."""
     work = make(60_000)
     campaign = Campaign.create(tmp_path / "c", work, 500)
     killed = []
 
-    def kill(progress: Progress) -> None:
+    def kill(progress):
         if progress.chunks_done in {10, 40} and len(killed) < 2:
             victim = next(iter(cluster.workers.values()))
             killed.append(victim.pid)
@@ -80,17 +70,15 @@ def test_worker_that_dies_costs_nothing(cluster: Any, tmp_path: Path, make: Any)
     assert all(found[name].tobytes() == bare[name].tobytes() for name in bare)
 
 
-def test_histories_that_cannot_be_sent_are_refused(cluster: Any, tmp_path: Path, work: HistoryTable) -> None:
+def test_histories_that_cannot_be_sent_are_refused(cluster, campaign, work):
     """What cannot be pickled has the sentence that processes have."""
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     object.__setattr__(work, "listener", nameless)
     with pytest.raises(CampaignWorkerError, match="cannot be sent to a process"):
         campaign.run(DaskExecutor(cluster.scheduler_address))
 
 
-def test_no_scheduler_has_a_sentence(tmp_path: Path, work: HistoryTable) -> None:
+def test_no_scheduler_has_a_sentence(campaign):
     """An address where nobody answers, and what is no address."""
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     with pytest.raises(CampaignWorkerError, match="no Dask scheduler answers at"):
         campaign.run(DaskExecutor("tcp://127.0.0.1:9", timeout=0.5))
     with pytest.raises(InvalidValueError, match="address must be that of a scheduler"):

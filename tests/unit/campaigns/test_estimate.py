@@ -2,9 +2,7 @@
 
 import heapq
 import sys
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -37,7 +35,7 @@ JOBS = {
 DRAWN = {"in motions of all lengths", "heavy tails"}
 
 
-def played(costs: np.ndarray, workers: int, size: int) -> tuple[list[tuple[float, Estimate | None, float]], float]:
+def played(costs, workers, size):
     """Run a job of known costs: time, estimate and rate after each piece; and when it was over."""
     plan = Plan("a" * 64, COUNT, size, "fast", "1.0")
     known, ends = Costs(COUNT), np.cumsum(costs)
@@ -66,7 +64,7 @@ def played(costs: np.ndarray, workers: int, size: int) -> tuple[list[tuple[float
 @pytest.mark.parametrize("workers", [1, 2, 8])
 @pytest.mark.parametrize("size", [COUNT, 3996, 252])
 @pytest.mark.parametrize("job", JOBS)
-def test_estimates_are_near_and_say_how_near(job: str, size: int, workers: int) -> None:
+def test_estimates_are_near_and_say_how_near(job, size, workers):
     """Of jobs of up to eight minutes: wrong by less than a minute, within bounds, soon and to the end.
 
     Where costs are drawn, they are known so well once a tenth is through; before, their bounds say how little is known.
@@ -82,13 +80,13 @@ def test_estimates_are_near_and_say_how_near(job: str, size: int, workers: int) 
     assert told[-1][1] == Estimate(0.0, 0.0, 0.0)
 
 
-def test_an_estimate_by_the_rate_alone_would_be_caught() -> None:
+def test_an_estimate_by_the_rate_alone_would_be_caught():
     """Negative control: histories left over histories a second is wrong by minutes where costs change."""
     told, end = played(JOBS["half of it never lifts"], 1, 3996)
     assert max(abs(rate - (end - at)) for at, _, rate in told) > 120.0
 
 
-def test_nothing_is_said_before_something_is_known() -> None:
+def test_nothing_is_said_before_something_is_known():
     """While a part has not been measured there is no number."""
     told, _ = played(JOBS["all the same"], 1, COUNT)
     assert {estimate for at, estimate, _ in told if at < 4.0} == {None}
@@ -105,22 +103,22 @@ class Clock:
 
     now = 1000.0
 
-    def perf_counter(self) -> float:
+    def perf_counter(self):
         return self.now
 
-    def spend(self, seconds: float) -> None:
+    def spend(self, seconds):
         self.now += seconds
 
 
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+def clock(monkeypatch):
     made = Clock()
     monkeypatch.setattr(forecast, "time", made)
     return made
 
 
 @pytest.mark.parametrize("each", [2, 40, 400])
-def test_trial_counts_a_motion_once(tmp_path: Path, clock: Clock, each: int) -> None:
+def test_trial_counts_a_motion_once(tmp_path, clock, each):
     """Motions of 20 ms, with however many histories: what a history takes is its share of one motion."""
     found = trial(product(Motions(200, 0.02, tmp_path, clock.spend), each))
     assert found.seconds == pytest.approx(0.02 / each)
@@ -131,22 +129,20 @@ def test_trial_counts_a_motion_once(tmp_path: Path, clock: Clock, each: int) -> 
     ("costs", "mean"),
     [(lambda share: 0.002 * share, 0.001), (lambda share: np.where(share < 0.5, 0.0, 0.004), 0.002)],
 )
-def test_trial_is_spread_over_all(
-    make: Any, clock: Clock, costs: Callable[[np.ndarray], np.ndarray], mean: float
-) -> None:
+def test_trial_is_spread_over_all(make, clock, costs, mean):
     """Costs that grow, or jump: the mean of all histories is within the bounds."""
     found = trial(costly(make(4000), costs, clock.spend))
     assert found.low < mean < found.high
     assert found.seconds == pytest.approx(mean, rel=0.2)  # 2 s of such runs are a dozen places
 
 
-def test_trial_of_the_first_histories_would_be_caught(make: Any, clock: Clock) -> None:
+def test_trial_of_the_first_histories_would_be_caught(make, clock):
     """Negative control: half of the histories cost nothing, and the first of them say so."""
     work = costly(make(4000), lambda share: np.where(share < 0.5, 0.0, 0.004), clock.spend)
     assert not trial(work).low < forecast._timed(work, 0, 500) < trial(work).high
 
 
-def test_places_of_a_trial_are_everywhere() -> None:
+def test_places_of_a_trial_are_everywhere():
     """However many places there are, no gap is larger than twice the mean one."""
     for number in range(2, 33):
         places = sorted([0.0, 1.0, *(forecast._spread(k) for k in range(1, number + 1))])

@@ -1,8 +1,5 @@
 """The last digits of an engine: which bits it computes, noticed before they are mixed."""
 
-from pathlib import Path
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -10,12 +7,11 @@ from rocking.campaigns import Campaign, CampaignMismatchError
 from rocking.campaigns import identity as fingerprint
 from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch
-from rocking.studies import HistoryTable
 
 pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 
 
-def test_fingerprints_tell_the_bits_apart(make: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_fingerprints_tell_the_bits_apart(make, monkeypatch):
     """Instruction sets with the same results of 3000 histories have the same fingerprint, others another one."""
     work, found = make(3000), {}
     for name in fast_engine.instruction_sets():
@@ -29,9 +25,7 @@ def test_fingerprints_tell_the_bits_apart(make: Any, monkeypatch: pytest.MonkeyP
 @pytest.mark.skipif(
     len(fast_engine.instruction_sets() if fast_engine.available() else []) < 2, reason="one instruction set only"
 )
-def test_another_instruction_set_is_refused(
-    tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_another_instruction_set_is_refused(tmp_path, work, monkeypatch):
     """A campaign begun with one set is neither opened nor run with another one, and is finished with the first."""
     monkeypatch.delenv("ROCKING_ISA", raising=False)
     campaign = Campaign.create(tmp_path / "c", work, 50)
@@ -45,7 +39,7 @@ def test_another_instruction_set_is_refused(
     assert Campaign.open(tmp_path / "c", work).run(workers=1).computed == 6
 
 
-def test_sample_has_all_outcomes() -> None:
+def test_sample_has_all_outcomes():
     """No uplift, rocking, overturning and refusal are among the histories, under every law, order and equation."""
     outcomes = []
     for motions, law, settings in fingerprint._batches():
@@ -56,13 +50,13 @@ def test_sample_has_all_outcomes() -> None:
 
 
 @pytest.mark.parametrize("chosen", ["fast", "reference"])
-def test_one_bit_is_seen(chosen: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_one_bit_is_seen(chosen, monkeypatch):
     """Negative control: the last bit of one number of one history gives another fingerprint."""
     before = fingerprint._fingerprint.__wrapped__(chosen, "")
     assert before == fingerprint._fingerprint.__wrapped__(chosen, "")
     run = Batch.run
 
-    def nudged(self: Batch, *arguments: Any) -> Any:
+    def nudged(self, *arguments):
         results, work = run(self, *arguments)
         results["peak_rotation"][1] = np.nextafter(results["peak_rotation"][1], 9.0)
         return results, work

@@ -5,14 +5,12 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from rocking.campaigns import Campaign, CampaignInterrupted, Progress
+from rocking.campaigns import Campaign, CampaignInterrupted
 from rocking.campaigns.executors import Interruption
-from rocking.studies import HistoryTable
 
 RUN = """
 import sys
@@ -30,13 +28,13 @@ if __name__ == "__main__":
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_stop_records_what_is_finished(tmp_path: Path, work: HistoryTable, number: signal.Signals) -> None:
+def test_stop_records_what_is_finished(tmp_path, work, number):
     """A signal in the middle: the exception says what is safe, later runs go on, old handlers are back."""
     whole = Campaign.create(tmp_path / "whole", work, 50)
     whole.run(workers=1)
     campaign, before = Campaign.create(tmp_path / "c", work, 50), signal.getsignal(number)
 
-    def stop(progress: Progress) -> None:
+    def stop(progress):
         if progress.chunks_done == 2:
             os.kill(os.getpid(), number)
 
@@ -49,17 +47,17 @@ def test_stop_records_what_is_finished(tmp_path: Path, work: HistoryTable, numbe
     assert campaign.sha256() == whole.sha256()
 
 
-def test_interruption_is_no_ordinary_error() -> None:
+def test_interruption_is_no_ordinary_error():
     """What goes on after errors does not go on after Ctrl-C."""
     assert issubclass(CampaignInterrupted, KeyboardInterrupt)
     assert not issubclass(CampaignInterrupted, Exception)
 
 
-def test_second_signal_is_not_held_back() -> None:
+def test_second_signal_is_not_held_back():
     """Who presses Ctrl-C twice means it."""
     with Interruption() as interruption:
         os.kill(os.getpid(), signal.SIGINT)
-        assert interruption.asked()
+        assert interruption.requested()
         with pytest.raises(KeyboardInterrupt):
             os.kill(os.getpid(), signal.SIGINT)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
@@ -68,9 +66,7 @@ def test_second_signal_is_not_held_back() -> None:
 @pytest.mark.parametrize(
     ("executor", "chunk", "after"), [("serial", 5000, 2), ("serial", 1_000_000, 0), ("processes", 5000, 2)]
 )
-def test_ctrl_c_of_a_terminal_stops_within_a_second(
-    tmp_path: Path, executor: str, chunk: int, after: int, shards: Callable[..., dict[str, str]]
-) -> None:
+def test_ctrl_c_of_a_terminal_stops_within_a_second(tmp_path, executor, chunk, after, shards):
     """The whole group gets SIGINT, as from a terminal: one sentence, no traceback, soon, even within a large chunk."""
     script = tmp_path / "run.py"
     script.write_text(RUN, encoding="utf-8")

@@ -4,8 +4,6 @@ import random
 import shutil
 import sqlite3
 from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -18,19 +16,19 @@ FLIPS = 400
 Shards = Callable[[Campaign], dict[str, str]]
 
 
-def flip(path: Path, bit: int) -> None:
+def flip(path, bit):
     data = bytearray(path.read_bytes())
     data[bit // 8] ^= 1 << bit % 8
     path.write_bytes(data)
 
 
-def records(campaign: Campaign) -> list[LedgerEntry]:
+def records(campaign):
     with Ledger(campaign.folder) as ledger:
         ledger.check(campaign.plan)
         return list(ledger.records())
 
 
-def test_flipped_ledger_never_lies(finished: Campaign, tmp_path: Path) -> None:
+def test_flipped_ledger_never_lies(finished, tmp_path):
     """Of 400 flips anywhere in the file each is refused with the way out, or changes nothing that is recorded."""
     good = records(finished)
     path, copy = finished.folder / "ledger.sqlite", tmp_path / "good"
@@ -48,7 +46,7 @@ def test_flipped_ledger_never_lies(finished: Campaign, tmp_path: Path) -> None:
     assert len(refused) > FLIPS / 20  # most bytes of the small file are empty room
 
 
-def test_flips_within_rows_are_all_refused(finished: Campaign) -> None:
+def test_flips_within_rows_are_all_refused(finished):
     """A row that was changed by a bit in a text or a number does not carry its own sum any more."""
     path = finished.folder / "ledger.sqlite"
     good = path.read_bytes()
@@ -69,7 +67,7 @@ HARMS: dict[str, Callable[[bytes], bytes]] = {
 
 
 @pytest.mark.parametrize("harm", HARMS)
-def test_run_makes_a_damaged_ledger_anew(finished: Campaign, shards: Shards, harm: str) -> None:
+def test_run_makes_a_damaged_ledger_anew(finished, shards, harm):
     """Whatever became of the ledger, a run says so and adopts all shards; nothing is computed again or deleted."""
     before, digest = shards(finished), finished.sha256()
     path = finished.folder / "ledger.sqlite"
@@ -86,7 +84,7 @@ def test_run_makes_a_damaged_ledger_anew(finished: Campaign, shards: Shards, har
     assert (finished.folder / "ledger.sqlite.damaged-1").exists()
 
 
-def test_lost_ledger_is_made_by_the_next_run(finished: Campaign) -> None:
+def test_lost_ledger_is_made_by_the_next_run(finished):
     """Without a ledger nothing counts as finished; a run adopts the shards."""
     for path in finished.folder.glob("ledger.sqlite*"):
         path.unlink()
@@ -96,7 +94,7 @@ def test_lost_ledger_is_made_by_the_next_run(finished: Campaign) -> None:
 
 
 @pytest.mark.parametrize("order", ["UPDATE chunks SET number = 77 WHERE number = 2", "UPDATE chunks SET seal = 'x'"])
-def test_rows_that_were_meddled_with_are_refused(finished: Campaign, order: str) -> None:
+def test_rows_that_were_meddled_with_are_refused(finished, order):
     """A valid database with an edited row is damaged all the same."""
     with sqlite3.connect(finished.folder / "ledger.sqlite") as database:
         database.execute(order)
@@ -105,7 +103,7 @@ def test_rows_that_were_meddled_with_are_refused(finished: Campaign, order: str)
         finished.results()
 
 
-def test_ledger_of_another_campaign_is_refused(finished: Campaign, make: Any, tmp_path: Path) -> None:
+def test_ledger_of_another_campaign_is_refused(finished, make, tmp_path):
     """A ledger that was copied from elsewhere is not of this campaign, and a run takes nothing from it."""
     other = Campaign.create(tmp_path / "other", make(seed=8), 50)
     other.run(workers=1)
@@ -115,21 +113,21 @@ def test_ledger_of_another_campaign_is_refused(finished: Campaign, make: Any, tm
     assert finished.run(workers=1).computed == 0
 
 
-def test_a_ledger_that_is_just_being_made_says_nothing_is_done(tmp_path: Path, work: Any) -> None:
+def test_a_ledger_that_is_just_being_made_says_nothing_is_done(tmp_path, work):
     """Between the making of the file and of its tables, the status is that of a campaign that has not begun."""
     campaign = Campaign.create(tmp_path / "c", work)
     (campaign.folder / "ledger.sqlite").touch()
     assert Campaign.status_of(campaign.folder).chunks_done == 0
 
 
-def told(ledger: Ledger, between: Callable[[], None]) -> int:
+def told(ledger, between):
     """Histories that the ledger has, with something that happens between its two tables."""
     chunks = [record.last - record.first for record in ledger.records()]
     between()
     return sum(chunks) + sum(record.last - record.first for record in ledger.pieces())
 
 
-def test_what_is_read_is_of_one_instant(tmp_path: Path, work: Any) -> None:
+def test_what_is_read_is_of_one_instant(tmp_path, work):
     """While a reader goes from chunks to pieces, these become a chunk: it still sees every history once."""
     campaign = Campaign.create(tmp_path / "c", work)
     whole = campaign.plan.chunk(0)
@@ -137,10 +135,10 @@ def test_what_is_read_is_of_one_instant(tmp_path: Path, work: Any) -> None:
     rest = "seal", 1, 1, 0.1, "worker", "now"
     with Ledger(campaign.folder, writable=True) as writer, Ledger(campaign.folder) as reader:
 
-        def becomes_whole() -> None:
+        def becomes_whole():
             writer.record(LedgerEntry(whole.number, whole.first, whole.last, whole.name, *rest))
 
-        def in_pieces() -> None:
+        def in_pieces():
             writer.forget(whole.name)
             writer.record_piece(LedgerEntry(half.number, half.first, half.last, half.name, *rest))
 
@@ -152,7 +150,7 @@ def test_what_is_read_is_of_one_instant(tmp_path: Path, work: Any) -> None:
         assert told(reader, lambda: None) == whole.last - whole.first
 
 
-def test_pieces_that_make_up_a_chunk_are_counted_as_histories(tmp_path: Path, work: Any) -> None:
+def test_pieces_that_make_up_a_chunk_are_counted_as_histories(tmp_path, work):
     """As many histories as a chunk has, in pieces of two chunks, are not "0 chunks"."""
     plan = Campaign.create(tmp_path / "c", work, 50).plan
     meter = Meter(tmp_path, plan, None)

@@ -4,15 +4,12 @@ import os
 import signal
 import threading
 import time
-from pathlib import Path
-from typing import Any
 
 import pytest
 
 from rocking.campaigns import Campaign, CampaignInterrupted
 from rocking.campaigns.chunks import DEFAULT_CHUNK
 from rocking.campaigns.executors import WorkerTask
-from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.studies import HistoryTable
 
 pytestmark = pytest.mark.timed
@@ -23,7 +20,7 @@ class Watched(HistoryTable):
 
     pause = 0.0
 
-    def run(self, first: int, last: int, *, threads: int | None = None) -> Arrays:
+    def run(self, first, last, *, threads=None):
         if "pieces" in self.__dict__:
             self.__dict__["pieces"].append(last - first)
         time.sleep(self.pause * (last - first))
@@ -36,11 +33,11 @@ class Slow(Watched):
     pause = 0.002
 
 
-def as_(kind: type[HistoryTable], table: HistoryTable, **changed: Any) -> Any:
+def as_(kind, table, **changed):
     return kind(table.motions, table.motion, table.values, law=table.law, **changed)
 
 
-def test_slow_histories_stop_soon(tmp_path: Path, make: Any) -> None:
+def test_slow_histories_stop_soon(tmp_path, make):
     """Ctrl-C within a chunk of 20 s of histories of 2 ms each ends the run within 1.5 s, with a piece every 0.3 s."""
     work = as_(Slow, make(10_000))
     object.__setattr__(work, "pieces", pieces := [])
@@ -54,7 +51,7 @@ def test_slow_histories_stop_soon(tmp_path: Path, make: Any) -> None:
     assert max(pieces) < 300
 
 
-def test_quick_histories_come_in_large_pieces(tmp_path: Path, make: Any) -> None:
+def test_quick_histories_come_in_large_pieces(tmp_path, make):
     """The fast engine is soon given as many at a time as it likes; the shard does not depend on it."""
     plain = make(60_000)
     work = as_(Watched, plain)
@@ -68,7 +65,7 @@ def test_quick_histories_come_in_large_pieces(tmp_path: Path, make: Any) -> None
     assert max(pieces) <= DEFAULT_CHUNK
 
 
-def test_the_pace_is_kept_from_chunk_to_chunk(tmp_path: Path, make: Any) -> None:
+def test_the_pace_is_kept_from_chunk_to_chunk(tmp_path, make):
     """Only the first chunk begins with few histories at a time: small pieces leave most lanes of the engine idle."""
     work = as_(Watched, make(60_000))
     object.__setattr__(work, "pieces", pieces := [])
@@ -78,7 +75,7 @@ def test_the_pace_is_kept_from_chunk_to_chunk(tmp_path: Path, make: Any) -> None
     assert len(pieces) < 20
 
 
-def test_workers_ask_within_a_chunk(tmp_path: Path, make: Any) -> None:
+def test_workers_ask_within_a_chunk(tmp_path, make):
     """A worker that is to stop leaves a slow chunk unfinished, soon."""
     work = as_(Slow, make(5000))
     plan = Campaign.create(tmp_path / "c", work, 5000).plan
@@ -88,7 +85,7 @@ def test_workers_ask_within_a_chunk(tmp_path: Path, make: Any) -> None:
     assert time.perf_counter() - start < 2.0  # 0.8 s, and more on a busy machine
 
 
-def test_default_chunk_follows_the_engine(tmp_path: Path, make: Any) -> None:
+def test_default_chunk_follows_the_engine(tmp_path, make):
     """65536 histories of the fast engine, 256 of the reference engine, whatever is asked for if it is."""
     assert Campaign.create(tmp_path / "a", make(70_000)).plan.size == 65536
     reference = as_(HistoryTable, make(300), engine="reference")
@@ -97,7 +94,7 @@ def test_default_chunk_follows_the_engine(tmp_path: Path, make: Any) -> None:
 
 
 @pytest.mark.parametrize(("kind", "count"), [(HistoryTable, 200_000), (Slow, 1200)])
-def test_forecast_is_near(tmp_path: Path, make: Any, kind: type[HistoryTable], count: int) -> None:
+def test_forecast_is_near(tmp_path, make, kind, count):
     """What a run takes is within a factor of 2 of the forecast: the machine is busy with other things now and then."""
     campaign = Campaign.create(tmp_path / "c", as_(kind, make(count)))
     told = campaign.check().work.seconds

@@ -8,14 +8,12 @@ import sys
 import time
 from collections import Counter
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
-from rocking.campaigns import Campaign, CampaignInterrupted, Progress, executors
-from rocking.campaigns.chunks import Chunk, Plan
-from rocking.campaigns.executors import WorkerTask
+from rocking.campaigns import Campaign, CampaignInterrupted, executors
+from rocking.campaigns.chunks import Plan
 from rocking.campaigns.ledger import Ledger
 from rocking.campaigns.running import Remaining
 from rocking.campaigns.status import Costs
@@ -28,23 +26,23 @@ PLAN = Plan("a" * 64, 1000, 300, "fast", "1.0")
 
 
 @pytest.fixture
-def short(monkeypatch: pytest.MonkeyPatch) -> None:
+def short(monkeypatch):
     """Pieces of seven histories: every step is longer than it may be."""
     monkeypatch.setattr("rocking.campaigns.executors.PIECE", 0.0)
     monkeypatch.setattr("rocking.campaigns.executors.Pace.until", lambda self, first, last: min(first + 7, last))
 
 
-def pieces(campaign: Campaign) -> list[tuple[int, int]]:
+def pieces(campaign):
     """Ends of the pieces that are recorded."""
     with Ledger(campaign.folder) as ledger:
         return [(record.first, record.last) for record in ledger.pieces()]
 
 
-def stopped_after(campaign: Campaign, count: int, **how: Any) -> None:
+def stopped_after(campaign, count, **how):
     """Run until some pieces are recorded, and stop by Ctrl-C."""
     heard = []
 
-    def stop(progress: Progress) -> None:
+    def stop(progress):
         heard.append(progress)
         if len(heard) == count + 1:
             signal.raise_signal(signal.SIGINT)
@@ -54,7 +52,7 @@ def stopped_after(campaign: Campaign, count: int, **how: Any) -> None:
 
 
 @pytest.mark.timed
-def test_count_moves_within_seconds_and_a_kill_costs_one(tmp_path: Path) -> None:
+def test_count_moves_within_seconds_and_a_kill_costs_one(tmp_path):
     """300 motions of 20 ms in one chunk of 6 s: a count every second or so, and hardly a motion made again."""
     motions = Motions(300, 0.02, tmp_path)
     campaign = Campaign.create(tmp_path / "c", product(motions))
@@ -62,7 +60,7 @@ def test_count_moves_within_seconds_and_a_kill_costs_one(tmp_path: Path) -> None
     seen: list[tuple[float, int]] = []
     start = time.perf_counter()
 
-    def tell(progress: Progress) -> None:
+    def tell(progress):
         seen.append((time.perf_counter() - start, progress.done_histories))
         if progress.done_histories > 1200:
             os.kill(os.getpid(), signal.SIGINT)
@@ -79,11 +77,8 @@ def test_count_moves_within_seconds_and_a_kill_costs_one(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("seed", [None, 3])
-def test_files_are_the_same_however_it_is_cut(
-    tmp_path: Path, work: HistoryTable, finished: Campaign, short: None, shards: Any, seed: int | None
-) -> None:
+def test_files_are_the_same_however_it_is_cut(campaign, finished, short, shards, seed):
     """Chunks in pieces of seven, stopped and gone on with: byte by byte the shards of an undisturbed campaign."""
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     stopped_after(campaign, 4, order_seed=seed)
     assert pieces(campaign)
     assert campaign.status().histories_done == 28
@@ -96,9 +91,7 @@ def test_files_are_the_same_however_it_is_cut(
 
 
 @pytest.mark.skipif(os.name == "nt", reason="this system does not fork")
-def test_pieces_of_processes_are_the_same_files(
-    tmp_path: Path, work: HistoryTable, finished: Campaign, short: None, shards: Any
-) -> None:
+def test_pieces_of_processes_are_the_same_files(tmp_path, work, finished, short, shards):
     """Two processes share one chunk, and chunks, in pieces."""
     for name, chunk in (("c", 50), ("d", 300)):
         campaign = Campaign.create(tmp_path / name, work, chunk)
@@ -108,9 +101,8 @@ def test_pieces_of_processes_are_the_same_files(
             assert shards(campaign) == shards(finished)
 
 
-def test_ledger_of_an_earlier_version_is_not_read(tmp_path: Path, work: HistoryTable) -> None:
+def test_ledger_of_an_earlier_version_is_not_read(campaign):
     """Its rows have other columns, and it is told apart from a damaged one."""
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     stopped_after(campaign, 3)
     with sqlite3.connect(campaign.folder / "ledger.sqlite") as database:
         database.execute("PRAGMA user_version = 1")
@@ -119,11 +111,8 @@ def test_ledger_of_an_earlier_version_is_not_read(tmp_path: Path, work: HistoryT
 
 
 @pytest.mark.parametrize("harm", ["flip", "cut", "lose", "swap"])
-def test_damaged_pieces_are_named_and_computed_again(
-    tmp_path: Path, work: HistoryTable, finished: Campaign, short: None, shards: Any, harm: str
-) -> None:
+def test_damaged_pieces_are_named_and_computed_again(campaign, finished, short, shards, harm):
     """A piece whose bits flipped, that was cut short, lost, or has the bytes of another one: not counted, mended."""
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     stopped_after(campaign, 4)
     first, second, *_ = sorted((campaign.folder / "pieces").glob("*.shard"))
     data, other = first.read_bytes(), second.read_bytes()
@@ -142,11 +131,8 @@ def test_damaged_pieces_are_named_and_computed_again(
     assert shards(campaign) == shards(finished)
 
 
-def test_pieces_make_the_ledger_anew(
-    tmp_path: Path, work: HistoryTable, finished: Campaign, short: None, shards: Any
-) -> None:
+def test_pieces_make_the_ledger_anew(campaign, finished, short, shards):
     """Without its ledger a campaign adopts whole pieces, and throws away what does not belong to it."""
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     stopped_after(campaign, 4)
     before = pieces(campaign)
     (campaign.folder / "ledger.sqlite").unlink()
@@ -156,13 +142,10 @@ def test_pieces_make_the_ledger_anew(
     assert not (campaign.folder / "pieces").exists()
 
 
-def test_killed_before_pieces_are_joined(
-    tmp_path: Path, work: HistoryTable, finished: Campaign, short: None, shards: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_killed_before_pieces_are_joined(campaign, finished, short, shards, monkeypatch):
     """All pieces of a chunk are there, and it is not: the next run joins them; after it is, the leftovers go."""
     from rocking.campaigns import running
 
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     with monkeypatch.context() as patched:
         patched.setattr(running.shard, "unpack", lambda *_: 1 // 0)
         with pytest.raises(ZeroDivisionError):
@@ -178,9 +161,8 @@ def test_killed_before_pieces_are_joined(
     assert not (campaign.folder / "pieces").exists()
 
 
-def test_rows_of_pieces_that_were_meddled_with_are_refused(tmp_path: Path, work: HistoryTable, short: None) -> None:
+def test_rows_of_pieces_that_were_meddled_with_are_refused(campaign, short):
     """An edited row, and pieces that overlap, are damage."""
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     stopped_after(campaign, 3)
     good = (campaign.folder / "ledger.sqlite").read_bytes()
     with Ledger(campaign.folder, writable=True) as ledger:
@@ -196,7 +178,7 @@ def test_rows_of_pieces_that_were_meddled_with_are_refused(tmp_path: Path, work:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="this system does not fork")
-def test_each_motion_is_made_once_by_who_needs_it(tmp_path: Path) -> None:
+def test_each_motion_is_made_once_by_who_needs_it(tmp_path):
     """Two processes share one chunk of 100 motions: each motion is made once, and each process makes some."""
     motions = Motions(100, 0.01, tmp_path)
     histories = product(motions)
@@ -208,7 +190,7 @@ def test_each_motion_is_made_once_by_who_needs_it(tmp_path: Path) -> None:
     assert sum(path.stat().st_size > 0 for path in tmp_path.glob("made-*")) == 2
 
 
-def test_scattered_motions_are_kept(tmp_path: Path) -> None:
+def test_scattered_motions_are_kept(tmp_path):
     """Histories whose motions are in no order, in steps of a few: no motion is made twice while there is room."""
     motions = Motions(40, 0.0, tmp_path)
     values = {
@@ -220,7 +202,7 @@ def test_scattered_motions_are_kept(tmp_path: Path) -> None:
     assert max(Counter(motions.made()).values()) == 1
 
 
-def given_out(remaining: Remaining, rate: int, workers: int = 2) -> list[Chunk]:
+def given_out(remaining, rate, workers=2):
     """Play workers that do so many histories a second, and keep what is done after one: all of that, in turn."""
     out, done = [], []
     while True:
@@ -236,7 +218,7 @@ def given_out(remaining: Remaining, rate: int, workers: int = 2) -> list[Chunk]:
 
 @pytest.mark.parametrize("workers", [1, 2, 7])
 @pytest.mark.parametrize("rate", [1, 13, 1000])
-def test_what_remains_is_handed_out_once(workers: int, rate: int) -> None:
+def test_what_remains_is_handed_out_once(workers, rate):
     """Whatever was done before, however far workers come: every history once, none in two chunks."""
     before = {1: [PLAN.chunk(1).piece(310, 350), PLAN.chunk(1).piece(500, 520)]}
     order = np.array([3, 1, 0])
@@ -248,7 +230,7 @@ def test_what_remains_is_handed_out_once(workers: int, rate: int) -> None:
     assert all(PLAN.chunk(each.number).piece(each.first, each.last) == each for each in done)
 
 
-def test_slow_work_is_shared_evenly() -> None:
+def test_slow_work_is_shared_evenly():
     """One chunk of slow histories among four: none is given more than its share, the last ones get one each."""
     plan = Plan("a" * 64, 64, 64, "reference", "1.0")
     remaining = Remaining(plan, np.array([0]), {}, 1, Costs(64), sharers=lambda: 4)
@@ -260,18 +242,18 @@ def test_slow_work_is_shared_evenly() -> None:
     assert len(rest) == 60
 
 
-def test_pieces_end_between_motions() -> None:
+def test_pieces_end_between_motions():
     """Where histories of a motion stand together, pieces end with the last one of a motion."""
     remaining = Remaining(PLAN, np.array([0, 1, 2, 3]), {}, 12, Costs(1000), sharers=lambda: 3)
     ends = {each.last for each in given_out(remaining, 24, 3)}
     assert {end % 12 for end in ends - {1000}} == {0}
 
 
-def test_custom_executors_need_not_cut(tmp_path: Path, work: HistoryTable, short: None, finished: Campaign) -> None:
+def test_custom_executors_need_not_cut(tmp_path, work, short, finished):
     """Whoever computes a piece and keeps it has done what an executor must."""
 
     class Mine(executors.Executor):
-        def run(self, job: WorkerTask, chunks: Any, stop: Any, retried: Any) -> Any:
+        def run(self, job, chunks, stop, retried):
             while (chunk := next(chunks, None)) is not None:
                 data = job.compute(chunk, 1, stop)
                 assert data is not None

@@ -1,4 +1,4 @@
-"""Worker processes: any of them may die, none of them decides."""
+"""Worker processes: any of them may die, none of them decides; what is missing for others is said."""
 
 import multiprocessing
 import os
@@ -7,48 +7,43 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from rocking.campaigns import Campaign, CampaignWorkerError, Progress, identity
+from rocking.campaigns import Campaign, CampaignWorkerError, DaskExecutor, Progress, identity
 from rocking.campaigns import identity as fingerprint
-from rocking.campaigns.chunks import Chunk
 from rocking.campaigns.executors import WorkerTask
 from rocking.dynamics.plane import fast_engine
-from rocking.studies import HistoryTable
+from rocking.errors import MissingExtraError
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="workers are forked, so that they can be made to fail")
 nameless = lambda: 0  # noqa: E731 (pickle refuses it in another way than a local one)
 FORK: dict[str, Any] = {"executor": "processes", "start_method": "fork"}
 
 
-def breaking(monkeypatch: pytest.MonkeyPatch, what: Callable[[Chunk], None]) -> None:
+def breaking(monkeypatch, what):
     """Have workers do something bad before a chunk."""
     compute = WorkerTask.compute
 
-    def broken(self: WorkerTask, chunk: Chunk, *args: Any) -> Any:
+    def broken(self, chunk, *args):
         what(chunk)
         return compute(self, chunk, *args)
 
     monkeypatch.setattr(WorkerTask, "compute", broken)
 
 
-def test_worker_that_dies_once_costs_nothing(
-    tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_worker_that_dies_once_costs_nothing(campaign, tmp_path, work, monkeypatch):
     """kill -9 in the middle of a chunk: it is computed again by another worker, which is told and recorded."""
     marker = tmp_path / "died"
 
-    def die_once(chunk: Chunk) -> None:
+    def die_once(chunk):
         if chunk.number == 3 and not marker.exists():
             marker.touch()
             os.kill(os.getpid(), signal.SIGKILL)
 
     breaking(monkeypatch, die_once)
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     seen: list[Progress] = []
     summary = campaign.run(**FORK, workers=2, progress=seen.append)
     assert summary.computed == 6
@@ -58,12 +53,9 @@ def test_worker_that_dies_once_costs_nothing(
     assert all(campaign.results()[name].tobytes() == bare[name].tobytes() for name in bare)
 
 
-def test_chunk_that_kills_every_worker_is_named(
-    tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_chunk_that_kills_every_worker_is_named(campaign, monkeypatch):
     """Three deaths of the same chunk end the run with its histories; the others that were done are safe."""
     breaking(monkeypatch, lambda chunk: os.kill(os.getpid(), signal.SIGTERM) if chunk.number == 4 else None)
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     with pytest.raises(CampaignWorkerError, match=r"histories 200 to 249: 3 workers died of them, .* by SIGTERM"):
         campaign.run(**FORK, workers=2)
     assert campaign.verify().damaged == ()
@@ -71,23 +63,19 @@ def test_chunk_that_kills_every_worker_is_named(
     assert campaign.run(workers=1).computed < 6
 
 
-def test_error_in_a_worker_is_told(tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_error_in_a_worker_is_told(campaign, monkeypatch):
     """What a worker raises is raised where the campaign runs, with the histories, and is not tried again."""
 
-    def fail(_: Chunk) -> None:
+    def fail(_):
         raise ZeroDivisionError("by nought")
 
     breaking(monkeypatch, fail)
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     with pytest.raises(CampaignWorkerError, match="histories 0 to 49: ZeroDivisionError: by nought"):
         campaign.run(**FORK, workers=1)
 
 
-def test_worker_without_the_engine_is_refused(
-    tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_worker_without_the_engine_is_refused(campaign, monkeypatch):
     """Results of two engines are never mixed."""
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     breaking(monkeypatch, lambda _: setattr(fast_engine, "chosen", lambda *_: "reference"))
     with pytest.raises(CampaignWorkerError, match="this worker has the reference engine, the campaign takes the fast"):
         campaign.run(**FORK, workers=1)
@@ -100,20 +88,16 @@ def test_worker_without_the_engine_is_refused(
         (identity, "software", lambda: "9.9", r"this worker has version 9\.9, the campaign was begun with"),
     ],
 )
-def test_worker_of_other_bits_is_refused(
-    tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch, module: Any, name: str, value: Any, words: str
-) -> None:
+def test_worker_of_other_bits_is_refused(campaign, monkeypatch, module, name, value, words):
     """Another version, or an engine of other last digits, writes nothing into chunks that are named for this one."""
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     breaking(monkeypatch, lambda _: setattr(module, name, value))
     with pytest.raises(CampaignWorkerError, match=words):
         campaign.run(**FORK, workers=1)
     assert not list((campaign.folder / "shards").iterdir())
 
 
-def test_histories_that_cannot_be_sent_are_refused(tmp_path: Path, work: HistoryTable) -> None:
+def test_histories_that_cannot_be_sent_are_refused(campaign, work):
     """What cannot be pickled has a sentence."""
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     for unsendable in (threading.Lock(), nameless, lambda: 0):
         object.__setattr__(work, "listener", unsendable)
         with pytest.raises(CampaignWorkerError, match="cannot be sent to a process"):
@@ -121,9 +105,8 @@ def test_histories_that_cannot_be_sent_are_refused(tmp_path: Path, work: History
 
 
 @pytest.mark.parametrize("start_method", ["fork", "forkserver"])
-def test_idle_workers_stay(tmp_path: Path, work: HistoryTable, start_method: str) -> None:
+def test_idle_workers_stay(campaign, start_method):
     """Workers that wait for more than their patience are still there: under a fork server, too."""
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     summary = campaign.run(
         "processes", workers=1, start_method=start_method, progress=lambda p: time.sleep(1.3 * (p.chunks_done == 1))
     )
@@ -148,7 +131,7 @@ if __name__ == "__main__":
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="/proc tells the dead from the living")
 @pytest.mark.parametrize("start_method", ["fork", "forkserver"])
-def test_orphans_end(tmp_path: Path, start_method: str) -> None:
+def test_orphans_end(tmp_path, start_method):
     """When the campaign's process is killed alone, its workers end by themselves, however they were started."""
     (tmp_path / "run.py").write_text(ORPHANS, encoding="utf-8")
     arguments = [str(tmp_path / "c"), str(Path(__file__).parent), start_method]
@@ -162,7 +145,7 @@ def test_orphans_end(tmp_path: Path, start_method: str) -> None:
     assert left == []
 
 
-def alive(process: int) -> bool:
+def alive(process):
     """Whether a process runs: not gone, and no zombie."""
     try:
         return Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
@@ -170,12 +153,12 @@ def alive(process: int) -> bool:
         return False
 
 
-def test_no_worker_stays(tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_worker_stays(tmp_path, work, monkeypatch):
     """After a run, one that failed, and one that was interrupted, all processes are gone."""
     Campaign.create(tmp_path / "c", work, 50).run(**FORK, workers=3)
     assert multiprocessing.active_children() == []
 
-    def leave(_: Progress) -> None:
+    def leave(_):
         raise RuntimeError("no more")
 
     with pytest.raises(RuntimeError):
@@ -183,14 +166,14 @@ def test_no_worker_stays(tmp_path: Path, work: HistoryTable, monkeypatch: pytest
     assert multiprocessing.active_children() == []
 
 
-def test_work_is_taken_as_it_is_needed(tmp_path: Path, work: HistoryTable) -> None:
+def test_work_is_taken_as_it_is_needed(tmp_path, work):
     """However many chunks there are, few are waiting: two a worker."""
     from rocking.campaigns.processes import Processes
 
     campaign = Campaign.create(tmp_path / "c", work, 5)
     taken = finished = most = 0
 
-    def chunks() -> Iterator[Chunk]:
+    def chunks():
         nonlocal taken
         for k in range(campaign.plan.chunks):
             taken += 1
@@ -202,3 +185,10 @@ def test_work_is_taken_as_it_is_needed(tmp_path: Path, work: HistoryTable) -> No
         most = max(most, taken - finished)
     assert finished == 60
     assert most <= 4
+
+
+def test_missing_dask_has_a_sentence(tmp_path, work, monkeypatch):
+    """The extra is named."""
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(MissingExtraError, match=r"needs distributed: pip install '\.\[dask\]'"):
+        Campaign.create(tmp_path / "c", work).run(DaskExecutor("tcp://127.0.0.1:9"))

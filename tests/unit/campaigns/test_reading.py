@@ -1,8 +1,6 @@
 """Results and status: what is read is what the engine computed."""
 
 import hashlib
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,10 +9,9 @@ from rocking.campaigns import Campaign, CampaignStorageError, Progress, forecast
 from rocking.campaigns.status import Estimate
 from rocking.dynamics.plane.fast_engine import RESULTS
 from rocking.errors import InvalidValueError
-from rocking.studies import HistoryTable
 
 
-def test_results_are_those_of_the_engine(finished: Campaign, work: HistoryTable) -> None:
+def test_results_are_those_of_the_engine(finished, work):
     """Whole, in pieces and by column: bit by bit what a bare run gives, with several outcomes."""
     bare = work.run(0, work.count, threads=1)
     whole = finished.results()
@@ -30,14 +27,14 @@ def test_results_are_those_of_the_engine(finished: Campaign, work: HistoryTable)
         next(finished.column("height"))
 
 
-def test_hash_is_what_it_says(finished: Campaign, work: HistoryTable) -> None:
+def test_hash_is_what_it_says(finished, work):
     """The hash of the results, computed here from a bare run by its description."""
     bare = work.run(0, work.count, threads=1)
     lines = [f"{k} {np.dtype(RESULTS[k]).name} {hashlib.sha256(bare[k].tobytes()).hexdigest()}\n" for k in RESULTS]
     assert finished.sha256() == hashlib.sha256("".join(lines).encode()).hexdigest()
 
 
-def test_progress_counts_up(tmp_path: Path, work: HistoryTable) -> None:
+def test_progress_counts_up(tmp_path, work):
     """The first report is what was there, the last one is everything; time left is told when all parts were seen."""
     new = Campaign.create(tmp_path / "c", work, 64)
     seen: list[Progress] = []
@@ -52,7 +49,7 @@ def test_progress_counts_up(tmp_path: Path, work: HistoryTable) -> None:
     assert [p.chunks_done for p in seen] == [5]
 
 
-def test_status_needs_no_histories(finished: Campaign, tmp_path: Path, work: HistoryTable) -> None:
+def test_status_needs_no_histories(finished, tmp_path, work):
     """The folder alone tells how far it is, before, during and after."""
     status = Campaign.status_of(finished.folder)
     assert (status.histories_done, status.chunks_done, status.complete, status.running) == (300, 6, True, None)
@@ -65,10 +62,10 @@ def test_status_needs_no_histories(finished: Campaign, tmp_path: Path, work: His
     assert seen[1].sentence.endswith("runs it")
 
 
-def test_status_writes_nothing(finished: Campaign) -> None:
+def test_status_writes_nothing(finished):
     """Looking leaves every file as it was."""
 
-    def look() -> dict[str, Any]:
+    def look():
         return {p.name: p.read_bytes() for p in finished.folder.rglob("*") if p.is_file()}
 
     before = look()
@@ -76,7 +73,7 @@ def test_status_writes_nothing(finished: Campaign) -> None:
     assert look() == before
 
 
-def test_check_looks_ahead(tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_check_looks_ahead(tmp_path, work, monkeypatch):
     """The forecast has room for what is written, and a disk that is too small is refused before the work."""
     new = Campaign.create(tmp_path / "c", work, 50)
     ahead = new.check()

@@ -3,7 +3,6 @@
 import dataclasses
 import os
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,17 +10,16 @@ import pytest
 
 from rocking.campaigns import Campaign, CampaignDamagedError, CampaignIncompleteError, CampaignMismatchError, identity
 from rocking.errors import InvalidValueError
-from rocking.studies import HistoryTable
 
 DISK_FLIPS = 200
 Shards = Callable[[Campaign], dict[str, str]]
 
 
-def paths(campaign: Campaign) -> list[Path]:
+def paths(campaign):
     return [campaign.folder / "shards" / f"{campaign.plan.chunk(k).name}.shard" for k in range(campaign.plan.chunks)]
 
 
-def test_flips_on_disk_are_found_and_mended(finished: Campaign, shards: Shards) -> None:
+def test_flips_on_disk_are_found_and_mended(finished, shards):
     """200 flips of shards on disk: reading refuses them, a run sets them aside and computes the same bytes again."""
     before, digest = shards(finished), finished.sha256()
     random = np.random.default_rng(4)
@@ -43,7 +41,7 @@ def test_flips_on_disk_are_found_and_mended(finished: Campaign, shards: Shards) 
 
 
 @pytest.mark.parametrize("length", [0, 1, 100, -1])
-def test_truncated_shard_is_mended(finished: Campaign, shards: Shards, length: int) -> None:
+def test_truncated_shard_is_mended(finished, shards, length):
     """A shard that was cut short is set aside and computed again."""
     before = shards(finished)
     path = paths(finished)[3]
@@ -53,7 +51,7 @@ def test_truncated_shard_is_mended(finished: Campaign, shards: Shards, length: i
     assert shards(finished) == before
 
 
-def test_missing_shard_is_mended(finished: Campaign, shards: Shards) -> None:
+def test_missing_shard_is_mended(finished, shards):
     """A shard that somebody deleted is computed again, and that is said."""
     before = shards(finished)
     paths(finished)[1].unlink()
@@ -62,9 +60,7 @@ def test_missing_shard_is_mended(finished: Campaign, shards: Shards) -> None:
     assert shards(finished) == before
 
 
-def test_shards_that_nobody_recorded_are_adopted_or_set_aside(
-    finished: Campaign, tmp_path: Path, work: HistoryTable
-) -> None:
+def test_shards_that_nobody_recorded_are_adopted_or_set_aside(finished, tmp_path, work):
     """Killed between writing and recording: whole shards count, broken ones and unfinished ones do not."""
     other = Campaign.create(tmp_path / "other", work, 50)
     mine, theirs = paths(other), paths(finished)
@@ -77,7 +73,7 @@ def test_shards_that_nobody_recorded_are_adopted_or_set_aside(
     assert other.sha256() == finished.sha256()
 
 
-def test_identity_that_changed_is_refused(finished: Campaign, work: HistoryTable) -> None:
+def test_identity_that_changed_is_refused(finished, work):
     """No bit of campaign.json may change: 300 flips, each with a sentence and a way out."""
     path = finished.folder / "campaign.json"
     good = path.read_bytes()
@@ -95,7 +91,7 @@ def test_identity_that_changed_is_refused(finished: Campaign, work: HistoryTable
     assert Campaign.open(finished.folder, work).key == finished.key
 
 
-def test_way_out_of_a_damaged_identity_works(finished: Campaign, tmp_path: Path, work: HistoryTable) -> None:
+def test_way_out_of_a_damaged_identity_works(finished, tmp_path, work):
     """A new campaign of the same histories adopts the shards of one whose campaign.json is lost."""
     other = Campaign.create(tmp_path / "other", work, 50)
     for path in paths(finished):
@@ -104,7 +100,7 @@ def test_way_out_of_a_damaged_identity_works(finished: Campaign, tmp_path: Path,
     assert other.sha256() == finished.sha256()
 
 
-def test_other_histories_are_refused_by_name(finished: Campaign, work: HistoryTable, make: Any) -> None:
+def test_other_histories_are_refused_by_name(finished, work, make):
     """What differs is named: settings, the law, the arrays."""
     settings = dataclasses.replace(work.settings, linear=True)
     with pytest.raises(CampaignMismatchError, match=r"settings\.linear was False, is True"):
@@ -115,16 +111,15 @@ def test_other_histories_are_refused_by_name(finished: Campaign, work: HistoryTa
         Campaign.open(finished.folder, make(301))
 
 
-def test_other_versions_are_refused(finished: Campaign, work: HistoryTable, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_versions_are_refused(finished, work, monkeypatch):
     """Results of two versions of the package, or of two engines, are not mixed."""
     monkeypatch.setattr(identity, "software", lambda: "9.9")
     with pytest.raises(CampaignMismatchError, match=r"begun with software .*, this is 9\.9"):
         Campaign.open(finished.folder, work)
 
 
-def test_histories_that_changed_are_refused_by_a_run(tmp_path: Path, work: HistoryTable) -> None:
+def test_histories_that_changed_are_refused_by_a_run(campaign, work):
     """Between creating and running, somebody writes into an array or a law: no chunk is computed of it."""
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     work.values["scale"] = 2.0 * work.values["scale"]
     with pytest.raises(CampaignMismatchError, match=r"content\.scale was .*, is "):
         campaign.run(workers=1)
@@ -135,7 +130,7 @@ def test_histories_that_changed_are_refused_by_a_run(tmp_path: Path, work: Histo
     assert campaign.status().chunks_done == 0
 
 
-def test_folders_are_refused(finished: Campaign, tmp_path: Path, work: HistoryTable) -> None:
+def test_folders_are_refused(finished, tmp_path, work):
     """No campaign, one that is there already, other things in the folder, a file in the way."""
     with pytest.raises(CampaignMismatchError, match="no campaign here"):
         Campaign.open(tmp_path, work)
@@ -147,7 +142,7 @@ def test_folders_are_refused(finished: Campaign, tmp_path: Path, work: HistoryTa
         Campaign.create(tmp_path / "full", work)
 
 
-def test_refusals_of_arguments(finished: Campaign, tmp_path: Path) -> None:
+def test_refusals_of_arguments(finished, tmp_path):
     """What is not an argument of a run has a sentence."""
     bad: list[tuple[dict[str, Any], str]] = [
         ({"executor": "threads"}, "executor must be"),
@@ -166,9 +161,8 @@ def test_refusals_of_arguments(finished: Campaign, tmp_path: Path) -> None:
     assert not (tmp_path / "new").exists()
 
 
-def test_unfinished_campaigns_give_no_numbers(tmp_path: Path, work: HistoryTable) -> None:
+def test_unfinished_campaigns_give_no_numbers(campaign):
     """Results exist when all of them exist; there are no fill values."""
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     for read in (campaign.results, campaign.sha256, lambda: next(campaign.pieces())):
         with pytest.raises(CampaignIncompleteError, match="0 of 6 chunks are finished"):
             read()

@@ -5,16 +5,13 @@ import signal
 import sqlite3
 import threading
 import time
-from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from rocking.campaigns import Campaign, CampaignInterrupted, Executor, Progress, Serial
-from rocking.campaigns.executors import Done, WorkerTask
-from rocking.dynamics.plane.fast_engine import Arrays
+from rocking.campaigns import Campaign, CampaignInterrupted, Executor, Serial
+from rocking.campaigns.executors import WorkerTask
 from rocking.studies import HistoryTable
 
 LONG = 20.0
@@ -23,7 +20,7 @@ LONG = 20.0
 class Hooked(HistoryTable):
     """Histories that call a function with their first number before they are computed, if they are given one."""
 
-    def run(self, first: int, last: int, *, threads: int | None = None) -> Arrays:
+    def run(self, first, last, *, threads=None):
         self.__dict__.get("hook", int)(first)
         return super().run(first, last, threads=threads)
 
@@ -31,7 +28,7 @@ class Hooked(HistoryTable):
 class Plain(Executor):
     """Computes, writes and hands over one chunk after another: what overlaps must do the same."""
 
-    def run(self, job: WorkerTask, chunks: Iterator[Any], stop: Callable[[], bool], retried: object) -> Iterator[Done]:
+    def run(self, job, chunks, stop, retried):
         for chunk in chunks:
             data = job.compute(chunk, 1, stop)
             if data is None:
@@ -40,10 +37,10 @@ class Plain(Executor):
 
 
 @pytest.fixture
-def hooked(work: HistoryTable) -> Callable[[Callable[[int], object]], Hooked]:
+def hooked(work):
     """The 300 histories with a hook."""
 
-    def give(hook: Callable[[int], object]) -> Hooked:
+    def give(hook):
         made = Hooked(work.motions, work.motion, work.values, law=work.law)
         object.__setattr__(made, "hook", hook)
         return made
@@ -51,13 +48,13 @@ def hooked(work: HistoryTable) -> Callable[[Callable[[int], object]], Hooked]:
     return give
 
 
-def soon(event: threading.Event) -> None:
+def soon(event):
     """Wait for what must happen; not for ever."""
     if not event.wait(LONG):
         raise AssertionError("it did not happen")
 
 
-def rows(campaign: Campaign) -> list[tuple[Any, ...]]:
+def rows(campaign):
     """What the ledger has, but for times."""
     with sqlite3.connect(campaign.folder / "ledger.sqlite") as database:
         names = "number, first, last, name, seal, size, attempts, worker"
@@ -66,21 +63,19 @@ def rows(campaign: Campaign) -> list[tuple[Any, ...]]:
     return found
 
 
-def computing() -> list[str]:
+def computing():
     """Threads of campaigns that are there."""
     return [each.name for each in threading.enumerate() if each.name.startswith("campaign")]
 
 
 @pytest.fixture(autouse=True)
-def _no_thread_is_left() -> Iterator[None]:
+def _no_thread_is_left():
     yield
     assert computing() == []
 
 
 @pytest.mark.parametrize("seed", [None, 4])
-def test_shards_and_ledger_are_those_of_a_plain_loop(
-    tmp_path: Path, work: HistoryTable, shards: Callable[..., dict[str, str]], seed: int | None
-) -> None:
+def test_shards_and_ledger_are_those_of_a_plain_loop(tmp_path, work, shards, seed):
     """The bytes of every shard, and all of the ledger but its times, in whatever order; uneven chunks."""
     both = [Campaign.create(tmp_path / name, work, 70) for name in ("overlapping", "plain")]
     told: list[list[int]] = [[], []]
@@ -92,26 +87,24 @@ def test_shards_and_ledger_are_those_of_a_plain_loop(
     assert told[0] == told[1]
 
 
-def test_next_chunk_is_computed_while_one_is_written(
-    tmp_path: Path, hooked: Callable[..., Hooked], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_next_chunk_is_computed_while_one_is_written(tmp_path, hooked, monkeypatch):
     """A chunk is written only once the next one is at work, which goes on only once it is recorded; none beyond it."""
     begun = [threading.Event() for _ in range(7)]
     recorded = [threading.Event() for _ in range(7)]
     keep, ahead = WorkerTask.keep, []
 
-    def note(first: int) -> None:
+    def note(first):
         begun[first // 50].set()
         if first:
             soon(recorded[first // 50 - 1])
 
-    def careful(self: WorkerTask, chunk: Any, *rest: Any) -> Done:
+    def careful(self, chunk, *rest):
         if chunk.number < 5:
             soon(begun[chunk.number + 1])
         ahead.append(sum(event.is_set() for event in begun) - chunk.number)
         return keep(self, chunk, *rest)
 
-    def tell(progress: Progress) -> None:
+    def tell(progress):
         if progress.chunks_done:
             recorded[progress.chunks_done - 1].set()
 
@@ -121,16 +114,16 @@ def test_next_chunk_is_computed_while_one_is_written(
     assert ahead == [2, 2, 2, 2, 2, 1]
 
 
-def test_error_comes_after_the_chunk_before_it_is_recorded(tmp_path: Path, hooked: Callable[..., Hooked]) -> None:
+def test_error_comes_after_the_chunk_before_it_is_recorded(tmp_path, hooked):
     """The third chunk fails before the second one is recorded: that is recorded and told, then the error is raised."""
     failed, told = threading.Event(), []
 
-    def fail(first: int) -> None:
+    def fail(first):
         if first == 100:
             failed.set()
             raise ZeroDivisionError("of the user")
 
-    def tell(progress: Progress) -> None:
+    def tell(progress):
         if progress.chunks_done == 2:
             soon(failed)
         told.append(progress.chunks_done)
@@ -143,20 +136,18 @@ def test_error_comes_after_the_chunk_before_it_is_recorded(tmp_path: Path, hooke
 
 
 @pytest.mark.parametrize("fails", [False, True])
-def test_stop_discards_what_was_begun_too_early(
-    tmp_path: Path, hooked: Callable[..., Hooked], shards: Callable[..., dict[str, str]], fails: bool
-) -> None:
+def test_stop_discards_what_was_begun_too_early(tmp_path, hooked, shards, fails):
     """A stop is asked while the second chunk is recorded and the third one computed: two stay, whatever that gave."""
     third = threading.Event()
     fail = fails
 
-    def note(first: int) -> None:
+    def note(first):
         if first == 100:
             third.set()
             if fail:
                 raise ZeroDivisionError("of the user")
 
-    def stop(progress: Progress) -> None:
+    def stop(progress):
         if progress.chunks_done == 2:
             soon(third)
             time.sleep(0.05)  # it is through, too
@@ -171,10 +162,10 @@ def test_stop_discards_what_was_begun_too_early(
     assert (summary.resumed, summary.adopted, summary.computed) == (2, 0, 4)
 
 
-def test_stop_within_the_last_piece_of_a_chunk_keeps_it(tmp_path: Path, hooked: Callable[..., Hooked]) -> None:
+def test_stop_within_the_last_piece_of_a_chunk_keeps_it(tmp_path, hooked):
     """A stop while nothing but a last piece is computed: the chunk is whole, and recorded."""
 
-    def stop(first: int) -> None:
+    def stop(first):
         os.kill(os.getpid(), signal.SIGINT)
         time.sleep(0.3)
 
@@ -184,11 +175,11 @@ def test_stop_within_the_last_piece_of_a_chunk_keeps_it(tmp_path: Path, hooked: 
     assert campaign.status().chunks_done == 1
 
 
-def test_second_ctrl_c_is_raised_where_the_campaign_runs(tmp_path: Path, hooked: Callable[..., Hooked]) -> None:
+def test_second_ctrl_c_is_raised_where_the_campaign_runs(tmp_path, hooked):
     """It does not wait for the chunk to be kept; lock and thread are let go of, and a later run finishes."""
     impatient = True
 
-    def stop(first: int) -> None:
+    def stop(first):
         for _ in range(2 * impatient):
             os.kill(os.getpid(), signal.SIGINT)
             time.sleep(0.5)
@@ -205,9 +196,7 @@ def test_second_ctrl_c_is_raised_where_the_campaign_runs(tmp_path: Path, hooked:
 
 @pytest.mark.timed
 @pytest.mark.parametrize("where", ["listener", "disk"])
-def test_error_beside_a_long_chunk_is_raised_soon(
-    tmp_path: Path, make: Callable[..., HistoryTable], monkeypatch: pytest.MonkeyPatch, where: str
-) -> None:
+def test_error_beside_a_long_chunk_is_raised_soon(tmp_path, make, monkeypatch, where):
     """The next chunk, of 10 s, is left at its next piece when the one before it cannot be told or written."""
     plain = make(4000)
     slow = Hooked(plain.motions, plain.motion, plain.values, law=plain.law)
@@ -215,7 +204,7 @@ def test_error_beside_a_long_chunk_is_raised_soon(
     campaign = Campaign.create(tmp_path / "c", slow, 2000)
     monkeypatch.setattr("rocking.campaigns.executors._ASK", 0.0)  # a history at a time
 
-    def fail(*given: Any) -> None:
+    def fail(*given):
         if where == "disk" or given[0].done_histories:
             raise ZeroDivisionError(where)
 
@@ -228,12 +217,12 @@ def test_error_beside_a_long_chunk_is_raised_soon(
     assert (campaign.status().histories_done > 0) == (where == "listener")
 
 
-def test_executor_that_is_closed_early_waits_for_its_thread(tmp_path: Path, hooked: Callable[..., Hooked]) -> None:
+def test_executor_that_is_closed_early_waits_for_its_thread(tmp_path, hooked):
     """Whoever takes one chunk and leaves finds one shard and no thread; chunks are drawn by the caller's own thread."""
     drew: list[threading.Thread] = []
     second, ended = threading.Event(), threading.Event()
 
-    def linger(first: int) -> None:
+    def linger(first):
         if first == 50:
             second.set()
             time.sleep(0.2)
@@ -242,7 +231,7 @@ def test_executor_that_is_closed_early_waits_for_its_thread(tmp_path: Path, hook
     work = hooked(linger)
     plan = Campaign.create(tmp_path / "c", work, 50).plan
 
-    def chunks() -> Iterator[Any]:
+    def chunks():
         for number in range(plan.chunks):
             drew.append(threading.current_thread())
             yield plan.chunk(number)
@@ -258,7 +247,7 @@ def test_executor_that_is_closed_early_waits_for_its_thread(tmp_path: Path, hook
     assert len(list(tmp_path.glob("*.shard"))) == 1
 
 
-def test_rules_of_the_caller_hold_for_the_histories(tmp_path: Path, hooked: Callable[..., Hooked]) -> None:
+def test_rules_of_the_caller_hold_for_the_histories(tmp_path, hooked):
     """What NumPy does about an overflow is a matter of the thread: it is that of whoever runs the campaign."""
     campaign = Campaign.create(tmp_path / "c", hooked(lambda first: np.exp(np.float64(1e4))), 50)
     with np.errstate(over="raise"), pytest.raises(FloatingPointError, match="overflow"):

@@ -7,14 +7,11 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from rocking.campaigns import Campaign, CampaignStorageError, disk
-from rocking.studies import HistoryTable
 
 TRY = """
 import sys
@@ -35,7 +32,7 @@ print("DONE", campaign.status().chunks_done, len(campaign.verify().damaged))
 HERE = Path(__file__).parent
 
 
-def tried(script: str, timeout: float = 60.0) -> str:
+def tried(script, timeout=60.0):
     """What a shell script says that has a file system of its own; it calls $TRY with the folder."""
     call = f'{sys.executable} -c "$CODE" "$1" {HERE}'
     command = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-ec", f"attempt() {{ {call}; }}\n{script}"]
@@ -45,27 +42,20 @@ def tried(script: str, timeout: float = 60.0) -> str:
     return done.stdout + done.stderr
 
 
-def can_mount(folder: Path) -> bool:
+def can_mount(folder):
     if shutil.which("unshare") is None:
         return False
     return "yes" in tried(f"mount -t tmpfs -o size=1m none {folder} && echo yes")
 
 
 @pytest.mark.parametrize("call", range(1, 8))
-def test_disk_full_at_any_file(
-    tmp_path: Path,
-    work: HistoryTable,
-    monkeypatch: pytest.MonkeyPatch,
-    call: int,
-    shards: Callable[..., dict[str, str]],
-) -> None:
+def test_disk_full_at_any_file(campaign, tmp_path, work, monkeypatch, call, shards):
     """Whichever write is the first to fail, what was recorded before stays, and a later run finishes the same bytes."""
     whole = Campaign.create(tmp_path / "whole", work, 50)
     whole.run(workers=1)
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     real, calls = disk._write_through, []
 
-    def filling(path: Path, data: bytes) -> None:
+    def filling(path, data):
         calls.append(path)
         if len(calls) >= call:
             path.write_bytes(data[:100])
@@ -87,23 +77,19 @@ def test_disk_full_at_any_file(
 
 
 @pytest.mark.parametrize("code", [errno.EROFS, errno.EACCES, errno.EDQUOT, errno.EIO, errno.EFBIG])
-def test_disk_that_refuses_from_workers(
-    tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch, code: int
-) -> None:
+def test_disk_that_refuses_from_workers(campaign, monkeypatch, code):
     """What goes wrong in a worker process is said where the campaign runs."""
 
-    def refuse(*_: Any) -> None:
+    def refuse(*_):
         raise OSError(code, os.strerror(code))
 
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     monkeypatch.setattr(disk, "write_new", refuse)
     with pytest.raises(CampaignStorageError, match=f"{os.strerror(code)}; 0 of 6 chunks are safe"):
         campaign.run("processes", workers=2, start_method="fork")
 
 
-def test_file_size_limit_of_the_system(tmp_path: Path, work: HistoryTable) -> None:
+def test_file_size_limit_of_the_system(campaign):
     """A limit that the system enforces: files may not grow beyond 40 kB, as on a quota."""
-    campaign = Campaign.create(tmp_path / "c", work, 50)
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (2000, before[1]))
     try:
@@ -114,7 +100,7 @@ def test_file_size_limit_of_the_system(tmp_path: Path, work: HistoryTable) -> No
     assert campaign.run(workers=1).computed == 6
 
 
-def test_real_full_disk(tmp_path: Path) -> None:
+def test_real_full_disk(tmp_path):
     """On a file system of 1 MB a campaign of 1.5 MB stops with a sentence; with more room it goes on and finishes."""
     room = tmp_path / "room"
     room.mkdir()
@@ -133,7 +119,7 @@ def test_real_full_disk(tmp_path: Path) -> None:
     assert third == "DONE 40 0"
 
 
-def test_real_read_only_disk(finished: Campaign, tmp_path: Path) -> None:
+def test_real_read_only_disk(finished, tmp_path):
     """On a file system that became read-only nothing is computed or lost, and results can still be read."""
     room = tmp_path / "room"
     room.mkdir()
@@ -147,7 +133,7 @@ def test_real_read_only_disk(finished: Campaign, tmp_path: Path) -> None:
     assert lines[3] == lines[1]
 
 
-def refused_as_nobody(finished: Campaign) -> int:
+def refused_as_nobody(finished):
     """0 if another user can read it, and is refused to run it."""
     child = os.fork()
     if not child:
@@ -165,7 +151,7 @@ def refused_as_nobody(finished: Campaign) -> int:
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can become somebody else")
-def test_folder_of_somebody_else(work: HistoryTable) -> None:
+def test_folder_of_somebody_else(work):
     """A user who may not write the folder is told so; status and results can still be had."""
     with tempfile.TemporaryDirectory() as room:  # the test's own folder is closed to others
         Path(room).chmod(0o755)

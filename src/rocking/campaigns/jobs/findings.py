@@ -155,12 +155,14 @@ def comparison(folder: JobFolder) -> Sensitivity:
     if not comparable(folder):
         raise InvalidValueError("a comparison needs a map, spectra, fragility or histories with several restitutions")
     refuse_unfinished(folder)
-    choices = folder.job.problem.restitutions
+    restitutions = folder.job.problem.restitutions
     results = _datasets(folder) if folder.job.study.finish is None else analyses(folder)
     drawn = [
-        label for label, law in choices.items() if isinstance(law, ImpactLaw) and law.kind == RandomRestitution.kind
+        label
+        for label, law in restitutions.items()
+        if isinstance(law, ImpactLaw) and law.kind == RandomRestitution.kind
     ]
-    return Sensitivity(results, baseline=next(iter(choices)), drawn=drawn)
+    return Sensitivity(results, baseline=next(iter(restitutions)), drawn=drawn)
 
 
 def _datasets(folder: JobFolder) -> "dict[str, xr.Dataset]":

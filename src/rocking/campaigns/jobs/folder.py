@@ -117,10 +117,10 @@ class JobFolder:
         if not base.is_dir() and content["files"]:
             raise InvalidValueError(f"{path}: the folder of its inputs, {base}, is not there; give --inputs")
         with located(str(path)):
-            found = InputFiles(base)
+            files = InputFiles(base)
             for item in content["files"]:  # before they are read: what has changed may not be readable
-                found.file(item["path"])
-            refuse_changes(content["files"], found.told())
+                files.file(item["path"])
+            refuse_changes(content["files"], files.told())
         job = Job.of_text(text, content["job_file"], base)
         with located(str(path)):
             refuse_changes(content["files"], job.inputs)
@@ -209,8 +209,8 @@ def status_of(folder: str | os.PathLike[str], *, verify: bool = True) -> JobStat
         status, begun, complete = status_of_rounds(path, verify=verify)
         return JobStatus(path, name, kind, status, complete, begun)
     there = (path / HISTORIES / NAME).exists()
-    found = Campaign.status_of(path / HISTORIES, verify=verify) if there else None
-    return JobStatus(path, name, kind, found, found is not None and found.complete)
+    known = Campaign.status_of(path / HISTORIES, verify=verify) if there else None
+    return JobStatus(path, name, kind, known, known is not None and known.complete)
 
 
 def verified(folder: str | os.PathLike[str]) -> Verification:
@@ -232,21 +232,21 @@ def verified(folder: str | os.PathLike[str]) -> Verification:
     with located(content["job_file"]):
         adaptive = document_of(text).is_adaptive
     if adaptive:
-        found = verified_rounds(path)
-        told = finished_rounds(path)
-        if told is None or told["rounds"] != len(found):
+        rounds = verified_rounds(path)
+        noted = finished_rounds(path)
+        if noted is None or noted["rounds"] != len(rounds):
             wrong.append(f"{path} is not finished, and more rounds may follow")
     else:
         there = (path / HISTORIES / NAME).exists()
-        found = [reading.verified(path / HISTORIES)] if there else []
+        rounds = [reading.verified(path / HISTORIES)] if there else []
         wrong += [] if there else [f"{path}: nothing is computed yet"]
-    begins = np.cumsum([0, *(each.histories for each in found)]).tolist()
+    begins = np.cumsum([0, *(each.histories for each in rounds)]).tolist()
     return Verification(
         begins[-1],
-        sum(each.verified for each in found),
-        sum(each.chunks for each in found),
-        (*wrong, *(sentence for each in found for sentence in each.damaged)),
-        tuple((a + k, b + k) for k, each in zip(begins, found, strict=False) for a, b in each.missing),
+        sum(each.verified for each in rounds),
+        sum(each.chunks for each in rounds),
+        (*wrong, *(sentence for each in rounds for sentence in each.damaged)),
+        tuple((a + k, b + k) for k, each in zip(begins, rounds, strict=False) for a, b in each.missing),
     )
 
 

@@ -140,13 +140,13 @@ class Job:
             "inputs": self.inputs,
             "histories": histories.count,
             "histories_key": histories.key(),
-            "restitution": [_model(label, choice) for label, choice in problem.restitutions.items()],
+            "restitution": [_model(label, restitution) for label, restitution in problem.restitutions.items()],
             "settings": problem.settings.stated,
             "engine": f"{engine} ({fast_engine.instruction_set()})" if engine == "fast" else engine,
             "seeds": {
                 "campaign": campaign.seed,
                 "motions": [table.seed or 0 for table in self.document.motions if table.synthetic is not None],
-                "restitution": [choice.seed for choice in problem.restitutions.values() if hasattr(choice, "seed")],
+                "restitution": [each.seed for each in problem.restitutions.values() if hasattr(each, "seed")],
             },
             "motions": motions | {"count": len(problem.motions)},
             "platform": {
@@ -160,7 +160,7 @@ class Job:
         }
 
 
-def _model(label: str, choice: Any) -> dict[str, str]:
-    if not isinstance(choice, RestitutionModel):
+def _model(label: str, restitution: Any) -> dict[str, str]:
+    if not isinstance(restitution, RestitutionModel):
         return {"label": label}
-    return {"label": label, "title": choice.title, "reference": choice.reference}
+    return {"label": label, "title": restitution.title, "reference": restitution.reference}

@@ -126,7 +126,7 @@ class Rounds:
     def compute(self, histories: Histories) -> Arrays:
         """Return the results of the next round; as they were, if it was computed before."""
         path = round_folder(self.folder, self.number)
-        if self.between.asked():
+        if self.between.requested():
             raise CampaignInterrupted(_stopped(self.folder, self.number))
         if self.who is None and not (path / NAME).exists():
             raise CampaignIncompleteError(f"{path} is missing; go on with: {resume(self.folder)}")
@@ -154,7 +154,7 @@ class Rounds:
         # a round of one chunk has work for one only: others would be started for nothing
         alone = {"executor": "serial", "workers": 1, "start_method": None} if campaign.plan.chunks == 1 else {}
         self.between.__exit__()  # within a round Ctrl-C and SIGTERM are its campaign's, which knows how to stop
-        if self.between.asked():
+        if self.between.requested():
             raise CampaignInterrupted("between rounds")  # said in other words by whoever counts them
         self.done.append(campaign.run(**({"executor": self.who} | self.how | alone)))
         self.between = Interruption().__enter__()

@@ -3,7 +3,6 @@
 import csv
 import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -35,14 +34,14 @@ factor = 1.5
 EXPORT = f"[export]\nmeasures = {json.dumps(NAMES)}\ncolumns = ['magnitude', 'ln distance_km']\n"
 
 
-def text_of(*models: str, export_table: str = EXPORT, chunk: int | None = None) -> str:
+def text_of(*models, export_table=EXPORT, chunk=None):
     """Text of a cloud with some models."""
     restitution = f"[restitution]\nmodels = {json.dumps(models or ['ked'])}\n"
     return job("cloud", HEAD, restitution, export_table, chunk=chunk)
 
 
 @pytest.fixture(scope="module")
-def campaign(tmp_path_factory) -> JobFolder:
+def campaign(tmp_path_factory):
     return through(tmp_path_factory.mktemp("cloud") / "c", text_of())
 
 
@@ -58,11 +57,11 @@ def wanted():
     return compare_measures(found, NAMES, metadata)
 
 
-def csv_rows(path: Path) -> list[dict[str, str]]:
+def csv_rows(path):
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
-def same(cell: object, value: object, within: float = 0.0) -> bool:
+def same(cell, value, within=0.0):
     """Return whether a cell holds a value, within a part of it: 0 is every bit; what is no number is left empty."""
     if isinstance(value, str):
         return cell == ("1" if value == "-" else value)

@@ -43,7 +43,7 @@ def fragility_study(problem: StudyProblem) -> Study:
     table = problem.document.fragility or FragilityTable()
     exports: tuple[str, ...] = ("histories", *ANALYSES)
     with located("fragility"):
-        plans = {label: _plan(table, problem, choice) for label, choice in problem.restitutions.items()}
+        plans = {label: _plan(table, problem, restitution) for label, restitution in problem.restitutions.items()}
         merged = _merged([product for product, _ in plans.values()])
     if problem.document.campaign.kind == "cloud":
         exports = (*exports, MEASURES)
@@ -78,19 +78,21 @@ def fragility_study(problem: StudyProblem) -> Study:
     return Study(sampled(merged), dims, coordinates, attributes, exports, finish)
 
 
-def _plan(table: FragilityTable, problem: StudyProblem, choice: Any) -> tuple[Product, Finish]:
+def _plan(table: FragilityTable, problem: StudyProblem, restitution: Any) -> tuple[Product, Finish]:
     body, motions, kind = problem.bodies[0], problem.motions, problem.document.campaign.kind
     how = {"measure": table.measure, "states": tuple(table.states), **problem.options}
     if kind == "cloud":
-        return cloud_plan(body, motions, choice, factor=1.0 if table.factor is None else table.factor, **how)
+        return cloud_plan(body, motions, restitution, factor=1.0 if table.factor is None else table.factor, **how)
     assert table.levels is not None  # the document refuses to be without
     if kind == "stripes":
-        return multiple_stripe_plan(body, motions, table.levels.numbers(), choice, **how)
+        return multiple_stripe_plan(body, motions, table.levels.numbers(), restitution, **how)
     tolerance = 1e-8 if table.tolerance is None else table.tolerance
     # what is in [fragility] is the search's; that of [settings] is the reference engine's
     if how["tolerance"] != type(problem.settings)().tolerance:
         raise InvalidValueError("settings.tolerance cannot be changed in an incremental analysis; leave it out")
-    return incremental_dynamic_plan(body, motions, table.levels.numbers(), choice, **(how | {"tolerance": tolerance}))
+    return incremental_dynamic_plan(
+        body, motions, table.levels.numbers(), restitution, **(how | {"tolerance": tolerance})
+    )
 
 
 def _merged(products: list[Product]) -> Product:

@@ -45,8 +45,8 @@ def map_study(problem: StudyProblem) -> Study:
     engine = problem.document.settings.engine
     with located("map"):
         questions = [
-            Question(problem.bodies[0], problem.motions[0], choice, problem.settings, None, engine)
-            for choice in problem.restitutions.values()
+            Question(problem.bodies[0], problem.motions[0], restitution, problem.settings, None, engine)
+            for restitution in problem.restitutions.values()
         ]
         if len(questions) > 1 and any(isinstance(axis, RestitutionAxis) for axis in axes):
             raise InvalidValueError("restitution cannot be an axis where it is what is compared; leave one model")

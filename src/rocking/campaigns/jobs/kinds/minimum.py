@@ -57,8 +57,8 @@ def minimum_study(problem: StudyProblem) -> Study:
     motions, settings = _held(problem), problem.settings
     with located("body"):
         parameters = [
-            [RockingParameters.of_body(b, choice, settings.gravity) for b in problem.bodies]
-            for choice in problem.restitutions.values()
+            [RockingParameters.of_body(b, restitution, settings.gravity) for b in problem.bodies]
+            for restitution in problem.restitutions.values()
         ]
     sides = [sides_of(row) for row in parameters]
     with located("minimum"):
@@ -166,10 +166,10 @@ def _row(crossings: Transitions | None, cases: Cases, effort: Effort, k: int) ->
 
 
 def _places(case: np.ndarray, shape: tuple[int, int, int], names: Mapping[str, list[str]]) -> dict[str, Column]:
-    motion, choice, body = np.unravel_index(case, shape)
+    motion, restitution, body = np.unravel_index(case, shape)
     return {
         "motion": Column(text_array([names["motion"][k] for k in motion]), "1", "name of the motion"),
-        "restitution": Column(text_array([names["restitution"][k] for k in choice]), "1", "restitution"),
+        "restitution": Column(text_array([names["restitution"][k] for k in restitution]), "1", "restitution"),
         "body": Column(np.asarray(body, np.int64), "1", "number of the body in the job"),
     }
 

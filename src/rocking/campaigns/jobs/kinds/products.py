@@ -86,8 +86,8 @@ def _sides(bodies: Sequence[Body], problem: StudyProblem) -> tuple[dict[str, Flo
     """Return the sides of bodies with every restitution, shape (bodies, restitutions), and the law of impacts."""
     gravity = problem.settings.gravity
     parameters = [
-        [RockingParameters.of_body(body, choice, gravity) for body in bodies]
-        for choice in problem.restitutions.values()
+        [RockingParameters.of_body(body, restitution, gravity) for body in bodies]
+        for restitution in problem.restitutions.values()
     ]
     columns = [sides_of(row) for row in parameters]
     return {name: np.stack([column[name] for column in columns], axis=-1) for name in columns[0]}, parameters[0][0].law
