@@ -235,15 +235,16 @@ def _records(table: "MotionTable", inputs: InputFiles) -> list[Motion]:
         raise InvalidValueError(f"records: {twice[0]} is named twice")
     motions: list[Motion] = []
     for name in names:
+        path = inputs.file(name)
         with located(f"records: {name}"):
-            motions.append(_record(name, table, inputs))
+            motions.append(_record(path, table, inputs))
     return motions
 
 
-def _record(name: str, table: "MotionKeys", inputs: InputFiles) -> Motion:
+def _record(path: Path, table: "MotionKeys", inputs: InputFiles) -> Motion:
     upright = None if table.vertical_file is None else inputs.file(table.vertical_file)
     keys = (table.format, table.units, table.time_step, table.component, table.vertical)
-    return read_motion(inputs.file(name), *keys, vertical_path=upright)
+    return read_motion(path, *keys, vertical_path=upright)
 
 
 def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None) -> Motion:
@@ -253,7 +254,7 @@ def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None) -> Moti
     if table.record is not None:
         if inputs is None:
             raise InvalidValueError("a record is a file; only pulses and synthetic motions are made")
-        return _record(table.record, table, inputs)
+        return _record(inputs.file(table.record), table, inputs)
     assert table.synthetic is not None  # the table refuses to be without
     levels = {"pga": table.pga, "pgv": table.pgv, "time_step": table.time_step}
     member = table.member or 0

@@ -219,7 +219,7 @@ REFUSED = {
     "two bodies": ('[[body]]\nunits = "m"\nwidth = 1\nheight = 2\n[[body]]', "[body]",
         r"\[\[body\]\] can be given once only .*got 2"),
     "body file and size": ('file = "b.toml"\nunits = "m"', 'units = "m"',
-        r"body: file stands alone, without height, units, width"),
+        r"body: unknown key 'height' beside file; allowed: units"),
     "no body file": ('file = "b.toml"', 'units = "m"\nwidth = 0.5\nheight = 2.0', r"body: b\.toml: No such file"),
     "not TOML": ("[campaign", "[campaign]", r"is not TOML: .*line 1"),
     "twice in TOML": ("width = 1\nwidth = 2", "width = 0.5", r"is not TOML: .*"),
