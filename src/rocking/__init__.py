@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from rocking.lazy import exports
+from rocking.lazy import exports, presenters
 from rocking.version import __version__ as __version__
 
 if TYPE_CHECKING:
@@ -91,3 +91,13 @@ __getattr__, __dir__ = exports(
         "synthetic": "rocking.motions",
     },
 )
+
+presenters.update({
+    "picture of Response": "rocking.plots:response_picture",
+    "picture of ContactResponse": "rocking.plots:regimes_picture",
+    "picture of SpatialResponse": "rocking.plots:spatial_picture",
+    "writer of pictures": "rocking.plots:write",
+    "animation as .html": "rocking.plots:animate_html",
+    "animation as .gif": "rocking.plots:animate_gif",
+    "report": "rocking.reports:response_report",
+})  # fmt: skip

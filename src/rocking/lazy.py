@@ -21,3 +21,14 @@ def exports(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], Any
         return import_module(f"{homes[name]}.{name}") if found is None else found
 
     return get, lambda: sorted(homes)
+
+
+presenters: dict[str, str] = {}
+"""What rooms above do for those below, as "module:function" by its name: the root of the package fills it in."""
+
+
+def presenter(name: str) -> Callable[..., Any]:
+    """Return what a room above does for one below."""
+    module, _, function = presenters[name].partition(":")
+    found: Callable[..., Any] = getattr(import_module(module), function)
+    return found

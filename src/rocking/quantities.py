@@ -92,6 +92,10 @@ _HISTORY = (
         "1 where the ground would have to pull, so that the verdict assumes contact; NaN no result",
     ),
 )  # fmt: skip
+_HISTORY_WITH_FRICTION = (
+    Quantity("residual_displacement", "m", "displacement of the centre of mass at the end, relative to the ground"),
+    Quantity("friction_usage", "1", "largest horizontal force over friction times the vertical one; 1 where it slides"),
+)
 _HISTORY_IN_SPACE = (
     Quantity("over_contact", "1", f"{_spelled(_CONTACTS)} over which it fell, -1 none"),
     Quantity("over_number", "1", "number of that edge or vertex; -1 where there is none"),
@@ -157,7 +161,8 @@ _IMPACTS_AND_INTERVALS = (
     Quantity("distance", "m", "path of the feet along the ground in the interval"),
 )
 QUANTITIES: dict[str, Quantity] = {
-    each.name: each for each in (*_HISTORY, *_HISTORY_IN_SPACE, *_SAMPLES, *_IMPACTS_AND_INTERVALS)
+    each.name: each
+    for each in (*_HISTORY, *_HISTORY_WITH_FRICTION, *_HISTORY_IN_SPACE, *_SAMPLES, *_IMPACTS_AND_INTERVALS)
 }
 """All of them, by name."""
 HISTORY = tuple(each.name for each in _HISTORY if not each.name.startswith("twin"))

@@ -1,13 +1,15 @@
 """What every response can be handed over as: a dataset, a table, and files for Excel, MATLAB and netCDF."""
 
 from abc import ABC, abstractmethod
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
-    from pathlib import Path
+from rocking.lazy import presenter
 
+if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+    from matplotlib.figure import Figure
 
     from rocking.tables import Table
 
@@ -58,7 +60,7 @@ class Exportable(ABC):
 
         return to_dataframe(self.exported())
 
-    def to_csv(self, path: "str | Path") -> "Path":
+    def to_csv(self, path: str | Path) -> Path:
         """Write the samples as comma-separated values.
 
         Parameters
@@ -75,7 +77,7 @@ class Exportable(ABC):
 
         return to_csv(self.exported(), target_of(path), blank=False)
 
-    def to_mat(self, path: "str | Path") -> "Path":
+    def to_mat(self, path: str | Path) -> Path:
         """Write a file that MATLAB loads.
 
         Parameters
@@ -92,7 +94,7 @@ class Exportable(ABC):
 
         return to_mat(self.exported(), target_of(path))
 
-    def to_netcdf(self, path: "str | Path") -> "Path":
+    def to_netcdf(self, path: str | Path) -> Path:
         """Write a netCDF file, which xarray and MATLAB open.
 
         Parameters
@@ -108,3 +110,34 @@ class Exportable(ABC):
         from rocking.tables import target_of, to_netcdf
 
         return to_netcdf(self.to_xarray(), target_of(path))
+
+
+class Drawable(Exportable):
+    """A response that can be drawn."""
+
+    def plot(self, path: str | Path | None = None, **options: Any) -> "Figure":
+        """Draw the response.
+
+        Parameters
+        ----------
+        path : str or Path, optional
+            Where to write the picture, too: .png, .svg or .pdf.
+        **options
+            Of the picture of this kind of response in `rocking.plots`: `friction` where it rocks alone.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The picture.
+
+        Raises
+        ------
+        MissingExtraError
+            If matplotlib is not installed.
+        RockingError
+            If the ending of the path is another.
+        """
+        figure: Figure = presenter(f"picture of {type(self).__name__}")(self, **options)
+        if path is not None:
+            presenter("writer of pictures")(figure, Path(path))
+        return figure

@@ -15,7 +15,7 @@ from rocking.dynamics.loss_of_contact import contact_words, flags
 from rocking.dynamics.parameters import SIDES, RockingParameters
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, extra
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.outcome import overturned
@@ -32,6 +32,8 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     motions: Motion | Sequence[Motion],
     restitution: Any = "ked",
     *,
+    friction: Any = None,
+    bounce: float = 0.0,
     scale: Any = 1.0,
     gravity: float = conventions.g,
     engine: str = "auto",
@@ -57,6 +59,10 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
         Of plane bodies all records or all pulses; in space None for ground at rest.
     restitution : as for `simulate`, or a list of such
         Laws that change from impact to impact cannot be mixed with others.
+    friction : float or array_like, optional
+        Coulomb's coefficients between plane bodies and ground [-]: they may slide, hop and fly, as in `simulate`.
+    bounce : float
+        Newton's coefficient of normal velocities, in [0, 1), with friction [-].
     scale : float or array_like
         Factors on the motions [-].
     gravity : float
@@ -70,11 +76,12 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
         verdict does (`twin_change`, `twin_flips`): what the integration leaves open. It takes three times as long.
     progress : callable, optional
         Called with the number of histories done since the last call.
-    start : SpatialStart or sequence of them, optional
-        How bodies in space lean at the start; upright at rest if not given. Plane bodies start at rest.
+    start : SpatialStart or sequence of them, or Start, optional
+        How bodies in space lean at the start, or how plane bodies with friction do; upright at rest if not given. Plane
+        bodies that rock alone start at rest.
     duration : float, optional
         How long to follow bodies in space [s]; if not given, to the end of the motion, on ground at rest 300 / p. After
-        that a history goes on until its energy decides whether it overturns.
+        that a history goes on until its energy decides whether it overturns. With friction as for `simulate`.
     linear, rest_speed, most_events, longest_step, order, tolerance
         How to integrate: see `Settings`.
 
@@ -82,9 +89,10 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     -------
     xarray.Dataset
         Over ``body, motion, scale, restitution``: outcome, status, peak_rotation and more, with units; in space over
-        ``start`` too, with peak_tilt and the direction of overturning. Every history ends with its motion: energy then
-        decides the outcome and the peak of the swings to come, whose impacts are not counted. Its attributes say which
-        engine ran, and why bodies in space were refused.
+        ``start`` too, with peak_tilt and the direction of overturning; with friction over ``friction`` too, with how
+        far they slid. Every history that rocks alone ends with its motion: energy then decides the outcome and the peak
+        of the swings to come, whose impacts are not counted. Its attributes say which engine ran, and why bodies in
+        space were refused.
 
     Raises
     ------
@@ -101,68 +109,122 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     >>> result = rk.simulate_many(blocks, pulse, ["housner", "ked"], scale=[0.5, 1.0])
     >>> dict(result.sizes)
     {'body': 3, 'motion': 1, 'scale': 2, 'restitution': 2}
+    >>> sliding = rk.simulate_many(blocks[0], pulse, friction=[0.2, 0.6])
+    >>> (sliding.sliding_distance > 0.0).squeeze().values.tolist()
+    [True, False]
     """
-    from rocking.dynamics.plane.batch import Batch
-    from rocking.dynamics.plane.fast_engine import instruction_set
-    from rocking.errors import extra
-
-    xarray = extra("xarray", "simulate_many")
     given: dict[str, Any] = {
         "gravity": gravity, "linear": linear, "rest_speed": rest_speed, "most_events": most_events,
         "longest_step": longest_step, "order": order, "tolerance": tolerance,
     }  # fmt: skip
     several: list[Any] = list(bodies) if isinstance(bodies, (list, tuple)) else [bodies]
     if any(map(in_space, several)) and not any(isinstance(body, Body) for body in several):
-        if twin:
-            raise InvalidValueError("twin is nothing for bodies in space; ask with another tolerance")
+        _refuse("bodies in space", twin=twin, friction=friction, bounce=bounce)
         settings = Settings(**given, mechanics="space, many")
         return _in_space(several, motions, restitution, scale, start, settings, duration, engine, threads, progress)
-    if start is not None or duration is not None:
-        raise InvalidValueError("plane bodies start at rest and move as long as the ground: no start, no duration")
-    settings = Settings(**given)
     body_list = _several("bodies", bodies, (Body,))
     motion_list = [in_plane(motion) for motion in _several("motions", motions, (GroundMotion, Pulse, Mapping))]
-    choices = restitution if isinstance(restitution, (list, tuple)) else [restitution]
-    scales = _scales(scale)
+    restitutions = restitution if isinstance(restitution, (list, tuple)) else [restitution]
+    scales = _row("scale", scale)
     plausibility.warn(plausibility.of_scaled(motion_list, scales))
-    if not choices:
+    if not restitutions:
         raise InvalidValueError("restitution must be at least one model, got none")
-    law = _common_law(choices)
+    if friction is None:
+        _refuse("bodies without friction=, which rock alone from rest", bounce=bounce, start=start, duration=duration)
+        return _rocking_alone(
+            body_list, motion_list, scales, restitutions, Settings(**given), twin, threads, engine, progress
+        )
+    from rocking.dynamics.contact.histories import many_with_contact
+
+    _refuse("bodies with friction", twin=twin, threads=threads, engine=engine)
+    settings, mus = Settings(**given, mechanics="contact"), _row("friction", friction)
+    results = many_with_contact(
+        body_list, motion_list, scales, restitutions, mus, settings, bounce, start, duration, progress
+    )
+    return _dataset(
+        body_list, motion_list, {"scale": scales, "restitution": list(map(_label, restitutions)), "friction": mus},
+        results, settings, {"engine": "reference"},
+    )  # fmt: skip
+
+
+_USUAL: dict[str, tuple[Any, ...]] = {
+    "twin": (False,), "friction": (None,), "bounce": (0.0,), "threads": (None,), "engine": ("auto", "reference"),
+    "start": (None,), "duration": (None,),
+}  # fmt: skip
+
+
+def _refuse(what: str, **options: Any) -> None:
+    for name, value in options.items():
+        if not any(value is usual or (np.ndim(value) == 0 and value == usual) for usual in _USUAL[name]):
+            raise InvalidValueError(f"{name} is nothing for {what}, got {value!r:.60}")
+
+
+def _rocking_alone(  # noqa: PLR0913, PLR0917
+    bodies: list[Body],
+    motions: list[Motion],
+    scales: FloatArray,
+    restitutions: Sequence[Any],
+    settings: Settings,
+    twin: bool,
+    threads: int | None,
+    engine: str,
+    progress: Callable[[int], None] | None,
+) -> "xr.Dataset":
+    from rocking.dynamics.plane.batch import Batch
+    from rocking.dynamics.plane.fast_engine import instruction_set
+
+    law = _common_law(restitutions)
     all_parameters = [
-        [RockingParameters.of_body(body, choice, settings.gravity) for choice in choices] for body in body_list
+        [RockingParameters.of_body(body, each, settings.gravity) for each in restitutions] for body in bodies
     ]
-    shape = (len(body_list), len(motion_list), scales.size, len(choices))
-    batch = Batch([m.segments() for m in motion_list], law, settings, threads, engine)
+    shape = (len(bodies), len(motions), scales.size, len(restitutions))
+    batch = Batch([m.segments() for m in motions], law, settings, threads, engine)
     count = int(np.prod(shape))
     results, work = batch.run(count, _pieces(all_parameters, scales, shape), progress)
     if twin:
         finer = replace(settings, longest_step=max(SHORTEST_STEP, 0.5 * settings.longest_step))
         halved = replace(batch, motions=[segments.refined(2) for segments in batch.motions], settings=finer)
         results |= _twin(results, halved.run(count, _pieces(all_parameters, scales, shape))[0])
-    dims = ("body", "motion", "scale", "restitution")
     results |= flags(results)
-    data = {name: (dims, values.reshape(shape), quantities.attributes(name)) for name, values in results.items()}
-    first = [row[0].right for row in all_parameters]
+    labels = [
+        _most_cut(column).label if law.kind else _label(each)
+        for column, each in zip(zip(*all_parameters, strict=True), restitutions, strict=True)
+    ]
+    attributes = {
+        "engine": f"fast ({instruction_set()})" if work else "reference",
+        "contact": contact_words(results["lost_contact"]),
+        "seed": getattr(law, "seed", 0),
+        **{f"work_{k}": v for k, v in work.items()},
+    }
+    return _dataset(bodies, motions, {"scale": scales, "restitution": labels}, results, settings, attributes)
+
+
+def _dataset(
+    bodies: list[Body],
+    motions: list[Motion],
+    axes: dict[str, Any],
+    results: dict[str, Any],
+    settings: Settings,
+    attributes: dict[str, Any],
+) -> "xr.Dataset":
+    """Return results, one after another over body, motion and the axes, with units and provenance."""
+    xarray = extra("xarray", "simulate_many")
+    dims = ("body", "motion", *axes)
+    shape = (len(bodies), len(motions), *map(len, axes.values()))
+    sides = [body.side("right", settings.gravity) for body in bodies]
     made: xr.Dataset = xarray.Dataset(
-        data,
+        {name: (dims, values.reshape(shape), quantities.attributes(name)) for name, values in results.items()},
         coords={
-            "slenderness_angle": ("body", [side.slenderness_angle for side in first], {"units": "rad"}),
-            "frequency_parameter": ("body", [side.frequency_parameter for side in first], {"units": "rad/s"}),
-            "motion": [m.name for m in motion_list],
-            "motion_provenance": ("motion", ["; ".join(getattr(m, "provenance", ())) or repr(m) for m in motion_list]),
-            "scale": ("scale", scales, {"units": "1"}),
-            "restitution": [
-                _most_cut(column).label if law.kind else _label(choice)
-                for column, choice in zip(zip(*all_parameters, strict=True), choices, strict=True)
-            ],
+            "slenderness_angle": ("body", [side.slenderness_angle for side in sides], {"units": "rad"}),
+            "frequency_parameter": ("body", [side.frequency_parameter for side in sides], {"units": "rad/s"}),
+            "motion": [m.name for m in motions],
+            "motion_provenance": ("motion", ["; ".join(getattr(m, "provenance", ())) or repr(m) for m in motions]),
+            **{name: row if name == "restitution" else (name, row, {"units": "1"}) for name, row in axes.items()},
         },
         attrs={
             "software": SOFTWARE,
-            "engine": f"fast ({instruction_set()})" if work else "reference",
-            "contact": contact_words(results["lost_contact"]),
-            "seed": getattr(law, "seed", 0),
+            **attributes,
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in settings.stated.items()},
-            **{f"work_{k}": v for k, v in work.items()},
         },
     )
     return made
@@ -174,10 +236,10 @@ def _in_space(bodies: list[Any], motions: Any, restitution: Any, scale: Any, sta
     several = list(motions) if isinstance(motions, Sequence) else [motions]
     components = [None if motion is None else components_of(motion) for motion in several]
     starts = list(start) if isinstance(start, Sequence) else start
-    choices = (
+    restitutions = (
         list(restitution) if isinstance(restitution, Sequence) and not isinstance(restitution, str) else restitution
     )
-    return batch_in_space(bodies, components, choices, scale, starts, *how).to_xarray()
+    return batch_in_space(bodies, components, restitutions, scale, starts, *how).to_xarray()
 
 
 def _twin(results: dict[str, Any], again: dict[str, Any]) -> dict[str, FloatArray]:
@@ -221,21 +283,21 @@ def _several(name: str, given: Any, kinds: tuple[type, ...]) -> list[Any]:
     return found
 
 
-def _scales(given: Any) -> FloatArray:
-    scales = np.atleast_1d(checks.real_array("scale", given))
-    if scales.ndim != 1 or not scales.size:
-        raise InvalidValueError(f"scale must be one number or a row of numbers, got shape {scales.shape}")
-    bad = np.flatnonzero(~(np.abs(scales) <= 1e6))
+def _row(name: str, values: Any) -> FloatArray:
+    row = np.atleast_1d(checks.real_array(name, values))
+    if row.ndim != 1 or not row.size:
+        raise InvalidValueError(f"{name} must be one number or a row of numbers, got shape {row.shape}")
+    bad = np.flatnonzero(~(np.abs(row) <= 1e6))
     if bad.size:
-        raise InvalidValueError(f"scale must be finite and within 1e6, got {scales[bad[0]]:g} at index {bad[0]}")
-    return scales
+        raise InvalidValueError(f"{name} must be finite and within 1e6, got {row[bad[0]]:g} at index {bad[0]}")
+    return row
 
 
-def _common_law(choices: Sequence[Any]) -> ImpactLaw:
-    laws = [c for c in choices if isinstance(c, ImpactLaw)]
+def _common_law(restitutions: Sequence[Any]) -> ImpactLaw:
+    laws = [c for c in restitutions if isinstance(c, ImpactLaw)]
     if not laws:
         return ConstantRestitution()
-    if len(choices) > 1:
+    if len(restitutions) > 1:
         raise InvalidValueError("a law that changes from impact to impact must be the only restitution of a call")
     return laws[0]
 
@@ -245,6 +307,8 @@ def _most_cut(all_parameters: Sequence[RockingParameters]) -> RockingParameters:
     return min(all_parameters, key=lambda parameters: min(parameters.left.share, parameters.right.share))
 
 
-def _label(choice: Any) -> str:
-    label = getattr(choice, "label", None)
-    return label if isinstance(label, str) else str(choice)
+def _label(restitution: Any) -> str:
+    if restitution is None:
+        return "complementarity alone"
+    label = getattr(restitution, "label", None)
+    return label if isinstance(label, str) else str(restitution)

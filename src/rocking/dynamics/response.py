@@ -4,6 +4,7 @@ import math
 import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,11 +12,12 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import Assumed, FloatArray, given_or_assumed
-from rocking.dynamics.exportable import Exportable
+from rocking.dynamics.exportable import Drawable
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.trajectory import EventKind, Trajectory
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.errors import InvalidValueError, PlausibilityWarning
+from rocking.lazy import presenter
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
@@ -38,7 +40,7 @@ IMPACT = np.dtype(
 
 
 @dataclass(frozen=True, eq=False)
-class Response(Exportable):
+class Response(Drawable):
     """What `simulate` returns; everything that takes time is computed when first asked for.
 
     Parameters
@@ -377,3 +379,56 @@ class Response(Exportable):
         from rocking.dynamics.plane.export import exported
 
         return exported(self)
+
+    def animate(self, path: str | Path, **options: Any) -> Path:
+        """Write the response as it moves.
+
+        Parameters
+        ----------
+        path : str or Path
+            A web page of one file (.html), or a film (.gif).
+        **options
+            Of `rocking.plots.animate_gif`: fps, speed, progress.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        InvalidValueError
+            If the ending of the path is another.
+        MissingExtraError
+            If matplotlib is not installed, which films need.
+        """
+        suffix = Path(path).suffix.lower()
+        if suffix not in {".html", ".gif"}:
+            raise InvalidValueError(f"an animation is .html or .gif, got {Path(path).name!r}")
+        written: Path = presenter(f"animation as {suffix}")(self, path, **options)
+        return written
+
+    def report(self, path: str | Path, **options: Any) -> Path:
+        """Write a report: the body, what an impact costs it, the ground, the response, with pictures.
+
+        Parameters
+        ----------
+        path : str or Path
+            A document (.pdf), or a web page of one file (.html).
+        **options
+            Of `rocking.reports.response_report`: name, date, friction.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        InvalidValueError
+            If the ending of the path is another.
+        MissingExtraError
+            If matplotlib, and typst or jinja2, are not installed.
+        """
+        written: Path = presenter("report")(self, path, **options)
+        return written

@@ -2,12 +2,13 @@
 
 import json
 from collections.abc import Mapping
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from rocking.errors import extra
-from rocking.reports.document import Document, Paragraph, ReportTable
+from rocking.reports.document import Document, Listing, Pair, Paragraph, ReportTable
 
 
 def render_html(document: Document, pictures: Path) -> str:
@@ -16,11 +17,15 @@ def render_html(document: Document, pictures: Path) -> str:
     environment = jinja2.Environment(
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    environment.tests["paragraph"] = lambda block: isinstance(block, Paragraph)
-    environment.tests["table"] = lambda block: isinstance(block, ReportTable)
+    kinds = {"table": ReportTable, "pair": Pair, "listing": Listing, "paragraph": Paragraph}
+    environment.tests |= {name: partial(_is, kind) for name, kind in kinds.items()}
     template = environment.from_string(_template("report.html.jinja").decode())
     html: str = template.render(document=document, svg=lambda stem: _inline(pictures, stem))
     return html
+
+
+def _is(kind: type, block: object) -> bool:
+    return isinstance(block, kind)
 
 
 def _inline(folder: Path, stem: str) -> object:

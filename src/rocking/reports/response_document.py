@@ -24,6 +24,7 @@ from rocking.reports.document import (
     cell,
 )  # fmt: skip
 from rocking.reports.response_facts import OUTCOME_WORDS, ModelAgreement, outcome_facts, restitution_words
+from rocking.version import SOFTWARE
 
 _MARKS = {Outcome.OVERTURNED: "bad", Outcome.ROCKED: "good", Outcome.NO_UPLIFT: "good"}
 _KINDS = {"Block": "A rocking block", "MassPoints": "Rocking point masses"}
@@ -35,12 +36,12 @@ _MOST_IMPACTS = 24
 class ReportSubject:
     """What a report is about."""
 
-    name: str  # what the user calls the body; perhaps empty
-    date: str  # day of the report; perhaps empty
-    toml: str  # the inputs as a file of the command line
-    commands: Sequence[str]  # what to type for the same result
-    fingerprint: str  # SHA-256 of the inputs
-    software: str  # name and version
+    name: str = ""  # what the user calls the body
+    date: str = ""  # day of the report
+    toml: str = ""  # the inputs as a file of the command line; empty if they were objects in Python
+    commands: Sequence[str] = ()  # what to type for the same result
+    fingerprint: str = ""  # SHA-256 of the inputs
+    software: str = SOFTWARE  # name and version
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ def response_document(subject: ReportSubject, results: ReportResults) -> Documen
         ReportSection("The response", _response(results)),
         ReportSection("To do it again", _again(subject, next(iter(results.responses.values())))),
     ]
-    about = f"{subject.software}, inputs {subject.fingerprint[:16]}"
+    about = ", ".join([subject.software, *([f"inputs {subject.fingerprint[:16]}"] if subject.fingerprint else [])])
     return Document(title, _subtitle(subject, results), sections, verdict=_verdict(results), footer=about)
 
 
@@ -153,6 +154,8 @@ def _response(results: ReportResults) -> list[Block]:
 
 def _again(subject: ReportSubject, first: Response) -> list[Block]:
     toml = subject.toml
+    if not toml:
+        return [Paragraph(f"{subject.software}.", "Made with"), Paragraph(_how(first), "Computed with")]
     if len(toml) > _LONGEST_LISTING:
         toml = toml[:_LONGEST_LISTING] + "\n# ... cut off here: the file itself has all of it"
     return [

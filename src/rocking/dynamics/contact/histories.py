@@ -1,10 +1,15 @@
 """One plane body whose feet may slide, hop and bounce."""
 
 import math
+from collections.abc import Callable, Sequence
+from itertools import product
 from typing import Any
+
+import numpy as np
 
 from rocking import checks, conventions, plausibility
 from rocking.bodies import Body
+from rocking.conventions import FloatArray
 from rocking.dynamics.contact.base import PlaneBase, Start
 from rocking.dynamics.contact.engine import ContactEngine
 from rocking.dynamics.contact.impact_resolution import GroundContact
@@ -16,6 +21,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
+from rocking.outcome import Outcome, overturned
 
 # sqrt(g / R) times the step between samples of a pulse's response, and times what is followed after the motion
 _FINE, _AFTER, _FREE = 0.1, 15.0, 60.0
@@ -50,6 +56,53 @@ def response_with_contact(  # noqa: PLR0913 - what the front door hands on
     plausibility.warn(plausibility.of_scaled([motion], scale))
     history = ContactEngine(base, segments, law, settings, scale).run(start.state(base))
     return ContactResponse(body, motion, base, law, settings, segments, scale, history)
+
+
+def many_with_contact(  # noqa: PLR0913, PLR0917 - what the front door hands on
+    bodies: Sequence[Body],
+    motions: Sequence[GroundMotion | Pulse],
+    scales: FloatArray,
+    restitutions: Sequence[Any],
+    friction: FloatArray,
+    settings: Settings,
+    bounce: float,
+    start: Start | None,
+    duration: float | None,
+    progress: Callable[[int], None] | None,
+) -> dict[str, np.ndarray]:
+    """Return the results of every combination, the last axis (friction) running fastest; one history at a time."""
+    if start is not None and not isinstance(start, Start):
+        raise InvalidValueError(f"start must be a Start(...), got {start!r:.60}")
+    rows = []
+    for body, motion, scale, restitution, mu in product(bodies, motions, scales, restitutions, friction):
+        response = response_with_contact(
+            body, motion, float(mu), restitution, settings, bounce=bounce, start=start or Start(), scale=float(scale),
+            duration=duration,
+        )  # fmt: skip
+        rows.append(_row_of(response))
+        if progress is not None:
+            progress(1)
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
+def _row_of(response: ContactResponse) -> dict[str, float]:
+    """Results of one history; NaN where it has none."""
+    good = response.outcome is not Outcome.FAILED
+    measured = {
+        "peak_rotation": response.peak_rotation,
+        "sliding_distance": response.sliding_distance,
+        "residual_displacement": response.displacement[-1] if response.time.size else np.nan,
+        "friction_usage": response.friction_usage,
+        "impacts": len(response.impacts),
+        "still_rocking": float(response.still_rocking),
+    }
+    return {
+        "outcome": response.outcome.code,
+        "status": response.status.code,
+        "overturned": float(overturned(np.array(response.outcome.code))),
+        "overturning_time": response.overturning_time,
+        **{name: float(value) if good else np.nan for name, value in measured.items()},
+    }
 
 
 def _imposed(body: Body, restitution: Any, settings: Settings) -> tuple[float, float] | None:

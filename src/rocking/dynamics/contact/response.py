@@ -12,7 +12,7 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.contact.base import PlaneBase
 from rocking.dynamics.contact.history import SAMPLED, History, impacts_of, places_of, regimes_of
 from rocking.dynamics.contact.impact_resolution import GroundContact
-from rocking.dynamics.exportable import Exportable, motion_provenance
+from rocking.dynamics.exportable import Drawable, motion_provenance
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
@@ -97,7 +97,7 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class ContactResponse(Exportable):
+class ContactResponse(Drawable):
     """What `simulate` returns of a plane body with friction.
 
     Parameters

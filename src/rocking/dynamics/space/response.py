@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.exportable import Exportable
+from rocking.dynamics.exportable import Drawable
 from rocking.dynamics.plane.energy_balance import ResponseEnergy
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude
@@ -97,7 +97,7 @@ for the points to stick [N s], what stays, and its vertices."""
 
 
 @dataclass(frozen=True, eq=False)
-class SpatialResponse(Exportable):
+class SpatialResponse(Drawable):
     """What `simulate` returns of a body in space; everything that takes time is computed when first asked for.
 
     Parameters

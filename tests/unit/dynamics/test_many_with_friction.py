@@ -1,0 +1,93 @@
+"""`simulate_many(friction=)`: each entry is what `simulate` gives for it alone, whatever stands beside it."""
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.errors import InvalidValueError
+
+pytest.importorskip("xarray")
+
+STATUE = rk.Section([rk.Region([(-0.45, 0.0), (0.55, 0.0), (0.4, 2.5), (-0.15, 2.2)], density=2400.0)])
+BODIES = [STATUE, rk.Block(width=0.8, height=1.0)]
+MOTIONS = [rk.pulses.sine(amplitude=6.0, period=0.6), rk.pulses.rectangular(5.0, 0.4)]
+SCALES, FRICTION = [0.7, 1.0], [0.15, 0.6]
+TO_ORIGIN = {
+    "peak_rotation": lambda one: one.peak_rotation,
+    "sliding_distance": lambda one: one.sliding_distance,
+    "residual_displacement": lambda one: one.displacement[-1],
+    "friction_usage": lambda one: one.friction_usage,
+    "impacts": lambda one: len(one.impacts),
+    "outcome": lambda one: one.outcome.code,
+    "still_rocking": lambda one: one.still_rocking,
+}
+
+
+@pytest.fixture(scope="module")
+def table():
+    return rk.simulate_many(BODIES, MOTIONS, ["ked", None], scale=SCALES, friction=FRICTION, duration=4.0)
+
+
+def test_labels(table):
+    """Friction is the last dimension; every column has a unit and a meaning; impacts without a law are named."""
+    assert dict(table.sizes) == {"body": 2, "motion": 2, "scale": 2, "restitution": 2, "friction": 2}
+    assert table["restitution"].values.tolist() == ["ked", "complementarity alone"]
+    assert all(each.attrs["units"] and each.attrs["long_name"] for each in table.values())
+    assert table.attrs["engine"] == "reference"
+
+
+@pytest.mark.parametrize("body", range(2))
+@pytest.mark.parametrize("mu", range(2))
+def test_each_is_what_simulate_gives(table, body, mu):
+    one = rk.simulate(BODIES[body], MOTIONS[0], "ked", scale=1.0, friction=FRICTION[mu], duration=4.0)
+    row = table.isel(body=body, motion=0, scale=1, restitution=0, friction=mu)
+    assert {name: float(row[name]) for name in TO_ORIGIN} == {name: float(of(one)) for name, of in TO_ORIGIN.items()}
+
+
+def test_less_friction_slides_and_more_rocks(table):
+    """Below the slenderness ratio b/h = .8 a block slides and does not rock; the statue on .6 rocks."""
+    slid = table["outcome"].isel(body=1, friction=0)
+    assert (slid == rk.Outcome.SLID.code).all()
+    assert float(table["peak_rotation"].isel(body=0, motion=0, scale=1, restitution=0, friction=1)) > 0.0
+
+
+def test_a_sliding_block_stops_where_coulomb_says():
+    """Under a = const for T on friction mu: v = (a - mu g) T, s = v T / 2 + v^2 / (2 mu g), relative to the ground."""
+    mu, a, last, g = 0.2, 5.0, 0.4, 9.81
+    found = rk.simulate_many(
+        rk.Block(width=1.0, height=1.0), rk.pulses.rectangular(a, last), friction=mu, gravity=g, scale=[1.0, -1.0]
+    )
+    v = (a - mu * g) * last
+    s = 0.5 * v * last + v * v / (2.0 * mu * g)
+    assert found["sliding_distance"].values.ravel() == pytest.approx([s, s], rel=1e-9)
+    assert found["residual_displacement"].values.ravel() == pytest.approx([-s, s], rel=1e-9)
+
+
+def test_a_history_without_a_result_is_neither():
+    """One that is stopped has NaN and its status; the one beside it keeps its bits."""
+    both = rk.simulate_many(STATUE, MOTIONS[0], scale=[0.01, 1.0], friction=0.6, most_events=3, duration=3.0)
+    alone = rk.simulate_many(STATUE, MOTIONS[0], scale=0.01, friction=0.6, most_events=3, duration=3.0)
+    assert np.isnan(both["overturned"].values.ravel()[1])
+    assert np.isnan(both["peak_rotation"].values.ravel()[1])
+    assert both["status"].values.ravel()[1] != 0
+    assert both.isel(scale=[0]).drop_attrs().identical(alone.drop_attrs())
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ({"friction": 0.3, "twin": True}, "twin is nothing for bodies with friction"),
+        ({"friction": 0.3, "threads": 2}, "threads is nothing for bodies with friction"),
+        ({"friction": 0.3, "engine": "fast"}, "engine is nothing for bodies with friction"),
+        ({"friction": 0.3, "linear": True}, "linear"),
+        ({"friction": -0.3}, "friction must be"),
+        ({"friction": [0.3, float("nan")]}, "friction must be"),
+        ({"friction": []}, "friction must be"),
+        ({"friction": 0.3, "start": 0.1}, r"start must be a Start\(...\)"),
+        ({"bounce": 0.5}, "bounce is nothing for bodies without friction="),
+        ({"duration": 3.0}, "duration is nothing for bodies without friction="),
+    ],
+)
+def test_what_is_refused(options, says):
+    with pytest.raises(InvalidValueError, match=says):
+        rk.simulate_many(STATUE, MOTIONS[0], **options)

@@ -1,0 +1,56 @@
+"""A response draws, moves and reports itself: `plot`, `animate`, `report`."""
+
+import pytest
+
+import rocking as rk
+from rocking.errors import RockingError
+
+pytest.importorskip("matplotlib")
+
+STATUE = rk.Section([rk.Region([(-0.45, 0.0), (0.55, 0.0), (0.4, 2.5), (-0.15, 2.2)], density=2400.0)])
+PULSE = rk.pulses.sine(amplitude=5.0, period=0.8)
+BOX = rk.dynamics.SpatialBody.box(0.5, 0.4, 2.0)
+ASKED = {
+    "rocking": lambda: rk.simulate(STATUE, PULSE, "housner", scale=1.1),
+    "contact": lambda: rk.simulate(STATUE, PULSE, friction=0.4),
+    "space": lambda: rk.simulate(BOX, {"x": PULSE, "y": PULSE.scaled(0.3)}, "housner"),
+}
+
+
+@pytest.mark.parametrize("mechanics", ASKED)
+def test_every_response_draws_itself(mechanics, tmp_path):
+    """The picture is that of `rocking.plots` for these mechanics, and written if a path is given."""
+    figure = ASKED[mechanics]().plot(tmp_path / "picture.svg")
+    labels = " ".join(axes.get_ylabel() for axes in figure.axes)
+    assert {"rocking": "angular", "contact": "centre", "space": "tilt"}[mechanics] in labels
+    assert (tmp_path / "picture.svg").read_text(encoding="utf-8").startswith("<?xml")
+
+
+def test_report(tmp_path):
+    """HTML and PDF say what it is, what it did, under which friction, and nothing of files that there are none of."""
+    pytest.importorskip("jinja2")
+    pytest.importorskip("typst")
+    response = ASKED["rocking"]()
+    html = response.report(tmp_path / "r.html", name="Statue <1>", date="2026-11-24").read_text(encoding="utf-8")
+    summary = response.summary[:1].upper() + response.summary[1:]
+    for words in ("Statue &lt;1&gt;", "2026-11-24", summary, "scaled by 1.1", "0.5 was assumed", "left foot"):
+        assert words in html
+    assert "response.toml" not in html
+    assert "0.4 was given" in response.report(tmp_path / "s.html", friction=0.4).read_text(encoding="utf-8")
+    assert response.report(tmp_path / "r.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_report_of_free_rocking(tmp_path):
+    """The ground stays at rest: no picture of a motion."""
+    pytest.importorskip("jinja2")
+    html = rk.free_rocking(STATUE, 0.1, 0.9).report(tmp_path / "free.html").read_text(encoding="utf-8")
+    assert "the ground stays at rest" in html
+    assert html.count("<figure>") == 3
+
+
+@pytest.mark.parametrize("way", ["plot", "animate", "report"])
+@pytest.mark.parametrize("name", ["x.txt", "x"])
+def test_other_endings_are_refused(way, name, tmp_path):
+    with pytest.raises(RockingError, match=rf"is \.\w+.* got '{name}'"):
+        getattr(ASKED["rocking"](), way)(tmp_path / name)
+    assert not list(tmp_path.iterdir())
