@@ -10,7 +10,7 @@ from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import RESULTS, Arrays, Library, common, module
 from rocking.dynamics.settings import Settings
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 
 COUNT = 10_000
 STEP = 0.01

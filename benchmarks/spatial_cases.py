@@ -8,7 +8,7 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.dynamics import free_rocking, simulate
 from rocking.dynamics.space import SpatialBody, SpatialResponse, SpatialStart, attitude
-from rocking.motions.motion import GroundMotion
+from rocking.motions import GroundMotion
 
 GRAVITY = 9.81
 STEP = 0.005

@@ -18,8 +18,8 @@ from benchmarks.timing import cpu_seconds
 from rocking.conventions import FloatArray
 from rocking.dynamics import simulate
 from rocking.dynamics.space import SpatialBody, SpatialResponse, attitude
-from rocking.motions.motion import GroundMotion
-from rocking.motions.synthetic.stochastic import GammaModulation, NonstationaryFilter, nonstationary_motion
+from rocking.motions import GroundMotion
+from rocking.motions.synthetic import GammaModulation, NonstationaryFilter, nonstationary_motion
 
 SIZE = (0.6, 0.6, 2.4)
 DURATION, STEP = 20.0, 0.01

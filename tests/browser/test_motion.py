@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
+from rocking.motions import GroundMotion
 from rocking.motions.formats import write_motion
-from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import catalogue, pulse
 
 STEP, COUNT = 0.01, 801

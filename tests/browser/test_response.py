@@ -17,7 +17,7 @@ from rocking.bodies import Block, Region, Section
 from rocking.bodies.shapes import trapezoid
 from rocking.dynamics import free_rocking, simulate
 from rocking.dynamics.response import Response
-from rocking.motions.motion import GroundMotion
+from rocking.motions import GroundMotion
 from rocking.motions.pulses import pulse
 from rocking.outcome import Outcome
 

@@ -20,7 +20,7 @@ from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.settings import Settings
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 
 CASES = 10_000 if os.environ.get("ROCKING_CAMPAIGN") else 1_000
 DISCRETE = ("outcome", "status", "side", "impacts", "uplifts")

@@ -15,7 +15,7 @@ from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind, Trajectory
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 
 ENGINES = pytest.mark.parametrize(
     "name",

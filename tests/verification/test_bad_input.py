@@ -22,7 +22,7 @@ from rocking.dynamics.plane import batch, fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.settings import Settings
 from rocking.errors import RockingError
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 
 # how the mass is spread may be unknown
 ROWS = tuple(name for name in batch.ROWS if not name.startswith("q_"))

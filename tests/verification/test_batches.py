@@ -16,7 +16,7 @@ from rocking.dynamics.plane import batch, fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.settings import Settings
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 
 pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 

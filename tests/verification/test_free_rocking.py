@@ -22,7 +22,7 @@ from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.dynamics.settings import Settings
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 from rocking.outcome import Outcome
 
 BLOCKS = 1000 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 60

@@ -18,7 +18,7 @@ from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide
 from rocking.dynamics.plane import equations, fast_engine
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import Trajectory
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 
 ENGINES = pytest.mark.parametrize(
     "name",

@@ -8,7 +8,7 @@ from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.settings import Settings
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 
 pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 

@@ -22,7 +22,7 @@ from rocking.dynamics.plane.reference import Reference
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 from rocking.outcome import Outcome
 
 RIGHT, LEFT = RockingSide(0.3, 1.0, 1.0, 0.9), RockingSide(0.24, 0.95, 1.1, 0.92)

@@ -16,7 +16,7 @@ from rocking.dynamics.contact import (
     regime_at_start,
     regime_map,
 )
-from rocking.motions.motion import GroundMotion
+from rocking.motions import GroundMotion
 from rocking.motions.pulses import rectangular, sine
 from rocking.outcome import Outcome, Status
 

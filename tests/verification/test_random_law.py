@@ -12,7 +12,7 @@ from rocking.dynamics.impact_laws import uniform
 from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 
 # one false alarm in a million: the draws never change, so a failure is no accident
 ALARM = 1e-6

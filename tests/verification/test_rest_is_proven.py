@@ -9,7 +9,7 @@ from rocking.dynamics.parameters import RockingParameters, RockingSide
 from rocking.dynamics.plane import fast_engine, reference
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.dynamics.settings import Settings
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 
 COUNT = 40
 ENGINES = [

@@ -195,7 +195,7 @@ def python_motion(motion, record):
     if "record" in motion:
         return rk.read_motion(record)
     from rocking.motions import scaled_to
-    from rocking.motions.synthetic.families import family
+    from rocking.motions.synthetic import family
 
     return scaled_to(family(motion["synthetic"]).motion(motion["seed"], motion["member"]), "pga", motion["pga"])
 

@@ -36,8 +36,8 @@ from rocking.app.takeaway.plain_text import plain_line
 from rocking.app.takeaway.report import report_of
 from rocking.app.takeaway.table_files import column, table, written
 from rocking.app.takeaway.tables import table_of
+from rocking.motions import GroundMotion
 from rocking.motions.formats import read_motion
-from rocking.motions.motion import GroundMotion
 from rocking.reports.document import Document, Listing, Pair, Paragraph, Picture, ReportSection, ReportTable, cell
 from rocking.reports.render import response_pdf
 

@@ -6,8 +6,8 @@ from rocking.bodies import Block
 from rocking.checks import decimal_comma, nearest
 from rocking.cli import main
 from rocking.errors import RockingError, UnknownModelError
+from rocking.motions import measure
 from rocking.motions.formats.reader import format_named
-from rocking.motions.intensity import measure
 from rocking.motions.pulses import pulse
 from rocking.restitution import model
 from rocking.restitution.space import spatial_model, spatial_models

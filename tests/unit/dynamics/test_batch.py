@@ -11,8 +11,7 @@ from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import ROWS, Batch, Rows, valid_row
 from rocking.dynamics.plane.fast_engine import RESULTS, Library
 from rocking.errors import InvalidValueError
-from rocking.motions import pulses
-from rocking.motions.segments import Segments
+from rocking.motions import Segments, pulses
 
 ENGINES = [
     pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),

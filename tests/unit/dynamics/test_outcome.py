@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.motions.pulses import sine
+from rocking.motions import pulses
 from rocking.outcome import Outcome, Status
 
 ENGINES = Path(__file__).parents[3] / "engine"
@@ -19,7 +19,7 @@ LEANING = rk.Section([rk.Region([(0.0, 0.0), (0.5, 0.0), (0.3, 2.0), (0.1, 2.0)]
 
 def test_body_that_overturns_says_so_by_the_same_word_everywhere():
     """Rocking, with contact, in space and in batches: one enumeration, by identity and by code."""
-    pulse = sine(amplitude=6.0, period=1.0)
+    pulse = pulses.sine(amplitude=6.0, period=1.0)
     plane, contact = rk.simulate(LEANING, pulse), rk.simulate(LEANING, pulse, None, friction=0.9)
     block = rk.dynamics.SpatialBody.box(0.5, 0.7, 2.0)
     space = rk.simulate(block, pulse, "housner")

@@ -20,7 +20,7 @@ from rocking.dynamics.plane.trajectory import EventKind, Trajectory
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import first_fall, last_fall, turning_points
 from rocking.errors import InvalidValueError
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 from rocking.outcome import Status
 
 ALPHA = 0.2

@@ -12,7 +12,7 @@ from rocking.dynamics import ImpactLaw, Settings
 from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.errors import InvalidValueError
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 
 built = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 BLOCK = rk.Block(width=0.5, height=2.0)

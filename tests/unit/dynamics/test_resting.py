@@ -15,7 +15,7 @@ from rocking.dynamics.plane.event_functions import Push, RestoringMoments, comes
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.reference import Reference
 from rocking.dynamics.settings import Settings
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 
 ENGINES = [
     pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),

@@ -11,7 +11,7 @@ from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.errors import InvalidValueError
-from rocking.motions.segments import Segments
+from rocking.motions import Segments
 
 ENGINES = [
     pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),

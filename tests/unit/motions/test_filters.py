@@ -55,6 +55,15 @@ def test_ends(monkeypatch):
     assert filters.logarithm(np.array([0.0, 1.0])).tolist() == [-np.inf, 0.0]
 
 
+def test_transition_is_a_matrix_exponential():
+    """Free vibration over a step is the exponential of the oscillator's matrix, also at critical damping."""
+    from scipy.linalg import expm
+
+    for damping in (0.0, 0.3, 1.0):
+        matrix = np.array([[0.0, 1.0], [-49.0, -14.0 * damping]])
+        np.testing.assert_allclose(filters.transition(7.0, damping, 0.13), expm(0.13 * matrix), rtol=1e-12)
+
+
 _DIGESTS = """
 import hashlib, json
 import numpy as np

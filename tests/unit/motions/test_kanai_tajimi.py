@@ -7,7 +7,6 @@ import pytest
 from scipy.integrate import quad
 
 from rocking.errors import InvalidValueError
-from rocking.motions.filters import transition
 from rocking.motions.synthetic import Envelope, KanaiTajimi, kanai_tajimi_motion
 
 LAYER = KanaiTajimi(density=0.02, frequency=2.5, damping=0.6)
@@ -51,15 +50,6 @@ def test_correlation_in_time_is_that_of_the_spectrum(lag):
     mean, error = _statistics(step, lambda a: np.mean(a[:-lag] * a[lag:]))
     assert error < 0.03 * LAYER.variance
     assert abs(mean - expected) < 4.0 * error
-
-
-def test_transition_is_a_matrix_exponential():
-    """Free vibration over a step is the exponential of the oscillator's matrix, also at critical damping."""
-    from scipy.linalg import expm
-
-    for damping in (0.0, 0.3, 1.0):
-        matrix = np.array([[0.0, 1.0], [-49.0, -14.0 * damping]])
-        np.testing.assert_allclose(transition(7.0, damping, 0.13), expm(0.13 * matrix), rtol=1e-12)
 
 
 def test_envelope_has_its_three_parts():

@@ -211,3 +211,14 @@ def test_no_phase_goes_beyond_the_reach():
         most = np.maximum(most, [np.abs(value) for value, _ in found])
     # 4000 phases miss the top by (pi / 4000)^2 / 2
     np.testing.assert_allclose(most, _reach(rates), rtol=4e-7)
+
+
+def test_quadratic_roots() -> None:
+    """Both roots without cancellation, even 1e-12 beside 1; complex, linear and empty ones are not finite."""
+    second, first = np.array([1.0, 1.0, 0.0]), np.array([-1.0 - 1e-12, 0.0, 2.0])
+    one, other = quadratic_roots(second, first, np.array([1e-12, 1.0, 3.0]))
+    assert sorted([one[0], other[0]]) == pytest.approx([1e-12, 1.0], rel=1e-14)
+    assert np.isnan(one[1])
+    assert np.isnan(other[1])
+    assert not np.isfinite(one[2])
+    assert other[2] == -1.5

@@ -122,10 +122,8 @@ def test_velocity_file_has_no_unit_of_acceleration(shared_records: Path) -> None
 def test_counts_need_their_sensitivity(shared_records: Path) -> None:
     """China Lake's counts become 0.343 g by the sensitivity in the StationXML file."""
     pytest.importorskip("obspy")
-    from rocking.motions.formats.miniseed import MiniSeed
-
     source = Source.of_path(_file(shared_records, "mseed/*.mseed"))
-    reader = MiniSeed.with_response(_file(shared_records, "stationxml/*.xml"))
+    reader = type(formats()["miniseed"]).with_response(_file(shared_records, "stationxml/*.xml"))
     part = reader.read(source).components[0]
     assert (part.unit, part.time_step, part.acceleration.size) == ("m/s2", 0.01, 39001)
     assert part.peak / 9.80665 == pytest.approx(0.343, abs=5e-4, rel=0.0)

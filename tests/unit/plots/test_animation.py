@@ -14,7 +14,7 @@ from PIL import Image
 from rocking.bodies import Block, MassPoints, Region, Section
 from rocking.dynamics import free_rocking, simulate
 from rocking.errors import InvalidValueError, RockingError
-from rocking.motions.motion import GroundMotion
+from rocking.motions import GroundMotion
 from rocking.motions.pulses import rectangular, sine
 from rocking.plots.animation import animate_gif, animate_html, page, page_data, slowest_speed
 from rocking.plots.animation_scene import DrawnShape, scene_of

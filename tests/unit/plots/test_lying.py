@@ -7,7 +7,7 @@ import pytest
 
 from rocking.bodies import Block, MassPoints, Region, Section, shapes
 from rocking.dynamics import free_rocking, simulate
-from rocking.motions.motion import GroundMotion
+from rocking.motions import GroundMotion
 from rocking.motions.pulses import sine
 from rocking.plots.animation_scene import DrawnShape, fall_of, scene_of
 

@@ -11,7 +11,7 @@ from matplotlib.text import Text
 from rocking.bodies import Block
 from rocking.dynamics import free_rocking, simulate
 from rocking.errors import InvalidValueError, PureRockingWarning
-from rocking.motions.motion import GroundMotion
+from rocking.motions import GroundMotion
 from rocking.motions.pulses import rectangular, sine
 from rocking.plots.response import ground_place, response_picture, shown_until, velocity_at
 from rocking.plots.style import write

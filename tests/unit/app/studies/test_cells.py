@@ -14,8 +14,8 @@ from rocking.app.schemas.inputs import Inputs
 from rocking.app.studies.history_at_point import HistoryPlace, cell_of, stretched_words
 from rocking.app.studies.opened import OpenStudy
 from rocking.bodies import Block
+from rocking.motions import GroundMotion
 from rocking.motions.formats import write_motion
-from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import catalogue, pulse
 from rocking.outcome import Outcome
 from rocking.studies.axis import axes

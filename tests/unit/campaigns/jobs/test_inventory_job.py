@@ -6,7 +6,7 @@ import pytest
 from rocking.campaigns import CampaignDamagedError, CampaignIncompleteError
 from rocking.campaigns.jobs import Job, JobFolder, assessment, export
 from rocking.errors import InvalidValueError
-from rocking.motions.formats.reader import read_motion
+from rocking.motions.formats import read_motion
 from rocking.studies.inventory import Hazard, IntensityLevel, Thresholds, assess, read_inventory
 from rocking.studies.inventory.table import as_plain
 

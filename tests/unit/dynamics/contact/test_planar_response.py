@@ -26,9 +26,8 @@ from rocking.dynamics.contact.response import SAMPLES
 from rocking.dynamics.impact_laws import SpeedRestitution
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
-from rocking.motions.motion import GroundMotion
+from rocking.motions import GroundMotion, Segments
 from rocking.motions.pulses import rectangular, sine
-from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, Status
 from rocking.quantities import QUANTITIES
 
