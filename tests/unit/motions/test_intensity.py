@@ -1,4 +1,4 @@
-"""Intensity measures, velocity and displacement against closed forms, piecewise polynomials, the band-limited signal."""
+"""Intensity measures, velocity and displacement against closed forms, piecewise polynomials and band limits."""
 
 import math
 
