@@ -13,7 +13,7 @@ from rocking.bodies.solid import Part, Solid, box
 from rocking.cli import main
 from rocking.dynamics import SpatialStart
 from rocking.errors import PlausibilityWarning
-from rocking.evidence.measurements import all_measurements
+from rocking.evidence import all_measurements
 from rocking.reports.body_facts import body_facts
 from rocking.restitution import model
 from rocking.studies.fragility import multiple_stripe_analysis

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 from scipy.stats import spearmanr
 
-from rocking.evidence._claims import FAILS, HOLDS, IN_PART, UNRESOLVED, claims
-from rocking.evidence._errata import closer_rows, errata
-from rocking.evidence.agreement import correlation, relative_error
-from rocking.evidence.measurements import all_measurements, datasets
-from rocking.evidence.tables import Entry, recomputed
+from rocking.evidence import all_measurements, claims, datasets, errata
+from rocking.evidence._errata import Entry, closer_rows, recomputed
+from rocking.evidence.claim import FAILS, HOLDS, IN_PART, UNRESOLVED
+from rocking.evidence.comparison import correlation, relative_error
 from rocking.restitution import Housner, Ked
 
 

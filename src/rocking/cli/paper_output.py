@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from rocking.evidence._claims import FAILS, HOLDS, IN_PART, UNRESOLVED
+from rocking.evidence.claim import FAILS, HOLDS, IN_PART, UNRESOLVED
 from rocking.reports.paper_document import Reproduction, look_at
 from rocking.reports.paper_folder import as_plain, steps
 

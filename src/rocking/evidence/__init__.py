@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING
 from rocking.lazy import exports
 
 if TYPE_CHECKING:
-    from rocking.evidence._claims import Claim, claims
+    from rocking.evidence._claims import claims
     from rocking.evidence._coefficient_table import CoefficientRow, coefficient_table
     from rocking.evidence._errata import Erratum, errata
-    from rocking.evidence._league import LeagueRow, league
+    from rocking.evidence._league import LeagueRow, league, verdict
     from rocking.evidence._restitution_distribution import RestitutionDistribution, restitution_distribution
-    from rocking.evidence._verdict import verdict
     from rocking.evidence.calibration import Calibration, Prediction, calibrate, interval_for
+    from rocking.evidence.claim import Claim
     from rocking.evidence.measurements import DataSet, all_measurements, datasets
 
 __all__ = [
@@ -39,7 +39,7 @@ __getattr__, __dir__ = exports(
     __name__,
     {
         "Calibration": "rocking.evidence.calibration",
-        "Claim": "rocking.evidence._claims",
+        "Claim": "rocking.evidence.claim",
         "CoefficientRow": "rocking.evidence._coefficient_table",
         "DataSet": "rocking.evidence.measurements",
         "Erratum": "rocking.evidence._errata",
@@ -55,6 +55,6 @@ __getattr__, __dir__ = exports(
         "interval_for": "rocking.evidence.calibration",
         "league": "rocking.evidence._league",
         "restitution_distribution": "rocking.evidence._restitution_distribution",
-        "verdict": "rocking.evidence._verdict",
+        "verdict": "rocking.evidence._league",
     },
 )

@@ -1,4 +1,4 @@
-"""The league table: every model against every measurement, by measures that can tell them apart."""
+"""The league table: every model against every measurement, by measures that can tell them apart; and what it says."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,12 +8,19 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.evidence import agreement
-from rocking.evidence.comparison import compare, drawn, resampled
+from rocking.evidence import comparison
+from rocking.evidence.comparison import (
+    MEASURES,
+    compare,
+    drawn,
+    resampled,
+)  # fmt: skip
 from rocking.evidence.contenders import Contender, as_it_is, contenders
 from rocking.evidence.likelihood import rounding_bic
 from rocking.evidence.measurements import BANDS, GROUPS, DataSet, all_measurements
-from rocking.restitution import RestitutionModel
+from rocking.restitution import Ked, RestitutionModel
+
+_UNRESOLVED = 6.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,19 +128,19 @@ def _row(contender: Contender, data: DataSet) -> LeagueRow:
         name=contender.name,
         model=model,
         parameters=contender.parameters,
-        rmse=agreement.rmse(r, measured),
-        bias=agreement.bias(r, measured),
+        rmse=comparison.rmse(r, measured),
+        bias=comparison.bias(r, measured),
         rmse_low=low,
         rmse_high=high,
-        correlation=agreement.correlation(r, measured),
-        concordance=agreement.concordance(r, measured),
-        loss_rmse=agreement.loss_rmse(r, measured),
-        log_loss_rmse=agreement.log_loss_rmse(r, measured),
+        correlation=comparison.correlation(r, measured),
+        concordance=comparison.concordance(r, measured),
+        loss_rmse=comparison.loss_rmse(r, measured),
+        log_loss_rmse=comparison.log_loss_rmse(r, measured),
         leave_one_out=_left_out(contender, data, [data.slenderness == data.slenderness] if not count else _each(data)),
         leave_group_out=_left_out(contender, data, list(groups.values())),
         bic=rounding_bic(data, r, count),
-        by_group={name: agreement.rmse(r[rows], measured[rows]) for name, rows in groups.items()},
-        by_band={name: agreement.rmse(r[rows], measured[rows]) for name, rows in bands.items()},
+        by_group={name: comparison.rmse(r[rows], measured[rows]) for name, rows in groups.items()},
+        by_band={name: comparison.rmse(r[rows], measured[rows]) for name, rows in bands.items()},
         ahead_of_ked=(behind, ahead),
     )
 
@@ -148,12 +155,82 @@ def _left_out(contender: Contender, data: DataSet, parts: list[Any]) -> float:
         # nothing is fitted where nothing is free, so the whole may be left out at once
         model = contender.fit(data.rows(~left)) if contender.parameters else contender.fit(data)
         predicted[left] = model.of_slenderness(data.slenderness[left])
-    return agreement.rmse(predicted, data.coefficient)
+    return comparison.rmse(predicted, data.coefficient)
 
 
 def _bootstrap(r: FloatArray, data: DataSet) -> tuple[float, float, float, float]:
-    from rocking.restitution import Ked
-
     low, high = np.quantile(resampled((r - data.coefficient) ** 2, drawn(data)), [0.025, 0.975]).tolist()
     against = compare(data, r, Ked().of_slenderness(data.slenderness))
     return low, high, against.low, against.high
+
+
+def verdict(rows: Sequence[LeagueRow]) -> tuple[str, ...]:
+    """Put the league table into words, also where the paper's own model loses.
+
+    Parameters
+    ----------
+    rows : sequence of LeagueRow
+        The league, which must hold ``ked`` and ``housner``.
+
+    Returns
+    -------
+    tuple of str
+        One sentence or two each.
+    """
+    by_name = {row.name: row for row in rows}
+    ked, housner = by_name["ked"], by_name["housner"]
+    free = [row for row in rows if not row.parameters]
+    return (
+        f"Error of r: {_between(ked, housner, 'r')}.",
+        _against_free(ked, free),
+        *(f"{name.capitalize()}: {_between(ked, housner, name)}." for name in list(MEASURES)[1:]),
+        _slender(ked, housner),
+        _best(rows),
+        _unresolved(rows),
+    )
+
+
+def _between(one: LeagueRow, other: LeagueRow, measure: str, above: float = 0.0) -> str:
+    data = all_measurements()
+    data = data.rows(np.flatnonzero(data.slenderness > above).tolist())
+    first, second = (row.model.of_slenderness(data.slenderness) for row in (one, other))
+    return compare(data, first, second, measure).sentence(one.name, other.name)
+
+
+def _against_free(ked: LeagueRow, free: Sequence[LeagueRow]) -> str:
+    data = all_measurements()
+    mine = ked.model.of_slenderness(data.slenderness)
+    better = [row for row in free if compare(data, row.model.of_slenderness(data.slenderness), mine).sign < 0]
+    best = min(free, key=lambda row: row.rmse)
+    names = ", ".join(row.name for row in better) or "none"
+    if best is ked:
+        return "Among the models without a fitted parameter, KED has the smallest error."
+    return (
+        f"Models without a fitted parameter that are closer than KED: {names}. The smallest error is that of "
+        f"{best.name}: {_between(best, ked, 'r')}."
+    )
+
+
+def _slender(ked: LeagueRow, housner: LeagueRow) -> str:
+    return (
+        f"Above slenderness 6: {_between(ked, housner, 'r', 6.0)}. The bias of KED over all rows is {ked.bias:+.4f} "
+        "(model minus measurement)."
+    )
+
+
+def _best(rows: Sequence[LeagueRow]) -> str:
+    best = min(rows, key=lambda row: row.bic)
+    return (
+        f"With fitted parameters the lowest BIC is that of {best.name} ({best.fitted or 'nothing fitted'}): RMSE "
+        f"{best.rmse:.4f}, leave-one-out {best.leave_one_out:.4f}, leave-one-data-set-out {best.leave_group_out:.4f}."
+    )
+
+
+def _unresolved(rows: Sequence[LeagueRow]) -> str:
+    best = min(row.bic for row in rows)
+    close = [row.name for row in rows if row.bic - best < _UNRESOLVED]
+    return (
+        f"What these data cannot resolve: {', '.join(close)} lie within {_UNRESOLVED:g} in BIC of each other. Two "
+        "sources, repeated tests of the same blocks and one tape-covered interface are little evidence: what a model "
+        "does outside slenderness 1.5 to 9.75, or for other shapes, is theory."
+    )

@@ -37,10 +37,7 @@ class Claim:
 
 
 def truth(name: str) -> tuple[DataSet, FloatArray, FloatArray]:
-    """Return a data set with the true coefficients of both models.
-
-    Returns housner, ked: coefficients of the models [-].
-    """
+    """Return a data set with the true coefficients of Housner's model and of KED [-]."""
     data = datasets()[name]
     return data, Housner().of_slenderness(data.slenderness), Ked().of_slenderness(data.slenderness)
 
@@ -51,16 +48,10 @@ def verdict_of(holds: bool) -> str:
 
 
 def all_or_open(*differences: Difference) -> str:
-    """Return the verdict on a claim that several differences are all positive.
-
-    Returns ``"does not hold"`` if one is negative, ``"holds"`` if all are positive, else ``"not resolved"``.
-    """
+    """Return the verdict on a claim that several differences are all positive: it fails if one is negative."""
     return resolved(min(each.sign for each in differences))
 
 
 def resolved(sign: int) -> str:
-    """Return the verdict on a claim that one thing is larger than another.
-
-    Returns ``"holds"``, ``"does not hold"`` or ``"not resolved"``.
-    """
+    """Return the verdict on a claim that one thing is larger than another, by the sign of what is resolved."""
     return {1: HOLDS, -1: FAILS, 0: UNRESOLVED}[sign]

@@ -6,9 +6,17 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.evidence._errata import closer_rows
-from rocking.evidence.agreement import correlation, relative_error, zone
 from rocking.evidence.claim import FAILS, HOLDS, IN_PART, Claim, all_or_open, resolved, truth, verdict_of
-from rocking.evidence.comparison import Difference, compare, drawn, errors_of_groups, resampled
+from rocking.evidence.comparison import (
+    Difference,
+    compare,
+    correlation,
+    drawn,
+    errors_of_groups,
+    relative_error,
+    resampled,
+    zone,
+)  # fmt: skip
 from rocking.evidence.measurements import blocks, datasets
 from rocking.restitution import Housner, Ked, RestitutionModel
 
@@ -225,7 +233,7 @@ def _within_five() -> Claim:
     )
 
 
-JUDGES: tuple[Callable[[], Claim], ...] = (
+CLAIMS_OF_ERRORS: tuple[Callable[[], Claim], ...] = (
     _correlations,
     _correlation_means_agreement,
     _zones_ked,

@@ -1,4 +1,4 @@
-"""The one rule by which two models are compared: a paired bootstrap of the difference of their errors, and by group.
+"""How well models agree with measurements, and the one rule that compares two: a paired bootstrap of their errors.
 
 Rows of one block, or of one pair of materials in Table 1, are not independent (pseudo-replication): what is drawn
 again is the specimen with all its rows, within its data set. Both models meet the same draws (Efron & Tibshirani 1993).
@@ -141,3 +141,51 @@ def _drawn(group: tuple[str, ...], label: tuple[str, ...]) -> FloatArray:
         count = random.multinomial(len(specimens), np.full(len(specimens), 1.0 / len(specimens)), size=_RESAMPLES)
         weight[:, rows] = count[:, [specimens.index(label[i]) for i in rows]]
     return weight
+
+
+def rmse(model: FloatArray, measured: FloatArray) -> float:
+    """Root mean square error of r [-]."""
+    return float(np.sqrt(np.mean((model - measured) ** 2)))
+
+
+def bias(model: FloatArray, measured: FloatArray) -> float:
+    """Mean of model minus experiment, positive where the model is too elastic [-]."""
+    return float(np.mean(model - measured))
+
+
+def correlation(model: FloatArray, measured: FloatArray) -> float:
+    """Pearson's correlation coefficient, blind to bias and scale; NaN if the model is constant."""
+    dm, de = model - model.mean(), measured - measured.mean()
+    scale = float(np.sqrt((dm @ dm) * (de @ de)))
+    return float(dm @ de) / scale if scale > 0.0 else float("nan")
+
+
+def concordance(model: FloatArray, measured: FloatArray) -> float:
+    """Lin's concordance (Biometrics 45, 1989): correlation that also pays for bias and scale."""
+    covariance = float(np.mean((model - model.mean()) * (measured - measured.mean())))
+    return 2.0 * covariance / float(model.var() + measured.var() + (model.mean() - measured.mean()) ** 2)
+
+
+def loss_rmse(model: FloatArray, measured: FloatArray) -> float:
+    """Root mean square error of the energy loss 1 - r^2 [-]."""
+    return rmse(model**2, measured**2)
+
+
+def log_loss_rmse(model: FloatArray, measured: FloatArray) -> float:
+    """Root mean square of ln((1 - r_model^2) / (1 - r_measured^2)): relative error of the loss, .1 is about 10 %."""
+    with np.errstate(divide="ignore"):
+        return rmse(np.log1p(-(model**2)), np.log1p(-(measured**2)))
+
+
+def relative_error(model: FloatArray, measured: FloatArray) -> FloatArray:
+    """Relative error as the paper defines it, |measured - model| / measured [-]."""
+    return np.asarray(np.abs(measured - model) / measured)
+
+
+def zone(error: FloatArray) -> list[str]:
+    """Sort relative errors into the paper's zones: I below 1 %, II to 5 %, III above.
+
+    >>> zone(np.array([0.005, 0.03, 0.2]))
+    ['I', 'II', 'III']
+    """
+    return ["I" if e < 0.01 else "II" if e < 0.05 else "III" for e in error.tolist()]

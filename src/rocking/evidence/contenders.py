@@ -33,10 +33,7 @@ class Contender:
 
 
 def as_it_is(model: RestitutionModel) -> Contender:
-    """Return a contender without anything fitted.
-
-    Returns that returns the same model for all data.
-    """
+    """Return a contender without anything fitted."""
     return Contender(model.label, (), lambda data: model)
 
 
@@ -77,10 +74,7 @@ def family(
 
 
 def best_of(name: str, parameters: tuple[str, ...], members: Sequence[Contender]) -> Contender:
-    """Return a contender that is fitted as several families; the one with the least squares takes part.
-
-    Returns the best of them, for the data at hand.
-    """
+    """Return a contender that is fitted as several families; the one with the least squares takes part."""
 
     def fit(data: DataSet) -> RestitutionModel:
         """Fit every family."""
@@ -93,10 +87,7 @@ def best_of(name: str, parameters: tuple[str, ...], members: Sequence[Contender]
 
 
 def contact_bed(*, eta: bool) -> Contender:
-    """Return the contact bed with its points and its hardness fitted, and an interface factor on request.
-
-    Returns the family; the damping ratio is the model's default.
-    """
+    """Return the contact bed with points and hardness fitted, damping its default, and a factor on request."""
     members = [
         family(ContactBedModel.name, "hardness", partial(_bed_of, points), HARDNESS, eta=eta) for points in POINTS
     ]
@@ -105,10 +96,7 @@ def contact_bed(*, eta: bool) -> Contender:
 
 
 def contenders() -> list[Contender]:
-    """Return everyone who takes part by default.
-
-    Returns models as they are, then families with one and with two fitted parameters.
-    """
+    """Return everyone who takes part by default."""
     whole = [
         Housner(),
         Ked(),

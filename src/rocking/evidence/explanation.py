@@ -7,8 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.evidence.bed_fit import BedFit, bed_fits, left_out
-from rocking.evidence.bed_physics import BLOCKS
+from rocking.evidence.bed_fit import BLOCKS, BedFit, bed_fits, left_out
 
 UNRESOLVED = 2.0
 """Difference in BIC below which two explanations are not told apart."""

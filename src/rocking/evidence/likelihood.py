@@ -15,9 +15,6 @@ def interval_log_likelihood(low: FloatArray, high: FloatArray, mean: FloatArray,
     """Logarithm of the probability that a normal value lies in the interval that rounding leaves open.
 
     ``ln(Phi((high - mean)/sd) - Phi((low - mean)/sd))``, stable far out in the tails; arrays broadcast.
-
-    low, high: ends of the interval [-]; mean, sd: of the normal distribution [-]. Returns Logarithms, of the common
-    shape.
     """
     from scipy.special import log_ndtr, ndtr
 
@@ -41,29 +38,21 @@ def normal_cdf(z: FloatArray) -> FloatArray:
 
 
 def scatter(mean: FloatArray, floor: float, slope: float) -> FloatArray:
-    """Return the standard deviation of a measured coefficient around its prediction.
-
-    mean: predicted coefficients [-]; floor: scale s of the scatter [-]; slope: power with which it grows with the loss,
-    s (1 - r)^slope; 0 is a constant scatter [-]. Returns standard deviations [-].
-    """
+    """Return the standard deviation of a measured coefficient around its prediction, floor (1 - mean)^slope [-]."""
     return np.asarray(floor * np.maximum(1.0 - mean, 1e-6) ** slope)  # Eq. 133
 
 
 def gaussian_bic(residuals: FloatArray, parameters: int) -> float:
-    """Bayesian information criterion of least squares, n ln(RSS/n) + (parameters + 1) ln n.
+    """Bayesian information criterion of least squares, n ln(RSS/n) + (parameters + 1) ln n, the variance not counted.
 
-    residuals: model minus experiment [-]; parameters: number of fitted parameters, the variance not counted [-].
-    Returns lower is better; differences below 2 mean nothing, above 10 a lot.
+    Lower is better; differences below 2 mean nothing, above 10 a lot.
     """
     n = residuals.size
     return n * math.log(float(residuals @ residuals) / n) + (parameters + 1) * math.log(n)  # Eq. 138
 
 
 def fit_scatter(data: DataSet, mean: FloatArray) -> tuple[float, float, float]:
-    """Fit the scatter law around given predictions by maximum likelihood.
-
-    mean: predicted coefficients [-]. Returns parameters of `scatter` and the logarithm of the likelihood.
-    """
+    """Fit the parameters of `scatter` around predictions; return them and the logarithm of the largest likelihood."""
     (log_floor, slope), best = _maximise(
         lambda p: float(
             interval_log_likelihood(data.low, data.high, mean, scatter(mean, math.exp(p[0]), float(p[1]))).sum()
@@ -74,10 +63,9 @@ def fit_scatter(data: DataSet, mean: FloatArray) -> tuple[float, float, float]:
 
 
 def rounding_bic(data: DataSet, mean: FloatArray, parameters: int) -> float:
-    """Bayesian information criterion from the rounding-aware likelihood, scatter law fitted.
+    """Bayesian information criterion by the rounding-aware likelihood, -2 ln L + (parameters + 2) ln n.
 
-    mean: predictions [-]; parameters: number of fitted parameters of the model; two more are those of the scatter [-].
-    Returns -2 ln L + (parameters + 2) ln n.
+    Two parameters beside those of the model are of the scatter.
     """
     return -2.0 * fit_scatter(data, mean)[2] + (parameters + 2) * math.log(len(data))  # Eq. 138
 

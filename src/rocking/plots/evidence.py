@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.evidence._league import LeagueRow
-from rocking.evidence.bed_physics import bed_coefficients
+from rocking.evidence.bed_fit import bed_coefficients
 from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration, calibrate
 from rocking.evidence.explanation import Explanation
 from rocking.evidence.measurements import GROUPS, all_measurements, datasets

@@ -9,8 +9,8 @@ import numpy as np
 from rocking.checks import one_of
 from rocking.conventions import FloatArray
 from rocking.evidence._league import league
-from rocking.evidence.agreement import relative_error
 from rocking.evidence.calibration import calibrate
+from rocking.evidence.comparison import relative_error
 from rocking.evidence.explanation import explanation
 from rocking.evidence.measurements import DataSet, datasets
 from rocking.plots import evidence

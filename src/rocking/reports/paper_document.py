@@ -3,16 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rocking.evidence._claims import FAILS, HOLDS, IN_PART, UNRESOLVED, Claim, claims
-from rocking.evidence._errata import Erratum, errata
-from rocking.evidence._league import LeagueRow, league
-from rocking.evidence._verdict import verdict
-from rocking.evidence.agreement import concordance, correlation, relative_error, zone
-from rocking.evidence.calibration import Calibration, calibrate
-from rocking.evidence.coverage import Coverage, coverage
+from rocking.evidence._claims import claims
+from rocking.evidence._errata import Entry, Erratum, TableRow, errata, recomputed
+from rocking.evidence._league import LeagueRow, league, verdict
+from rocking.evidence.calibration import Calibration, Coverage, calibrate, coverage
+from rocking.evidence.claim import FAILS, HOLDS, IN_PART, UNRESOLVED, Claim
+from rocking.evidence.comparison import concordance, correlation, relative_error, zone
 from rocking.evidence.explanation import Explanation, Ranked, explanation
 from rocking.evidence.measurements import BANDS, GROUPS, datasets
-from rocking.evidence.tables import Entry, TableRow, recomputed
 from rocking.reports.document import (
     Block,
     Cell,

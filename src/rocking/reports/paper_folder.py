@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rocking.errors import MissingExtraError, RockingError
-from rocking.evidence.tables import TableRow
+from rocking.evidence._errata import TableRow
 from rocking.reports.document import Document, ReportTable, made_with
 from rocking.reports.paper_document import Reproduction, paper_document
 from rocking.reports.render import render_html, render_pdf

@@ -2,7 +2,7 @@
 
 from rocking.app import server as warm_up
 from rocking.app.api import impact
-from rocking.evidence.calibration import calibrate
+from rocking.evidence import calibrate
 
 
 def test_warm_up_leaves_nothing_to_fit():

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from rocking.cli import main
-from rocking.evidence._league import league
+from rocking.evidence import league
 
 ROOT = Path(__file__).parents[3]
 

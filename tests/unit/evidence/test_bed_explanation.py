@@ -5,13 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rocking.evidence._league import league
-from rocking.evidence.bed_fit import BedFit, fit_bed, left_out
-from rocking.evidence.bed_physics import bed_coefficients, explanations, relative_width
+from rocking.evidence import all_measurements, datasets, league
+from rocking.evidence.bed_fit import BedFit, bed_coefficients, explanations, fit_bed, left_out, relative_width
 from rocking.evidence.contenders import contact_bed
 from rocking.evidence.explanation import Explanation, Ranked, explanation
 from rocking.evidence.likelihood import interval_log_likelihood, scatter
-from rocking.evidence.measurements import GROUPS, all_measurements, datasets
+from rocking.evidence.measurements import GROUPS
 from rocking.restitution import ContactBedModel
 
 PHYSICS = {each.name: each for each in explanations()}

@@ -7,19 +7,10 @@ import pytest
 from scipy import stats
 
 from rocking import Block
-from rocking.evidence import calibration
-from rocking.evidence._coefficient_table import coefficient_table, outside_evidence
-from rocking.evidence.calibration import (
-    NAMES,
-    calibrate,
-    calibrate_on,
-    interval_for,
-    marginal_quantiles,
-    posterior_grid,
-)
-from rocking.evidence.coverage import coverage
+from rocking.evidence import all_measurements, calibrate, calibration, coefficient_table, interval_for
+from rocking.evidence._coefficient_table import outside_evidence
+from rocking.evidence.calibration import NAMES, calibrate_on, coverage, marginal_quantiles, posterior_grid
 from rocking.evidence.likelihood import fit_scatter, scatter
-from rocking.evidence.measurements import all_measurements
 from rocking.restitution import Fixed, Housner, Interface, Ked, ShiftedImpulse
 
 

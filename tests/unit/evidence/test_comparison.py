@@ -5,9 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
+from rocking.evidence import all_measurements
 from rocking.evidence.claim import FAILS, HOLDS, UNRESOLVED, all_or_open
 from rocking.evidence.comparison import Difference, compare, drawn, errors_of_groups, resampled
-from rocking.evidence.measurements import all_measurements
 from rocking.restitution import Housner, Ked
 
 DATA = all_measurements()

@@ -5,12 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from rocking.evidence import agreement
-from rocking.evidence._league import league
-from rocking.evidence._verdict import verdict
+from rocking.evidence import all_measurements, comparison, league, verdict
 from rocking.evidence.contenders import as_it_is, contenders
 from rocking.evidence.likelihood import gaussian_bic, interval_log_likelihood
-from rocking.evidence.measurements import all_measurements
 from rocking.restitution import Fixed, Housner, Interface, Ked
 
 # RMSE of r: T1, S, M, L, all; BIC (physics.md 1.8)
@@ -115,20 +112,20 @@ def test_models_within_six_in_bic_are_not_resolved():
 def test_measures_by_hand():
     """RMSE, bias, concordance and losses of a tiny example worked by hand."""
     model, measured = np.array([0.8, 0.9]), np.array([0.7, 0.9])
-    assert agreement.rmse(model, measured) == pytest.approx(np.sqrt(0.005))
-    assert agreement.bias(model, measured) == pytest.approx(0.05)
+    assert comparison.rmse(model, measured) == pytest.approx(np.sqrt(0.005))
+    assert comparison.bias(model, measured) == pytest.approx(0.05)
     # means .85, .80; variances .0025, .01; covariance .005
-    assert agreement.concordance(model, measured) == pytest.approx(2 * 0.005 / (0.0025 + 0.01 + 0.0025))
-    assert agreement.loss_rmse(model, measured) == pytest.approx(np.sqrt(0.5 * (0.64 - 0.49) ** 2))
-    assert agreement.log_loss_rmse(model, measured) == pytest.approx(np.sqrt(0.5) * abs(np.log(0.36 / 0.51)))
-    assert np.isnan(agreement.correlation(np.ones(2), measured))
+    assert comparison.concordance(model, measured) == pytest.approx(2 * 0.005 / (0.0025 + 0.01 + 0.0025))
+    assert comparison.loss_rmse(model, measured) == pytest.approx(np.sqrt(0.5 * (0.64 - 0.49) ** 2))
+    assert comparison.log_loss_rmse(model, measured) == pytest.approx(np.sqrt(0.5) * abs(np.log(0.36 / 0.51)))
+    assert np.isnan(comparison.correlation(np.ones(2), measured))
 
 
 def test_concordance_pays_for_bias_where_correlation_does_not():
     """A constant shift leaves Pearson's coefficient at 1 and lowers Lin's."""
     measured = all_measurements().coefficient
-    assert agreement.correlation(measured - 0.05, measured) == pytest.approx(1.0)
-    assert agreement.concordance(measured - 0.05, measured) < 0.9
+    assert comparison.correlation(measured - 0.05, measured) == pytest.approx(1.0)
+    assert comparison.concordance(measured - 0.05, measured) < 0.9
 
 
 def test_interval_likelihood_against_exact_normal():

@@ -8,8 +8,7 @@ from scipy import stats
 
 from rocking import Block, Region, Section, simulate
 from rocking.errors import InvalidValueError
-from rocking.evidence._restitution_distribution import restitution_distribution
-from rocking.evidence.calibration import calibrate
+from rocking.evidence import calibrate, restitution_distribution
 from rocking.evidence.likelihood import scatter
 from rocking.motions.pulses import sine
 from rocking.restitution import ShiftedImpulse

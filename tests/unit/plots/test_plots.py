@@ -7,8 +7,7 @@ import pytest
 
 from rocking import Block, MassPoints, Section
 from rocking.errors import RockingError
-from rocking.evidence._coefficient_table import coefficient_table
-from rocking.evidence.measurements import datasets
+from rocking.evidence import coefficient_table, datasets
 from rocking.plots import body_picture, coefficient_picture, energy_stages_picture, paper_figure, save, write
 from rocking.plots.paper_figures import paper_figures
 from rocking.restitution import Ked, energy_balance

@@ -94,7 +94,7 @@ def test_a_missing_package_costs_its_part_alone(missing, kept, said, folder, mon
 
 def test_claims_need_no_labelled_arrays(monkeypatch):
     """Without xarray every claim is judged: `rocking paper` loses nothing, not even the claim on large bodies."""
-    from rocking.evidence.claims_of_conclusions import JUDGES
+    from rocking.evidence._claims import JUDGES
 
     with monkeypatch.context() as without:
         without.setitem(sys.modules, "xarray", None)
