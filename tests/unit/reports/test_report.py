@@ -94,11 +94,11 @@ def test_a_missing_package_costs_its_part_alone(missing, kept, said, folder, mon
 
 def test_claims_need_no_labelled_arrays(monkeypatch):
     """Without xarray every claim is judged: `rocking paper` loses nothing, not even the claim on large bodies."""
-    from rocking.evidence._claims import JUDGES
+    from rocking.evidence import claims
 
     with monkeypatch.context() as without:
         without.setitem(sys.modules, "xarray", None)
-        judged = [judge() for judge in JUDGES]
+        judged = claims()
     assert any("adapts better to large components" in claim.quote for claim in judged)
 
 
