@@ -46,7 +46,10 @@ def response_tree(response: Any) -> dict[str, Any]:
         "near_flat_passages", "overturned_over", "overturning_direction", "summary",
     )  # fmt: skip
     said = {name: getattr(response, name) for name in names if hasattr(response, name)}
-    return said | {"data": response.to_xarray()}
+    data = response.to_xarray()
+    if "random_stream" in data.attrs:  # random_key before
+        data.attrs["random_key"] = data.attrs.pop("random_stream")
+    return said | {"data": data}
 
 
 def command(words: list[str], folder: Path) -> dict[str, Any]:

@@ -195,32 +195,22 @@ class Start:
         checks.within("height", self.height, 0.0, 1e4, unit="m", hint="the ground is at zero")
         checks.within("vertical_velocity", self.vertical_velocity, -1e4, 1e4, unit="m/s")
 
-    def state(self, base: PlaneBase) -> ContactState:
-        """Return the state of the centre of mass.
 
-        Parameters
-        ----------
-        base : PlaneBase
-            The body.
-
-        Returns
-        -------
-        State
-            Its state; x is zero where the body would stand upright on the same foot.
-        """
-        turned = self.rotation or self.angular_velocity
-        foot = RIGHT if turned > 0.0 else LEFT
-        r_x, r_z = base.arm(foot, self.rotation)
-        touching: tuple[int, ...] = ()
-        if self.height == 0.0:
-            touching = BOTH if self.rotation == 0.0 else (foot,)
-        spin = self.angular_velocity
-        return ContactState(
-            base.lever(foot) - r_x,
-            base.rise_on(foot, self.rotation) + self.height,
-            self.rotation,
-            self.horizontal_velocity - r_z * spin,
-            self.vertical_velocity + r_x * spin,
-            spin,
-            touching,
-        )
+def state_at_start(start: Start, base: PlaneBase) -> ContactState:
+    """Return the state of the centre of mass; x is zero where the body would stand upright on the same foot."""
+    turned = start.rotation or start.angular_velocity
+    foot = RIGHT if turned > 0.0 else LEFT
+    r_x, r_z = base.arm(foot, start.rotation)
+    touching: tuple[int, ...] = ()
+    if start.height == 0.0:
+        touching = BOTH if start.rotation == 0.0 else (foot,)
+    spin = start.angular_velocity
+    return ContactState(
+        base.lever(foot) - r_x,
+        base.rise_on(foot, start.rotation) + start.height,
+        start.rotation,
+        start.horizontal_velocity - r_z * spin,
+        start.vertical_velocity + r_x * spin,
+        spin,
+        touching,
+    )

@@ -13,7 +13,7 @@ import numpy as np
 from rocking.dynamics.contact.base import BOTH, FLIGHT, REST, ContactState, Mode, PlaneBase, away, kept, kinetic
 from rocking.dynamics.contact.complementarity import TOLERANCE, NextMode, choose, weight_of
 from rocking.dynamics.contact.event_functions import ModeEnd, consistent, event_functions, excited_stretches, first_end
-from rocking.dynamics.contact.history import Blow, History, Log
+from rocking.dynamics.contact.history import Blow, History
 from rocking.dynamics.contact.impact_resolution import (
     GroundContact,
     Struck,
@@ -53,7 +53,7 @@ class ContactEngine:
         self.base, self.law, self.settings = base, law, settings
         self.pace = math.sqrt(settings.gravity / base.size)
         self.slowest = settings.rest_speed * math.sqrt(settings.gravity * base.size)
-        self.log = Log(self.count, settings.gravity)
+        self.history = History(self.count, settings.gravity)
         self.state, self.mode = ContactState(), REST
         self.stretch, self.tau = 0, 0.0
         self.tolerance, self.changed, self.events = TOLERANCE, 0, 0
@@ -72,7 +72,10 @@ class ContactEngine:
         self._first_sample()
         while self.ended is None and not self._over():
             self._step()
-        return History(self.log, self.ended or Status.GOOD, self.lies, self.passed, self._now)
+        history = self.history
+        history.status, history.lies = self.ended or Status.GOOD, self.lies
+        history.passed, history.end = self.passed, self._now
+        return history
 
     # ---- from event to event ----------------------------------------------------------------------------------------
 
@@ -114,7 +117,7 @@ class ContactEngine:
             return
         end = first_end(found, stretch, self.tolerance)
         at, kind = end or (1.0, None)
-        self.log.pass_through(self._now, whole, here, at, self.law.friction)
+        self.history.pass_through(self._now, whole, here, at, self.law.friction)
         self._watch_top(whole, at)
         self.latest = whole
         self.tolerance, self.changed = TOLERANCE, 0
@@ -142,7 +145,7 @@ class ContactEngine:
         self.state = kept(self.base, reached, self.mode.feet, stick=self.mode.slip == 0)
         if tau > _WHOLE:
             self.stretch, self.tau = self.stretch + 1, 0.0
-            self.log.sample(self.stretch, self.state, self.mode, self.latest, at)
+            self.history.sample(self.stretch, self.state, self.mode, self.latest, at)
         else:
             self.tau = tau
 
@@ -195,7 +198,7 @@ class ContactEngine:
         rounding = 1e-13 * largest_speed(self.base, before)
         after = self._calmed(cleaned(self.base, struck, rounding))
         loss = dropped + kinetic(self.base, before) - kinetic(self.base, after)
-        self.log.strike(Blow(self._now, before, struck, after, loss))
+        self.history.strike(Blow(self._now, before, struck, after, loss))
         self.state = after
         self._change()
 
@@ -240,7 +243,7 @@ class ContactEngine:
             self.ended = Status.STUCK
         self.tolerance = max(found.tolerance, TOLERANCE * 10.0 ** min(self.changed - 3, 5) if self.changed > 3 else 0.0)
         self.mode = found.mode
-        self.log.change(self._now, self.mode)
+        self.history.change(self._now, self.mode)
         if self.mode.feet != BOTH and len(self.mode.feet) == 1 and self.state.rotation != 0.0:
             self.state = kept(self.base, self.state, self.mode.feet, stick=self.mode.slip == 0)
 
@@ -250,7 +253,7 @@ class ContactEngine:
         if self.ended is None:
             ground = self._ground(self.step)
             self.latest = mode_series(self.base, self.state, self.mode, ground, self.law.friction, _ORDER)
-        self.log.sample(0, self.state, self.mode, self.latest, 0.0)
+        self.history.sample(0, self.state, self.mode, self.latest, 0.0)
 
     def _skip(self) -> bool:
         """Rest through stretches that cannot move the body; whether there were any."""
@@ -263,6 +266,6 @@ class ContactEngine:
         while self.stretch < until:
             ground = self._ground((1.0 - self.tau) * self.step)
             self.latest = mode_series(self.base, self.state, REST, ground, self.law.friction, _ORDER)
-            self.log.pass_through(self._now, self.latest, ground, 1.0, self.law.friction)
+            self.history.pass_through(self._now, self.latest, ground, 1.0, self.law.friction)
             self._move(1.0, self.state, 1.0)
         return True

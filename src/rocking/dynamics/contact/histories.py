@@ -10,7 +10,7 @@ import numpy as np
 from rocking import checks, conventions, plausibility
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.base import PlaneBase, Start
+from rocking.dynamics.contact.base import PlaneBase, Start, state_at_start
 from rocking.dynamics.contact.engine import ContactEngine
 from rocking.dynamics.contact.impact_resolution import GroundContact
 from rocking.dynamics.contact.response import ContactResponse
@@ -54,7 +54,7 @@ def response_with_contact(  # noqa: PLR0913 - what the front door hands on
     scale = checks.within("scale", scale, -1e6, 1e6)
     segments = _segments(motion, base, settings.gravity, duration)
     plausibility.warn(plausibility.of_scaled([motion], scale))
-    history = ContactEngine(base, segments, law, settings, scale).run(start.state(base))
+    history = ContactEngine(base, segments, law, settings, scale).run(state_at_start(start, base))
     return ContactResponse(body, motion, base, law, settings, segments, scale, history)
 
 

@@ -39,7 +39,7 @@ class Blow(NamedTuple):
 
 
 @dataclass
-class Log:
+class History:
     """The record of a history, per unit of mass."""
 
     count: int  # number of stretches of the motion; there is one sample more
@@ -54,6 +54,10 @@ class Log:
     blows: list[Blow] = field(default_factory=list)
     changes: list[tuple[float, Mode]] = field(default_factory=list)
     samples: FloatArray = field(init=False)
+    status: Status = Status.GOOD
+    lies: bool = False  # whether the body fell over
+    passed: float = math.nan  # when the centre last passed over a foot; NaN if it never did or came back [s]
+    end: float = 0.0  # when the history ends [s]
 
     def __post_init__(self) -> None:
         """Make room for the samples."""
@@ -109,16 +113,6 @@ class Log:
             self.changes.append((time, mode))
 
 
-class History(NamedTuple):
-    """What the engine returns."""
-
-    log: Log  # samples, pieces, events, energy
-    status: Status  # whether it could be computed
-    lies: bool  # whether the body fell over
-    passed: float  # when the centre last passed over a foot; NaN if it never did or came back [s]
-    end: float  # when the history ends [s]
-
-
 REGIME = np.dtype(
     [("start", "f8"), ("end", "f8"), ("regime", "U10"), ("feet", "U5"), ("slip", "i1"), ("distance", "f8")]
 )
@@ -135,7 +129,7 @@ IMPACT = np.dtype(
 
 def regimes_of(history: History, base: PlaneBase) -> np.ndarray:
     """Return the regimes of a history in order; of type `REGIME`; intervals of no duration are left out."""
-    changes = history.log.changes
+    changes = history.changes
     ends = [*(time for time, _ in changes[1:]), history.end][: len(changes)]
     rows = [
         (start, end, mode.regime.name, mode.carrier, mode.slip, _distance(history, base, mode, start, end))
@@ -160,7 +154,7 @@ def impacts_of(history: History, base: PlaneBase) -> np.ndarray:
     as the vertical impulses are.
     """
     rows = []
-    for blow in history.log.blows:
+    for blow in history.blows:
         normal = {foot: blow.struck.normal.get(foot, 0.0) for foot in (LEFT, RIGHT)}
         total = sum(normal.values())
         part = {foot: blow.struck.tangential * n / total if total else 0.0 for foot, n in normal.items()}
@@ -176,7 +170,7 @@ def places_of(history: History, time: FloatArray) -> FloatArray:
 
     Returns x [m], rise [m] and theta [rad] along the last axis; at an instant between two pieces the later one counts.
     """
-    pieces = history.log.pieces
+    pieces = history.pieces
     if not pieces:
         return np.zeros((*time.shape, 3))
     starts = np.array([piece.start for piece in pieces])

@@ -76,17 +76,17 @@ def energy_of(response: "ContactResponse") -> ContactEnergy:
         response.time,
         0.5 * mass * (u**2 + w**2 + j * spin**2),  # Eq. 62
         mass * response.settings.gravity * response.rise,
-        mass * response.sampled("work"),
-        mass * response.sampled("impact_loss"),
-        mass * response.sampled("friction_loss"),
+        mass * response._sampled("work"),
+        mass * response._sampled("impact_loss"),
+        mass * response._sampled("friction_loss"),
     )
 
 
 def forces_of(response: "ContactResponse") -> ContactForces:
     """Return the forces of a response; at its samples, as limits from before."""
     mass, friction = response.base.mass, response.law.friction
-    tangential = response.sampled("tangential")
-    left, right = response.sampled("normal_left"), response.sampled("normal_right")
+    tangential = response._sampled("tangential")
+    left, right = response._sampled("normal_left"), response._sampled("normal_right")
     most = friction * (left + right)
     usage = np.zeros(most.size)
     np.divide(np.abs(tangential), most, out=usage, where=most > 0.0)  # Eq. 78
@@ -135,23 +135,12 @@ class ContactResponse(Drawable):
 
     @cached_property
     def _samples(self) -> FloatArray:
-        rows = self.history.log.samples
+        rows = self.history.samples
         bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
         return rows[: int(bad[0])] if bad.size else rows
 
-    def sampled(self, name: str) -> FloatArray:
-        """Return one column of the record, per unit of mass where it is a force or an energy.
-
-        Parameters
-        ----------
-        name : str
-            Name of the column, of `rocking.dynamics.contact.history.SAMPLED`.
-
-        Returns
-        -------
-        ndarray
-            At the samples.
-        """
+    def _sampled(self, name: str) -> FloatArray:
+        """Return one column of the record, per unit of mass where it is a force or an energy."""
         return np.asarray(self._samples[:, SAMPLED.index(name)], dtype=np.float64)
 
     @cached_property
@@ -162,37 +151,37 @@ class ContactResponse(Drawable):
     @property
     def displacement(self) -> FloatArray:
         """Displacement x of the centre of mass along the ground, to the right [m]."""
-        return self.sampled("x")
+        return self._sampled("x")
 
     @property
     def rise(self) -> FloatArray:
         """Height z of the centre of mass above where it is when the body stands [m]."""
-        return self.sampled("rise")
+        return self._sampled("rise")
 
     @property
     def rotation(self) -> FloatArray:
         """Rotation theta, positive clockwise [rad]."""
-        return self.sampled("rotation")
+        return self._sampled("rotation")
 
     @property
     def horizontal_velocity(self) -> FloatArray:
         """Velocity of the centre of mass relative to the ground, to the right [m/s]."""
-        return self.sampled("u")
+        return self._sampled("u")
 
     @property
     def vertical_velocity(self) -> FloatArray:
         """Velocity of the centre of mass relative to the ground, upwards [m/s]."""
-        return self.sampled("w")
+        return self._sampled("w")
 
     @property
     def angular_velocity(self) -> FloatArray:
         """Angular velocity theta' [rad/s]."""
-        return self.sampled("spin")
+        return self._sampled("spin")
 
     @property
     def regime(self) -> IntArray:
         """Regime up to each sample, as `Regime.code`."""
-        return np.asarray(self.sampled("regime"), dtype=np.int64)
+        return np.asarray(self._sampled("regime"), dtype=np.int64)
 
     @cached_property
     def regimes(self) -> np.ndarray:
@@ -207,7 +196,7 @@ class ContactResponse(Drawable):
     @property
     def sliding_distance(self) -> float:
         """Total path of the feet that carried, along the ground [m]."""
-        return self.history.log.slid
+        return self.history.slid
 
     @cached_property
     def energy(self) -> ContactEnergy:
@@ -222,12 +211,12 @@ class ContactResponse(Drawable):
     @property
     def friction_usage(self) -> float:
         """Largest |horizontal| over mu times the vertical force; 1 where the body slides [-]."""
-        return self.history.log.usage
+        return self.history.usage
 
     @property
     def peak_rotation(self) -> float:
         """Largest |theta|, between the samples too; a quarter turn if it overturned [rad]."""
-        return self.history.log.peak
+        return self.history.peak
 
     @property
     def status(self) -> Status:
@@ -337,7 +326,7 @@ def columns(response: "ContactResponse") -> dict[str, FloatArray]:
     energy, forces = response.energy, response.forces
     values = (
         response.time, response.displacement, response.rise, response.rotation, response.horizontal_velocity,
-        response.vertical_velocity, response.angular_velocity, response.sampled("regime"), response.sampled("slid"),
+        response.vertical_velocity, response.angular_velocity, response._sampled("regime"), response._sampled("slid"),
         forces.horizontal, forces.left, forces.right, energy.kinetic, energy.potential, energy.work,
         energy.lost_in_impacts, energy.lost_in_friction,
     )  # fmt: skip

@@ -51,7 +51,7 @@ class DenseOutput:
     ) -> "DenseOutput":
         """Return the intervals of a trajectory."""
         time, before, after = _nodes(trajectory, segments.step)
-        added = Inside(segments, parameters, settings, scale).added(trajectory, time, before, after)
+        added = InnerStates(segments, parameters, settings, scale).added(trajectory, time, before, after)
         if added:
             rows = np.array(added)
             time = np.concatenate([time, rows[:, 0]])
@@ -182,18 +182,7 @@ _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class Known:
-    """A state that is known, and where to go from there."""
-
-    time: float  # when [s]
-    side: int  # +1 or -1: the side on which the body stands from then on
-    rotation: float  # rotation, velocity: theta [rad] and theta' [rad/s]
-    velocity: float
-    until: float  # where to end, at most at the end of the same stretch [s]
-
-
-@dataclass(frozen=True)
-class Inside:
+class InnerStates:
     """What moves, and on what."""
 
     segments: Segments  # the motion [m/s2]
@@ -217,31 +206,31 @@ class Inside:
         falls = (time[:-1] < fall - _ROUNDING * step) & (time[1:] > fall + _ROUNDING * step)
         found: list[tuple[float, float, float]] = []
         for i in np.flatnonzero((turned != 0.0) & (falls | (quickest * length > LONG))).tolist():
-            start = Known(
-                float(time[i]), 1 if turned[i] > 0.0 else -1, float(after[i, 0]), float(after[i, 1]), float(time[i + 1])
-            )
-            states = self._states(start, fall, to_the_ground=False)
+            start, side = (float(time[i]), *after[i].tolist()), 1 if turned[i] > 0.0 else -1
+            states = self._states(start, side, float(time[i + 1]), fall, to_the_ground=False)
             found += [state for state in states if state[0] < time[i + 1] - _ROUNDING * step]
         if trajectory.outcome is Outcome.OVERTURNED and not np.isfinite(trajectory.rotation[-1]):
             last = float(time[-1])
             until = (math.floor(last / step + 1e-9) + 1.0) * step
-            start = Known(last, trajectory.side, float(after[-1, 0]), float(after[-1, 1]), until)
-            found += self._states(start, fall, to_the_ground=True)
+            found += self._states((last, *after[-1].tolist()), trajectory.side, until, fall, to_the_ground=True)
         return found
 
-    def _states(self, known: Known, fall: float, *, to_the_ground: bool) -> list[tuple[float, float, float]]:
-        """Return states so near to each other that quintics join them."""
-        alpha = self.parameters.side(known.side).slenderness_angle
-        time, u, rate = known.time, alpha - known.side * known.rotation, -known.side * known.velocity
+    def _states(
+        self, start: tuple[float, float, float], side: int, until: float, fall: float, *, to_the_ground: bool
+    ) -> list[tuple[float, float, float]]:
+        """Return states so near to each other that quintics join them, up to the end of the same stretch at most."""
+        alpha = self.parameters.side(side).slenderness_angle
+        time, rotation, velocity = start
+        u, rate = alpha - side * rotation, -side * velocity
         found: list[tuple[float, float, float]] = []
         shortest = _ROUNDING * self.segments.step
-        while known.until - time > shortest and len(found) < _MOST_PARTS:
-            left = (fall if time < fall - shortest and fall < known.until else known.until) - time
-            terms = self._series(time, left, known.side, u, rate)
+        while until - time > shortest and len(found) < _MOST_PARTS:
+            left = (fall if time < fall - shortest and fall < until else until) - time
+            terms = self._series(time, left, side, u, rate)
             part = _part(terms, alpha)
             time += part * left
             u, rate = value(terms, part), slope(terms, part) / left
-            found.append((time, known.side * (alpha - u), -known.side * rate))
+            found.append((time, side * (alpha - u), -side * rate))
             if to_the_ground and alpha - u >= 0.5 * math.pi and not time < fall - shortest:
                 break
         return found

@@ -19,15 +19,6 @@ class Push:
     vertical: FloatArray  # a_z / g [-]; shape (n, degree + 1)
 
 
-@dataclass(frozen=True)
-class Window:
-    """What holds a body down over some time."""
-
-    low: dict[int, float]  # least holding moment on each side [-]
-    variation: float  # bound on the total variation of the logarithm of the holding moments [-]
-    steepness: float  # bound on the change of the moments with the rotation [1/rad]
-
-
 class RestoringMoments:
     """What holds a body down, stretch by stretch."""
 
@@ -76,23 +67,25 @@ class RestoringMoments:
         """Return how many stretches there are up to the end, or to where a record jumps to rest."""
         return int(self._stops[np.searchsorted(self._stops, stretch, side="right")]) - stretch
 
-    def window(self, stretch: int, tau: float, stretches: int) -> Window | None:
-        """Return what holds the body down from an instant to the end of some stretches.
+    def window(self, stretch: int, tau: float, stretches: int) -> tuple[dict[int, float], float, float] | None:
+        """Return what holds the body down from an instant to the end of some stretches; None if a side is not held.
 
-        Returns none if a side is not held down throughout.
+        Least holding moment on each side [-], a bound on the total variation of the logarithm of the holding moments
+        [-], and one on their change with the rotation [1/rad].
         """
         rows = slice(stretch, stretch + stretches)
-        x, z = (_extent(part[rows], tau) for part in (self.push.horizontal, self.push.vertical))
+        x_least, x_most, x_variation = _extent(self.push.horizontal[rows], tau)
+        z_least, z_most, z_variation = _extent(self.push.vertical[rows], tau)
         low = {
-            sign: (1.0 + z.least) * self._sines[sign] + min(sign * x.least, sign * x.most) * self._cosines[sign]
+            sign: (1.0 + z_least) * self._sines[sign] + min(sign * x_least, sign * x_most) * self._cosines[sign]
             for sign in (1, -1)
         }
         if not (low[1] > 0.0 and low[-1] > 0.0):
             return None
-        variation = x.variation * max(self._cosines[k] / low[k] for k in low)  # Eq. 38
-        variation += z.variation * max(self._sines[k] / low[k] for k in low)
-        steepness = max(abs(1.0 + z.least), abs(1.0 + z.most)) + max(abs(x.least), abs(x.most))  # Eq. 39
-        return Window(low, variation, steepness)
+        variation = x_variation * max(self._cosines[k] / low[k] for k in low)  # Eq. 38
+        variation += z_variation * max(self._sines[k] / low[k] for k in low)
+        steepness = max(abs(1.0 + z_least), abs(1.0 + z_most)) + max(abs(x_least), abs(x_most))  # Eq. 39
+        return low, variation, steepness
 
     def _release(self, sign: int, stretch: int, start: float) -> float:
         moment = self.moments[sign][stretch].tolist()
@@ -108,22 +101,15 @@ class RestoringMoments:
         return 2.0 if fall is None else start + fall * (1.0 - start)
 
 
-@dataclass(frozen=True)
-class _Extent:
-    least: float
-    most: float
-    variation: float
-
-
-def _extent(rows: FloatArray, tau: float) -> _Extent:
-    """Bounds of a motion over some stretches, the first one from tau on; exact for straight lines."""
+def _extent(rows: FloatArray, tau: float) -> tuple[float, float, float]:
+    """Least, most and variation of a motion over stretches, the first from tau on; exact for straight lines."""
     if rows.shape[1] == 2:
         values = np.concatenate([[value(rows[0].tolist(), tau)], rows.sum(axis=1)])
-        return _Extent(float(values.min()), float(values.max()), float(np.abs(np.diff(values)).sum()))
+        return (float(values.min()), float(values.max()), float(np.abs(np.diff(values)).sum()))
     least = rows[:, 0] + np.minimum(rows[:, 1:], 0.0).sum(axis=1)
     most = rows[:, 0] + np.maximum(rows[:, 1:], 0.0).sum(axis=1)
     jumps = np.abs(rows[1:, 0] - rows[:-1].sum(axis=1)).sum()
-    return _Extent(float(least.min()), float(most.max()), float(np.abs(rows[:, 1:]).sum() + jumps))
+    return (float(least.min()), float(most.max()), float(np.abs(rows[:, 1:]).sum() + jumps))
 
 
 def _jumps(lines: FloatArray) -> np.ndarray:
@@ -178,10 +164,11 @@ def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine
     window = ground.window(stretch, tau, stretches)
     if window is None:
         return False
-    low, low_ = window.low[sign], window.low[-sign]
-    x = 0.5 * (window.variation + _HEIGHTS)
+    lows, variation, steepness = window
+    low, low_ = lows[sign], lows[-sign]
+    x = 0.5 * (variation + _HEIGHTS)
     gain = 1.0 + x + x * x  # more than exp(x) up to x = 1
-    heights = window.steepness * (speed * gain) ** 2 / min(one * low * low, two * low_ * low_)  # Eq. 40
+    heights = steepness * (speed * gain) ** 2 / min(one * low * low, two * low_ * low_)  # Eq. 40
     small = 2.2 * heights * (1.0 + q * q) <= _HEIGHTS * (1.0 - (r * q) ** 2) and heights <= 0.3
     if not (x <= 1.0 and small):
         return False

@@ -38,27 +38,6 @@ class Matter:
         """
         return self.placed
 
-    @classmethod
-    def of_box(cls, width: float, depth: float, height: float, density: float) -> "Matter":
-        """Return the matter of a box whose base is centred over the origin.
-
-        width, depth, height: full sizes along x, y and z [m]; density: density [kg/m3].
-        """
-        return cls(partial(_box, width, depth, height, density), np.zeros(3))
-
-    @classmethod
-    def of_cylinder(cls, diameter: float, height: float, density: float) -> "Matter":
-        """Return the matter of a cylinder whose base is centred over the origin.
-
-        diameter, height: full sizes [m]; density: density [kg/m3].
-        """
-        return cls(partial(_cylinder, diameter, height, density), np.zeros(3))
-
-    @classmethod
-    def of_solid(cls, solid: Solid, shift: FloatArray) -> "Matter":
-        """Return the matter of a solid (shift: origin of the body's axes in the coordinates of the solid [m])."""
-        return cls(partial(_same, solid), shift)
-
 
 # functions of the module, so that a body can be sent to another process
 def _box(width: float, depth: float, height: float, density: float) -> Solid:
@@ -158,7 +137,7 @@ class SpatialBody:
         inertia = mass / 12.0 * np.diag([y * y + z * z, x * x + z * z, x * x + y * y])
         corners = 0.5 * np.array([[-x, -y], [x, -y], [x, y], [-x, y]])
         made = cls(mass, np.array([0.0, 0.0, 0.5 * z]), inertia, corners)
-        return made._made_of(Matter.of_box(x, y, z, density))
+        return made._made_of(Matter(partial(_box, x, y, z, density), np.zeros(3)))
 
     @classmethod
     def cylinder(cls, diameter: float, height: float, density: float = 1000.0) -> "SpatialBody":
@@ -180,7 +159,7 @@ class SpatialBody:
         mass = checks.density("density", density) * math.pi * b * b * z
         across = mass * (b * b / 4.0 + z * z / 12.0)
         made = cls(mass, np.array([0.0, 0.0, 0.5 * z]), np.diag([across, across, 0.5 * mass * b * b]), b)
-        return made._made_of(Matter.of_cylinder(2.0 * b, z, density))
+        return made._made_of(Matter(partial(_cylinder, 2.0 * b, z, density), np.zeros(3)))
 
     @classmethod
     def of(cls, body: Any) -> "SpatialBody":
@@ -212,7 +191,7 @@ class SpatialBody:
             origin[:2] = getattr(base, "centre", (0.0, 0.0))
         shape = next((getattr(base, n) for n in ("radius", "vertices") if getattr(base, n, None) is not None), base)
         made = cls(found["mass"], np.asarray(found["centre"]) - origin, found["inertia"], shape)
-        return made._made_of(Matter.of_solid(body, origin)) if isinstance(body, Solid) else made
+        return made._made_of(Matter(partial(_same, body), origin)) if isinstance(body, Solid) else made
 
     def _made_of(self, matter: Matter) -> "SpatialBody":
         # not an argument: a solid that does not belong to the mass and inertia would give wrong energies

@@ -20,7 +20,7 @@ from rocking.dynamics.contact import (
 )
 from rocking.dynamics.contact.base import Mode, PlaneBase
 from rocking.dynamics.contact.engine import ContactEngine
-from rocking.dynamics.contact.history import Log
+from rocking.dynamics.contact.history import History
 from rocking.dynamics.contact.impact_resolution import GroundContact
 from rocking.dynamics.contact.response import SAMPLES
 from rocking.dynamics.impact_laws import SpeedRestitution
@@ -43,7 +43,7 @@ def rocked():
 
 def test_of_two_changes_at_one_time_the_last_counts():
     """A mode of no duration leaves nothing behind, and one that returns at once has not ended."""
-    log, stands, rocks, slides = Log(1, G), Mode((-1, 1)), Mode((1,)), Mode((1,), 1)
+    log, stands, rocks, slides = History(1, G), Mode((-1, 1)), Mode((1,)), Mode((1,), 1)
     for time, mode in ((0.0, stands), (0.5, rocks), (0.5, slides), (0.7, rocks), (0.7, slides)):
         log.change(time, mode)
     assert log.changes == [(0.0, stands), (0.5, slides)]
