@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 
 from rocking.app.application import create_app
-from rocking.app.security import bodies as limits
 from rocking.app.security import gate
+from rocking.app.security import requests as limits
 from rocking.app.security.sessions import Sessions
 from rocking.app.settings import Limits, ServerSettings
 

@@ -20,22 +20,18 @@ import xarray
 
 import rocking as rk
 from rocking.app.answers import attachment
+from rocking.app.downloads.animation import page_of
+from rocking.app.downloads.archive import bundle_of
+from rocking.app.downloads.documents import report_of
+from rocking.app.downloads.evaluation import Evaluation
+from rocking.app.downloads.inputs_file import inputs_as_toml, inputs_from_toml
+from rocking.app.downloads.pictures import drawn, figure_of, named
+from rocking.app.downloads.tables import as_table, body_table, measures_table, table_of, written
 from rocking.app.errors import Refused
+from rocking.app.inputs import Inputs
+from rocking.app.plain_text import plain_line
 from rocking.app.records import RecordStore
-from rocking.app.schemas.inputs import Inputs
 from rocking.app.settings import Limits
-from rocking.app.takeaway.asked import Evaluation
-from rocking.app.takeaway.bundle import bundle_of
-from rocking.app.takeaway.contents.body_tables import body_table
-from rocking.app.takeaway.contents.motion_tables import measures_table
-from rocking.app.takeaway.drawing import drawn
-from rocking.app.takeaway.film import page_of
-from rocking.app.takeaway.inputs_file import inputs_as_toml, inputs_from_toml
-from rocking.app.takeaway.pictures import figure_of, named
-from rocking.app.takeaway.plain_text import plain_line
-from rocking.app.takeaway.report import report_of
-from rocking.app.takeaway.table_files import column, table, written
-from rocking.app.takeaway.tables import table_of
 from rocking.motions import GroundMotion
 from rocking.motions.formats import read_motion
 from rocking.reports.document import Document, Listing, Pair, Paragraph, Picture, ReportSection, ReportTable, cell
@@ -149,8 +145,8 @@ def test_titles_of_motions_and_responses_are_text(name):
     wave = GroundMotion(4.0 * np.sin(0.0628 * np.arange(200)), 0.01, name=name, provenance=(name,))
     asked = Evaluation(inputs_named("x"), None)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("rocking.app.takeaway.asked.motion_from", lambda chosen, records: wave)
-        patch.setattr("rocking.app.question.motion_from", lambda chosen, records: wave)
+        patch.setattr("rocking.app.downloads.evaluation.motion_from", lambda chosen, records: wave)
+        patch.setattr("rocking.app.inputs.motion_from", lambda chosen, records: wave)
         text = check_svg(drawn(lambda: figure_of("motion", asked), "svg"))
         assert plain_line(name)[:20].replace(" ", "") in text.replace(" ", "")
         check_svg(drawn(lambda: figure_of("response", asked), "svg"))
@@ -166,7 +162,7 @@ def test_tables_hold_text_and_no_formula(name):
     for sheet in (
         body_table(asked.body, 9.80665, name, {"body": name}),
         measures_table(motion, {"motion": name}),
-        table({"label": column("", [name, None]), "value": column("-", [1.5, None])}, {name: name}),
+        as_table({name: name}, {"label": ("", [name, None]), "value": ("-", [1.5, None])}),
     ):
         check_csv(written([(name, sheet)], "csv"), sheet)
         check_excel(written([(name, sheet), (name, sheet)], "xlsx"), sheet)
@@ -275,7 +271,7 @@ def test_the_page_of_the_animation_gains_no_element(name):
         wave = GroundMotion(4.0 * np.sin(0.0628 * np.arange(200)), 0.01, name=word)
         asked = Evaluation(inputs_named(word), None)
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("rocking.app.question.motion_from", lambda chosen, records: wave)
+            patch.setattr("rocking.app.inputs.motion_from", lambda chosen, records: wave)
             return Tags(page_of(asked.chosen(None)).decode())
 
     hostile, harmless = page(name), page("x")
@@ -290,7 +286,7 @@ def test_these_checks_find_what_they_look_for():
         check_svg(bad)
     with pytest.raises(AssertionError):
         check_svg(b'<svg xmlns="http://www.w3.org/2000/svg" onload="x()"></svg>')
-    sheet = table({"label": column("", ["=1+1"])}, {})
+    sheet = as_table({}, {"label": ("", ["=1+1"])})
     with pytest.raises(AssertionError):
         check_csv(b"\xef\xbb\xbflabel\r\n=1+1\r\n", sheet)
     book = openpyxl.Workbook()

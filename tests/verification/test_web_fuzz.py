@@ -152,13 +152,10 @@ def test_damaged_documents(script: TestClient) -> None:
 
 def test_a_server_that_fails_is_seen(script: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     """Negative control: an endpoint that raises is reported by the same judgement, and shows no traceback."""
-    from rocking.app import question
+    from rocking.app.api import response
 
     def broken(*_: Any) -> None:
         raise RuntimeError("secret place")
-
-    monkeypatch.setattr(question, "question_of", broken)
-    from rocking.app.api import response
 
     monkeypatch.setattr(response, "question_of", broken)
     answer = script.post("/api/response", json=INPUTS)

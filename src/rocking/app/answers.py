@@ -1,21 +1,61 @@
-"""Answers in JSON, every digit kept and never a NaN, and answers that a browser saves as a file."""
+"""Answers in JSON, every digit kept and never a NaN; files that a browser saves; and what the schema says of them.
+
+The shapes describe; nothing is checked against them when a request is answered, which would cost more than the answer
+itself where the series are long. The tests check every one of them.
+"""
 
 import json
 import math
-import re
-import unicodedata
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal
 
+from fastapi import FastAPI
+from pydantic import BaseModel, ConfigDict, Field, create_model
 from pydantic_core import to_json
 from starlette.responses import JSONResponse, Response
 
 from rocking.app.errors import status_and_kind
+from rocking.app.plain_text import safe_name
 from rocking.errors import RockingError
+from rocking.quantities import QUANTITIES
 
-_RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
-_STRANGE = re.compile(r"(?:[^A-Za-z0-9._-]|(?<![A-Za-z0-9])\.|\.(?![A-Za-z0-9]))+")
-_LONGEST = 80
+Point = tuple[float, float]
+"""x and y [m]."""
+
+Foot = Literal["left", "right"]
+"""Where a body stands or lands."""
+
+Kind = Literal[
+    "invalid-value", "record", "body-file", "geometry", "unknown-model", "missing-extra", "not-found", "too-large",
+    "busy", "no-room", "forbidden", "internal",
+]  # fmt: skip
+FILE_SENT: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
+    }
+}
+"""What the schema of an endpoint says that takes a file."""
+
+_ERRORS = {
+    400: "The request is not what a browser or a script sends.",
+    401: "Nobody is signed in: no cookie, and no key in the header Authorization.",
+    403: "Host or Origin is not the server's own address.",
+    404: "There is no such thing.",
+    405: "This takes another method.",
+    413: "The request, or what it asks for, is larger than one server takes.",
+    415: "The body of the request is of another type than this takes.",
+    422: "The input is refused; the message names value, allowed range and likely cause.",
+    429: "Too much is asked at once; the header Retry-After says when to try again.",
+    500: "Something went wrong; its trace is in the server's log.",
+    503: "The server ends.",
+    507: "The disk of the server takes nothing more.",
+}
+_UNITS = {
+    "_rad_s": "rad/s", "_m_s2": "m/s2", "_kg_m2": "kg m2", "_m_s": "m/s", "_rad": "rad", "_kg": "kg", "_s": "s",
+    "_m": "m", "_J": "J", "_N": "N",
+}  # fmt: skip
+"""Units by the endings of keys; the longer ones come first."""
 
 
 class JsonAnswer(JSONResponse):
@@ -47,10 +87,7 @@ def error_answer(status: int, kind: str, message: str, needs: Sequence[str] = ()
 
 
 def refusal(error: RockingError, *, close: bool = False) -> JsonAnswer:
-    """Return an error of this package as the client is told it.
-
-    Returns the answer; with Retry-After where another try makes sense.
-    """
+    """Return an error of this package as the client is told it, with Retry-After where another try makes sense."""
     status, kind = status_and_kind(error)
     answer = error_answer(status, kind, str(error), getattr(error, "needs", ()))
     seconds = getattr(error, "seconds", None)
@@ -61,29 +98,104 @@ def refusal(error: RockingError, *, close: bool = False) -> JsonAnswer:
     return answer
 
 
-def safe_name(name: str, fallback: str = "rocking") -> str:
-    """Return a file name that is harmless on every system: ASCII letters, digits, dot, dash and underscore.
-
-    Returns at most 80 characters; never a hidden, reserved or empty name.
-
-    >>> safe_name("../../Vase Nº 3 <b>.csv")
-    'Vase-No-3-b.csv'
-    >>> safe_name("statue v1.2 report.pdf")
-    'statue-v1.2-report.pdf'
-    """
-    plain = unicodedata.normalize("NFKD", name[:1000]).encode("ascii", "ignore").decode()
-    stem, dot, suffix = plain.rpartition(".")
-    if not dot or not re.fullmatch(r"[A-Za-z0-9]{1,8}", suffix):
-        stem, dot, suffix = plain, "", ""
-    stem = _STRANGE.sub("-", stem).strip("-_") or fallback
-    stem = f"{fallback}-{stem}" if _RESERVED.fullmatch(stem) else stem
-    return stem[: _LONGEST - len(suffix) - 1].rstrip(".-_") + dot + suffix
-
-
 def attachment(data: bytes, name: str, media_type: str) -> Response:
     """Return an answer that a browser saves as a file and never shows as a page."""
-    headers = {
+    return Response(data, media_type=media_type, headers=attachment_headers(name))
+
+
+def attachment_headers(name: str) -> dict[str, str]:
+    """Return what makes a browser save an answer, under a name that is harmless on every system."""
+    return {
         "Content-Disposition": f'attachment; filename="{safe_name(name)}"',
         "X-Content-Type-Options": "nosniff",
     }
-    return Response(data, media_type=media_type, headers=headers)
+
+
+class Answer(BaseModel):
+    """A table of an answer: it has these keys and no others."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+
+
+def shape(name: str, meaning: str, base: type[Answer] = Answer, /, **fields: Any) -> Any:
+    """Return a table of an answer.
+
+    fields: by key the type; type and words; or type, words and the quantity whose unit it has. The unit that the key
+    ends with follows the words. What else a key needs, such as a default, is a `Field` in place of the words.
+    """
+    made: Any = {key: _field(key, *(value if isinstance(value, tuple) else (value,))) for key, value in fields.items()}
+    return create_model(name, __base__=base, __doc__=meaning, __module__=__name__, **made)
+
+
+def _field(key: str, kind: Any, words: Any = None, quantity: str | None = None) -> tuple[Any, Any]:
+    if not isinstance(words, str):
+        return kind, ... if words is None else words
+    unit = next((unit for ending, unit in _UNITS.items() if key.endswith(ending)), "")
+    if quantity is not None:
+        unit = "-" if QUANTITIES[quantity].unit == "1" else QUANTITIES[quantity].unit
+    return kind, Field(description=f"{words} [{unit}]".strip() if unit else words)
+
+
+def answered(kind: Any, words: str, status: int = 200) -> dict[int | str, dict[str, Any]]:
+    """Return what an endpoint declares of an answer in JSON."""
+    return {status: {"model": kind, "description": words}}
+
+
+def answered_with_file(words: str, *media_types: str) -> dict[int | str, dict[str, Any]]:
+    """Return what an endpoint declares of a file that it answers with."""
+    name = {"schema": {"type": "string"}, "description": "attachment, with a harmless name of the file"}
+    file = {"schema": {"type": "string", "format": "binary"}}
+    content = {kind.partition(";")[0]: file for kind in media_types}
+    return {200: {"description": words, "headers": {"Content-Disposition": name}, "content": content}}
+
+
+Deleted: Any = shape("Deleted", "What is no longer there.", deleted=(str, "its name in addresses"))
+QuantityAnswer: Any = shape(
+    "QuantityAnswer", "An intensity measure, or an axis of a map.", name=str, words=str, unit=str
+)
+ErrorDetail: Any = shape("ErrorDetail", "What went wrong.", kind=Kind, message=str, needs=(list[str], []))
+
+
+class ErrorAnswer(BaseModel):
+    """Every error: one kind, one sentence."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={"examples": [{"error": {"kind": "not-found", "message": "there is no such thing here"}}]},
+    )
+
+    error: ErrorDetail
+
+
+ERRORS: dict[int | str, dict[str, Any]] = {
+    status: {"model": ErrorAnswer, "description": words} for status, words in _ERRORS.items()
+}
+"""What every endpoint may answer besides what it is for."""
+
+
+def describe_api(app: FastAPI) -> None:
+    """Let the schema of the API say which calls need the key, and say once what an error looks like."""
+    plain = app.openapi
+    key = {"type": "http", "scheme": "bearer"}
+    key["description"] = "The key in the file `api-key` of the data folder, new at every start."
+
+    def openapi() -> dict[str, Any]:
+        schema = plain()
+        components = schema.setdefault("components", {})
+        components["securitySchemes"] = {"key": key}
+        components["responses"] = {f"Error{status}": _error(status) for status in _ERRORS}
+        for path, item in schema["paths"].items():
+            for operation in item.values():
+                operation["security"] = [] if path == "/api/session" else [{"key": []}]
+                for status in _ERRORS:
+                    operation["responses"][str(status)] = {"$ref": f"#/components/responses/Error{status}"}
+        return schema
+
+    app.openapi = openapi  # type: ignore[method-assign]  # the way that FastAPI provides
+
+
+def _error(status: int) -> dict[str, Any]:
+    content = {"application/json": {"schema": {"$ref": "#/components/schemas/ErrorAnswer"}}}
+    error = {"description": _ERRORS[status], "content": content}
+    again = {"schema": {"type": "integer"}, "description": "when another try makes sense [s]"}
+    return {**error, "headers": {"Retry-After": again}} if status == 429 else error

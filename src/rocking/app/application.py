@@ -4,31 +4,30 @@ import mimetypes
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, cast
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
-from fastapi.routing import APIRoute
 from pydantic import ValidationError
 from starlette.exceptions import HTTPException
 from starlette.middleware import Middleware
 from starlette.responses import FileResponse
 from starlette.staticfiles import StaticFiles
 
-from rocking.app.answers import JsonAnswer, error_answer, refusal
+from rocking.app.answers import ERRORS, JsonAnswer, describe_api, error_answer, refusal
 from rocking.app.api import body, impact, info, motion, records, response
+from rocking.app.downloads import documents, pictures, tables
 from rocking.app.errors import kind_of_status
 from rocking.app.records import RecordStore
-from rocking.app.schemas.answers import ERRORS, describe_api
 from rocking.app.security import sessions as session
-from rocking.app.security.bodies import BodyLimits
 from rocking.app.security.gate import Failures, Gate, SafeHeaders
+from rocking.app.security.requests import BodyLimits
 from rocking.app.security.sessions import Sessions
 from rocking.app.settings import AppState, ServerSettings
 from rocking.app.studies import router as studies
 from rocking.app.studies.manager import StudyManager
-from rocking.app.takeaway import documents, pictures, tables
-from rocking.app.work import WaitingLine
+from rocking.app.work import ComputationQueue
 from rocking.bodies.formats.words import sentence
 from rocking.errors import RockingError
 from rocking.version import __version__
@@ -53,34 +52,21 @@ def install_handlers(app: FastAPI) -> None:
 
 
 def validation_sentence(error: ValidationError | RequestValidationError) -> str:
-    """Return what is wrong with an input in one sentence.
-
-    Returns Key, allowed range and value of the first problem.
-    """
-    problems = [_without_place(dict(problem)) for problem in error.errors()]
-    if problems and problems[0]["loc"] == ():
-        problems[0]["loc"] = ("the body of the request",)
-    in_body = problems and problems[0]["loc"][0] == "body"
+    """Return what is wrong with an input in one sentence: key, allowed range and value of the first error."""
+    errors = [_without_place(dict(each)) for each in error.errors()]
+    if errors and errors[0]["loc"] == ():
+        errors[0]["loc"] = ("the body of the request",)
+    in_body = errors and errors[0]["loc"][0] == "body"
     units = _units_of(getattr(error, "body", None)) if in_body else None
-    return sentence(cast("ValidationError", _Found(problems)), units)
+    return sentence(cast("ValidationError", SimpleNamespace(errors=lambda **_: errors)), units)
 
 
-class _Found:
-    """Problems in the form in which a `ValidationError` has them."""
-
-    def __init__(self, problems: list[dict[str, Any]]) -> None:
-        self._problems = problems
-
-    def errors(self, include_url: bool = True) -> list[dict[str, Any]]:
-        return self._problems
-
-
-def _without_place(problem: dict[str, Any]) -> dict[str, Any]:
-    place = problem["loc"]
+def _without_place(error: dict[str, Any]) -> dict[str, Any]:
+    place = error["loc"]
     if place and place[0] in {"body", "query", "path", "header"}:
-        problem["loc"] = tuple(place[1:])
-    problem["type"] = _SAME_AS.get(problem["type"], problem["type"])
-    return problem
+        error["loc"] = tuple(place[1:])
+    error["type"] = _SAME_AS.get(error["type"], error["type"])
+    return error
 
 
 def _units_of(document: Any) -> Any:
@@ -109,10 +95,7 @@ def _handler(answer: Callable[[Any], JsonAnswer]) -> Callable[[Request, Exceptio
 
 
 def create_app(settings: ServerSettings) -> FastAPI:
-    """Return the application.
-
-    Returns every page and every endpoint, behind the gate.
-    """
+    """Return the application: every page and every endpoint, behind the gate."""
     app = FastAPI(
         title="rocking",
         version=__version__,
@@ -123,7 +106,7 @@ def create_app(settings: ServerSettings) -> FastAPI:
         redirect_slashes=False,
         separate_input_output_schemas=False,
         default_response_class=JsonAnswer,
-        generate_unique_id_function=_operation,
+        generate_unique_id_function=lambda route: str(route.name),
         lifespan=_lifespan,
         middleware=[
             Middleware(SafeHeaders),
@@ -134,27 +117,11 @@ def create_app(settings: ServerSettings) -> FastAPI:
     )
     app.state.rocking = _state(settings)
     install_handlers(app)
-    _add_endpoints(app)
+    for part in (session, info, body, impact, records, motion, response, pictures, tables, documents, studies):
+        app.include_router(part.router, responses=ERRORS)
+    describe_api(app)
     _add_pages(app)
     return app
-
-
-def _add_endpoints(app: FastAPI) -> None:
-    for router in (
-        session.router,
-        info.router,
-        body.router,
-        impact.router,
-        records.router,
-        motion.router,
-        response.router,
-        pictures.router,
-        tables.router,
-        documents.router,
-        studies.router,
-    ):
-        app.include_router(router, responses=ERRORS)
-    describe_api(app)
 
 
 def _state(settings: ServerSettings) -> AppState:
@@ -165,7 +132,7 @@ def _state(settings: ServerSettings) -> AppState:
         records=store,
         studies=StudyManager(settings.folder, limits, store, workers=settings.workers),
         sessions=Sessions(limits),
-        heavy=WaitingLine(limits.heavy_at_once, limits.heavy_waiting),
+        heavy=ComputationQueue(limits.heavy_at_once, limits.heavy_waiting),
     )
 
 
@@ -174,10 +141,6 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     yield
     app.state.rocking.heavy.close()
     app.state.rocking.studies.close()
-
-
-def _operation(route: APIRoute) -> str:
-    return route.name
 
 
 def _add_pages(app: FastAPI) -> None:

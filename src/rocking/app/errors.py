@@ -1,8 +1,7 @@
-"""What goes wrong, as the client is told it: one kind, one sentence, never a traceback."""
+"""What goes wrong, as the client is told it: one status, one kind, one sentence, never a traceback."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import ClassVar
 
 from rocking.errors import BodyFileError, GeometryError, MissingExtraError, RecordError, RockingError, UnknownModelError
 
@@ -20,106 +19,61 @@ _BY_STATUS = {
     403: "forbidden",
     404: "not-found",
     413: "too-large",
+    414: "too-large",
     429: "busy",
+    431: "too-large",
     503: "busy",
     507: "no-room",
 }
 
 
-class Problem(RockingError):  # noqa: N818 - the names of the subclasses are what is said of them
-    """Base of what the server itself refuses.
+class Refused(RockingError):  # noqa: N818 - the names of the subclasses are what is said of them
+    """The server itself refuses, with a status of HTTP; seconds: time after which another try makes sense [s]."""
 
-    seconds: time after which another try makes sense [s].
-    """
+    status = 422
 
-    status: ClassVar[int] = 422
-    kind: ClassVar[str] = "invalid-value"
-
-    def __init__(self, message: str, *, needs: Sequence[str] = (), seconds: float | None = None) -> None:
+    def __init__(
+        self, message: str, *, status: int | None = None, needs: Sequence[str] = (), seconds: float | None = None
+    ) -> None:
         super().__init__(message)
+        self.status = self.status if status is None else status
         self.needs = tuple(needs)
         self.seconds = seconds
 
 
-class Refused(Problem):
-    """The input is not allowed."""
-
-
-class Busy(Problem):
-    """Too much is asked at once."""
-
-    status = 429
-    kind = "busy"
-
-
-class TooLarge(Problem):
-    """More is asked than one server takes."""
-
-    status = 413
-    kind = "too-large"
-
-
-class NoRoom(Problem):
-    """The disk of the server takes nothing more."""
-
-    status = 507
-    kind = "no-room"
-
-
-class Ending(Problem):
-    """The server ends, and the computation with it."""
-
-    status = 503
-    kind = "busy"
-
-
-class NotFound(Problem):
+class NotFound(Refused):
     """There is no such thing."""
 
     status = 404
-    kind = "not-found"
 
 
-class NotAllowed(Problem):
-    """Somebody asks who may not."""
+class TooLarge(Refused):
+    """More is asked than one server takes."""
 
-    status = 403
-    kind = "forbidden"
-
-
-class NotSignedIn(NotAllowed):
-    """Nobody is signed in."""
-
-    status = 401
+    status = 413
 
 
-class WrongContent(Problem):
-    """The body of the request is of a type that nothing here takes."""
+class Busy(Refused):
+    """Too much is asked at once."""
 
-    status = 415
-
-
-class WrongMethod(Problem):
-    """The method is one that nothing here takes."""
-
-    status = 405
+    status = 429
 
 
-class BadRequest(Problem):
-    """The request is not what a browser or a script sends."""
+class NoRoom(Refused):
+    """The disk of the server takes nothing more."""
 
-    status = 400
+    status = 507
 
 
 def status_and_kind(error: RockingError) -> tuple[int, str]:
     """Return how an error is told."""
-    if isinstance(error, Problem):
-        return error.status, error.kind
+    if isinstance(error, Refused):
+        return error.status, kind_of_status(error.status)
     return 422, next(kind for family, kind in _KINDS if isinstance(error, family))
 
 
 def kind_of_status(status: int) -> str:
-    """Return the kind of a problem of which only the status is known."""
+    """Return the kind of an error of which only the status is known."""
     return _BY_STATUS.get(status, "internal" if status >= 500 else "invalid-value")
 
 

@@ -1,8 +1,9 @@
-"""The server: address, lock, socket, link, what is computed ahead, and a clean end."""
+"""The server: data folder, address, socket, link, what is computed ahead, and a clean end."""
 
 import asyncio
 import contextlib
 import errno
+import json
 import os
 import signal
 import socket
@@ -12,6 +13,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import TracebackType
 from typing import Any
 
 import h11
@@ -19,9 +21,9 @@ import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from rocking.app.application import create_app
-from rocking.app.folder import DataFolder
 from rocking.app.settings import DEFAULT_PORT, LOOPBACK, ServerSettings
-from rocking.app.work import WaitingLine
+from rocking.app.work import ComputationQueue
+from rocking.campaigns.disk import CampaignBusyError, FolderLock
 from rocking.errors import InvalidValueError, RockingError
 
 _TRIED = 50
@@ -36,6 +38,8 @@ _HEAD_SECONDS = 15.0
 _CONNECTIONS = 512
 _TURN = 0.0005
 """How long a computation may keep the interpreter while light requests wait [s]; Python's own is ten times that."""
+KEY_FILE = "api-key"
+_NOTE = "server.json"
 
 
 def check_host(host: str, *, allow_remote: bool) -> None:
@@ -65,17 +69,13 @@ def listen(host: str, port: int, *, search: bool) -> socket.socket:
         except socket.gaierror as error:
             raise InvalidValueError(f"--host {host} is not an address ({error.strerror})") from error
         except OSError as error:
-            if not _taken(error):
+            if error.errno != errno.EADDRINUSE:
                 raise InvalidValueError(f"cannot listen on {host}: {error.strerror}") from error
     raise InvalidValueError(
         f"ports {port} to {port + _TRIED - 1} are taken: choose another with --port"
         if search and port
         else f"port {port} is taken, perhaps by another rocking serve: choose another with --port"
     )
-
-
-def _taken(error: OSError) -> bool:
-    return error.errno == errno.EADDRINUSE
 
 
 def _bound(host: str, port: int) -> socket.socket:
@@ -110,34 +110,100 @@ def warm_up(*more: Step) -> None:
 
 
 def _impact() -> None:
-    from rocking.app.api.impact import warm_up as first_impact
+    from rocking.app.api import impact
+    from rocking.app.inputs import ImpactAsked
 
-    first_impact()
+    impact.answer(ImpactAsked.model_validate({"body": _BLOCK}))
 
 
 def _response() -> None:
-    from rocking.app.api.response import ResponseAnswers
-    from rocking.app.question import body_from
-    from rocking.app.schemas.inputs import ResponseAsked
+    from rocking.app.api.response import answers_facts
+    from rocking.app.inputs import ResponseAsked, body_from
     from rocking.motions.pulses import pulse
     from rocking.motions.spectrum import response_spectrum
     from rocking.plots.traces import fine_samples
     from rocking.spec.response import problem_of
 
-    moved = "sine:amplitude=3,period=0.8"
-    asked = ResponseAsked.model_validate({"body": _BLOCK, "motion": {"pulse": moved}})
-    motion = pulse(moved)
-    ResponseAnswers.of(problem_of(asked, body_from(asked.body), motion)).facts(10)
+    words = "sine:amplitude=3,period=0.8"
+    inputs = ResponseAsked.model_validate({"body": _BLOCK, "motion": {"pulse": words}})
+    motion = pulse(words)
+    answers_facts(problem_of(inputs, body_from(inputs.body), motion), 10)
     response_spectrum(fine_samples(motion), [1.0], 0.05)
 
 
 def _picture() -> None:
-    from rocking.app.takeaway.drawing import drawn
+    from rocking.app.downloads.pictures import drawn
     from rocking.bodies import Block
     from rocking.plots.body import body_picture
 
     for kind in ("svg", "png"):
         drawn(lambda: body_picture(Block(width=1.0, height=4.0)), kind)
+
+
+class FolderInUseError(InvalidValueError):
+    """Another server has the data folder."""
+
+
+class DataFolder:
+    """The data folder of a server, held while it runs."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._lock: FolderLock | None = None
+
+    def __enter__(self) -> "DataFolder":
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+            self.path.chmod(0o700)
+        except OSError as error:
+            raise InvalidValueError(
+                f"the data folder {str(self.path)!r} cannot be used ({error.strerror}): choose another with --data"
+            ) from error
+        lock = FolderLock(self.path)
+        try:
+            lock.__enter__()
+        except CampaignBusyError as error:
+            raise FolderInUseError(
+                f"another rocking serve runs with the data folder {str(self.path)!r}: stop it, "
+                "or choose another folder with --data"
+            ) from error
+        self._lock = lock
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for name in (KEY_FILE, _NOTE):
+            (self.path / name).unlink(missing_ok=True)
+        if self._lock is not None:
+            self._lock.__exit__(kind, error, trace)
+
+    def publish(self, url: str, key: str) -> Path:
+        """Leave the address for a second start, and the key for scripts in a file that only its owner can read."""
+        write_private(self.path / _NOTE, json.dumps({"url": url, "process": os.getpid(), "machine": _machine()}))
+        return write_private(self.path / KEY_FILE, key)
+
+    def running(self) -> tuple[str, str] | None:
+        """Return address and key of the server that has the folder; None if it runs elsewhere, or has left none."""
+        try:
+            note: dict[str, Any] = json.loads((self.path / _NOTE).read_text(encoding="utf-8"))
+            key = (self.path / KEY_FILE).read_text(encoding="utf-8")
+        except (OSError, ValueError):
+            return None
+        return (note["url"], key) if note.get("machine") == _machine() else None
+
+
+def write_private(path: Path, text: str) -> Path:
+    """Write a file that only its owner can read, in place of whatever has that name."""
+    path.unlink(missing_ok=True)  # never through a link that somebody left there
+    handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    with os.fdopen(handle, "w", encoding="utf-8") as file:
+        file.write(text)
+    return path
+
+
+def _machine() -> str:
+    return socket.gethostname()
 
 
 @dataclass(frozen=True)
@@ -175,7 +241,7 @@ def _end_at_once() -> None:
 
 def _run(
     settings: ServerSettings, folder: DataFolder, door: socket.socket, started: Callable[[Started], None]
-) -> WaitingLine:
+) -> ComputationQueue:
     app = create_app(settings)
     sessions = app.state.rocking.sessions
     key_file = folder.publish(settings.origin, sessions.key)
@@ -188,8 +254,8 @@ def _run(
     server = _Server(_config(app), tell)
     with contextlib.suppress(KeyboardInterrupt), _ended_like_ctrl_c():  # the end that was asked for
         server.run(sockets=[door])
-    line: WaitingLine = app.state.rocking.heavy
-    return line
+    queue: ComputationQueue = app.state.rocking.heavy
+    return queue
 
 
 @contextlib.contextmanager

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 from starlette.requests import HTTPConnection
 
-from rocking.app.work import WaitingLine
+from rocking.app.work import ComputationQueue
 
 if TYPE_CHECKING:
     from rocking.app.records import RecordStore
@@ -33,18 +33,15 @@ class Limits:
     records_bytes: int = 1024 * MEBIBYTE  # disk for uploaded records [bytes]
     studies_bytes: int = 8192 * MEBIBYTE  # disk for studies [bytes]
     histories: int = 2_000_000  # largest study [histories]
-    studies_waiting: int = 8  # studies that may wait in line
+    studies_waiting: int = 8  # studies that may wait in the queue
     heavy_at_once: int = 2  # threads for long computations
-    heavy_waiting: int = 32  # long computations that may wait in line
+    heavy_waiting: int = 32  # long computations that may wait in the queue
     wrong_tokens: int = 10  # wrong tokens a minute before the door stays shut for a while
     session_seconds: float = 12 * 3600.0  # idle time after which a browser must sign in again [s]
 
 
 def default_folder() -> Path:
-    """Return the folder in which this user's records and studies are kept.
-
-    Returns under the system's folder for the data of programs; not created here.
-    """
+    """Return where this user's records and studies are kept, under the system's folder for data; not created here."""
     if sys.platform == "win32":
         root = os.environ.get("LOCALAPPDATA") or str(Path.home() / "AppData" / "Local")
     else:
@@ -78,12 +75,9 @@ class AppState:
     records: "RecordStore"  # uploaded records
     studies: "StudyManager"  # campaigns that run, wait or are done
     sessions: "Sessions"  # who is signed in
-    heavy: WaitingLine  # threads for long computations
+    heavy: ComputationQueue  # threads for long computations
 
 
 def state_of(request: HTTPConnection) -> AppState:
-    """Return what the endpoints share.
-
-    Returns the same object for every request of an application.
-    """
+    """Return what the endpoints share."""
     return cast("AppState", request.app.state.rocking)

@@ -3,16 +3,14 @@
 import asyncio
 import threading
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any, Generic, ParamSpec, TypeVar
 
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
-from rocking.app.errors import Busy, Ending
-from rocking.app.schemas.inputs import size_of
-from rocking.bodies.formats.schema import BodyFile
+from rocking.app.errors import Busy, Refused
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -20,8 +18,8 @@ _SMALL = 200
 """Vertices up to which a body takes a few milliseconds."""
 
 
-class WaitingLine:
-    """Threads for long computations, and a line of bounded length before them."""
+class ComputationQueue:
+    """Threads for long computations, and a queue of bounded length before them."""
 
     def __init__(self, at_once: int, waiting: int) -> None:
         self._threads = ThreadPoolExecutor(at_once, thread_name_prefix="heavy")
@@ -30,7 +28,7 @@ class WaitingLine:
         self._lock = threading.Lock()
 
     def submit(self, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> "Future[T]":
-        """Put a computation in line."""
+        """Put a computation in the queue."""
         with self._lock:
             if self._inside >= self._room:
                 raise Busy(f"{self._inside} computations run or wait already; try again in a moment", seconds=2)
@@ -60,30 +58,38 @@ class WaitingLine:
 
 async def heavy(request: HTTPConnection, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
     """Compute in a thread, with few others at once, so that light requests stay quick."""
-    line: WaitingLine = request.app.state.rocking.heavy
+    queue: ComputationQueue = request.app.state.rocking.heavy
     try:
-        return await asyncio.wrap_future(line.submit(function, *args, **kwargs))
+        return await asyncio.wrap_future(queue.submit(function, *args, **kwargs))
     except asyncio.CancelledError as error:  # only a server that ends cancels a request
-        raise Ending("the server ends before this is computed; start it again, then ask again") from error
+        words = "the server ends before this is computed; start it again, then ask again"
+        raise Refused(words, status=503) from error
+
+
+async def sized(
+    request: HTTPConnection, vertices: int, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs
+) -> T:
+    """Compute in a thread; with a large body it waits in the queue with other long computations."""
+    if vertices <= _SMALL:
+        return await run_in_threadpool(function, *args, **kwargs)
+    return await heavy(request, function, *args, **kwargs)
 
 
 class Remembered(Generic[T]):
-    """The latest results by key; safe to use from several threads."""
+    """The latest results by key, as long as their sizes together are at most so much; safe for several threads."""
 
-    def __init__(self, most: int) -> None:
-        self._most = most
-        self._held: OrderedDict[str, Future[T]] = OrderedDict()
+    def __init__(self, most: int, size: Callable[[T], int] = lambda result: 1) -> None:
+        self._most, self._size = most, size
+        self._held: OrderedDict[Hashable, Future[T]] = OrderedDict()
         self._lock = threading.Lock()
 
-    def get(self, key: str, compute: Callable[[], T]) -> T:
-        """Return the result of a key; one that cannot be computed is not kept."""
+    def get(self, key: Hashable, compute: Callable[[], T]) -> T:
+        """Return the result of a key, computed once however many ask; one that cannot be computed is not kept."""
         with self._lock:
             known = self._held.get(key)
             future: Future[T] = Future() if known is None else known
             self._held[key] = future
             self._held.move_to_end(key)
-            while len(self._held) > self._most:
-                self._held.popitem(last=False)
         if known is not None:
             return known.result()
         try:
@@ -94,13 +100,25 @@ class Remembered(Generic[T]):
                     del self._held[key]
             future.set_exception(error)
             raise
+        self._make_room()
         return future.result()
 
+    def known(self, key: Hashable) -> T | None:
+        """Return the result of a key if it is there already."""
+        with self._lock:
+            future = self._held.get(key)
+        return future.result() if future is not None and future.done() else None
 
-async def sized(
-    request: HTTPConnection, body: BodyFile, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs
-) -> T:
-    """Compute in a thread; a large body waits in line with other long computations."""
-    if size_of(body) <= _SMALL:
-        return await run_in_threadpool(function, *args, **kwargs)
-    return await heavy(request, function, *args, **kwargs)
+    def forget(self, concerned: Callable[[Any], bool]) -> None:
+        """Forget what is kept under some keys."""
+        with self._lock:
+            for key in [key for key in self._held if concerned(key)]:
+                del self._held[key]
+
+    def _make_room(self) -> None:
+        with self._lock:
+            sizes = {key: self._size(one.result()) for key, one in self._held.items() if one.done()}
+            for key in list(sizes)[:-1]:
+                if sum(sizes.values()) <= self._most:
+                    return
+                del sizes[key], self._held[key]

@@ -39,7 +39,7 @@ def _serve(settings: "ServerSettings", port: int | None, *, quiet: bool, as_json
     from rocking.errors import MissingExtraError, how_to_install
 
     try:
-        from rocking.app.folder import FolderInUseError
+        from rocking.app.server import FolderInUseError
         from rocking.app.server import serve as run
     except ImportError as error:
         if isinstance(error, MissingExtraError) or (error.name or "rocking").startswith("rocking"):
@@ -83,7 +83,7 @@ def _join(settings: "ServerSettings", *, quiet: bool) -> bool:
     import json
     from urllib.request import Request, urlopen
 
-    from rocking.app.folder import DataFolder
+    from rocking.app.server import DataFolder
 
     running = DataFolder(settings.folder).running()
     if running is None:

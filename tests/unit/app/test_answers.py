@@ -1,4 +1,4 @@
-"""Answers: digits, errors, files, long computations."""
+"""Answers: digits, errors as the schema says them, files, long computations."""
 
 import json
 import logging
@@ -8,14 +8,12 @@ from concurrent.futures import wait
 
 import numpy as np
 import pytest
-from fastapi import FastAPI
-from fastapi.testclient import TestClient
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.requests import Request
 
-from rocking.app.answers import JsonAnswer, attachment, safe_name
+from rocking.app.answers import ErrorAnswer, JsonAnswer, attachment, safe_name
 from rocking.app.errors import Busy, NotFound, Refused, TooLarge
-from rocking.app.work import WaitingLine, heavy
+from rocking.app.work import ComputationQueue, heavy
 from rocking.errors import (
     BodyFileError,
     GeometryError,
@@ -45,7 +43,7 @@ ERRORS = {
 
 
 @pytest.fixture
-def odd(app: FastAPI) -> FastAPI:
+def odd(app):
     """Return the application with endpoints that fail in every way."""
     pages = app.router.routes.pop()  # the pages take whatever no endpoint takes
 
@@ -82,12 +80,12 @@ def odd(app: FastAPI) -> FastAPI:
 
 
 @pytest.fixture
-def odd_client(odd: FastAPI, client: TestClient) -> TestClient:
+def odd_client(odd, client):
     return client
 
 
 @pytest.mark.parametrize("name", ERRORS)
-def test_errors_have_one_form(odd_client: TestClient, name: str) -> None:
+def test_errors_have_one_form(odd_client, name):
     """Every error of the package becomes its status, its kind and its own sentence."""
     error, status, kind = ERRORS[name]
     answer = odd_client.get(f"/api/odd/{name}")
@@ -96,13 +94,13 @@ def test_errors_have_one_form(odd_client: TestClient, name: str) -> None:
     assert answer.headers.get("Retry-After") == ("2" if name == "busy" else None)
 
 
-def test_what_must_still_be_told_is_in_the_error(odd_client: TestClient) -> None:
+def test_what_must_still_be_told_is_in_the_error(odd_client):
     """An error that asks for more says for what."""
     assert odd_client.get("/api/odd/needs").json()["error"]["needs"] == ["units"]
 
 
 @pytest.mark.parametrize("name", ["crash", "nan", "implicit"])
-def test_unforeseen_is_logged_and_not_told(odd_client: TestClient, caplog: pytest.LogCaptureFixture, name: str) -> None:
+def test_unforeseen_is_logged_and_not_told(odd_client, caplog, name):
     """A crash, a NaN or an infinity in an answer: 500, the trace in the log, no word of it to the client."""
     with caplog.at_level(logging.ERROR, "rocking.app"):
         answer = odd_client.get(f"/api/odd/{name}")
@@ -125,7 +123,7 @@ def test_unforeseen_is_logged_and_not_told(odd_client: TestClient, caplog: pytes
         (b"[]", "must be a table"),
     ],
 )
-def test_refused_input_is_one_sentence(odd_client: TestClient, content: bytes, words: str) -> None:
+def test_refused_input_is_one_sentence(odd_client, content, words):
     """What pydantic finds is told as one plain sentence."""
     head = {"Content-Type": "application/json"}
     answer = odd_client.post("/api/odd/checked", content=content, headers=head)
@@ -133,13 +131,13 @@ def test_refused_input_is_one_sentence(odd_client: TestClient, content: bytes, w
     assert words in answer.json()["error"]["message"]
 
 
-def test_bytes_are_not_taken_for_json(odd_client: TestClient) -> None:
+def test_bytes_are_not_taken_for_json(odd_client):
     """JSON that comes as a file's bytes, past the checks of JSON, is not read as JSON."""
     head = {"Content-Type": "application/octet-stream"}
     assert odd_client.post("/api/odd/checked", content=b'{"width": 1}', headers=head).status_code == 422
 
 
-def test_every_digit_arrives() -> None:
+def test_every_digit_arrives():
     """Any float64 comes back bit by bit, from lists and from arrays."""
     values = np.frombuffer(np.random.default_rng(1).bytes(80_000), dtype=np.float64)
     values = values[np.isfinite(values)]
@@ -148,7 +146,7 @@ def test_every_digit_arrives() -> None:
         assert (back.view(np.int64) == values.view(np.int64)).all()
 
 
-def test_word_nan_is_not_the_number() -> None:
+def test_word_nan_is_not_the_number():
     """A text "NaN" is a text; only the number is refused."""
     assert json.loads(JsonAnswer({"name": "NaN Infinity"}).body) == {"name": "NaN Infinity"}
     for bad in (float("nan"), np.float64("inf"), np.array([1.0, -np.inf])):
@@ -186,7 +184,7 @@ def test_word_nan_is_not_the_number() -> None:
         ("con" + "." * 300 + ".csv", "rocking-con.csv"),
     ],
 )
-def test_file_names_are_harmless(given: str, kept: str) -> None:
+def test_file_names_are_harmless(given, kept):
     """Whatever a file is called, its name on the way out is plain."""
     assert safe_name(given) == kept
     assert attachment(b"", given, "text/csv").headers["Content-Disposition"] == f'attachment; filename="{kept}"'
@@ -195,15 +193,15 @@ def test_file_names_are_harmless(given: str, kept: str) -> None:
         assert len(name) <= 80
 
 
-def test_a_careless_name_is_noticed() -> None:
+def test_a_careless_name_is_noticed():
     """The control: what a careless rule would let through is not a plain name, and is not what comes out."""
     for given in ("../a", ".bashrc", "a..b", "a.", "a b", "con", "a/b", "a\r\nb"):
         assert safe_name(given) != given
 
 
-def test_line_of_computations_is_bounded() -> None:
+def test_line_of_computations_is_bounded():
     """One at work and one waiting is all there is room for; the next is told to come again, until one is done."""
-    line, go = WaitingLine(1, 1), threading.Event()
+    line, go = ComputationQueue(1, 1), threading.Event()
     futures = [line.submit(go.wait, 10), line.submit(int, "7")]
     with pytest.raises(Busy, match="2 computations"):
         line.submit(int, "8")
@@ -213,9 +211,9 @@ def test_line_of_computations_is_bounded() -> None:
     line.close()
 
 
-def test_failed_computation_leaves_the_line() -> None:
+def test_failed_computation_leaves_the_line():
     """A computation that raises leaves its place to the next."""
-    line = WaitingLine(1, 0)
+    line = ComputationQueue(1, 0)
     for _ in range(3):
         future = line.submit(int, "no number")
         assert isinstance(future.exception(10), ValueError)
@@ -223,6 +221,58 @@ def test_failed_computation_leaves_the_line() -> None:
     line.close()
 
 
-def test_heavy_work_comes_back(odd_client: TestClient) -> None:
+def test_heavy_work_comes_back(odd_client):
     """An endpoint gets the result of a computation in a thread."""
     assert odd_client.get("/api/odd/heavy").json() == 3
+
+
+BLOCK = {"units": "cm", "width": 50, "height": 200}
+REQUESTS = {
+    401: ("GET", "/api/info", None),
+    403: ("POST", "/api/body", {"body": BLOCK}),
+    404: ("GET", f"/api/records/{'0' * 64}", None),
+    405: ("DELETE", "/api/body", None),
+    413: ("POST", "/api/body", {"body": {"units": "m", "regular_polygon": {"sides": 10_001, "radius": 1.0}}}),
+    415: ("POST", "/api/body", "text"),
+    422: ("POST", "/api/body", {"body": {**BLOCK, "width": -1}}),
+}
+
+
+@pytest.mark.parametrize("status", REQUESTS)
+def test_errors_are_what_the_schema_says(client, status):
+    """A real answer of each status has the declared form, and the operation declares that status with that form."""
+    method, path, content = REQUESTS[status]
+    head = {401: {"Authorization": "Bearer x"}, 403: {"Origin": "http://evil.example"}}.get(status, {})
+    if isinstance(content, str):
+        answer = client.request(method, path, content=content, headers={"Content-Type": "text/plain"})
+    else:
+        answer = client.request(method, path, json=content, headers=head)
+    assert answer.status_code == status
+    told = ErrorAnswer.model_validate(answer.json())
+    assert told.error.message
+    schema = client.get("/api/openapi.json").json()
+    place = next(each for each in schema["paths"] if path.startswith(each.partition("{")[0]) and each.count("/") >= 2)
+    for operation in schema["paths"][place].values():
+        assert operation["responses"][str(status)] == {"$ref": f"#/components/responses/Error{status}"}
+    declared = schema["components"]["responses"][f"Error{status}"]
+    assert declared["content"]["application/json"]["schema"] == {"$ref": "#/components/schemas/ErrorAnswer"}
+    assert declared["description"]
+
+
+def test_another_form_is_noticed():
+    """The control: the form of the framework, and a kind that nobody knows, are not the declared form."""
+    for other in ({"detail": "no"}, {"error": {"kind": "odd", "message": "no"}}, {"error": {"kind": "busy"}}):
+        with pytest.raises(ValidationError):
+            ErrorAnswer.model_validate(other)
+
+
+def test_every_call_declares_its_errors_and_its_key(app):
+    """No operation declares the form of the framework; all but those of the session ask for the key."""
+    schema = app.openapi()
+    assert "HTTPValidationError" not in str(schema)
+    assert schema["components"]["securitySchemes"]["key"]["scheme"] == "bearer"
+    assert "Retry-After" in schema["components"]["responses"]["Error429"]["headers"]
+    for path, item in schema["paths"].items():
+        for operation in item.values():
+            assert {"400", "401", "403", "404", "413", "422", "429"} <= set(operation["responses"])
+            assert bool(operation["security"]) == (path != "/api/session")

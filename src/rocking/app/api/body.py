@@ -7,11 +7,10 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 
-from rocking.app.answers import JsonAnswer, safe_name
+from rocking.app.answers import FILE_SENT, JsonAnswer, Point, answered, shape
 from rocking.app.errors import Refused, room_on_disk
-from rocking.app.question import body_from
-from rocking.app.schemas.answers import BodyInFile, DescribedBody, answered
-from rocking.app.schemas.inputs import BodyAsked, BodyInput, check_file, parsed_toml
+from rocking.app.inputs import BodyAsked, BodyInput, body_from, check_file, parsed_toml, size_of
+from rocking.app.plain_text import safe_name
 from rocking.app.work import heavy, sized
 from rocking.bodies import Body
 from rocking.bodies.formats import read_plane_body
@@ -28,13 +27,58 @@ _ABOUT = "The keys of `body` of `rocking cor --json`, the polygons that draw the
 _FILE = """\
 The content of a DXF, WKT, GeoJSON or TOML file; `name` says by its ending which of them it is. `units` is needed for
 WKT and GeoJSON, and for a drawing that does not state its unit. `body` of the answer is what stands in the inputs."""
-OCTETS: dict[str, Any] = {
-    "requestBody": {
-        "required": True,
-        "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
-    }
-}
-"""What the schema of an endpoint says that takes a file."""
+
+SideFacts: Any = shape(
+    "SideFacts",
+    "What one side of a body decides: it stands on this foot and turns about it.",
+    slenderness_ratio=(float, "height of the centre over its lever, h/b [-]"),
+    slenderness_angle_rad=(float, "alpha = atan(b/h)"),
+    semi_diagonal_m=(float, "distance R of the centre from the foot"),
+    frequency_parameter_rad_s=(float, "p"),
+    uplift_acceleration_m_s2=(float, "ground acceleration that lifts it, g tan(alpha)"),
+)
+Sides: Any = shape("Sides", "One entry for each foot.", left=SideFacts, right=SideFacts)
+Polygon: Any = shape(
+    "Polygon",
+    "A region of one density.",
+    outline=(list[Point], "vertices x, y [m]"),
+    holes=(list[list[Point]], "vertices x, y of every hole [m]"),
+    density=(float, "[kg/m3]"),
+)
+BodyFacts: Any = shape(
+    "BodyFacts",
+    "Mass, centre, feet, and what each side decides.",
+    kind=(str, "class of the body in Python"),
+    mass_kg=(float, "mass"),
+    centre_m=(Point, "centre of mass, x and y"),
+    feet_m=(Point, "x of the left and of the right foot"),
+    moment_of_inertia_kg_m2=(float, "about the centre of mass"),
+    gravity_m_s2=(float, "acceleration of gravity"),
+    assumed=(list[str], "what nobody gave and was assumed, in sentences"),
+    warnings=(list[str], "what was hardly meant, in sentences; none if all is well"),
+    sides=Sides,
+)
+DrawnBody: Any = shape(
+    "DrawnBody",
+    "A body with the outline that draws it.",
+    BodyFacts,
+    name=(str | None, "what the user calls it"),
+    outline=(list[Polygon], "polygons; none for mass points and for ellipses"),
+    points=(list[tuple[float, float, float]], "mass points: x [m], y [m], mass [kg]"),
+    centre=(Point, "centre of mass, x and y [m]"),
+    base=(Point, "x of the left and of the right foot [m]"),
+    ground=(float, "y of the ground [m]"),
+    contact=(list[Point], "stretches of the base that touch the ground, from x to x [m]"),
+)
+DescribedBody: Any = shape(
+    "DescribedBody",
+    "A body, and what a user should know of it.",
+    DrawnBody,
+    warnings=(list[str], "sentences; none if all is well"),
+)
+BodyInFile: Any = shape(
+    "BodyInFile", "What a body file holds.", DescribedBody, body=(BodyInput, "the body as it stands in the inputs")
+)
 
 
 @router.post(
@@ -46,7 +90,7 @@ OCTETS: dict[str, Any] = {
 )
 async def body(request: Request, asked: BodyAsked) -> JsonAnswer:
     """Answer with the facts of a body."""
-    return await sized(request, asked.body, _body, asked)
+    return JsonAnswer(await sized(request, size_of(asked.body), _of_inputs, asked))
 
 
 @router.post(
@@ -55,7 +99,7 @@ async def body(request: Request, asked: BodyAsked) -> JsonAnswer:
     description=_FILE,
     response_class=JsonAnswer,
     responses=answered(BodyInFile, "The body, and what stands in the inputs for it."),
-    openapi_extra=OCTETS,
+    openapi_extra=FILE_SENT,
 )
 async def body_file(
     request: Request,
@@ -63,60 +107,50 @@ async def body_file(
     units: UnitName | None = None,
     density: Annotated[float | None, Query(gt=0.0, le=1e6, allow_inf_nan=False, description="kg/m3")] = None,
 ) -> JsonAnswer:
-    """Answer with the body of a file as it stands in the inputs, and its facts.
-
-    density: density of what has none of its own [kg/m3].
-    """
+    """Answer with the body of a file as it stands in the inputs, and its facts."""
     content = await request.body()
-    return JsonAnswer(await heavy(request, _read, content, name, units, density))
+    return JsonAnswer(await heavy(request, _of_file, content, name, units, density))
 
 
 def described(body: Body, gravity: float, name: str | None) -> dict[str, Any]:
-    """Return what is said of a body.
-
-    gravity: acceleration of gravity [m/s2].
-    """
+    """Return what is said of a body; gravity: acceleration of gravity [m/s2]."""
     facts = body_facts(body, gravity)
-    found = facts["warnings"] + [outside_evidence(body, foot) for foot in FEET]
-    warnings = list(dict.fromkeys(sentence for sentence in found if sentence))
+    warnings = facts["warnings"] + [outside_evidence(body, foot) for foot in FEET]
+    warnings = list(dict.fromkeys(sentence for sentence in warnings if sentence))
     return {"name": name, **facts, **outline_facts(body), "warnings": warnings}
 
 
-def _body(asked: BodyAsked) -> JsonAnswer:
-    return JsonAnswer(described(body_from(asked.body), asked.settings.gravity or g, asked.body.name))
+def _of_inputs(asked: BodyAsked) -> dict[str, Any]:
+    return described(body_from(asked.body), asked.settings.gravity or g, asked.body.name)
 
 
-def _read(content: bytes, name: str, units: str | None, density: float | None) -> dict[str, Any]:
-
-    given: BodyInput = body_in_file(content, name, units, density)
-    return {"body": given.table(), **described(body_from(given), g, given.name)}
+def _of_file(content: bytes, name: str, units: str | None, density: float | None) -> dict[str, Any]:
+    table = body_in_file(content, name, units, density)
+    return {"body": table.table(), **described(body_from(table), g, table.name)}
 
 
 def body_in_file(content: bytes, name: str, units: str | None, density: float | None) -> BodyInput:
-    """Return the body that a file describes.
-
-    density: density of what has none of its own, in a drawing [kg/m3].
-    """
-    shown = safe_name(name, "body")
-    check_file(content, shown)
-    if shown.lower().endswith(".toml"):
-        return _toml(content, shown, units)
+    """Return the body that a file describes; density: of what has none of its own, in a drawing [kg/m3]."""
+    name = safe_name(name, "body")
+    check_file(content, name)
+    if name.lower().endswith(".toml"):
+        return _toml(content, name, units)
     with TemporaryDirectory(prefix="rocking-") as folder:
-        path = Path(folder) / shown
+        path = Path(folder) / name
         with room_on_disk():
             path.write_bytes(content)
         body = read_plane_body(path, units=units, density=density)
-    return BodyInput.model_validate({**tomllib.loads(body_to_toml(body)), "name": Path(shown).stem})
+    return BodyInput.model_validate({**tomllib.loads(body_to_toml(body)), "name": Path(name).stem})
 
 
 def _toml(content: bytes, name: str, units: str | None) -> BodyInput:
     with blamed(name):
         try:
-            given = parsed_toml(content.decode("utf-8-sig"))
+            table = parsed_toml(content.decode("utf-8-sig"))
         except (UnicodeDecodeError, Refused) as error:
             raise BodyFileError(f"is not TOML that can be read: {str(error).partition(';')[0]}") from error
-        if "body" in given and isinstance(given["body"], dict):
-            given = given["body"]
-        if units is not None and given.get("units", units) != units:
-            raise BodyFileError(f"states units = {given['units']!r:.20}, but units = {units!r} was asked for")
-    return BodyInput.model_validate(given)
+        if "body" in table and isinstance(table["body"], dict):
+            table = table["body"]
+        if units is not None and table.get("units", units) != units:
+            raise BodyFileError(f"states units = {table['units']!r:.20}, but units = {units!r} was asked for")
+    return BodyInput.model_validate(table)

@@ -1,13 +1,12 @@
 """POST /api/impact: what an impact costs, under every model, against the published measurements."""
 
-from typing import Any
+from typing import Any, Literal
 
 from fastapi import APIRouter, Request
 
-from rocking.app.answers import JsonAnswer
-from rocking.app.question import body_from
-from rocking.app.schemas.answers import ImpactAnswered, answered
-from rocking.app.schemas.inputs import ImpactAsked
+from rocking.app.answers import Foot, JsonAnswer, Point, answered, shape
+from rocking.app.api.body import DrawnBody
+from rocking.app.inputs import ImpactAsked, body_from, size_of
 from rocking.app.work import Remembered, sized
 from rocking.bodies import Block
 from rocking.conventions import g
@@ -21,12 +20,85 @@ from rocking.reports.body_facts import (
 )
 
 router = APIRouter(prefix="/api", tags=["impact"])
-
 _ABOUT = """\
 The keys of `rocking cor --json`; `measured` and `curves` for the picture; `stages` by foot with velocities at points
 of the body for the three stages of KED; `warnings` in plain words, each with the models that it concerns."""
-
 _HELD: Remembered[JsonAnswer] = Remembered(64)
+
+Shares: Any = shape(
+    "Shares",
+    "Kinetic energy that each stage of KED leaves, over the energy before the impact.",
+    **{
+        "before": (float, "1 [-]"),
+        "stage 1": (float, "after the vertical part is lost [-]"),
+        "stage 2": (float, "after the part along O'S is lost [-]"),
+        "after": (float, "after the impact [-]"),
+    },
+)
+CoefficientFacts: Any = shape(
+    "CoefficientFacts",
+    "One model's answer for one body.",
+    model=(str, "name of the model with its parameters, or calibrated"),
+    coefficient_of_restitution=(float, "theta_dot_after / theta_dot_before, of velocities [-]"),
+    low_95=(float, "lower end of the 95 % interval for a single measured body [-]"),
+    high_95=(float, "upper end of the 95 % interval for a single measured body [-]"),
+    impulse_ratio_k=(float, "distance of the impulse over the lever of the new foot [-]"),
+    impulse_x_m=(float, "where the impulse acts on the ground"),
+    energy_loss=(float, "share of the kinetic energy that the impact costs [-]"),
+    friction_demand=(float, "friction coefficient below which the foot slips at the impact [-]"),
+    admissible=(bool, "whether one impulse on the base can do it without creating energy"),
+    warnings=(list[str], "sentences; none if all is well"),
+)
+Stage: Any = shape(
+    "Stage",
+    "One stage of the impact.",
+    name=Literal["before", "stage 1", "stage 2", "after"],
+    words=str,
+    energy_J=(float, "kinetic energy that it leaves"),
+    share=(float, "the same over the energy before the impact [-]"),
+    velocity_m_s=(list[Point], "velocity x and y at each of the points"),
+)
+Stages: Any = shape(
+    "Stages",
+    "The three stages of KED for an impact at 1 rad/s.",
+    velocity_before_rad_s=(float, "angular velocity"),
+    velocity_after_rad_s=(float, "angular velocity"),
+    points_m=(list[Point], "where the velocities are given, x and y"),
+    stages=list[Stage],
+)
+MeasuredPoint: Any = shape(
+    "MeasuredPoint",
+    "One published measurement.",
+    group=str,
+    label=str,
+    slenderness_ratio=(float, "h/b [-]"),
+    slenderness_angle_rad=(float, ""),
+    coefficient=(float, "of restitution", "coefficient"),
+    low=(float, "least value that the printed digits leave open [-]"),
+    high=(float, "largest value that the printed digits leave open [-]"),
+)
+Measured: Any = shape("Measured", "The published measurements.", source=str, points=list[MeasuredPoint])
+ModelCurve: Any = shape(
+    "ModelCurve",
+    "The coefficient of homogeneous rectangles under one model.",
+    model=str,
+    slenderness_ratio=(list[float], "h/b [-]"),
+    coefficient=(list[float], "of restitution", "coefficient"),
+)
+ImpactWarning: Any = shape("ImpactWarning", "A sentence, and the models that it is about.", words=str, models=list[str])
+ImpactAnswered: Any = shape(
+    "ImpactAnswered",
+    "What an impact costs, by the foot on which the body lands; of two equal feet only the right one is told.",
+    body=DrawnBody,
+    ked_energy_shares=dict[Foot, Shares],
+    coefficients=(dict[Foot, list[CoefficientFacts]], "every model, the calibrated default first"),
+    identities=(dict[str, dict[str, bool]], "empty here; `rocking cor --identities --json` fills it"),
+    titles=(dict[str, str], "name of a model to its title"),
+    measured=Measured,
+    curves=list[ModelCurve],
+    stages=dict[Foot, Stages],
+    warnings=list[ImpactWarning],
+)
 
 
 @router.post(
@@ -38,15 +110,11 @@ _HELD: Remembered[JsonAnswer] = Remembered(64)
 )
 async def impact(request: Request, asked: ImpactAsked) -> JsonAnswer:
     """Answer with coefficients, evidence and stages."""
-    return await sized(request, asked.body, _answer, asked)
+    return await sized(request, size_of(asked.body), answer, asked)
 
 
-def warm_up() -> None:
-    """Compute what all answers share, so that the first user does not wait for it."""
-    _answer(ImpactAsked.model_validate({"body": {"units": "m", "width": 1.0, "height": 4.0}}))
-
-
-def _answer(asked: ImpactAsked) -> JsonAnswer:
+def answer(asked: ImpactAsked) -> JsonAnswer:
+    """Return what an impact costs; one that was asked for lately is not computed again."""
     return _HELD.get(asked.model_dump_json(exclude_unset=True), lambda: JsonAnswer(_facts(asked)))
 
 
@@ -54,26 +122,24 @@ def _facts(asked: ImpactAsked) -> dict[str, Any]:
     body = body_from(asked.body)
     # a block is the same on both sides; what is the same is told once
     onto = "right" if asked.onto == "both" and isinstance(body, Block) else asked.onto
-    gravity = asked.settings.gravity or g
-    answer = ImpactAnswer.of(body, None, onto=onto, eta=1.0, gravity=gravity, identities=False)
-    facts = impact_facts(answer)
+    coefficients = ImpactAnswer.of(
+        body, None, onto=onto, eta=1.0, gravity=asked.settings.gravity or g, identities=False
+    )
+    facts = impact_facts(coefficients)
     facts["body"] |= {"name": asked.body.name, **outline_facts(body)}
-    titles = {row.name: row.title for rows in answer.tables.values() for row in rows}
     return {
         **facts,
-        "titles": titles,
+        "titles": {row.name: row.title for rows in coefficients.tables.values() for row in rows},
         "measured": measured_facts(),
         "curves": curves_facts(),
-        "stages": {foot: stages_facts(body, foot) for foot in answer.tables},
-        "warnings": _warnings(answer),
+        "stages": {foot: stages_facts(body, foot) for foot in coefficients.tables},
+        "warnings": _warnings(coefficients),
     }
 
 
-def _warnings(answer: ImpactAnswer) -> list[dict[str, Any]]:
-    found: dict[str, list[str]] = {}
-    for row in (row for rows in answer.tables.values() for row in rows):
+def _warnings(coefficients: ImpactAnswer) -> list[dict[str, Any]]:
+    models: dict[str, dict[str, None]] = {}
+    for row in (row for rows in coefficients.tables.values() for row in rows):
         for words in row.warnings:
-            models = found.setdefault(words, [])
-            if row.name not in models:
-                models.append(row.name)
-    return [{"words": words, "models": models} for words, models in found.items()]
+            models.setdefault(words, {})[row.name] = None
+    return [{"words": words, "models": list(names)} for words, names in models.items()]

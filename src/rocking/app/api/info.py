@@ -4,21 +4,18 @@ import inspect
 import math
 from dataclasses import asdict
 from functools import cache
-from importlib.metadata import version
-from typing import Any
+from typing import Any, Literal
 
 from fastapi import APIRouter, Request
 
-from rocking.app.answers import JsonAnswer
-from rocking.app.schemas.answers import Info, answered
-from rocking.app.schemas.inputs import CAPS
+from rocking.app.answers import JsonAnswer, QuantityAnswer, answered, shape
+from rocking.app.inputs import CAPS
 from rocking.app.settings import state_of
 from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, g
+from rocking.version import __version__
 
 router = APIRouter(prefix="/api", tags=["info"])
-
 _ABOUT = "Version, engine, models, pulses, families of motions, formats, units, measures, axes of maps and limits."
-
 PARAMETERS = {
     "amplitude": ("m/s2", "peak acceleration"),
     "velocity": ("m/s", "velocity amplitude"),
@@ -32,6 +29,71 @@ PARAMETERS = {
 
 UNLIMITED = "unlimited"
 """What stands for an infinite default, which JSON has no number for."""
+
+EngineFacts: Any = shape("EngineFacts", "Which engine computes histories.", name=str, instruction_set=str | None)
+ParameterFacts: Any = shape(
+    "ParameterFacts",
+    "What a model or a pulse takes.",
+    unit=str,
+    words=str,
+    default=(
+        float | Literal["unlimited"] | None,
+        'in `unit`; "unlimited" where it is infinite, null where one must be given',
+    ),
+)
+ModelFacts: Any = shape(
+    "ModelFacts",
+    "A restitution model.",
+    name=str,
+    label=str,
+    title=str,
+    citation=str,
+    summary=str,
+    assumptions=list[str],
+    domain=str,
+    known_defects=list[str],
+    parameters=dict[str, ParameterFacts],
+)
+PulseFacts: Any = shape("PulseFacts", "A kind of pulse.", summary=str, parameters=dict[str, ParameterFacts])
+FamilyFacts: Any = shape(
+    "FamilyFacts",
+    "A family of synthetic motions.",
+    name=str,
+    title=str,
+    summary=str,
+    generator=str,
+    time_step_s=(float, ""),
+)
+FormatFacts: Any = shape(
+    "FormatFacts",
+    "A format of record files.",
+    name=str,
+    title=str,
+    suffixes=list[str],
+    states_unit=bool,
+    states_time_step=bool,
+    notes=str,
+)
+UnitNames: Any = shape("UnitNames", "Units that may be said.", length=list[str], acceleration=list[str])
+KindOfStudy: Any = shape(
+    "KindOfStudy", "A kind of study, and the table that its job has of its own.", name=str, table=str
+)
+Info: Any = shape(
+    "Info",
+    "What there is to choose from.",
+    version=str,
+    engine=EngineFacts,
+    gravity_m_s2=(float, "where nothing else is said"),
+    models=list[ModelFacts],
+    pulses=dict[str, PulseFacts],
+    families=list[FamilyFacts],
+    formats=list[FormatFacts],
+    units=UnitNames,
+    measures=list[QuantityAnswer],
+    axes=list[QuantityAnswer],
+    study_kinds=list[KindOfStudy],
+    limits=(dict[str, float], "how much one server takes; the names say what: bytes [B], seconds [s], counts"),
+)
 
 
 @router.get(
@@ -50,29 +112,41 @@ def info(request: Request) -> JsonAnswer:
 @cache
 def _constant() -> dict[str, Any]:
     from rocking.app.studies.job_document import KINDS
+    from rocking.dynamics.plane import fast_engine
+    from rocking.motions.pulses import catalogue
     from rocking.spec.document import NEEDS
+    from rocking.studies.axis import axes
 
+    fast = fast_engine.available()
     return {
-        "version": version("rocking"),
-        "engine": _engine(),
+        "version": __version__,
+        "engine": {
+            "name": "fast" if fast else "reference", "instruction_set": fast_engine.instruction_set() if fast else None,
+        },
         "gravity_m_s2": g,
         "models": _models(),
-        "pulses": _pulses(),
+        "pulses": {
+            name: {"summary": (inspect.getdoc(one) or "").partition("\n")[0], "parameters": _parameters(one)}
+            for name, one in sorted(catalogue().items())
+        },
         "families": _families(),
         "formats": _formats(),
         "units": {"length": list(LENGTH_UNITS), "acceleration": list(ACCELERATION_UNITS)},
         "measures": listed_measures(),
-        "axes": _axes(),
+        "axes": [_quantity(one) for one in axes().values()],
         "study_kinds": [{"name": name, "table": NEEDS[name]} for name in KINDS],
-    }
+    }  # fmt: skip
 
 
-def _engine() -> dict[str, Any]:
-    from rocking.dynamics.plane import fast_engine
+def listed_measures() -> list[dict[str, str]]:
+    """Return the measures of intensity that have names."""
+    from rocking.motions.intensity import measures
 
-    if not fast_engine.available():
-        return {"name": "reference", "instruction_set": None}
-    return {"name": "fast", "instruction_set": fast_engine.instruction_set()}
+    return [_quantity(one) for one in measures().values()]
+
+
+def _quantity(one: Any) -> dict[str, str]:
+    return {"name": one.name, "words": one.words, "unit": one.unit}
 
 
 def _models() -> list[dict[str, Any]]:
@@ -94,29 +168,20 @@ def _models() -> list[dict[str, Any]]:
     ]
 
 
-def _parameters(made_by: Any) -> dict[str, dict[str, Any]]:
+def _parameters(kind: Any) -> dict[str, dict[str, Any]]:
     """Return what something takes, with unit and usual value."""
-    found = {}
-    for name, one in inspect.signature(made_by).parameters.items():
+    parameters = {}
+    for name, one in inspect.signature(kind).parameters.items():
         unit, words = PARAMETERS.get(name, ("-", name.replace("_", " ")))
-        found[name] = {"unit": unit, "words": words, "default": _usual(one)}
-    return found
+        parameters[name] = {"unit": unit, "words": words, "default": _usual(one.default)}
+    return parameters
 
 
-def _usual(one: inspect.Parameter) -> Any:
+def _usual(default: Any) -> Any:
     """Return the default of a parameter; None where a value must be given, which an infinite default is not."""
-    if one.default is inspect.Parameter.empty:
+    if default is inspect.Parameter.empty:
         return None
-    return UNLIMITED if isinstance(one.default, float) and math.isinf(one.default) else one.default
-
-
-def _pulses() -> dict[str, dict[str, Any]]:
-    from rocking.motions.pulses import catalogue
-
-    return {
-        name: {"summary": (inspect.getdoc(made) or "").partition("\n")[0], "parameters": _parameters(made)}
-        for name, made in sorted(catalogue().items())
-    }
+    return UNLIMITED if isinstance(default, float) and math.isinf(default) else default
 
 
 def _families() -> list[dict[str, Any]]:
@@ -137,27 +202,8 @@ def _families() -> list[dict[str, Any]]:
 def _formats() -> list[dict[str, Any]]:
     from rocking.motions.formats import formats
 
+    keys = ("title", "states_unit", "states_time_step", "notes")
     return [
-        {
-            "name": name,
-            "title": one.title,
-            "suffixes": list(one.suffixes),
-            "states_unit": one.states_unit,
-            "states_time_step": one.states_time_step,
-            "notes": one.notes,
-        }
+        {"name": name, "suffixes": list(one.suffixes), **{key: getattr(one, key) for key in keys}}
         for name, one in formats().items()
     ]
-
-
-def listed_measures() -> list[dict[str, Any]]:
-    """Return the measures of intensity that have names."""
-    from rocking.motions.intensity import measures
-
-    return [{"name": one.name, "words": one.words, "unit": one.unit} for one in measures().values()]
-
-
-def _axes() -> list[dict[str, Any]]:
-    from rocking.studies.axis import axes
-
-    return [{"name": one.name, "unit": one.unit, "words": one.words} for one in axes().values()]

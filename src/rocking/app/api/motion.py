@@ -1,36 +1,87 @@
 """POST /api/motion: what a motion is and how strong."""
 
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from fastapi import APIRouter, Request
+from pydantic import Field
 
-from rocking.app.answers import JsonAnswer
+from rocking.app.answers import JsonAnswer, answered, shape
 from rocking.app.api.response import thinned
-from rocking.app.question import motion_from
+from rocking.app.inputs import MotionAsked, motion_from
 from rocking.app.records import RecordStore
-from rocking.app.schemas.answers import MotionAnswered, answered
-from rocking.app.schemas.inputs import MotionAsked
 from rocking.app.settings import state_of
 from rocking.app.work import Remembered, heavy
-from rocking.conventions import FloatArray
-from rocking.motions.intensity import Measure
 from rocking.motions.motion import GroundMotion
-from rocking.motions.spectrum import SHORTEST_PERIOD, response_spectrum
-from rocking.plots.traces import Traces, fine_samples, traces
+from rocking.motions.spectrum import SHORTEST_PERIOD, ResponseSpectrum, response_spectrum
+from rocking.plots.traces import fine_samples, traces
 from rocking.reports.motion_facts import measures_of, motion_facts
 
 router = APIRouter(prefix="/api", tags=["motion"])
-
 _ABOUT = """\
 The keys of `rocking motion --json` but its spectrum; `series` as drawn over `points` dots, each with the extremes of
 every curve, between the two times of `window` if given; `spectrum` at 100 periods for 5 % damping; `measures` as a
 list."""
-
 _HELD: Remembered[JsonAnswer] = Remembered(32)
 
 DAMPING = 0.05
+"""Damping ratio of the spectrum [-]."""
+
 _LONGEST, _SHORTEST, _COUNT = 10.0, 0.03, 100
+
+MotionSeries: Any = shape(
+    "MotionSeries",
+    "The curves of a motion, as many samples of each, every extreme among them.",
+    time=(list[float], "", "time"),
+    acceleration=(list[float], "", "ground_acceleration"),
+    velocity=(list[float], "[m/s]"),
+    displacement=(list[float], "[m]"),
+    vertical=(list[float] | None, Field(None, description="vertical acceleration, where there is one [m/s2]")),
+    shown=(int, "samples here"),
+    of=(int, "samples of the motion"),
+)
+SpectrumFacts: Any = shape(
+    "SpectrumFacts",
+    "The response of oscillators to a motion.",
+    damping_ratio=(float, "[-]"),
+    period=(list[float], "[s]"),
+    acceleration=(list[float], "pseudo-acceleration [m/s2]"),
+    velocity=(list[float], "pseudo-velocity [m/s]"),
+    displacement=(list[float], "[m]"),
+    absolute_acceleration=(list[float], "[m/s2]"),
+)
+MeasureFacts: Any = shape(
+    "MeasureFacts",
+    "One intensity measure.",
+    name=(str, "short name: pga, pgv, ..."),
+    value=(float, "in `unit`"),
+    unit=str,
+    words=str,
+)
+MotionAnswered: Any = shape(
+    "MotionAnswered",
+    "What a motion is, how strong, and its curves.",
+    kind=Literal["record", "pulse"],
+    name=str,
+    format=str | None,
+    event=str | None,
+    station=str | None,
+    component=str | None,
+    vertical_component=str | None,
+    file_unit=(str | None, "unit of the file; the answer is in SI"),
+    samples=(int | None, "of a record"),
+    time_step_s=(float | None, "of a record"),
+    duration_s=(float, ""),
+    warnings=(list[str], "what was hardly meant, in sentences; none if all is well"),
+    provenance=(list[str], "what was done to it, in order"),
+    peak_vertical_acceleration_m_s2=(float | None, ""),
+    intensity=(dict[str, float], "measures, with their units in the names"),
+    scale=(float, "factor on the motion, which is in every number here [-]"),
+    peak_acceleration_m_s2=(float, ""),
+    series=MotionSeries,
+    spectrum=(SpectrumFacts | None, "null where it was not asked for"),
+    measures=list[MeasureFacts],
+)
 
 
 @router.post(
@@ -52,42 +103,43 @@ def _answer(asked: MotionAsked, records: RecordStore) -> JsonAnswer:
 
 
 def _facts(asked: MotionAsked, records: RecordStore) -> dict[str, Any]:
-    chosen = motion_from(asked.motion, records)
-    moved = chosen if asked.motion.scale == 1.0 else chosen.scaled(asked.motion.scale)
+    motion = motion_from(asked.motion, records)
+    moved = motion if asked.motion.scale == 1.0 else motion.scaled(asked.motion.scale)
     samples, curves = fine_samples(moved), traces(moved)
     measures = measures_of(moved, samples, curves)
+    columns = {name: getattr(curves, name) for name in ("acceleration", "velocity", "displacement")}
+    if isinstance(moved, GroundMotion) and samples.vertical is not None:
+        columns["vertical"] = np.interp(curves.time, moved.time, samples.vertical)
+    kept = thinned(curves.time, list(columns.values()), asked.points, asked.window)
+    columns = {"time": curves.time, **columns}
     return {
         **motion_facts(moved, samples, measures),
         "scale": asked.motion.scale,
         "peak_acceleration_m_s2": moved.peak,
-        "series": _series(curves, samples.vertical if isinstance(moved, GroundMotion) else None, moved, asked),
-        "spectrum": _spectrum(samples) if asked.spectrum else None,
-        "measures": [_measure(key, one) for key, one in measures.items()],
+        "series": {
+            **{name: values[kept].tolist() for name, values in columns.items()},
+            "shown": int(kept.size),
+            "of": int(curves.time.size),
+        },
+        "spectrum": _spectrum_facts(spectrum_of(samples)) if asked.spectrum else None,
+        "measures": [
+            {"name": key, "value": one.value, "unit": one.unit, "words": one.name} for key, one in measures.items()
+        ],
     }
 
 
-def _series(curves: Traces, vertical: FloatArray | None, moved: Any, asked: MotionAsked) -> dict[str, Any]:
-    columns = {name: getattr(curves, name) for name in ("acceleration", "velocity", "displacement")}
-    if vertical is not None:
-        columns["vertical"] = np.interp(curves.time, moved.time, vertical)
-    kept = thinned(curves.time, list(columns.values()), asked.points, asked.window)
-    found: dict[str, Any] = {name: values[kept].tolist() for name, values in columns.items()}
-    return {"time": curves.time[kept].tolist(), **found, "shown": int(kept.size), "of": int(curves.time.size)}
-
-
-def _spectrum(samples: GroundMotion) -> dict[str, Any]:
+def spectrum_of(samples: GroundMotion) -> ResponseSpectrum:
+    """Return the response spectrum that is drawn: at 100 periods, for 5 % damping."""
     shortest = max(_SHORTEST, SHORTEST_PERIOD * samples.time_step)
-    periods = np.geomspace(shortest, max(_LONGEST, 2.0 * shortest), _COUNT)
-    found = response_spectrum(samples, periods, DAMPING)
+    return response_spectrum(samples, np.geomspace(shortest, max(_LONGEST, 2.0 * shortest), _COUNT), DAMPING)
+
+
+def _spectrum_facts(spectrum: ResponseSpectrum) -> dict[str, Any]:
     return {
-        "damping_ratio": found.damping,
-        "period": found.periods.tolist(),
-        "acceleration": found.pseudo_acceleration.tolist(),
-        "velocity": found.pseudo_velocity.tolist(),
-        "displacement": found.displacement.tolist(),
-        "absolute_acceleration": found.absolute_acceleration.tolist(),
+        "damping_ratio": spectrum.damping,
+        "period": spectrum.periods.tolist(),
+        "acceleration": spectrum.pseudo_acceleration.tolist(),
+        "velocity": spectrum.pseudo_velocity.tolist(),
+        "displacement": spectrum.displacement.tolist(),
+        "absolute_acceleration": spectrum.absolute_acceleration.tolist(),
     }
-
-
-def _measure(key: str, one: Measure) -> dict[str, Any]:
-    return {"name": key, "value": one.value, "unit": one.unit, "words": one.name}

@@ -1,19 +1,16 @@
 """POST /api/response: how the body rocks under every restitution that was chosen, with curves thinned for drawing."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from fastapi import APIRouter, Request
 
-from rocking.app.answers import JsonAnswer
+from rocking.app.answers import Foot, JsonAnswer, answered, shape
+from rocking.app.api.body import DrawnBody
 from rocking.app.errors import TooLarge
-from rocking.app.question import Question, question_of
+from rocking.app.inputs import ResponseAsked, question_of
 from rocking.app.records import RecordStore
-from rocking.app.schemas.answers import answered
-from rocking.app.schemas.inputs import ResponseAsked
-from rocking.app.schemas.response_answers import ResponseAnswered
 from rocking.app.settings import state_of
 from rocking.app.work import heavy
 from rocking.conventions import FloatArray, IntArray
@@ -27,6 +24,7 @@ from rocking.outcome import Outcome
 from rocking.plots.animation_scene import DrawnShape, fall_of
 from rocking.reports.body_facts import body_facts, outline_facts
 from rocking.reports.response_facts import ModelAgreement, finite, moved_facts, response_facts
+from rocking.spec.response import ResponseProblem
 
 router = APIRouter(prefix="/api", tags=["response"])
 _ABOUT = """\
@@ -43,6 +41,129 @@ MOST_TOGETHER = 3_000_000
 _NEWTON_STEPS = 8
 
 
+RockingSideAnswer: Any = shape(
+    "RockingSideAnswer",
+    "One side of the body as its equation of motion has it.",
+    slenderness_angle_rad=(float, "alpha"),
+    frequency_parameter_rad_s=(float, "p"),
+    semi_diagonal_m=(float, "R"),
+    coefficient=(float, "of restitution where it lands on this foot", "coefficient"),
+)
+RockingSides: Any = shape("RockingSides", "One entry for each foot.", left=RockingSideAnswer, right=RockingSideAnswer)
+RockingBody: Any = shape(
+    "RockingBody",
+    "The body as its equations of motion have it.",
+    kind=(str, "class of the body in Python"),
+    mass_kg=(float, ""),
+    assumed=(list[str], "what nobody gave and was assumed, in sentences"),
+    warnings=(list[str], "what was hardly meant, in sentences; none if all is well"),
+    sides=RockingSides,
+)
+MovedFacts: Any = shape(
+    "MovedFacts",
+    "What moved the ground.",
+    kind=Literal["record", "pulse"],
+    name=str,
+    scale=(float, "factor on the motion [-]"),
+    duration_s=(float, ""),
+    peak_acceleration_m_s2=(float, "scaled"),
+    warnings=(list[str], "what was hardly meant, in sentences; none if all is well"),
+)
+StillRocking: Any = shape(
+    "StillRocking",
+    "The last state of a body that does not yet rest when the computation ends.",
+    time_s=(float, ""),
+    rotation_rad=(float, "theta"),
+    angular_velocity_rad_s=(float, ""),
+    sentence=(str, "the same in words"),
+)
+ImpactFacts: Any = shape(
+    "ImpactFacts",
+    "One impact.",
+    time_s=(float, ""),
+    velocity_before_rad_s=(float, ""),
+    velocity_after_rad_s=(float, ""),
+    coefficient=(float, "of restitution", "coefficient"),
+    onto=(str, "foot on which the body lands"),
+)
+FrictionFacts: Any = shape(
+    "FrictionFacts",
+    "Friction that rocking without slip takes.",
+    given=(float, "coefficient of friction that was given, or assumed", "friction_demand"),
+    assumed=(bool, "whether nobody gave it"),
+    of_motion=(float | None, "demand while it rocks; null if no friction suffices", "friction_demand"),
+    of_impacts=(float | None, "demand at impacts; null if no friction suffices", "friction_demand"),
+)
+ResponseSeries: Any = shape(
+    "ResponseSeries",
+    "The curves of a response: one entry of each for every time; every dot of a picture has its extremes.",
+    time=(list[float], "", "time"),
+    rotation=(list[float], "theta", "rotation"),
+    velocity=(list[float], "angular velocity", "angular_velocity"),
+    kinetic=(list[float], "kinetic energy", "kinetic_energy"),
+    potential=(list[float], "potential energy over that at rest", "potential_energy"),
+    work=(list[float], "work of the ground so far", "work_of_ground"),
+    lost=(list[float], "energy that impacts have cost so far", "energy_lost"),
+    friction_demand=(list[float | None], "null where no friction suffices", "friction_demand"),
+    vertical_force=(list[float], "of the ground on the body", "vertical_force"),
+    ground_acceleration=(list[float], "", "ground_acceleration"),
+    ground_displacement=(list[float], "", "displacement"),
+    shown=(int, "samples here"),
+    of=(int, "states of the response: samples, events, and where it turns round"),
+)
+FallAnswer: Any = shape(
+    "FallAnswer",
+    "How a fall goes on after the curves end, by the same equation of motion, until a corner meets the ground.",
+    time=(list[float], "", "time"),
+    rotation=(list[float], "theta", "rotation"),
+    lying=(tuple[float, float], "theta where it lies on its left and on its right side", "rotation"),
+)
+ResponseFacts: Any = shape(
+    "ResponseFacts",
+    "The response under one restitution: the keys of `rocking simulate --json`, with label and curves.",
+    label=(str, "the restitution"),
+    body=RockingBody,
+    motion=(MovedFacts | None, "null for free rocking"),
+    initial_rotation_rad=(float, ""),
+    restitution=str,
+    engine=(str, "which one ran"),
+    gravity_m_s2=(float, ""),
+    linear=(bool, "whether the equations were linearised"),
+    outcome=Literal["no_uplift", "rocked", "overturned"],
+    summary=(str, "the outcome in a sentence"),
+    overturned_to=Foot | None,
+    overturning_time_s=(float | None, "null if it stands"),
+    peak_rotation_rad=(float, "a quarter turn if it overturned"),
+    peak_rotation_over_alpha=(float, "over the slenderness angle of that side", "peak_ratio"),
+    still_rocking=(StillRocking | None, "null where it rests or has overturned at the end"),
+    lost_contact=(bool, "whether the ground would have to pull, so that the verdict assumes contact"),
+    uplifts_s=(list[float], "times at which it leaves the ground"),
+    impacts=list[ImpactFacts],
+    energy_closure=(float, "energy that does not add up, over the largest energy [-]"),
+    error_estimate_rad=(float | None, "of the peak; null if another step changes the outcome"),
+    friction=FrictionFacts,
+    least_vertical_force_N=(float, "of the ground on the body"),
+    warnings=(list[str], "sentences; none if pure rocking is credible"),
+    series=ResponseSeries,
+    fall=FallAnswer,
+)
+NoResponse: Any = shape(
+    "NoResponse",
+    "Why one of the restitutions has no response.",
+    label=(str, "the restitution"),
+    error=(str, "one sentence"),
+)
+VerdictFacts: Any = shape("VerdictFacts", "Whether the choice of the model decides.", decides=bool, sentence=str)
+ResponseAnswered: Any = shape(
+    "ResponseAnswered",
+    "How the body rocks, under every restitution that was chosen.",
+    answers=list[ResponseFacts | NoResponse],
+    verdict=VerdictFacts,
+    body=DrawnBody,
+    motion=(MovedFacts | None, "null for free rocking"),
+)
+
+
 @router.post(
     "/response",
     summary="How the body rocks",
@@ -56,81 +177,61 @@ async def response(request: Request, inputs: ResponseAsked) -> JsonAnswer:
 
 
 def _answer(inputs: ResponseAsked, records: RecordStore) -> dict[str, Any]:
-    return ResponseAnswers.of(question_of(inputs, records)).facts(inputs.points, inputs.body.name, inputs.window)
+    return answers_facts(question_of(inputs, records), inputs.points, inputs.body.name, inputs.window)
 
 
-@dataclass(frozen=True, slots=True)
-class ResponseAnswers:
-    """What every restitution makes of one question."""
+def answers_facts(
+    question: ResponseProblem, points: int, name: str | None = None, window: tuple[float, float] | None = None
+) -> dict[str, Any]:
+    """Return what every restitution makes of one question; window: the part of the time that is drawn [s]."""
+    assert not isinstance(question.motion, dict)  # the page has one component
+    answers = responses_of(question)
+    verdict = ModelAgreement.of({label: one for label, one in answers.items() if isinstance(one, Response)})
+    return {
+        "answers": [
+            {"label": label, "error": one}
+            if isinstance(one, str)
+            else answer_facts(label, one, question, points, window)
+            for label, one in answers.items()
+        ],
+        "verdict": {"decides": verdict.decides, "sentence": verdict.sentence},
+        "body": {
+            "name": name, **body_facts(question.body, question.settings.gravity), **outline_facts(question.body),
+        },
+        "motion": moved_facts(question.motion, question.scale),
+    }  # fmt: skip
 
-    question: Question
-    found: dict[str, Response | str]  # by label: the response, or why there is none
 
-    @classmethod
-    def of(cls, question: Question) -> "ResponseAnswers":
-        """Compute the responses.
-
-        Returns at least one of them is there.
-        """
-        found: dict[str, Response | str] = {}
-        samples = 0
-        for label, choice in question.restitutions.items():
-            found[label] = tried = _tried(question, choice)
-            samples += tried.segments.count if isinstance(tried, Response) else 0
-            _refuse_long(samples, len(found), len(question.restitutions))
-        reasons = [reason for reason in found.values() if isinstance(reason, str)]
-        if len(reasons) == len(found):
-            raise InvalidValueError(reasons[0])
-        return cls(question, found)
-
-    @property
-    def responses(self) -> dict[str, Response]:
-        """The responses that are there, by label."""
-        return {label: one for label, one in self.found.items() if isinstance(one, Response)}
-
-    def facts(self, points: int, name: str | None = None, window: tuple[float, float] | None = None) -> dict[str, Any]:
-        """Return the answer of the API.
-
-        window: the part of the time that is drawn [s].
-        """
-        asked, verdict = self.question, ModelAgreement.of(self.responses)
-        return {
-            "answers": [
-                {"label": label, "error": one}
-                if isinstance(one, str)
-                else answer_facts(label, one, asked, points, window)
-                for label, one in self.found.items()
-            ],
-            "verdict": {"decides": verdict.decides, "sentence": verdict.sentence},
-            "body": {"name": name, **body_facts(asked.body, asked.settings.gravity), **outline_facts(asked.body)},
-            "motion": moved_facts(asked.motion, asked.scale),
-        }
+def responses_of(question: ResponseProblem) -> dict[str, Response | str]:
+    """Return by label the response with every restitution, or why there is none; at least one is there."""
+    answers: dict[str, Response | str] = {}
+    samples = 0
+    for label, restitution in question.restitutions.items():
+        answers[label] = one = _tried(question, restitution)
+        samples += one.segments.count if isinstance(one, Response) else 0
+        if samples > MOST_TOGETHER:
+            raise TooLarge(
+                f"{len(answers)} of {len(question.restitutions)} responses together take {samples} steps, more than "
+                f"the {MOST_TOGETHER} that are computed at once; fewer restitutions, a motion with longer steps, or "
+                "the command line"
+            )
+    reasons = [reason for reason in answers.values() if isinstance(reason, str)]
+    if len(reasons) == len(answers):
+        raise InvalidValueError(reasons[0])
+    return answers
 
 
 def answer_facts(
-    label: str, response: Response, question: Question, points: int, window: tuple[float, float] | None = None
+    label: str, response: Response, question: ResponseProblem, points: int, window: tuple[float, float] | None = None
 ) -> dict[str, Any]:
-    """Return one response as the API tells it.
-
-    window: the part of the time that is drawn [s]. Returns what `rocking.reports.response_facts.response_facts` says,
-    with ``label``, ``series`` and ``fall``.
-    """
-    facts = response_facts(response, question.assumed_friction)
-    series = response_series(response, points, window)
+    """Return one response as the API tells it: its facts, with label, curves and fall."""
+    facts, series = response_facts(response, question.assumed_friction), response_series(response, points, window)
     return {"label": label, **facts, "series": series, "fall": fall_series(response)}
 
 
-def _refuse_long(samples: int, done: int, asked: int) -> None:
-    if samples > MOST_TOGETHER:
-        raise TooLarge(
-            f"{done} of {asked} responses together take {samples} steps, more than the {MOST_TOGETHER} that are "
-            "computed at once; fewer restitutions, a motion with longer steps, or the command line"
-        )
-
-
-def _tried(question: Question, restitution: Any) -> Response | str:
+def _tried(question: ResponseProblem, restitution: Any) -> Response | str:
     try:
-        response = question.answer(restitution)
+        response: Response = question.answer(restitution)
     except InvalidValueError as error:
         return str(error)
     if response.outcome is Outcome.FAILED:
@@ -144,13 +245,7 @@ def _tried(question: Question, restitution: Any) -> Response | str:
 
 
 def response_series(response: Response, points: int, window: tuple[float, float] | None = None) -> dict[str, Any]:
-    """Return the curves of a response.
-
-    window: the part of the time that is drawn [s]. Returns ``time``, ``rotation``, ``velocity``, ``kinetic``,
-    ``potential``, ``work``, ``lost``, ``friction_demand`` (None where it is infinite), ``vertical_force``,
-    ``ground_acceleration``, ``ground_displacement``: SI units; and ``shown`` of how many states (``of``): samples,
-    events with the states before and after them, and where the body turns round.
-    """
+    """Return the curves of a response, `ResponseSeries`; window: the part of the time that is drawn [s]."""
     whole, curves = _states(response)
     kept = thinned(whole, list(curves.values()), points, window)
     time, columns = whole[kept], {name: values[kept].tolist() for name, values in curves.items()}
@@ -165,11 +260,7 @@ def response_series(response: Response, points: int, window: tuple[float, float]
 
 
 def fall_series(response: Response) -> dict[str, Any]:
-    """Return how the fall of a response goes on after its curves end.
-
-    Returns ``time`` [s] and ``rotation`` [rad], empty if there is no more to fall; ``lying``: the rotations at which
-    the body lies on its left and on its right side [rad].
-    """
+    """Return how the fall of a response goes on after its curves end, `FallAnswer`; empty if there is no more."""
     lying = DrawnShape.of(response.body).lying
     fall = fall_of(response, lying)
     return {"time": fall.time[1:].tolist(), "rotation": fall.rotation[1:].tolist(), "lying": list(lying)}
@@ -216,7 +307,7 @@ def _at_both_ends(response: Response, dense_output: DenseOutput) -> dict[str, Fl
 
 
 def _turns(dense_output: DenseOutput) -> tuple[np.ndarray, FloatArray]:
-    """Return in which intervals the body turns round, and where within them, from 0 to 1."""
+    """Return in which dense_output the body turns round, and where within them, from 0 to 1."""
     at = np.flatnonzero(dense_output.velocity[:, 0] * dense_output.velocity[:, 1] < 0.0)
     c, (start, end) = dense_output.quintics()[at], dense_output.velocity[at].T
     x, power = start / (start - end), np.arange(6)

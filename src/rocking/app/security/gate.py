@@ -8,7 +8,7 @@ from starlette.requests import ClientDisconnect, HTTPConnection
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from rocking.app.answers import error_answer, refusal
-from rocking.app.errors import INTERNAL, Problem
+from rocking.app.errors import INTERNAL, Refused, kind_of_status
 from rocking.app.security.requests import (
     RequestHead,
     check_content,
@@ -24,13 +24,13 @@ from rocking.app.settings import ServerSettings
 
 Check = Callable[["Gate", RequestHead, HTTPConnection], None]
 CHECKS: dict[str, Check] = {
-    "method": lambda gate, asked, request: check_method(asked),
-    "target": lambda gate, asked, request: check_target(asked, gate.settings.limits.target_bytes),
-    "host": lambda gate, asked, request: check_host(asked, gate.own),
-    "site": lambda gate, asked, request: check_site(asked),
-    "origin": lambda gate, asked, request: check_origin(asked, gate.own),
-    "content": lambda gate, asked, request: check_content(asked),
-    "session": lambda gate, asked, request: check_session(asked, request),
+    "method": lambda gate, head, request: check_method(head),
+    "target": lambda gate, head, request: check_target(head, gate.settings.limits.target_bytes),
+    "host": lambda gate, head, request: check_host(head, gate.own),
+    "site": lambda gate, head, request: check_site(head),
+    "origin": lambda gate, head, request: check_origin(head, gate.own),
+    "content": lambda gate, head, request: check_content(head),
+    "session": lambda gate, head, request: check_session(head, request),
 }
 """What is looked at, in this order."""
 
@@ -77,21 +77,21 @@ class Gate:
         """Check a connection and hand it on, or refuse it."""
         if scope["type"] != "lifespan":
             try:
-                asked = RequestHead.of(scope)
+                head = RequestHead.of(scope)
                 for check in CHECKS.values():
-                    check(self, asked, HTTPConnection(scope))
-            except Problem as problem:
-                await _refuse(problem, scope, receive, send)
+                    check(self, head, HTTPConnection(scope))
+            except Refused as error:
+                await _refuse(error, scope, receive, send)
                 return
         await self._app(scope, receive, send)
 
 
-async def _refuse(problem: Problem, scope: Scope, receive: Receive, send: Send) -> None:
+async def _refuse(error: Refused, scope: Scope, receive: Receive, send: Send) -> None:
     if scope["type"] == "websocket":
         await receive()
-        await send({"type": "websocket.close", "code": 1008, "reason": problem.kind})
+        await send({"type": "websocket.close", "code": 1008, "reason": kind_of_status(error.status)})
     else:
-        await refusal(problem, close=True)(scope, receive, send)
+        await refusal(error, close=True)(scope, receive, send)
 
 
 class SafeHeaders:

@@ -7,14 +7,14 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
+from typing import Any
 
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.requests import HTTPConnection
 
-from rocking.app.answers import JsonAnswer
-from rocking.app.errors import Busy, NotSignedIn
-from rocking.app.schemas.answers import Answer
+from rocking.app.answers import JsonAnswer, shape
+from rocking.app.errors import Busy, Refused
 from rocking.app.security.requests import RequestHead
 from rocking.app.settings import Limits, state_of
 
@@ -35,20 +35,12 @@ class SignIn(BaseModel):
     token: str = Field(min_length=1, max_length=200, description="What follows #token= in the link.")
 
 
-class SignedIn(Answer):
-    """Whether somebody is signed in."""
-
-    signed_in: bool
-
-
-class Link(Answer):
-    """A link that signs one more browser in."""
-
-    url: str
+SignedIn: Any = shape("SignedIn", "Whether somebody is signed in.", signed_in=bool)
+Link: Any = shape("Link", "A link that signs one more browser in.", url=str)
 
 
 @router.post("", summary="Exchange a one-time token for a session cookie")
-def sign_in(request: Request, given: SignIn) -> SignedIn:
+def sign_in(request: Request, token: SignIn) -> SignedIn:
     """Exchange the token of a one-time link for a cookie: HttpOnly, SameSite=Strict.
 
     Returns True; the cookie is in the head of the answer.
@@ -57,13 +49,13 @@ def sign_in(request: Request, given: SignIn) -> SignedIn:
     answer = JsonAnswer({"signed_in": True})
     answer.set_cookie(
         cookie_name(state.settings.port),
-        state.sessions.sign_in(given.token),
+        state.sessions.sign_in(token.token),
         httponly=True,
         samesite="strict",
         secure=request.url.scheme == "https",
         path="/",
     )
-    return answer  # type: ignore[return-value]  # the schema documents SignedIn, the answer carries the cookie
+    return answer  # the schema documents SignedIn, the answer carries the cookie
 
 
 @router.get("", summary="Whether this browser or script is signed in")
@@ -101,13 +93,14 @@ def is_signed_in(request: HTTPConnection) -> bool:
     return state.sessions.knows(request.cookies.get(cookie_name(state.settings.port)))
 
 
-def check_session(asked: RequestHead, request: HTTPConnection) -> None:
+def check_session(head: RequestHead, request: HTTPConnection) -> None:
     """Refuse what is not public to somebody who is not signed in."""
-    public = not asked.of_api or ("GET" if asked.method == "HEAD" else asked.method, asked.target) in _PUBLIC
+    public = not head.of_api or ("GET" if head.method == "HEAD" else head.method, head.target) in _PUBLIC
     if not public and not is_signed_in(request):
-        raise NotSignedIn(
+        raise Refused(
             "nobody is signed in: open the link that `rocking serve` prints, "
-            "or send Authorization: Bearer with the key in the file api-key of the data folder"
+            "or send Authorization: Bearer with the key in the file api-key of the data folder",
+            status=401,
         )
 
 
@@ -129,10 +122,7 @@ class Sessions:
         self.key = new_token()
 
     def new_link(self, seconds: float = _LINK_SECONDS) -> str:
-        """Return a token that signs one browser in, once.
-
-        seconds: time for which it is good [s].
-        """
+        """Return a token that signs one browser in, once; seconds: time for which it is good [s]."""
         token = new_token()
         with self._lock:
             while len(self._links) >= _MOST_LINKS:
@@ -145,19 +135,16 @@ class Sessions:
         return self.new_link(_FOREVER)
 
     def sign_in(self, token: str) -> str:
-        """Use a token up, and return the value of a session's cookie.
-
-        Returns value of the cookie: a new one every time, whatever the browser had before.
-        """
+        """Use a token up, and return the value of a cookie: a new one every time, whatever the browser had before."""
         with self._lock:
             now = self._clock()
             if len(self._wrong) == self._wrong.maxlen and now - self._wrong[0] < _MINUTE:
                 raise Busy("too many wrong tokens; wait a minute", seconds=_MINUTE - (now - self._wrong[0]))
-            link = _found(token, self._links)
+            link = _known(token, self._links)
             if link is None or self._links.pop(link) < now:
                 self._wrong.append(now)
-                raise NotSignedIn(
-                    "the link is wrong, used up or too old: take the newest one, or restart rocking serve"
+                raise Refused(
+                    "the link is wrong, used up or too old: take the newest one, or restart rocking serve", status=401
                 )
             while len(self._sessions) >= _MOST_SESSIONS:
                 self._sessions.pop(next(iter(self._sessions)))
@@ -166,12 +153,9 @@ class Sessions:
         return value
 
     def knows(self, value: str | None) -> bool:
-        """Return whether a cookie is that of a live session, which it keeps alive.
-
-        Returns true if somebody is signed in by it.
-        """
+        """Return whether a cookie is that of a live session, which it keeps alive."""
         with self._lock:
-            session = _found(value, self._sessions)
+            session = _known(value, self._sessions)
             if session is None:
                 return False
             now = self._clock()
@@ -188,7 +172,7 @@ class Sessions:
     def sign_out(self, value: str | None) -> None:
         """Forget a session."""
         with self._lock:
-            session = _found(value, self._sessions)
+            session = _known(value, self._sessions)
             if session is not None:
                 del self._sessions[session]
 
@@ -197,7 +181,7 @@ def _digest(token: str) -> bytes:
     return hashlib.sha256(token.encode("utf-8", "surrogatepass")).digest()
 
 
-def _found(token: str | None, known: dict[bytes, float]) -> bytes | None:
+def _known(token: str | None, known: dict[bytes, float]) -> bytes | None:
     if token is None:
         return None
     digest = _digest(token)

@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking.app.api.response import answer_facts
 from rocking.app.errors import NotFound
-from rocking.app.studies.opened import OpenStudy
+from rocking.app.studies.finished import OpenStudy
 from rocking.app.studies.results import meaning, plain
 from rocking.bodies import Block, Body
 from rocking.bodies.formats.body_writer import body_to_toml
@@ -86,10 +86,7 @@ class HistoryPlace:
 
 
 def across_of(study: OpenStudy) -> tuple[str, str]:
-    """Return the dimensions that a picture of a study has along x and y.
-
-    Returns names of dimensions; empty where the picture has only one.
-    """
+    """Return the dimensions that a picture of a study has along x and y; empty where it has only one."""
     kind = str(study.job.job.document.campaign.kind)
     if kind in _ACROSS:
         return _ACROSS[kind]
@@ -117,11 +114,11 @@ class Variation:
         rows = job.study.histories.rows(place.number, place.number + 1)
         scale = float(rows.values["scale"][0])
         if getattr(restitution, "per_history", False):
-            drawn = {side: float(rows.values[f"r_{side}"][0]) for side in ("left", "right")}
-            restitution, choice = drawn, dict(drawn)
+            restitution = {side: float(rows.values[f"r_{side}"][0]) for side in ("left", "right")}
+            choice = dict(restitution)
         if job.document.map is not None:
-            made = cls(job.problem.bodies[0], _table(study, 0), label, restitution, choice, scale)
-            return _on_map(made, study, place)
+            body = job.problem.bodies[0]
+            return _on_map(cls(body, _body_in_job(study, 0), label, restitution, choice, scale), study, place)
         if job.document.spectrum is not None:
             angle, period = (job.study.coordinates[name].values for name in ("slenderness_angle", "semi_diagonal"))
             body = Block.from_angle(
@@ -129,40 +126,37 @@ class Variation:
             )
             return cls(body, body_table(body), label, restitution, choice, scale)
         number = place.index.get("body", 0)
-        return cls(job.problem.bodies[number], _table(study, number), label, restitution, choice, scale)
+        return cls(job.problem.bodies[number], _body_in_job(study, number), label, restitution, choice, scale)
 
 
-def _on_map(made: Variation, study: OpenStudy, place: HistoryPlace) -> Variation:
+def _on_map(variation: Variation, study: OpenStudy, place: HistoryPlace) -> Variation:
     """Return the variation of a cell of a map: its axes change it."""
     job = study.job.job
     assert job.document.map is not None  # asked before
     axes = {side: axis_of((table.axis, table.numbers())) for side, table in (
         ("x", job.document.map.x), ("y", job.document.map.y),
     )}  # fmt: skip
-    question = Question(made.body, job.problem.motions[0], made.restitution, job.problem.settings)
+    question = Question(variation.body, job.problem.motions[0], variation.restitution, job.problem.settings)
     at = {side: axis.values[place.index[axis.name]][None] for side, axis in axes.items()}
     case = Plane(question, axes["x"], axes["y"]).case(at["x"], at["y"])
     geometry = {name: float(values[0]) for name, values in case.geometry.items()}
-    body = changed_body(made.body, geometry)
-    made = replace(made, scale=float(case.scale[0]), stretch=float(case.stretch[0]))
+    body = changed_body(variation.body, geometry)
+    variation = replace(variation, scale=float(case.scale[0]), stretch=float(case.stretch[0]))
     if geometry:
-        made = replace(made, body=body, table=body_table(body))
+        variation = replace(variation, body=body, table=body_table(body))
     if any(isinstance(axis, RestitutionAxis) for axis in axes.values()):
         value = float(case.sides["r_right"][0])
-        made = replace(made, label=f"{value!r}", restitution=value, choice={"value": value})
-    return made
+        variation = replace(variation, label=f"{value!r}", restitution=value, choice={"value": value})
+    return variation
 
 
 def body_table(body: Body) -> dict[str, Any]:
-    """Return a body as inputs tell it.
-
-    Returns in m and kg/m3; the same to the last bit, but for sections that were scaled.
-    """
-    told = tomllib.loads(body_to_toml(body))
-    return {"units": told["units"], **told["block"]} if "block" in told else told
+    """Return a body as inputs tell it, in m and kg/m3: the same to the last bit, but for sections that were scaled."""
+    table = tomllib.loads(body_to_toml(body))
+    return {"units": table["units"], **table["block"]} if "block" in table else table
 
 
-def _table(study: OpenStudy, number: int) -> dict[str, Any]:
+def _body_in_job(study: OpenStudy, number: int) -> dict[str, Any]:
     return dict((study.job.job.document.body or [])[number])
 
 
@@ -170,71 +164,38 @@ def _choice(study: OpenStudy, place: HistoryPlace) -> tuple[str, Any, dict[str, 
     """Return label, restitution, and what inputs say of it."""
     table, number = study.job.job.document.restitution, place.restitution
     label, restitution = list(study.job.job.problem.restitutions.items())[number]
-    told: list[dict[str, Any] | None] = [{"model": table.model}] if table.model else []
-    told += [{"model": word} for word in table.models or []]
-    told += [{"value": value} for value in ([] if table.value is None else [table.value]) + (table.values or [])]
+    tables: list[dict[str, Any] | None] = [{"model": table.model}] if table.model else []
+    tables += [{"model": word} for word in table.models or []]
+    tables += [{"value": value} for value in ([] if table.value is None else [table.value]) + (table.values or [])]
     if table.left is not None:
-        told.append({"left": table.left, "right": table.right})
-    told.append(None)  # a draw at every impact: its number is not among the inputs
-    return label, restitution, told[number]
+        tables.append({"left": table.left, "right": table.right})
+    tables.append(None)  # a draw at every impact: its number is not among the inputs
+    return label, restitution, tables[number]
 
 
-def valid(variation: Variation) -> bool:
-    """Return whether a history could be computed at all.
-
-    Returns false where the coefficient would create energy.
-    """
-    value = variation.restitution
-    return not isinstance(value, float) or bool(np.isfinite(value))
-
-
-@dataclass(frozen=True)
-class ChosenMotion:
-    """One motion of a study."""
-
-    motion: Motion  # the motion, without the factor of its table
-    told: dict[str, Any] | None  # how inputs name it; None where they cannot
-    scale: float  # the factor of its table [-]
-
-    @classmethod
-    def of(cls, study: OpenStudy, number: int, stretch: float) -> "ChosenMotion":
-        """Return a motion of a study.
-
-        stretch: factor on its time [-].
-        """
-        table, place = _found(study, number)
-        if table.pulse is not None:
-            return cls._of_pulse(table, place, stretch)
-        if table.records is not None:
-            return cls._of_record(table, place, stretch, study)
-        told = {"synthetic": table.synthetic, "seed": table.seed or 0, "member": place}
-        told |= {name: getattr(table, name) for name in _OF_FAMILIES if getattr(table, name) is not None}
-        made = _stretched(study.job.job.problem.motions[number], stretch)
-        return cls(made, told if stretch == 1.0 else None, 1.0)
-
-    @classmethod
-    def _of_pulse(cls, table: "MotionTable", place: int, stretch: float) -> "ChosenMotion":
-        assert table.pulse is not None  # asked before
+def _motion_at(study: OpenStudy, number: int, stretch: float) -> tuple[Motion, dict[str, Any] | None, float]:
+    """Return a motion of a study, its time stretched; how inputs name it, None where they cannot; its table's scale."""
+    table, place = _table_of(study, number)
+    if table.pulse is not None:
         words = stretched_words(table.pulse[place], stretch)
-        return cls(pulse(words), {"pulse": words}, table.scale)
-
-    @classmethod
-    def _of_record(cls, table: "MotionTable", place: int, stretch: float, study: OpenStudy) -> "ChosenMotion":
-        assert table.records is not None  # asked before
+        return pulse(words), {"pulse": words}, table.scale
+    if table.records is not None:
         name = table.records[place]
         alone = table.model_copy(update={"records": [name], "scale": 1.0})
-        motion = _stretched(motions_of([alone], InputFiles(study.folder.path))[0], stretch)
-        path = PurePosixPath(name)
-        told: dict[str, Any] = {"record": path.parent.name, "file_name": path.name}
-        told |= {key: getattr(table, key) for key in _OF_RECORDS if getattr(table, key) is not None}
-        return cls(motion, told if stretch == 1.0 else None, table.scale)
+        motion = motions_of([alone], InputFiles(study.folder.path))[0]
+        source: dict[str, Any] = {"record": PurePosixPath(name).parent.name, "file_name": PurePosixPath(name).name}
+        keys: tuple[str, ...] = _OF_RECORDS
+        scale = table.scale
+    else:
+        motion = study.job.job.problem.motions[number]
+        source = {"synthetic": table.synthetic, "seed": table.seed or 0, "member": place}
+        keys, scale = _OF_FAMILIES, 1.0
+    source |= {key: getattr(table, key) for key in keys if getattr(table, key) is not None}
+    return (motion, source, scale) if stretch == 1.0 else (_stretched(motion, stretch), None, scale)
 
 
 def stretched_words(words: str, stretch: float) -> str:
-    """Return a pulse whose time is stretched while its acceleration stays, in words.
-
-    stretch: factor on its time [-]. Returns the words of the stretched pulse; the same words where nothing is
-    stretched.
+    """Return a pulse, in words, whose time is stretched by a factor [-] while its acceleration stays.
 
     >>> stretched_words("sine:amplitude=3,period=0.5", 2.0)
     'sine:amplitude=3,period=1.0'
@@ -244,14 +205,14 @@ def stretched_words(words: str, stretch: float) -> str:
     name, _, tail = words.partition(":")
     pairs = [tuple(part.strip() for part in item.partition("=")[::2]) for item in filter(None, tail.split(","))]
     changed = [(key, repr(float(value) * stretch) if key in _TIMES else value) for key, value in pairs]
-    made = f"{name}:{','.join(f'{key}={value}' for key, value in changed)}"
-    before, after = pulse(words), pulse(made)
+    stretched = f"{name}:{','.join(f'{key}={value}' for key, value in changed)}"
+    before, after = pulse(words), pulse(stretched)
     if abs(after.duration / (stretch * before.duration) - 1.0) + abs(after.peak / before.peak - 1.0) > _CLOSE:
-        raise ArithmeticError(f"{made} is not {words} stretched by {stretch!r}")
-    return made
+        raise ArithmeticError(f"{stretched} is not {words} stretched by {stretch!r}")
+    return stretched
 
 
-def _found(study: OpenStudy, number: int) -> tuple["MotionTable", int]:
+def _table_of(study: OpenStudy, number: int) -> tuple["MotionTable", int]:
     """Return the table that a motion stands in, and its place there."""
     left = number
     for table in study.job.job.document.motions:
@@ -270,64 +231,53 @@ def _stretched(motion: Motion, stretch: float) -> Motion:
 
 
 def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict[str, Any]:
-    """Return the history behind a point of a picture.
+    """Return the history behind a point of a picture, `HistoryAnswer`.
 
-    Returns ``stored``: what the study has of it, to the last digit; ``inputs``: what to ask for the same history, null
-    where inputs cannot say it; ``answer``: the response, null where there is none; ``difference_rad``: of the peak
-    rotations of both, which take other steps to the same accuracy; ``note``: a sentence on what is missing.
+    ``difference_rad`` is of the peak rotations of the study and of the response here, which take other steps to the
+    same accuracy.
     """
-    told: dict[str, Any] = {"stored": stored(study, place), "inputs": None, "answer": None, "difference_rad": None}
+    cell: dict[str, Any] = {"stored": stored(study, place), "inputs": None, "answer": None, "difference_rad": None}
     try:
         variation = Variation.of(study, place)
-        if not valid(variation):
-            return told | {"note": "the coefficient of this cell would create energy: nothing was computed"}
-        motion = ChosenMotion.of(study, place.index["motion"], variation.stretch)
-        question, response = _responded(study, place, variation, motion)
+        if isinstance(variation.restitution, float) and not np.isfinite(variation.restitution):
+            return cell | {"note": "the coefficient of this cell would create energy: nothing was computed"}
+        motion, source, scale = _motion_at(study, place.index["motion"], variation.stretch)
+        question, response = _responded(study, place, variation, motion, scale * variation.scale)
     except InvalidValueError as error:
-        return told | {"note": str(error)}
-    note = _why_not(variation, motion)
-    told |= {"inputs": None if note else _inputs(study, variation, motion), "note": note}
+        return cell | {"note": str(error)}
+    note = _why_not(variation, source)
+    inputs = None if note else _inputs(study, variation, {**(source or {}), "scale": variation.scale * scale})
+    cell |= {"inputs": inputs, "note": note}
     if response.outcome is Outcome.FAILED:
-        return told | {"note": f"there is no response: {response.status.value}"}
-    difference = abs(response.peak_rotation - abs(told["stored"]["peak_rotation_rad"]))
-    return told | {
-        "answer": answer_facts(variation.label, response, question, points),
-        "difference_rad": difference,
-    }
+        return cell | {"note": f"there is no response: {response.status.value}"}
+    difference = abs(response.peak_rotation - abs(cell["stored"]["peak_rotation_rad"]))
+    answer = answer_facts(variation.label, response, question, points)
+    return cell | {"answer": answer, "difference_rad": difference}
 
 
 def stored(study: OpenStudy, place: HistoryPlace) -> dict[str, Any]:
-    """Return what a study has of a history.
-
-    Returns Number, outcome, mode, meaning, impacts, peaks and time of overturning, as they were computed.
-    """
+    """Return what a study has of a history, as it was computed, `StoredHistory`."""
     history = study.history(place.number)
-    found = {key: plain(history[name]) for name, key in _STORED.items()}
-    return {"history": place.number, "meaning": meaning(found["mode"]), **found}
+    results = {key: plain(history[name]) for name, key in _STORED.items()}
+    return {"history": place.number, "meaning": meaning(results["mode"]), **results}
 
 
 def _responded(
-    study: OpenStudy, place: HistoryPlace, variation: Variation, motion: ChosenMotion
+    study: OpenStudy, place: HistoryPlace, variation: Variation, motion: Motion, scale: float
 ) -> tuple[ResponseProblem, Response]:
-    job = study.job.job
-    scale, engine = variation.scale * motion.scale, job.document.settings.engine
-    asked = ResponseProblem(
-        variation.body,
-        motion.motion,
-        {variation.label: variation.restitution},
-        job.problem.settings,
-        engine,
-        scale=scale,
+    job, engine = study.job.job, study.job.job.document.settings.engine
+    question = ResponseProblem(
+        variation.body, motion, {variation.label: variation.restitution}, job.problem.settings, engine, scale=scale
     )
-    how = {**asked.settings.stated, "engine": engine, "stream": place.number}
+    how = {**question.settings.stated, "engine": engine, "stream": place.number}
     with warnings.catch_warnings():  # the answer shows its doubts
         warnings.simplefilter("ignore", PureRockingWarning)
-        return asked, simulate(asked.body, motion.motion, variation.restitution, scale=scale, **how)
+        return question, simulate(variation.body, motion, variation.restitution, scale=scale, **how)
 
 
-def _why_not(variation: Variation, motion: ChosenMotion) -> str:
+def _why_not(variation: Variation, source: dict[str, Any] | None) -> str:
     """Return why inputs cannot say this history; empty where they can."""
-    if motion.told is None:
+    if source is None:
         return (
             f"the time of the motion is stretched by {variation.stretch:.6g} here, which inputs cannot say of a motion "
             "that is no pulse; the response is the one with the stretched motion"
@@ -337,12 +287,7 @@ def _why_not(variation: Variation, motion: ChosenMotion) -> str:
     return ""
 
 
-def _inputs(study: OpenStudy, variation: Variation, motion: ChosenMotion) -> dict[str, Any]:
-    assert motion.told is not None  # asked before
+def _inputs(study: OpenStudy, variation: Variation, motion: dict[str, Any]) -> dict[str, Any]:
     settings = study.job.job.document.settings.model_dump(exclude_unset=True, exclude_none=True)
-    made = {
-        "body": variation.table,
-        "motion": motion.told | {"scale": variation.scale * motion.scale},
-        "restitution": variation.choice,
-    }
-    return made | ({"settings": settings} if settings else {})
+    inputs = {"body": variation.table, "motion": motion, "restitution": variation.choice}
+    return inputs | ({"settings": settings} if settings else {})

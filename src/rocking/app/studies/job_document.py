@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rocking.app.errors import TooLarge
-from rocking.app.takeaway.toml_words import toml_of
+from rocking.app.plain_text import toml_of
 from rocking.errors import InvalidValueError
 from rocking.restitution.from_file import file_of
 
@@ -210,7 +210,7 @@ def _checked_regions(table: dict[str, Any]) -> int:
     """Return the regions of a body, unless the body alone is larger than a page takes."""
     from pydantic import ValidationError
 
-    from rocking.app.schemas.inputs import BodyInput
+    from rocking.app.inputs import BodyInput
 
     try:
         body = BodyInput.model_validate(table)

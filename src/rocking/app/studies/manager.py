@@ -3,19 +3,19 @@
 import errno
 import os
 import shutil
-from collections.abc import Callable
 from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from rocking.app.errors import NoRoom, NotFound, Refused, TooLarge
+from rocking.app.plain_text import shown
+from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
+from rocking.app.studies.finished import OpenStudy
 from rocking.app.studies.job_document import JobDocument
-from rocking.app.studies.opened import OpenStudies
-from rocking.app.studies.queue import StudyQueue
-from rocking.app.studies.study import HostedStudy, processors
-from rocking.app.studies.study_folder import (
+from rocking.app.studies.queue import GONE, StudyQueue
+from rocking.app.studies.study import (
     CAMPAIGN,
     CANCELLED,
     DONE,
@@ -24,14 +24,18 @@ from rocking.app.studies.study_folder import (
     META,
     RUNNING,
     WAITING,
+    HostedStudy,
     Meta,
-    Records,
     StudyFolder,
     is_id,
     new_id,
-    shown,
+    processors,
 )
+from rocking.app.work import Remembered
 from rocking.campaigns import disk
+
+_RESULTS, _ANSWERS = 256 * 2**20, 64 * 2**20
+"""Memory for results and for answers [byte]."""
 
 _BYTES = 100
 """Disk for a history, generously [byte]."""
@@ -42,23 +46,21 @@ _UNREADABLE = f"its {META} cannot be read; nothing was changed: mend it and star
 
 
 class StudyManager:
-    """Launches studies, watches them, stops them, and knows all that are on disk.
-
-    at_once: studies that run at the same time [-].
-    """
+    """Launches studies, so many at once, watches them, stops them, and knows all that are on disk."""
 
     def __init__(
-        self, folder: Path, limits: Limits, records: Records, *, workers: int | None = None, at_once: int = 1
+        self, folder: Path, limits: Limits, records: RecordStore, *, workers: int | None = None, at_once: int = 1
     ) -> None:
         self._folder, self._limits, self._records = folder / "studies", limits, records
         there = studies_in(self._folder)
-        self.opened = OpenStudies()
-        self._line = StudyQueue(there, workers or processors(), at_once, limits.studies_waiting)
+        self.opened: Remembered[OpenStudy] = Remembered(_RESULTS, lambda study: study.size)
+        self.answers: Remembered[bytes] = Remembered(_ANSWERS, len)
+        self.queue = StudyQueue(there, workers or processors(), at_once, limits.studies_waiting)
         if any(study.meta.state == WAITING for study in there.values()):
-            self._line.changed()  # what an earlier server left goes on by itself
+            self.queue.changed()  # what an earlier server left goes on by itself
 
     def create(self, name: str | None, job: object) -> str:
-        """Put a new study in line."""
+        """Put a new study in the queue."""
         document = JobDocument.of(job)
         count = document.most
         if count > self._limits.histories:
@@ -66,21 +68,18 @@ class StudyManager:
                 f"the study has {count} histories; this server takes up to {self._limits.histories}: fewer values, "
                 "or `rocking campaign` on the command line, which has no limit"
             )
-        return self._line.enter(lambda: self._made(name or document.name, document)).folder.id
+        return self.queue.enter(lambda: self._made(name or document.name, document)).folder.id
 
     def overview(self) -> list[dict[str, Any]]:
-        """Return all studies, the newest first; nothing is read for it.
-
-        Returns Name, kind, state and progress of each.
-        """
-        return list(self._line.published.values())
+        """Return name, kind, state and progress of all studies, the newest first; nothing is read for it."""
+        return list(self.queue.published.values())
 
     def get(self, study: str) -> dict[str, Any]:
         """Return one study."""
-        found = self._line.published.get(study)
-        if found is None:
-            raise NotFound("there is no such study; it may have been deleted")
-        return found
+        facts = self.queue.published.get(study)
+        if facts is None:
+            raise NotFound(GONE)
+        return facts
 
     def finished(self, study: str) -> StudyFolder:
         """Return the folder of a study that is done."""
@@ -88,12 +87,16 @@ class StudyManager:
         if facts["state"] != DONE:
             share = f"{facts['histories_done']} of {facts['histories']} histories are finished"
             raise Refused(f"the study is {facts['state']}, not done: {share}; its results can be seen when all are")
-        return self._line.study(study).folder
+        return self.queue.study(study).folder
+
+    def open(self, folder: StudyFolder) -> OpenStudy:
+        """Return a study that is done; one that was opened lately is not opened again."""
+        return self.opened.get(folder.id, lambda: OpenStudy.of(folder))
 
     def cancel(self, study: str) -> None:
         """Stop a study within a second; what is finished is safe, and it can be resumed."""
-        with self._line.lock:
-            found = self._line.study(study)
+        with self.queue.lock:
+            found = self.queue.study(study)
             if found.meta.state not in {WAITING, RUNNING}:
                 raise Refused(f"the study is {found.meta.state}: only one that waits or runs can be cancelled")
             found.cancelled, process = True, found.process
@@ -101,16 +104,16 @@ class StudyManager:
                 found.become(CANCELLED, "cancelled before it began")
         if process is not None:
             process.stop()
-            self._line.end(found, process)
-        self._line.changed()
+            self.queue.end(found, process)
+        self.queue.changed()
 
     def resume(self, study: str) -> None:
-        """Put a study in line again; it goes on where it stopped."""
+        """Put a study in the queue again; it goes on where it stopped."""
 
         def again() -> HostedStudy:
             """Return the study, which waits again."""
-            with self._line.lock:
-                found = self._line.study(study)
+            with self.queue.lock:
+                found = self.queue.study(study)
                 if found.unreadable:
                     raise Refused(found.meta.message)
                 if found.meta.state not in {CANCELLED, INTERRUPTED, FAILED}:
@@ -119,30 +122,22 @@ class StudyManager:
                 found.become(WAITING)
                 return found
 
-        self._line.enter(again)
+        self.queue.enter(again)
 
     def delete(self, study: str) -> None:
         """Forget a study and all its results; one that runs is stopped."""
-        found, process = self._line.leave(study)
+        found, process = self.queue.leave(study)
         if process is not None:
             process.stop()
             process.close()
-        self.opened.forget(study)
+        self.opened.forget(lambda key: key == study)
+        self.answers.forget(lambda key: key[0] == study)
         remove(found)
-        self._line.changed()
-
-    def subscribe(self, tell: Callable[[], None]) -> Callable[[], None]:
-        """Be told of every change, from whatever thread."""
-        return self._line.subscribe(tell)
-
-    @property
-    def watchers(self) -> int:
-        """How many are told of changes."""
-        return self._line.watchers
+        self.queue.changed()
 
     def close(self) -> None:
         """Stop what runs, so that it can be resumed, and watch no longer."""
-        self._line.close()
+        self.queue.close()
 
     def _made(self, name: str, document: JobDocument) -> HostedStudy:
         check_room(self._folder, _BYTES * document.most, self._limits.studies_bytes)
@@ -201,10 +196,7 @@ def remove(study: HostedStudy) -> None:
 
 
 def check_room(folder: Path, wanted: int, limit: int) -> None:
-    """Refuse a study for which there is no room.
-
-    wanted: what its results need [byte]; limit: what all studies together may take [byte].
-    """
+    """Refuse a study whose results need more room than there is, or than all studies may take together [byte]."""
     used = _size(folder)
     room = min(shutil.disk_usage(folder).free, limit - used)
     if wanted > room:

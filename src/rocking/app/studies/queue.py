@@ -6,8 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from rocking.app.errors import Busy, NotFound
-from rocking.app.studies.study import HostedStudy, StudyProcess
-from rocking.app.studies.study_folder import FAILED, INTERRUPTED, RUNNING, WAITING
+from rocking.app.studies.study import FAILED, INTERRUPTED, RUNNING, WAITING, HostedStudy, StudyProcess
 
 LOOK = 0.2
 """Time between looks at what runs [s]."""
@@ -16,14 +15,11 @@ SAVE_AGAIN = 2.0
 """Time after which a state is written again that the disk did not take [s]."""
 
 _LOG = logging.getLogger(__name__)
-_GONE = "there is no such study; it may have been deleted"
+GONE = "there is no such study; it may have been deleted"
 
 
 class StudyQueue:
-    """Studies of which a few run, some wait and the others do neither; safe to use from several threads.
-
-    at_once: studies that run at the same time [-]; longest: studies that may wait [-].
-    """
+    """Studies of which a few run at once, some (up to the longest) wait and the others do neither; thread-safe."""
 
     def __init__(self, studies: dict[str, HostedStudy], workers: int, at_once: int, longest: int) -> None:
         self.lock = threading.RLock()
@@ -40,11 +36,11 @@ class StudyQueue:
         """Return a study."""
         found = self._studies.get(name)
         if found is None:
-            raise NotFound(_GONE)
+            raise NotFound(GONE)
         return found
 
     def enter(self, make: Callable[[], HostedStudy]) -> HostedStudy:
-        """Put a study in line; its place is kept while it is made."""
+        """Put a study in the queue; its place is kept while it is made."""
         with self.lock:
             waiting = self._entering + sum(each.meta.state == WAITING for each in self._studies.values())
             if waiting >= self._longest:
@@ -54,7 +50,7 @@ class StudyQueue:
             study = make()
             with self.lock:
                 if study.left:
-                    raise NotFound(_GONE)
+                    raise NotFound(GONE)
                 self._studies[study.folder.id] = study
         finally:
             with self.lock:
@@ -63,10 +59,7 @@ class StudyQueue:
         return study
 
     def leave(self, name: str) -> tuple[HostedStudy, StudyProcess | None]:
-        """Take a study out for good.
-
-        Returns study: the study, which does not come back.
-        """
+        """Take a study out for good, and return it with its process."""
         with self.lock:
             found = self.study(name)
             found.cancelled = found.left = True
@@ -90,7 +83,7 @@ class StudyQueue:
         return len(self._listeners)
 
     def changed(self) -> None:
-        """Look at the line at once."""
+        """Look at the queue at once."""
         with self.lock:
             dead = self._thread is None or not self._thread.is_alive()
             if dead and not self.closed:
@@ -137,7 +130,7 @@ class StudyQueue:
                 unsaved = self._save_again()
                 self.publish()
             except Exception:  # noqa: BLE001 - whatever it is, the studies go on
-                _LOG.exception("the line of studies stumbled")
+                _LOG.exception("the queue of studies stumbled")
                 unsaved = True
             self._wake.wait(LOOK if self._running() else SAVE_AGAIN if unsaved else None)
             self._wake.clear()

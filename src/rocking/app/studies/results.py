@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from rocking.app.answers import JsonAnswer
-from rocking.app.studies.opened import OpenStudy
-from rocking.app.studies.study_folder import StudyFolder
+from rocking.app.studies.finished import OpenStudy
+from rocking.app.studies.study import StudyFolder
 from rocking.campaigns import disk
 from rocking.conventions import FloatArray
 from rocking.dynamics.loss_of_contact import contact_words, lost_contact
@@ -27,10 +27,7 @@ _WIDE = 0.01
 
 
 def plain(values: Any) -> Any:
-    """Return an array as lists.
-
-    Returns none where there is no finite number.
-    """
+    """Return an array as lists, with None where there is no finite number."""
     array = np.asarray(values)
     if array.dtype.kind != "f" or np.isfinite(array).all():
         return array.tolist()
@@ -47,10 +44,7 @@ def meaning(mode: int) -> str:
 
 
 def shares(modes: np.ndarray) -> list[dict[str, Any]]:
-    """Return how many histories end in which way.
-
-    Returns mode, meaning, count and share [-], by mode.
-    """
+    """Return how many histories end in which way, by mode."""
     found, counts = np.unique(modes, return_counts=True)
     return [
         {"mode": mode, "meaning": meaning(mode), "count": count, "share": count / modes.size}
@@ -65,10 +59,7 @@ def coordinate(study: OpenStudy, name: str) -> dict[str, Any]:
 
 
 def by_restitution(study: OpenStudy, name: str) -> np.ndarray:
-    """Return a result with the restitution as its first dimension.
-
-    Returns also where the study has only one restitution.
-    """
+    """Return a result with the restitution as its first dimension, also where there is only one."""
     values, dims = study.results[name], list(study.job.job.study.dims)
     several = len(study.axes) < len(dims)
     return np.moveaxis(values, dims.index("restitution"), 0) if several else values[None]
@@ -90,22 +81,12 @@ def keep_result(study: OpenStudy) -> bytes:
 
 
 def minimum_result(study: OpenStudy) -> dict[str, Any]:
-    """Return minimum overturning accelerations.
-
-    Returns ``motions``, ``bodies``, and the ``tables`` of crossings and minima.
-    """
-    return {
-        "motions": coordinate(study, "motion"),
-        "bodies": coordinate(study, "body"),
-        "tables": tables_of(study),
-    }
+    """Return minimum overturning accelerations, `MinimumResult`."""
+    return {"motions": coordinate(study, "motion"), "bodies": coordinate(study, "body"), "tables": tables_of(study)}
 
 
 def tables_of(study: OpenStudy) -> dict[str, Any]:
-    """Return the tables of an adaptive study.
-
-    Returns by name: a list of columns, each with name, unit, words and values.
-    """
+    """Return the tables of an adaptive study."""
     return {
         name: [
             {"name": title, "unit": each.unit, "words": each.meaning, "values": plain(each.values)}
@@ -116,16 +97,11 @@ def tables_of(study: OpenStudy) -> dict[str, Any]:
 
 
 def product_result(study: OpenStudy) -> dict[str, Any]:
-    """Return the counts of plain histories.
-
-    Returns ``motions``, ``bodies``, ``scales``, ``slenderness_angles``; ``shares`` by restitution; ``cells``: for every
-    restitution, body and scale how many motions lift and overturn, and the median of the peak rotation over alpha of
-    those that do not overturn; ``mode`` and ``peak`` of every history where there are at most 20,000.
-    """
+    """Return the counts of plain histories."""
     modes, peaks = by_restitution(study, "mode"), by_restitution(study, "peak_ratio")
     known = modes != -3
     standing = np.where(known & (modes < 0), peaks, np.nan)
-    told: dict[str, Any] = {
+    result: dict[str, Any] = {
         "motions": coordinate(study, "motion"),
         "bodies": coordinate(study, "body"),
         "scales": coordinate(study, "scale"),
@@ -139,8 +115,8 @@ def product_result(study: OpenStudy) -> dict[str, Any]:
         },
     }
     if modes.size <= _LARGEST:
-        told |= {"mode": modes.tolist(), "peak": plain(peaks)}
-    return told
+        result |= {"mode": modes.tolist(), "peak": plain(peaks)}
+    return result
 
 
 def _median(values: np.ndarray) -> np.ndarray:
@@ -154,12 +130,7 @@ def _median(values: np.ndarray) -> np.ndarray:
 
 
 def spectrum_result(study: OpenStudy) -> dict[str, Any]:
-    """Return rocking spectra.
-
-    Returns ``x`` (the periods 2 pi / p), ``angles``, ``motions``, ``semi_diagonals``; ``curves``: for every restitution
-    and slenderness angle the median of the peak rotation over alpha, its 16 % and 84 % over the motions (null where
-    that many overturn), the share that overturns, the coefficient of restitution; ``shares``.
-    """
+    """Return rocking spectra."""
     from rocking.plots.rocking_spectrum import fractiles
 
     job = study.job.job
@@ -190,13 +161,7 @@ def spectrum_result(study: OpenStudy) -> dict[str, Any]:
 
 
 def map_result(study: OpenStudy) -> dict[str, Any]:
-    """Return an overturning map.
-
-    Returns ``x`` and ``y`` (name, values, unit, words); ``outcome``, ``mode``, ``peak`` (over alpha) and ``impacts`` by
-    restitution, then rows along y; ``mode_words``; ``shares`` and ``contours`` (polylines between what overturns and
-    what does not) by restitution; ``body`` and ``motion`` in words; ``tables`` of a refined map: all points (refined)
-    and the vertices of the polylines (boundary).
-    """
+    """Return an overturning map."""
     y, x = (coordinate(study, name) for name in study.axes)
     modes = by_restitution(study, "mode")
     axes = np.asarray(x["values"], dtype=np.float64), np.asarray(y["values"], dtype=np.float64)
@@ -220,9 +185,7 @@ def map_result(study: OpenStudy) -> dict[str, Any]:
 def contours_of(
     inside: np.ndarray, x: FloatArray, y: FloatArray, known: np.ndarray | None = None
 ) -> list[list[list[float]]]:
-    """Return the lines that part a region of a grid from the rest.
-
-    Returns polylines of x and y, halfway between the points that they part; closed ones end where they begin.
+    """Return the polylines of x and y halfway between what is inside and what is not; closed ones end where they begin.
 
     >>> inside = np.array([[False, False, False], [False, True, False], [False, False, False]])
     >>> (ring,) = contours_of(inside, np.arange(3.0), np.arange(3.0))
@@ -256,12 +219,7 @@ def _points(edges: np.ndarray, x: FloatArray, y: FloatArray) -> list[list[float]
 
 
 def fragility_result(study: OpenStudy) -> dict[str, Any]:
-    """Return a fragility analysis.
-
-    Returns ``measure`` (name, unit, words), ``motions``, ``definition``, ``uplift``; ``analyses``: for every
-    restitution levels, trials, states, ``points`` (by state: x, reached, trials, share, low, high), ``fits`` (by
-    state), ``curves`` (by state: x, probability, low, high) and sentences.
-    """
+    """Return a fragility analysis."""
     analyses = study.analyses
     first = next(iter(analyses.values()))
     measure = first.subject.measure
@@ -279,7 +237,7 @@ def _analysis(found: Any) -> dict[str, Any]:
     levels = np.asarray(found.levels, dtype=np.float64)
     fine = _fine(levels)
     fits = {name: fit for name, fit in found.fits.items() if fit is not None}
-    told = {
+    facts = {
         "levels": levels.tolist(),
         "trials": np.asarray(found.trials).tolist(),
         "failed": int(getattr(found, "stripes", found).failed),
@@ -289,8 +247,8 @@ def _analysis(found: Any) -> dict[str, Any]:
         "curves": {name: _curve(fit, fine) for name, fit in fits.items() if fit.exists},
         "sentences": [f"{name}: {fit.verdict}" for name, fit in fits.items()],
     }
-    made: dict[str, Any] = _finite(told | _more(found))
-    return made
+    analysis: dict[str, Any] = _finite(facts | _more(found))
+    return analysis
 
 
 def _fine(levels: FloatArray) -> FloatArray:
@@ -385,10 +343,7 @@ _BY_KIND: dict[str, Callable[[OpenStudy], dict[str, Any]]] = {
 
 
 def result_of(study: OpenStudy) -> dict[str, Any]:
-    """Return the result of a finished study.
-
-    Returns plain values and arrays, with None where there is no number.
-    """
+    """Return the result of a finished study."""
     document = study.job.job.document
     kind = str(document.campaign.kind)
     head = {"id": study.id, "kind": kind, "name": str(document.campaign.name), "contact": _contact(study, kind)}

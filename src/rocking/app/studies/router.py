@@ -16,13 +16,13 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, Response
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from rocking.app.answers import JsonAnswer, safe_name
-from rocking.app.schemas.answers import Deleted, answered, answered_with_file
-from rocking.app.schemas.study_answers import HistoryAnswer, Launched, Studies, StudyFacts, StudyResult
+from rocking.app.answers import Deleted, JsonAnswer, answered, answered_with_file, attachment_headers
+from rocking.app.plain_text import safe_name
 from rocking.app.settings import state_of
-from rocking.app.studies.exports import MEDIA_TYPES, Crossing, Kind
+from rocking.app.studies.answers import HistoryAnswer, Launched, Studies, StudyFacts, StudyResult
+from rocking.app.studies.finished import MEDIA_TYPES, Crossing, Kind
 from rocking.app.studies.manager import StudyManager
-from rocking.app.studies.study_folder import StudyFolder
+from rocking.app.studies.study import StudyFolder
 from rocking.app.work import heavy
 from rocking.errors import RockingError
 
@@ -153,7 +153,7 @@ async def _study_result(request: Request, study: str) -> Response:
     """Return what a finished study found."""
     manager = _studies(request)
     manager.finished(study)
-    known = manager.opened.known((study, "result"))
+    known = manager.answers.known((study, "result"))
     data = known if known is not None else await heavy(request, _result, manager, study)
     return Response(data, media_type="application/json")
 
@@ -198,7 +198,7 @@ async def _export_study(
     return FileResponse(
         path,
         media_type=MEDIA_TYPES[kind],
-        headers={"Content-Disposition": f'attachment; filename="{name}"', "X-Content-Type-Options": "nosniff"},
+        headers=attachment_headers(name),
         background=BackgroundTask(shutil.rmtree, path.parent, ignore_errors=True),
     )
 
@@ -222,38 +222,32 @@ def _result(manager: StudyManager, study: str) -> bytes:
     from rocking.app.studies.results import keep_result, kept_result
 
     with _there(manager, study) as folder:
-        return manager.opened.answer(
-            (study, "result"), lambda: kept_result(folder) or keep_result(manager.opened.get(folder))
-        )
+        return manager.answers.get((study, "result"), lambda: kept_result(folder) or keep_result(manager.open(folder)))
 
 
 def _cell(manager: StudyManager, study: str, point: PointAsked) -> bytes:
     from rocking.app.studies.history_at_point import HistoryPlace, cell_of
 
     with _there(manager, study) as folder:
-        opened = manager.opened.get(folder)
-        found = HistoryPlace.of(opened, point.x, point.y, point.restitution, point.motion)
-        key = (study, "cell", found.number, point.points)
-        return manager.opened.answer(key, lambda: _json(cell_of(opened, found, point.points)))
+        opened = manager.open(folder)
+        place = HistoryPlace.of(opened, point.x, point.y, point.restitution, point.motion)
+        key = (study, "cell", place.number, point.points)
+        return manager.answers.get(key, lambda: bytes(JsonAnswer(cell_of(opened, place, point.points)).body))
 
 
 def _file(
     manager: StudyManager, study: str, kind: Kind, what: str | None, restitution: int, crossing: Crossing | None
 ) -> Path:
-    from rocking.app.studies.exports import written
+    from rocking.app.studies.finished import written
 
     path = Path(tempfile.mkdtemp(prefix="rocking-export-")) / f"study.{kind}"
     try:
         with _there(manager, study) as folder:
-            written(manager.opened.get(folder), kind, path, what, restitution, crossing)
+            written(manager.open(folder), kind, path, what, restitution, crossing)
     except BaseException:
         shutil.rmtree(path.parent, ignore_errors=True)
         raise
     return path
-
-
-def _json(told: dict[str, Any]) -> bytes:
-    return bytes(JsonAnswer(told).body)
 
 
 async def serve(manager: StudyManager, socket: WebSocket) -> None:
@@ -264,10 +258,10 @@ async def serve(manager: StudyManager, socket: WebSocket) -> None:
         with contextlib.suppress(RuntimeError):  # the loop has ended, the browser with it
             loop.call_soon_threadsafe(changed.set)
 
-    if manager.watchers >= MOST:
+    if manager.queue.watchers >= MOST:
         await socket.close(_TRY_LATER)
         return
-    leave = manager.subscribe(tell)
+    leave = manager.queue.subscribe(tell)
     gone = None
     try:
         await socket.accept()

@@ -11,7 +11,7 @@ from fastapi.testclient import TestClient
 
 from rocking.app.application import create_app
 from rocking.app.settings import ServerSettings
-from rocking.app.studies.opened import OpenStudy
+from rocking.app.studies.finished import OpenStudy
 
 jsonschema = pytest.importorskip("jsonschema_rs")
 

@@ -1,22 +1,20 @@
-"""Studies in line: begun, watched, cancelled, resumed, deleted, found again."""
+"""Studies in a queue: launched, watched, stopped, resumed; how fast they are."""
 
 import json
 import os
 import subprocess
 import time
-from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from rocking.app.answers import JsonAnswer
 from rocking.app.errors import Busy, NotFound, Refused, TooLarge
-from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
+from rocking.app.studies.finished import OpenStudy
 from rocking.app.studies.manager import StudyManager
-from rocking.app.studies.opened import OpenStudy
 from rocking.app.studies.results import kept_result, result_of
+from rocking.app.studies.study import StudyPace
 from rocking.campaigns.jobs import Job, JobFolder
 from rocking.errors import InvalidValueError
 
@@ -25,7 +23,7 @@ pytestmark = pytest.mark.timed
 Tables = dict[str, Any]
 
 
-def _wait(manager: StudyManager, study: str, *states: str, done: int = 0) -> dict[str, Any]:
+def _wait(manager, study, *states, done=0):
     """Return the facts of a study once it is in one of the states, with some histories finished."""
     deadline = time.monotonic() + 60.0
     while True:
@@ -36,12 +34,12 @@ def _wait(manager: StudyManager, study: str, *states: str, done: int = 0) -> dic
         time.sleep(0.02)
 
 
-def _idle(tmp_path: Path, records: RecordStore, **limits: Any) -> StudyManager:
+def _idle(tmp_path, records, **limits):
     """Return a manager that runs nothing."""
     return StudyManager(tmp_path, Limits(**limits), records, workers=1, at_once=0)
 
 
-def test_a_study_is_computed_in_a_process(manager: StudyManager, map_job: Callable[..., Tables]) -> None:
+def test_a_study_is_computed_in_a_process(manager, map_job):
     """It is launched, runs, is done, and says how many histories it has."""
     study = manager.create("  My\n study ", map_job())
     assert manager.get(study)["name"] == "My study"
@@ -52,11 +50,11 @@ def test_a_study_is_computed_in_a_process(manager: StudyManager, map_job: Callab
     assert kept_result(folder) == bytes(JsonAnswer(result_of(OpenStudy.of(folder))).body)
 
 
-def test_cancel_takes_less_than_a_second_and_resume_goes_on(manager: StudyManager, long_job: Tables) -> None:
+def test_cancel_takes_less_than_a_second_and_resume_goes_on(manager, long_job):
     """What was finished when it was cancelled is not computed again; no process is left."""
     study = manager.create(None, long_job)
     _wait(manager, study, "running", done=1)
-    child = manager._line.study(study).process
+    child = manager.queue.study(study).process
     assert child is not None
     begun = time.monotonic()
     manager.cancel(study)
@@ -67,21 +65,19 @@ def test_cancel_takes_less_than_a_second_and_resume_goes_on(manager: StudyManage
     with pytest.raises(ProcessLookupError):
         os.killpg(child._process.pid, 0)
     before = {
-        path.name: path.stat().st_mtime_ns for path in manager._line.study(study).folder.path.rglob("shards/*.shard")
+        path.name: path.stat().st_mtime_ns for path in manager.queue.study(study).folder.path.rglob("shards/*.shard")
     }
     manager.resume(study)
     _wait(manager, study, "running", done=facts["histories_done"] + 1)
     manager.cancel(study)
     after = {
-        path.name: path.stat().st_mtime_ns for path in manager._line.study(study).folder.path.rglob("shards/*.shard")
+        path.name: path.stat().st_mtime_ns for path in manager.queue.study(study).folder.path.rglob("shards/*.shard")
     }
     assert before.items() <= after.items()
     assert manager.get(study)["histories_done"] > facts["histories_done"]
 
 
-def test_a_study_that_does_not_listen_is_killed(
-    manager: StudyManager, long_job: Tables, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_study_that_does_not_listen_is_killed(manager, long_job, monkeypatch):
     """Where the signal is lost the group is killed soon after, and nothing that was finished is lost."""
     study = manager.create(None, long_job)
     done = _wait(manager, study, "running", done=1)["histories_done"]
@@ -92,7 +88,7 @@ def test_a_study_that_does_not_listen_is_killed(
     assert manager.get(study)["histories_done"] >= done
 
 
-def test_one_runs_and_the_others_wait(manager: StudyManager, long_job: Tables, map_job: Callable[..., Tables]) -> None:
+def test_one_runs_and_the_others_wait(manager, long_job, map_job):
     """The second begins when the first is out of the way; one that waits is cancelled at once."""
     first, second, third = (manager.create(None, job) for job in (long_job, map_job(), map_job()))
     _wait(manager, first, "running")
@@ -106,9 +102,7 @@ def test_one_runs_and_the_others_wait(manager: StudyManager, long_job: Tables, m
     assert not (manager._folder / first).exists()
 
 
-def test_studies_of_a_closed_server_go_on_by_themselves(
-    tmp_path: Path, records: RecordStore, long_job: Tables, map_job: Callable[..., Tables]
-) -> None:
+def test_studies_of_a_closed_server_go_on_by_themselves(tmp_path, records, long_job, map_job):
     """What ran and what waited goes on with the next start, in the order it was launched; what was cancelled stays."""
     manager = StudyManager(tmp_path, Limits(), records, workers=1)
     studies = [manager.create(None, job) for job in (long_job, map_job(), map_job())]
@@ -129,16 +123,14 @@ def test_studies_of_a_closed_server_go_on_by_themselves(
     again.close()
 
 
-def test_a_server_that_was_killed_finds_its_studies(
-    tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]
-) -> None:
+def test_a_server_that_was_killed_finds_its_studies(tmp_path, records, map_job):
     """Running waits again at the next start, but is done where all is finished; what was half made or deleted goes."""
     manager = _idle(tmp_path, records)
     running, complete, torn = (manager.create(None, map_job()) for _ in range(3))
     for study in (running, complete):
         path = tmp_path / "studies" / study / "meta.json"
         path.write_text(json.dumps(json.loads(path.read_text()) | {"state": "running"}))
-    folder = manager._line.study(complete).folder
+    folder = manager.queue.study(complete).folder
     JobFolder.create(folder.campaign, Job.read(folder.path / "job.toml")).run(workers=1)
     (tmp_path / "studies" / torn / "meta.json").unlink()
     (tmp_path / "studies" / ".deleted-x").mkdir()
@@ -148,7 +140,7 @@ def test_a_server_that_was_killed_finds_its_studies(
     assert sorted(path.name for path in (tmp_path / "studies").iterdir()) == sorted([running, complete])
 
 
-def test_links_and_strange_names_are_no_studies(tmp_path: Path, records: RecordStore) -> None:
+def test_links_and_strange_names_are_no_studies(tmp_path, records):
     """A link in the folder of studies is not followed, nor removed with what it points to."""
     outside = tmp_path / "outside"
     outside.mkdir()
@@ -161,9 +153,7 @@ def test_links_and_strange_names_are_no_studies(tmp_path: Path, records: RecordS
     assert (outside / "kept").exists()
 
 
-def test_too_many_histories_are_refused_with_the_number(
-    tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]
-) -> None:
+def test_too_many_histories_are_refused_with_the_number(tmp_path, records, map_job):
     """The limit itself is allowed, one more is not; refinement counts, and nothing is made of what is refused."""
     manager = _idle(tmp_path, records, histories=72)
     manager.create(None, map_job())
@@ -182,7 +172,7 @@ def test_too_many_histories_are_refused_with_the_number(
     assert len(list((tmp_path / "studies").iterdir())) == 1
 
 
-def test_only_so_many_wait(tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]) -> None:
+def test_only_so_many_wait(tmp_path, records, map_job):
     """The line has an end; a place that is given up can be taken."""
     manager = _idle(tmp_path, records, studies_waiting=2)
     first, _ = manager.create(None, map_job()), manager.create(None, map_job())
@@ -195,7 +185,7 @@ def test_only_so_many_wait(tmp_path: Path, records: RecordStore, map_job: Callab
         manager.resume(first)
 
 
-def test_the_disk_has_a_limit(tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]) -> None:
+def test_the_disk_has_a_limit(tmp_path, records, map_job):
     """A study whose results do not fit is refused with both sizes, before anything is written."""
     manager = _idle(tmp_path, records, studies_bytes=20_000)
     manager.create(None, map_job())
@@ -204,7 +194,7 @@ def test_the_disk_has_a_limit(tmp_path: Path, records: RecordStore, map_job: Cal
     assert len(list((tmp_path / "studies").iterdir())) == 1
 
 
-def test_what_is_refused_leaves_nothing(tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]) -> None:
+def test_what_is_refused_leaves_nothing(tmp_path, records, map_job):
     """A job whose axes do not fit, or whose record is unknown, is refused without a path, and its folder is gone."""
     manager = _idle(tmp_path, records)
     both = {"axis": "pga", "values": [1.0, 2.0]}
@@ -217,9 +207,7 @@ def test_what_is_refused_leaves_nothing(tmp_path: Path, records: RecordStore, ma
     assert manager.create(None, map_job())
 
 
-def test_a_study_needs_nobody_elses_files(
-    manager: StudyManager, records: RecordStore, map_job: Callable[..., Tables]
-) -> None:
+def test_a_study_needs_nobody_elses_files(manager, records, map_job):
     """A record may be deleted from the store once a study has it."""
     text = "\n".join(f"{0.01 * k:.2f} {(-1) ** (k // 20) * 3.0}" for k in range(200)).encode()
     record = records.add(text, "a b?.txt").record
@@ -230,7 +218,7 @@ def test_a_study_needs_nobody_elses_files(
     assert _wait(manager, study, "done", "failed")["state"] == "done"
 
 
-def test_a_failure_is_told_in_a_sentence(tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]) -> None:
+def test_a_failure_is_told_in_a_sentence(tmp_path, records, map_job):
     """Where a process ends on its own, its sentence is told without a path; once it is mended, a resume goes on."""
     idle = _idle(tmp_path, records)
     study = idle.create(None, map_job())
@@ -250,14 +238,14 @@ def test_a_failure_is_told_in_a_sentence(tmp_path: Path, records: RecordStore, m
 
 
 @pytest.mark.parametrize("act", ["cancel", "resume", "delete", "get", "finished"])
-def test_unknown_studies_are_not_there(act: str, manager: StudyManager) -> None:
+def test_unknown_studies_are_not_there(act, manager):
     """Whatever is asked of them, also by names that are paths."""
     for name in ("0" * 16, "../x", ".."):
         with pytest.raises(NotFound):
             getattr(manager, act)(name)
 
 
-def test_what_is_over_cannot_be_cancelled(manager: StudyManager, map_job: Callable[..., Tables]) -> None:
+def test_what_is_over_cannot_be_cancelled(manager, map_job):
     """A study that is done is neither cancelled nor resumed; one that runs has no results yet."""
     study = manager.create(None, map_job())
     _wait(manager, study, "done")
@@ -267,22 +255,22 @@ def test_what_is_over_cannot_be_cancelled(manager: StudyManager, map_job: Callab
         manager.resume(study)
 
 
-def test_listeners_are_told_until_they_leave(tmp_path: Path, records: RecordStore,
-                                             map_job: Callable[..., Tables]) -> None:  # fmt: skip
+def test_listeners_are_told_until_they_leave(tmp_path, records,
+                                             map_job):  # fmt: skip
     """A change is told once to everybody who still listens."""
     manager, told = _idle(tmp_path, records), []
-    leave = manager.subscribe(lambda: told.append(1))
+    leave = manager.queue.subscribe(lambda: told.append(1))
     study = manager.create(None, map_job())
-    manager._line.publish()
+    manager.queue.publish()
     assert len(told) == 1
     leave()
     manager.cancel(study)
     assert len(told) == 1
-    assert manager.watchers == 0
+    assert manager.queue.watchers == 0
     manager.close()
 
 
-def test_nothing_is_finished_that_is_not(tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]) -> None:
+def test_nothing_is_finished_that_is_not(tmp_path, records, map_job):
     """Results of a study that waits are refused with how far it is."""
     manager = _idle(tmp_path, records)
     study = manager.create(None, map_job())
@@ -290,9 +278,41 @@ def test_nothing_is_finished_that_is_not(tmp_path: Path, records: RecordStore, m
         manager.finished(study)
 
 
-def test_folders_are_private(tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]) -> None:
+def test_folders_are_private(tmp_path, records, map_job):
     """Nobody else on this machine reads studies."""
     manager = _idle(tmp_path, records)
     study = manager.create(None, map_job())
     assert (tmp_path / "studies").stat().st_mode & 0o077 == 0
     assert (tmp_path / "studies" / study).stat().st_mode & 0o077 == 0
+
+
+def test_a_steady_study_has_its_rate():
+    """Fifty histories a second, looked at five times a second, are fifty histories a second."""
+    pace = StudyPace()
+    rates = [pace.look(10 * k, 0.0, now=0.2 * k)[0] for k in range(100)]
+    assert rates[0] == 0.0
+    assert rates[-1] == pytest.approx(50.0, rel=0.05)
+
+
+def test_jumps_do_not_move_the_rate():
+    """Chunks that are finished every two seconds give the mean rate between the jumps, too."""
+    pace = StudyPace()
+    rates = [pace.look(100 * (k // 10), 0.0, now=0.2 * k)[0] for k in range(200)]
+    assert rates[150:] == pytest.approx([50.0] * 50, rel=0.25)
+
+
+def test_a_study_that_hangs_slows_down():
+    """Where nothing is finished for long, the rate goes down instead of promising an end."""
+    pace = StudyPace()
+    for k in range(50):
+        pace.look(10 * k, 0.0, now=0.2 * k)
+    assert pace.look(490, 0.0, now=60.0)[0] < 10.0
+
+
+def test_work_of_two_workers_is_two_seconds_a_second():
+    """Pieces of a second each from two workers, noticed in jumps, after a start that took long, and an earlier run."""
+    pace = StudyPace()
+    pace.look(1000, 500.0, now=0.0)
+    speeds = [pace.look(1000 + 20 * (k // 5), 500.0 + 2.0 * (k // 5), now=7.0 + 0.2 * k)[1] for k in range(100)]
+    assert speeds[0] == 0.0
+    assert speeds[30:] == pytest.approx([2.0] * 70)

@@ -104,7 +104,7 @@ def test_refusals_have_their_status(app: FastAPI, client: TestClient, map_job: C
 
 def test_a_full_line_is_429(app: FastAPI, client: TestClient, map_job: Callable[..., Tables]) -> None:
     """With the time after which to try again."""
-    line = app.state.rocking.studies._line
+    line = app.state.rocking.studies.queue
     line._at_once = 0
     for _ in range(8):
         _launched(client, map_job())
@@ -142,7 +142,7 @@ def test_too_many_browsers_are_turned_away(client: TestClient, monkeypatch: pyte
         with pytest.raises(WebSocketDisconnect), client.websocket_connect(LIVE) as other:
             other.receive_json()
     deadline = time.monotonic() + 5.0
-    while client.app.state.rocking.studies.watchers and time.monotonic() < deadline:  # type: ignore[attr-defined]
+    while client.app.state.rocking.studies.queue.watchers and time.monotonic() < deadline:  # type: ignore[attr-defined]
         time.sleep(0.02)
     with client.websocket_connect(LIVE) as socket:
         assert socket.receive_json() == {"studies": []}

@@ -1,0 +1,71 @@
+"""The animation as files: a page at once, a GIF in a process of its own, since its frames take seconds."""
+
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from rocking.app.errors import Busy, Refused
+from rocking.dynamics.response import Response
+from rocking.errors import RockingError
+from rocking.reports.response_facts import restitution_words
+
+MEDIA_TYPES = {"html": "text/html; charset=utf-8", "gif": "image/gif"}
+"""What a browser is told about an animation; it is saved, never shown as a page of this server."""
+
+_FRAME, _MOST_FRAMES = 0.08, 150
+_LONGEST = 90.0
+_REFUSED = 3
+
+
+def page_of(response: Response) -> bytes:
+    """Return a web page in which the body rocks."""
+    from rocking.plots.animation import page
+
+    label = response.parameters.label
+    told = page(response).replace(f"restitution {label};", f"restitution {restitution_words(label)};", 1)
+    return told.encode("utf-8")
+
+
+def gif_of(response: Response) -> bytes:
+    """Return a GIF in which the body rocks, with 150 frames at most."""
+    with TemporaryDirectory(prefix="rocking-film-") as folder:
+        path = Path(folder) / "animation.gif"
+        command = [sys.executable, "-m", "rocking.app.downloads.animation", str(path)]
+        try:
+            done = subprocess.run(
+                command, input=pickle.dumps(response), capture_output=True, timeout=_LONGEST, check=False
+            )
+        except subprocess.TimeoutExpired as error:
+            raise Busy("the frames take too long now: take the page (html), or try again", seconds=60) from error
+        if done.returncode == _REFUSED:
+            raise Refused(done.stderr.decode("utf-8", "replace").strip())
+        if done.returncode:
+            raise RuntimeError(done.stderr.decode("utf-8", "replace"))
+        return path.read_bytes()
+
+
+def _draw(response: Response, path: Path) -> None:
+    from rocking.plots.animation import animate_gif
+    from rocking.plots.response import shown_until
+
+    speed = max(1.0, float(np.ceil(100.0 * shown_until(response) / (_FRAME * (_MOST_FRAMES - 2)))) / 100.0)
+    animate_gif(response, path, fps=1.0 / _FRAME, speed=speed)
+
+
+def _main() -> int:
+    # the parent's own response, through a pipe that nobody else writes to
+    response = pickle.loads(sys.stdin.buffer.read())
+    try:
+        _draw(response, Path(sys.argv[1]))
+    except RockingError as error:
+        sys.stderr.write(str(error))
+        return _REFUSED
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(_main())

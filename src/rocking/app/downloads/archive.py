@@ -1,0 +1,184 @@
+"""Inputs, the record and the commands in one archive, and an archive that somebody sent, unpacked within limits."""
+
+import hashlib
+import io
+import zlib
+from typing import Any
+from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile, ZipInfo
+
+from rocking.app.api.records import record_facts
+from rocking.app.downloads.evaluation import Evaluation
+from rocking.app.downloads.inputs_file import (
+    FILE_NAME,
+    FindRecord,
+    commands,
+    fingerprint,
+    inputs_as_toml,
+    inputs_from_toml,
+    record_name,
+)
+from rocking.app.errors import NotFound, Refused, TooLarge
+from rocking.app.inputs import LONGEST, Inputs, parsed_toml
+from rocking.app.plain_text import plain_line, record_file_name
+from rocking.app.records import RecordStore
+
+_EARLIEST = (1980, 1, 1, 0, 0, 0)
+_ORDINARY_FILE = 0o644 << 16
+MOST_FILES = 8
+"""Files of an archive; ours have three at most."""
+
+_BEGINNINGS = (b"PK\x03\x04", b"PK\x05\x06")
+_ENTRY = b"PK\x01\x02"
+_MOST_ENTRIES = 64  # a packed record may hold the four bytes by chance
+_ENCRYPTED = 0x1
+
+
+def bundle_of(evaluation: Evaluation) -> bytes:
+    """Return a ZIP file of all that the command line needs for the same result; the same bytes for the same inputs."""
+    inputs, record = evaluation.inputs, record_name(evaluation.inputs)
+    stream = io.BytesIO()
+    with ZipFile(stream, "w") as archive:
+        _add(archive, FILE_NAME, inputs_as_toml(inputs).encode("utf-8"))
+        if record is not None and inputs.motion is not None and inputs.motion.record is not None:
+            _add(archive, record, evaluation.records.content(inputs.motion.record))
+        _add(archive, "README.txt", _words(evaluation, record).encode("utf-8"))
+    return stream.getvalue()
+
+
+def _add(archive: ZipFile, name: str, data: bytes) -> None:
+    # the time is always the same: the archive then depends on nothing but the inputs
+    entry = ZipInfo(name, _EARLIEST)
+    entry.compress_type, entry.external_attr, entry.create_system = ZIP_DEFLATED, _ORDINARY_FILE, 3
+    archive.writestr(entry, data)
+
+
+def _words(evaluation: Evaluation, record: str | None) -> str:
+    typed = commands(evaluation.inputs) or ["(nothing moves the body yet: choose a motion or free rocking first)"]
+    files = [f"  {FILE_NAME:<16} body, motion, restitution and settings"]
+    if record is not None:
+        files.append(f"  {record:<16} the record that it names")
+    return "\n".join(
+        [
+            f"How {evaluation.name or 'a body'} rocks",
+            "",
+            *files,
+            "",
+            "In this folder, with rocking installed, each of these gives the same numbers as the application:",
+            "",
+            *(f"  {plain_line(command, 4000)}" for command in typed),
+            "",
+            "Add --json for all numbers, --picture response.svg for the picture, --csv response.csv for the samples.",
+            "",
+            f"{evaluation.about['software']}; SHA-256 of the inputs: {fingerprint(evaluation.inputs)}",
+            "",
+        ]
+    )
+
+
+def inputs_from_file(data: bytes, records: RecordStore) -> Inputs:
+    """Return what a file of inputs says: TOML, or the archive of it and its record."""
+    if Archive.begins(data):
+        return _inputs_from_archive(Archive(data), records)
+    return inputs_from_toml(_text(data), _finder(records))
+
+
+def _inputs_from_archive(archive: "Archive", records: RecordStore) -> Inputs:
+    texts = [name for name in archive.names if name.lower().endswith(".toml")]
+    if len(texts) != 1:
+        raise Refused(f"the archive must hold one TOML file of inputs, it has {len(texts)}")
+    text = _text(archive.content(texts[0], LONGEST))
+    name = _record_of(text)
+    if name not in archive.names:
+        return inputs_from_toml(text, _finder(records))
+    content = archive.content(name, records.largest)
+    sha = hashlib.sha256(content).hexdigest()
+    others = _finder(records)
+    inputs = inputs_from_toml(text, lambda word: sha if word in {name, sha} else others(word))
+    if inputs.motion is not None and inputs.motion.record == sha:
+        records.check_upload(content)
+        record_facts(content, name, {key: getattr(inputs.motion, key) for key in ("format", "units", "time_step")})
+        records.add(content, inputs.motion.file_name or name)
+    return inputs
+
+
+def _record_of(text: str) -> str:
+    """Return the name of the record file that inputs name; empty if they name none."""
+    motion: Any = parsed_toml(text).get("motion")
+    word = motion.get("record") if isinstance(motion, dict) else None
+    return word if isinstance(word, str) else ""
+
+
+def _text(data: bytes) -> str:
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise Refused(f"this is not a text file in UTF-8 (byte {error.start})") from error
+
+
+def _finder(records: RecordStore) -> FindRecord:
+    """Return what finds the hash of an uploaded record, given that or its name: the latest of that name."""
+
+    def find(word: str) -> str | None:
+        try:
+            return records.get(word).record
+        except NotFound:
+            name = record_file_name(word)
+            return next((one.record for one in records.stored() if record_file_name(one.file_name) == name), None)
+
+    return find
+
+
+class Archive:
+    """The files of a ZIP archive, by their names."""
+
+    def __init__(self, data: bytes) -> None:
+        if data.count(_ENTRY) > _MOST_ENTRIES:  # before all of them are read
+            raise TooLarge(f"an archive may hold up to {MOST_FILES} files")
+        try:
+            self._archive = ZipFile(io.BytesIO(data))
+        except (BadZipFile, ValueError, NotImplementedError, OSError) as error:
+            raise Refused("this is no ZIP archive that can be read: is it damaged?") from error
+        entries = self._archive.infolist()
+        if len(entries) > MOST_FILES:
+            raise TooLarge(f"an archive may hold up to {MOST_FILES} files, this has {len(entries)}")
+        for entry in entries:
+            _check_entry(entry)
+        self._entries = {entry.filename: entry for entry in entries}
+        if len(self._entries) < len(entries):
+            raise Refused("the archive holds two files of one name")
+
+    @staticmethod
+    def begins(data: bytes) -> bool:
+        """Return whether bytes begin as a ZIP archive does."""
+        return data.startswith(_BEGINNINGS)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the files."""
+        return tuple(self._entries)
+
+    def content(self, name: str, most: int) -> bytes:
+        """Return a file, unpacked; most: largest size [bytes]."""
+        try:
+            with self._archive.open(self._entries[name]) as file:
+                content = file.read(most + 1)
+        except (BadZipFile, zlib.error, EOFError, ValueError, NotImplementedError, RuntimeError, OSError) as error:
+            raise Refused(f"{plain_line(name, 60)} in the archive is damaged") from error
+        if len(content) > most:
+            raise TooLarge(f"{plain_line(name, 60)} in the archive has more than {most} bytes")
+        return content
+
+
+def _check_entry(entry: ZipInfo) -> None:
+    name = plain_line(entry.filename, 60)
+    # orig_filename is what stands in the archive: a NUL cuts the other one off
+    if (
+        entry.orig_filename != entry.filename
+        or set(entry.filename) & set("/\\:\0")
+        or entry.filename in {"", ".", ".."}
+    ):
+        raise Refused(f"the archive holds {name!r}: files must lie beside each other, without folders")
+    if entry.flag_bits & _ENCRYPTED:
+        raise Refused(f"{name} in the archive is encrypted")
+    if entry.compress_type not in {ZIP_STORED, ZIP_DEFLATED}:
+        raise Refused(f"{name} in the archive is packed in a way that is not read here: pack it as usual (deflate)")

@@ -1,0 +1,118 @@
+"""Documents to take away: the report, the animation, the inputs as a file, and such a file read again."""
+
+import datetime
+from functools import partial
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Query, Request
+from starlette.responses import Response as Answer
+
+from rocking.app.answers import FILE_SENT, JsonAnswer, answered, answered_with_file, attachment
+from rocking.app.downloads.animation import MEDIA_TYPES, gif_of, page_of
+from rocking.app.downloads.archive import bundle_of, inputs_from_file
+from rocking.app.downloads.evaluation import Evaluation
+from rocking.app.downloads.inputs_file import commands, fingerprint, inputs_as_toml, plain_inputs
+from rocking.app.downloads.pictures import drawn, figure_of
+from rocking.app.inputs import Inputs, ResponseInputs
+from rocking.app.plain_text import plain_line
+from rocking.app.settings import state_of
+from rocking.app.work import heavy
+from rocking.plots.traces import fine_samples
+from rocking.reports.motion_facts import measures_of
+from rocking.reports.render import response_pdf
+from rocking.reports.response_document import PICTURES, ReportResults, ReportSubject, response_document
+
+router = APIRouter(prefix="/api", tags=["take away"])
+
+Place = Annotated[int | None, Query(ge=0, description="which response, counted from 0; the first if left out")]
+_DATE = "day that is printed on the report, as 2026-11-21; none if left out"
+
+
+@router.post(
+    "/report.pdf",
+    response_class=Answer,
+    summary="The report as PDF",
+    responses=answered_with_file("The report.", "application/pdf"),
+)
+async def report(
+    request: Request, inputs: ResponseInputs, date: Annotated[datetime.date | None, Query(description=_DATE)] = None
+) -> Answer:
+    """Return the report: body, coefficients, motion, responses, and how to do it again."""
+    evaluation = Evaluation(inputs, state_of(request).records)
+    day = "" if date is None else f"{date.day} {date:%B %Y}"
+    return attachment(
+        await heavy(request, report_of, evaluation, day), _name(evaluation, "report.pdf"), "application/pdf"
+    )
+
+
+@router.post(
+    "/animation.{kind}",
+    response_class=Answer,
+    summary="The body in motion",
+    responses=answered_with_file("The animation.", *MEDIA_TYPES.values()),
+)
+async def animation(
+    request: Request, kind: Literal["html", "gif"], inputs: ResponseInputs, restitution: Place = None
+) -> Answer:
+    """Return one response in motion: a page that needs nothing else, or a GIF."""
+    evaluation = Evaluation(inputs, state_of(request).records)
+    make = page_of if kind == "html" else gif_of
+    data = await heavy(request, lambda: make(evaluation.chosen(restitution)))
+    return attachment(data, f"{evaluation.file_stem('animation', restitution)}.{kind}", MEDIA_TYPES[kind])
+
+
+@router.post(
+    "/inputs.toml",
+    response_class=Answer,
+    summary="The inputs as a file of the command line",
+    responses=answered_with_file("What `rocking simulate` takes.", "application/toml"),
+)
+async def inputs_file(request: Request, inputs: Inputs) -> Answer:
+    """Return the file that `rocking simulate` takes for the same result."""
+    data = await heavy(request, inputs_as_toml, inputs)
+    return attachment(data.encode("utf-8"), "response.toml", "application/toml")
+
+
+@router.post(
+    "/inputs.zip",
+    response_class=Answer,
+    summary="The inputs with their record",
+    responses=answered_with_file("The file of inputs, the record, and what to type.", "application/zip"),
+)
+async def inputs_bundle(request: Request, inputs: Inputs) -> Answer:
+    """Return an archive of the file of inputs, the record, and what to type."""
+    evaluation = Evaluation(inputs, state_of(request).records)
+    return attachment(await heavy(request, bundle_of, evaluation), _name(evaluation, "response.zip"), "application/zip")
+
+
+@router.post(
+    "/inputs/read",
+    openapi_extra=FILE_SENT,
+    summary="A file of inputs, read again",
+    response_class=JsonAnswer,
+    responses=answered(Inputs, "The inputs."),
+)
+async def inputs_read(request: Request) -> JsonAnswer:
+    """Return the inputs that a file of inputs holds, or the archive of it and its record, which is kept."""
+    data = await request.body()
+    return JsonAnswer(plain_inputs(await heavy(request, inputs_from_file, data, state_of(request).records)))
+
+
+def _name(evaluation: Evaluation, ending: str) -> str:
+    return f"{evaluation.name or 'rocking'} {ending}"
+
+
+def report_of(evaluation: Evaluation, date: str) -> bytes:
+    """Return the report as PDF."""
+    inputs, motion = evaluation.inputs, None if evaluation.inputs.motion is None else evaluation.motion
+    results = ReportResults(
+        evaluation.impact, motion, {} if motion is None else measures_of(motion, fine_samples(motion)),
+        evaluation.responses, evaluation.refused, evaluation.question.assumed_friction,
+    )  # fmt: skip
+    subject = ReportSubject(
+        evaluation.name, date, inputs_as_toml(inputs), [plain_line(each, 2000) for each in commands(inputs)],
+        fingerprint(inputs), evaluation.about["software"],
+    )  # fmt: skip
+    stems = [stem for stem in PICTURES if motion is not None or stem != "motion"]
+    pictures = {stem: drawn(partial(figure_of, stem, evaluation), "svg") for stem in stems}
+    return response_pdf(response_document(subject, results), pictures)

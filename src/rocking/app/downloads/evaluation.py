@@ -1,0 +1,121 @@
+"""What a request for a file asks about: the inputs, and what is made of them when it is needed."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from rocking.app.api.response import responses_of
+from rocking.app.downloads.inputs_file import fingerprint
+from rocking.app.errors import Refused
+from rocking.app.inputs import Inputs, body_from, motion_from, question_of
+from rocking.app.plain_text import plain_line
+from rocking.app.records import RecordStore
+from rocking.bodies import Body
+from rocking.conventions import Foot, g
+from rocking.dynamics.response import Motion, Response
+from rocking.errors import InvalidValueError
+from rocking.motions.motion import GroundMotion
+from rocking.reports.body_facts import ImpactAnswer
+from rocking.spec.response import ResponseProblem
+from rocking.version import SOFTWARE
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Inputs, and what is computed from them, each once and only when somebody needs it."""
+
+    inputs: Inputs  # what the user chose
+    records: RecordStore  # uploaded records
+    onto: str = "both"  # foot on which the body lands, for coefficients
+
+    @property
+    def name(self) -> str:
+        """What the user calls the body; perhaps empty."""
+        return plain_line(self.inputs.body.name or "", 100)
+
+    @property
+    def gravity(self) -> float:
+        """Acceleration of gravity [m/s2]."""
+        return self.inputs.settings.gravity or g
+
+    @cached_property
+    def body(self) -> Body:
+        """The body."""
+        return body_from(self.inputs.body)
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The motion, scaled."""
+        chosen = self.inputs.motion
+        if chosen is None:
+            raise Refused("no motion was chosen: the ground is at rest", needs=["motion"])
+        motion = _named_plainly(motion_from(chosen, self.records))
+        return motion if chosen.scale == 1.0 else motion.scaled(chosen.scale)
+
+    @cached_property
+    def question(self) -> ResponseProblem:
+        """Body, motion, restitutions and settings."""
+        if self.inputs.motion is None and self.inputs.response.free is None:
+            raise Refused("what moves the body? Choose a motion, or free rocking", needs=["motion"])
+        question = question_of(self.inputs, self.records)
+        if question.motion is None or isinstance(question.motion, dict):
+            return question
+        return replace(question, motion=_named_plainly(question.motion))
+
+    @cached_property
+    def answers(self) -> dict[str, Response | str]:
+        """By label: the response with a restitution, or why there is none."""
+        return responses_of(self.question)
+
+    @property
+    def responses(self) -> dict[str, Response]:
+        """The responses that are there, by label; at least one."""
+        return {label: one for label, one in self.answers.items() if isinstance(one, Response)}
+
+    @property
+    def refused(self) -> dict[str, str]:
+        """By label: why a restitution has no response for this body."""
+        return {label: why for label, why in self.answers.items() if isinstance(why, str)}
+
+    def chosen(self, index: int | None) -> Response:
+        """Return one response by its place."""
+        if index is None:
+            return next(iter(self.responses.values()))
+        answers = list(self.answers.values())
+        if not 0 <= index < len(answers):
+            raise InvalidValueError(f"restitution must be 0 to {len(answers) - 1}, got {index}")
+        one = answers[index]
+        if isinstance(one, str):
+            raise InvalidValueError(one)
+        return one
+
+    def file_stem(self, what: str, index: int | None) -> str:
+        """Return what a file of one response is called: with its restitution, where there are several."""
+        restitution, stem = self.inputs.restitution, f"{self.name or 'rocking'} {what}"
+        if len(restitution.models or ()) + len(restitution.values or ()) < 2:
+            return stem
+        return f"{stem} {plain_line(self.chosen(index).parameters.label, 60)}"
+
+    @cached_property
+    def impact(self) -> ImpactAnswer:
+        """Coefficients under every model."""
+        return ImpactAnswer.of(self.body, None, onto=self.onto, eta=1.0, gravity=self.gravity, identities=False)
+
+    @property
+    def foot(self) -> Foot:
+        """The foot whose coefficients are drawn."""
+        return next(reversed(self.impact.tables))
+
+    @property
+    def about(self) -> dict[str, str]:
+        """Provenance of a file."""
+        return {"software": SOFTWARE, "body": self.name, "inputs SHA-256": fingerprint(self.inputs)}
+
+
+def _named_plainly(motion: Motion) -> Motion:
+    """Return a motion whose name and provenance, which a file may have given it, can stand in any other file."""
+    if not isinstance(motion, GroundMotion):
+        return motion
+    name, provenance = plain_line(motion.name), tuple(plain_line(line, 500) for line in motion.provenance)
+    if (name, provenance) == (motion.name, motion.provenance):
+        return motion
+    return replace(motion, name=name, provenance=provenance)

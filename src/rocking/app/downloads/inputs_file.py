@@ -1,0 +1,195 @@
+"""Inputs as a file of the command line, such a file as inputs, and inputs as the words of a command."""
+
+import hashlib
+import json
+import re
+from collections.abc import Callable, Mapping
+from shlex import quote
+from typing import Any
+
+from pydantic import ValidationError
+
+from rocking.app.errors import Refused
+from rocking.app.inputs import Inputs, parsed_toml
+from rocking.app.plain_text import plain_line, record_file_name, toml_of, toml_value
+from rocking.bodies.formats.words import sentence
+from rocking.conventions import Assumed
+from rocking.version import SOFTWARE
+
+_OF_FILES = ("format", "units", "time_step", "component", "vertical")
+_SETTINGS = {"gravity", "linear", "engine"}
+FILE_NAME = "response.toml"
+"""What such a file is called."""
+
+_TABLES = ("response", "body", "motion", "restitution", "settings")
+_SHAPES = {"block", "trapezoid", "ellipse", "regular_polygon", "section", "mass_points", "units"}
+_HASH = re.compile(r"[0-9a-f]{64}")
+_RECORD = re.compile(r"^# record: ([0-9a-f]{64}) (\".*\")$", re.MULTILINE)
+
+FindRecord = Callable[[str], str | None]
+"""Returns the hash of the stored record that a word means, which is a hash or the name of a file."""
+
+
+def plain_inputs(inputs: Inputs) -> dict[str, Any]:
+    """Return inputs as plain values; what was not given is left out."""
+    return inputs.model_dump(exclude_none=True, exclude_unset=True)
+
+
+def fingerprint(inputs: Inputs) -> str:
+    """Return the SHA-256 of inputs, the same however they were written."""
+    words = json.dumps(inputs.model_dump(exclude_none=True), sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(words.encode()).hexdigest()
+
+
+def record_name(inputs: Inputs) -> str | None:
+    """Return the name of the record file beside a file of inputs; None if the motion is no record."""
+    if inputs.motion is None or inputs.motion.record is None:
+        return None
+    return record_file_name(inputs.motion.file_name or "", f"record-{inputs.motion.record[:12]}.txt")
+
+
+def commands(inputs: Inputs) -> list[str]:
+    """Return what to type for the same result: with the file of inputs, and in words where that is possible."""
+    if inputs.motion is None and inputs.response.free is None:
+        return []
+    words = simulate_words(plain_inputs(inputs), record_name(inputs))
+    return [f"rocking simulate {FILE_NAME}", *([] if words is None else [words])]
+
+
+def inputs_as_toml(inputs: Inputs) -> str:
+    """Return inputs as a file that `rocking simulate` takes."""
+    plain, friction = plain_inputs(inputs), inputs.response.assumed_friction
+    assumed = {} if isinstance(friction, Assumed) else {"assumed_friction": friction}
+    tables: dict[str, Any] = {
+        "response": assumed | plain.get("response", {}),
+        "body": plain["body"],
+        "motion": _motion_on_disk(plain.get("motion"), record_name(inputs)),
+        "restitution": plain.get("restitution", {"model": "ked"}),
+        "settings": plain.get("settings"),
+    }
+    return "\n".join([*_head(inputs), "", toml_of(tables)])
+
+
+def inputs_from_toml(text: str, find: FindRecord) -> Inputs:
+    """Return what a file of inputs says."""
+    document = parsed_toml(text)
+    unknown = sorted(set(document) - set(_TABLES))
+    if unknown and "campaign" in document:
+        raise Refused("this is a job of many histories: set it up in the step Studies, or `rocking run` takes it")
+    if unknown and "body" not in document and _SHAPES & set(document):
+        raise Refused("this is a file of a body alone: drop it in the step Body")
+    if unknown:
+        raise Refused(f"[{plain_line(unknown[0], 60)}] is no table of inputs; there are {', '.join(_TABLES)}")
+    motion = document.get("motion")
+    if isinstance(motion, dict) and isinstance(motion.get("record"), str):
+        document["motion"] = motion | _stored(motion["record"], text, find)
+    try:
+        return Inputs.model_validate(document)
+    except ValidationError as error:
+        raise Refused(plain_line(sentence(error, None), 500)) from error
+
+
+def _head(inputs: Inputs) -> list[str]:
+    name = plain_line(inputs.body.name or "", 100)
+    lines = [f"# How {name or 'a body'} rocks. Written by {SOFTWARE}."]
+    for word, command in zip(("the command line", "or in words"), commands(inputs), strict=False):
+        lines.append(f"# {word + ':':<17} {plain_line(command, 4000)}")
+    if not commands(inputs):
+        lines.append("# Nothing moves the body yet: add a table [motion], or free = 0.5 under [response].")
+    if inputs.motion is not None and inputs.motion.record is not None:
+        lines.append(f"# record: {inputs.motion.record} {toml_value(inputs.motion.file_name or '')}")
+    return lines
+
+
+def _motion_on_disk(motion: Mapping[str, Any] | None, record: str | None) -> dict[str, Any] | None:
+    if motion is None or record is None:
+        return None if motion is None else dict(motion)
+    return {"record": record, **{key: value for key, value in motion.items() if key not in {"record", "file_name"}}}
+
+
+def _stored(word: str, text: str, find: FindRecord) -> dict[str, Any]:
+    """Return hash and name of the record that a file of inputs means."""
+    noted = _RECORD.search(text)
+    if noted is not None:
+        name = str(parsed_toml(f"name = {noted[2]}")["name"])
+        if record_file_name(name, f"record-{noted[1][:12]}.txt") == word and find(noted[1]) is not None:
+            return {"record": noted[1], "file_name": name} if name else {"record": noted[1]}
+    sha = find(word)
+    if sha is None:
+        raise Refused(
+            f"motion.record: {plain_line(word, 80)} was not uploaded here; drop the file first, then read this"
+        )
+    return {"record": sha} if _HASH.fullmatch(word) else {"record": sha, "file_name": word}
+
+
+def simulate_words(inputs: Mapping[str, Any], record: str | None = None) -> str | None:
+    """Return the command that gives the same result, quoted for a shell; None where only a file of inputs can say it.
+
+    >>> block = {"units": "cm", "width": 50.0, "height": 200.0}
+    >>> simulate_words({"body": block, "motion": {"pulse": "sine:amplitude=3,period=0.8"}})
+    'rocking simulate --width 50.0 --height 200.0 --units cm --motion sine:amplitude=3,period=0.8 --restitution ked'
+    """
+    parts = [_body(inputs["body"]), _start(inputs, record), _restitution(inputs), _how(inputs)]
+    if any(part is None for part in parts):
+        return None
+    words = _one_of_units([word for part in parts if part is not None for word in part])
+    return " ".join(["rocking simulate", *(quote(word) for word in words)])
+
+
+def _one_of_units(words: list[str]) -> list[str]:
+    """Return the words with the units of body and record in one option, as the command takes them."""
+    places = [k for k, word in enumerate(words) if word == "--units"]
+    if len(places) < 2:
+        return words
+    first, second = places
+    joined = f"{words[first + 1]},{words[second + 1]}"
+    return [*words[: first + 1], joined, *words[first + 2 : second], *words[second + 2 :]]
+
+
+def _body(body: Mapping[str, Any]) -> list[str] | None:
+    table = body.get("block", body)
+    if "width" not in table or "feet" in table:
+        return None
+    sizes = {name: table[name] for name in ("width", "height", "depth", "density") if table.get(name) is not None}
+    return [*_options(sizes), "--units", str(body["units"])]
+
+
+def _start(inputs: Mapping[str, Any], record: str | None) -> list[str] | None:
+    motion, response = inputs.get("motion"), inputs.get("response") or {}
+    friction = _options({"friction": response.get("assumed_friction")})
+    if motion is None:
+        return None if response.get("free") is None else [*_options({"free": response["free"]}), *friction]
+    scale = _options({"scale": motion.get("scale")})
+    if motion.get("pulse") is not None:
+        return ["--motion", str(motion["pulse"]), *scale, *friction]
+    if record is None or motion.get("record") is None:
+        return None
+    return ["--motion", record, *_options({name: motion.get(name) for name in _OF_FILES}), *scale, *friction]
+
+
+def _restitution(inputs: Mapping[str, Any]) -> list[str] | None:
+    table = inputs.get("restitution") or {"model": "ked"}
+    choices = [table.get("model"), *(table.get("models") or ()), table.get("value"), *(table.get("values") or ())]
+    first = next((value for value in choices if value is not None), None)
+    return None if first is None else ["--restitution", str(first)]
+
+
+def _how(inputs: Mapping[str, Any]) -> list[str] | None:
+    settings = {name: value for name, value in (inputs.get("settings") or {}).items() if value is not None}
+    if set(settings) - _SETTINGS:
+        return None
+    linear = ["--linear"] if settings.pop("linear", False) else []
+    if settings.get("engine") == "auto":
+        del settings["engine"]
+    return [*linear, *_options(settings)]
+
+
+def _options(values: Mapping[str, Any]) -> list[str]:
+    words: list[str] = []
+    for name, value in values.items():
+        if value is None:
+            continue
+        option, text = f"--{name.replace('_', '-')}", repr(value) if isinstance(value, float) else str(value)
+        # with = between, a value may begin with a dash
+        words += [f"{option}={text}"] if text.startswith("-") else [option, text]
+    return words

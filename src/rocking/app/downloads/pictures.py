@@ -1,0 +1,269 @@
+"""Pictures of what the user sees, POST /api/picture/{what}.{kind}, drawn one at a time."""
+
+import warnings
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from textwrap import wrap
+from threading import RLock
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+from fastapi import APIRouter, Query, Request
+from starlette.responses import Response as Answer
+
+from rocking.app.answers import answered_with_file, attachment
+from rocking.app.api.response import thinned
+from rocking.app.downloads.evaluation import Evaluation
+from rocking.app.inputs import Inputs
+from rocking.app.plain_text import plain_line
+from rocking.app.settings import state_of
+from rocking.app.work import heavy
+from rocking.dynamics.response import Response
+from rocking.outcome import Outcome
+from rocking.plots.response import ground_curve, motion_curves, over_slenderness, shown_until
+from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, model_styles, new_figure, write
+from rocking.reports.response_facts import ModelAgreement, restitution_words
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+PictureKind = Literal["png", "svg"]
+
+MEDIA_TYPES: dict[str, str] = {"png": "image/png", "svg": "image/svg+xml"}
+"""What a browser is told about a picture."""
+
+_ENOUGH = 2700
+"""Runs of a curve whose extremes are drawn: one for each dot of the widest picture."""
+
+ONE_AT_A_TIME = RLock()
+"""Held by whoever draws."""
+
+
+What = Literal["body", "coefficients", "stages", "motion", "response"]
+Onto = Literal["left", "right", "both"]
+
+_SPARE = ("#4D9221", "#A6761D", "#7A5195", "#1A1A1A")
+_DASHES = ((0, (3, 2, 8, 2)), (0, (12, 3)), (0, (5, 3, 1, 3)), (0, (2, 2)), "-")
+_BEYOND = 2.2
+"""How far a falling body is followed, in slenderness angles."""
+
+_SMALL = 0.2
+"""Below this share of the slenderness angle the rotations fill their panel and +-1 is left out."""
+
+_SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
+
+router = APIRouter(prefix="/api", tags=["take away"])
+
+
+@router.post(
+    "/picture/{what}.{kind}",
+    response_class=Answer,
+    summary="A picture",
+    responses=answered_with_file("The picture.", *MEDIA_TYPES.values()),
+)
+async def picture(
+    request: Request,
+    what: What,
+    kind: PictureKind,
+    inputs: Inputs,
+    onto: Annotated[Onto, Query(description="foot on which the body lands")] = "both",
+    restitution: Annotated[
+        int | None, Query(ge=0, description="only this response, counted from 0; all of them if left out")
+    ] = None,
+) -> Answer:
+    """Return a picture as a file: the body, its coefficients, the three stages, the motion, or the responses."""
+    evaluation = Evaluation(inputs, state_of(request).records, onto)
+    data = await heavy(
+        request, drawn, lambda: named(figure_of(what, evaluation, restitution), what, evaluation.name), kind
+    )
+    return attachment(data, f"{evaluation.name or 'rocking'} {what}.{kind}", MEDIA_TYPES[kind])
+
+
+def figure_of(what: str, evaluation: Evaluation, restitution: int | None = None) -> "Figure":
+    """Return a picture."""
+    from rocking.plots.body import body_picture, coefficient_picture
+    from rocking.plots.energy_stages import energy_stages_picture
+    from rocking.plots.ground_motion import ground_motion_picture
+
+    if what == "motion":
+        return _scaled(ground_motion_picture(evaluation.motion), evaluation)
+    if what == "response":
+        return _responses(evaluation, restitution)
+    if what == "coefficients":
+        tables = evaluation.impact.tables
+        return in_words(coefficient_picture(evaluation.body, tables), [row.name for row in tables[evaluation.foot]])
+    if what == "stages":
+        return energy_stages_picture(evaluation.body, onto=evaluation.foot)
+    return body_picture(evaluation.body)
+
+
+def _responses(evaluation: Evaluation, restitution: int | None) -> "Figure":
+    from rocking.plots.response import response_picture
+
+    if restitution is None and len(evaluation.responses) > 1:
+        return comparison_picture(evaluation.responses)
+    chosen = evaluation.chosen(restitution)
+    return in_words(response_picture(chosen, evaluation.question.assumed_friction), [chosen.parameters.label])
+
+
+def named(figure: "Figure", what: str, name: str) -> "Figure":
+    """Write the name of the body over a picture that has no title of its own."""
+    return _titled(figure, name) if name and what in {"body", "coefficients", "stages"} else figure
+
+
+def _scaled(figure: "Figure", evaluation: Evaluation) -> "Figure":
+    """Say that a motion was scaled: its name speaks of the one that it was."""
+    scale = 1.0 if evaluation.inputs.motion is None else evaluation.inputs.motion.scale
+    return figure if scale == 1.0 else _titled(figure, f"{scale:g} times {evaluation.motion.name}")
+
+
+def _titled(figure: "Figure", title: str) -> "Figure":
+    figure.suptitle(drawn_text(title, 80), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
+    return figure
+
+
+def drawn(make: "Callable[[], Figure]", kind: PictureKind) -> bytes:
+    """Draw a picture and return its file, the same for the same figure."""
+    with TemporaryDirectory(prefix="rocking-picture-") as folder:
+        path = Path(folder) / f"picture.{kind}"
+        draw_to(make, path)
+        return path.read_bytes()
+
+
+def draw_to(make: "Callable[[], Figure]", path: Path) -> None:
+    """Draw a picture into a file."""
+    with ONE_AT_A_TIME:
+        # names may be in any script: a box in place of a letter is no reason to stop
+        warnings.filterwarnings("ignore", message=r"Glyph \d+ .* missing from", category=UserWarning)
+        warnings.filterwarnings("ignore", message=r"Matplotlib currently does not support", category=UserWarning)
+        write(_thinned(make()), path)
+
+
+def _thinned(figure: "Figure") -> "Figure":
+    """Leave out of long curves what no eye can see; every extreme stays."""
+    for line in (line for axes in figure.axes for line in axes.get_lines()):
+        x, y = (np.asarray(values, dtype=np.float64) for values in line.get_data(orig=False))
+        if x.size > 2 * _ENOUGH and (np.diff(x) >= 0.0).all():
+            kept = thinned(x, (y,), _ENOUGH)
+            line.set_data(x[kept], y[kept])
+    return figure
+
+
+def in_words(figure: "Figure", labels: Iterable[str]) -> "Figure":
+    """Write the names of restitutions into a picture, wherever it has their labels."""
+    from matplotlib.text import Text
+
+    known = {label: restitution_words(label) for label in labels}
+    rows = {label.replace(":", "\n"): words.replace(", ", ",\n", 1) for label, words in known.items()}
+    for axes in figure.axes:
+        _name_rows(axes, rows)
+    for text in figure.findobj(Text):
+        for label, words in known.items():
+            text.set_text(text.get_text().replace(f"restitution: {label};", f"restitution: {words};"))
+    return figure
+
+
+def _name_rows(axes: "Axes", rows: dict[str, str]) -> None:
+    names = [text.get_text() for text in axes.get_yticklabels()]
+    if any(text in rows for text in names):
+        axes.set_yticks(axes.get_yticks(), [rows.get(text, text) for text in names], fontsize=6)
+
+
+@in_journal_style
+def comparison_picture(responses: Mapping[str, Response]) -> "Figure":
+    """Draw several responses to one motion: ground acceleration, rotations, velocities, energy lost at impacts."""
+    first = next(iter(responses.values()))
+    figure, axes = new_figure(DOUBLE, 5.6, rows=4, sharex=True, height_ratios=[0.7, 1.8, 1.0, 1.0])
+    verdict = ModelAgreement.of({restitution_words(label): one for label, one in responses.items()})
+    figure.suptitle(
+        "\n".join(wrap(drawn_text(verdict.sentence, 330), 110)), x=0.01, ha="left", fontsize=8.5, fontweight="bold"
+    )
+    time, values = ground_curve(first)
+    axes[0].plot(time, values, color=INK, linewidth=0.7)
+    axes[0].set_title(_ground(first), loc="left", fontsize=7.5)
+    axes[0].set_ylabel("ground\nacceleration\n[m/s$^2$]")
+    looks = _looks(list(responses))
+    for label, response in responses.items():
+        _draw_response(axes, label, response, looks[label])
+    for panel in axes[:3]:
+        panel.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
+    _rotations(axes[1], responses)
+    _frame(axes, responses)
+    figure.align_ylabels(axes)
+    return figure
+
+
+def drawn_text(text: str, longest: int) -> str:
+    r"""Return a text that a picture shows as it is, with no dollar sign that begins a formula."""
+    return plain_line(text, longest).replace("$", r"\$")
+
+
+def _draw_response(axes: "list[Axes]", label: str, response: Response, look: dict[str, object]) -> None:
+    (time, rotation, velocity), energy = motion_curves(response), response.energy
+    words = drawn_text(f"{restitution_words(label)}: {_SHORT[response.outcome]}", 60)
+    style = {**look, "linewidth": 1.0}
+    axes[1].plot(time, over_slenderness(response, rotation), label=words, **style)  # type: ignore[arg-type]
+    axes[2].plot(time, velocity, **style)  # type: ignore[arg-type]
+    axes[3].plot(energy.time, energy.lost, drawstyle="steps-post", **style)  # type: ignore[arg-type]
+
+
+def _rotations(axes: "Axes", responses: Mapping[str, Response]) -> None:
+    peak = max(
+        float(np.abs(over_slenderness(one, motion_curves(one)[1])).max(initial=0.0)) for one in responses.values()
+    )
+    if 0.0 < peak < _SMALL:
+        axes.set_ylim(-1.25 * peak, 1.25 * peak)
+        axes.set_title(r"the slenderness angle, $\pm$1, lies far outside this panel", loc="right", fontsize=7)
+    else:
+        for level in (-1.0, 1.0):
+            axes.axhline(level, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
+        low, high = axes.get_ylim()
+        axes.set_ylim(max(low, -_BEYOND), min(high, _BEYOND))
+    axes.set_ylabel("rotation /\nslenderness\nangle [-]")
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0, borderpad=0.2)
+
+
+def _frame(axes: "list[Axes]", responses: Mapping[str, Response]) -> None:
+    axes[2].set_ylim(*_reach(responses))
+    axes[2].set_ylabel("angular\nvelocity\n[rad/s]")
+    axes[3].set_ylabel("energy lost\nat impacts\n[J]")
+    for panel in axes:
+        panel.locator_params(axis="y", nbins=5)
+    axes[0].set_xlim(0.0, max(shown_until(response) for response in responses.values()))
+    axes[-1].set_xlabel("time [s]")
+
+
+def _reach(responses: Mapping[str, Response]) -> tuple[float, float]:
+    """Fit the velocities before a body falls for good."""
+    low, high = 0.0, 0.0
+    for response in responses.values():
+        time, _, velocity = motion_curves(response)
+        values = velocity[~(time > response.overturning_time)]
+        low, high = min(low, float(np.min(values, initial=0.0))), max(high, float(np.max(values, initial=0.0)))
+    room = 0.12 * (high - low) or 1.0
+    return low - room, high + room
+
+
+def _ground(response: Response) -> str:
+    if response.motion is None:
+        return "free rocking, the ground at rest"
+    times = "" if response.scale == 1.0 else f"{response.scale:g} times "
+    return drawn_text(times + response.motion.name, 110)
+
+
+def _looks(labels: list[str]) -> dict[str, dict[str, object]]:
+    """Return colour and dash of each: that of a model everywhere, of its family once, and others of their own."""
+    looks: dict[str, dict[str, object]] = {}
+    taken: set[str] = set()
+    styles = model_styles()
+    for label in labels:
+        family = label.rpartition("*")[2].partition(":")[0]
+        if family in styles and family not in taken:
+            taken.add(family)
+            looks[label] = {key: styles[family][key] for key in ("color", "linestyle")}
+        else:
+            k = len(looks) - len(taken)
+            looks[label] = {"color": _SPARE[k % len(_SPARE)], "linestyle": _DASHES[k % len(_DASHES)]}
+    return looks

@@ -1,0 +1,286 @@
+"""Tables of what the user sees, POST /api/table/{what}.{kind}: comma-separated values, Excel, MATLAB, netCDF."""
+
+import codecs
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from fastapi import APIRouter, Query, Request
+from starlette.responses import Response as Answer
+
+from rocking.app.answers import answered_with_file, attachment
+from rocking.app.api.motion import DAMPING, spectrum_of
+from rocking.app.downloads.evaluation import Evaluation
+from rocking.app.errors import NotFound
+from rocking.app.inputs import Inputs
+from rocking.app.plain_text import LONGEST_CELL, plain_line
+from rocking.app.settings import state_of
+from rocking.app.work import heavy
+from rocking.bodies import Body
+from rocking.dynamics.plane.export import columns
+from rocking.dynamics.response import Motion, Response
+from rocking.errors import InvalidValueError
+from rocking.motions.integrals import ground_displacement, ground_velocity
+from rocking.motions.motion import GroundMotion
+from rocking.plots.traces import fine_samples, traces
+from rocking.quantities import QUANTITIES
+from rocking.reports.body_facts import ImpactAnswer, body_facts
+from rocking.reports.motion_facts import measures_of
+from rocking.reports.response_facts import outcome_facts
+from rocking.tables import Cell, Column, Table, text_array, to_csv, to_dataset, to_excel, to_mat, to_netcdf
+
+What = Literal["body", "coefficients", "measures", "motion", "spectrum", "response", "outcomes", "impacts"]
+Kind = Literal["csv", "xlsx", "mat", "nc"]
+
+MEDIA_TYPES = {
+    "csv": "text/csv; charset=utf-8",
+    "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+    "mat": "application/x-matlab-data",
+    "nc": "application/x-netcdf",
+}
+"""What a browser is told about a table."""
+
+MOST_CELLS = 2_000_000
+"""Cells of a workbook; more would take minutes to write and longer to open."""
+
+_UNITS = {"m_s2": "m/s2", "rad_s": "rad/s", "rad": "rad", "kg_m2": "kg m2", "kg": "kg", "m": "m"}
+"""Endings of keys; the longer ones come first."""
+
+router = APIRouter(prefix="/api", tags=["take away"])
+
+
+@router.post(
+    "/table/{what}.{kind}",
+    response_class=Answer,
+    summary="A table",
+    responses=answered_with_file("The table.", *MEDIA_TYPES.values()),
+)
+async def table(
+    request: Request,
+    what: What,
+    kind: Kind,
+    inputs: Inputs,
+    onto: Annotated[Literal["left", "right", "both"], Query(description="foot on which the body lands")] = "both",
+    restitution: Annotated[
+        int | None,
+        Query(ge=0, description="which response, counted from 0; if left out the first one, in xlsx all of them"),
+    ] = None,
+) -> Answer:
+    """Return a table as a file that Excel, MATLAB, Python or R opens."""
+    evaluation = Evaluation(inputs, state_of(request).records, onto)
+    data, name = await heavy(request, _named_table, what, kind, evaluation, restitution)
+    return attachment(data, f"{name}.{kind}", MEDIA_TYPES[kind])
+
+
+def _named_table(what: str, kind: str, evaluation: Evaluation, restitution: int | None) -> tuple[bytes, str]:
+    data = table_of(what, kind, evaluation, restitution)
+    of_one = what == "response" and (kind != "xlsx" or restitution is not None)
+    return data, evaluation.file_stem(what, restitution) if of_one else f"{evaluation.name or 'rocking'} {what}"
+
+
+def table_of(what: str, kind: str, evaluation: Evaluation, restitution: int | None = None) -> bytes:
+    """Return a table as a file."""
+    if what == "response" and kind != "xlsx":
+        return _exported(evaluation.chosen(restitution), kind)
+    if what != "response":
+        return written([(what, _one_table(what, evaluation))], kind)
+    about = evaluation.about
+    if restitution is not None:
+        chosen = evaluation.chosen(restitution)
+        return written([(chosen.parameters.label, response_table(chosen, about))], kind)
+    sheets = [(name, _one_table(name, evaluation)) for name in ("outcomes", "impacts")]
+    return written(
+        [*sheets, *((label, response_table(one, about)) for label, one in evaluation.responses.items())], kind
+    )
+
+
+def _one_table(what: str, evaluation: Evaluation) -> Table:
+    about = evaluation.about
+    if what == "body":
+        return body_table(evaluation.body, evaluation.gravity, evaluation.name, about)
+    if what == "coefficients":
+        return coefficient_table(evaluation.impact, about)
+    if what in {"impacts", "outcomes"}:
+        return (impacts_table if what == "impacts" else outcomes_table)(evaluation.responses, about)
+    of_motion = {"motion": motion_table, "measures": measures_table, "spectrum": spectrum_table}[what]
+    return of_motion(evaluation.motion, about)
+
+
+def _exported(response: Response, kind: str) -> bytes:
+    """Return the file that the library writes: numbers under names of its own."""
+    write = {"csv": response.to_csv, "mat": response.to_mat, "nc": response.to_netcdf}[kind]
+    with TemporaryDirectory(prefix="rocking-response-") as folder:
+        data = write(Path(folder) / f"response.{kind}").read_bytes()
+    return codecs.BOM_UTF8 + data if kind == "csv" else data
+
+
+def body_table(body: Body, gravity: float, name: str, about: dict[str, str]) -> Table:
+    """Return what a body is; gravity: acceleration of gravity [m/s2]."""
+    facts = body_facts(body, gravity)
+    (left, right), (x, y) = facts["feet_m"], facts["centre_m"]
+    rows = [
+        ("centre_x", "", x, "m"), ("centre_y", "", y, "m"), ("foot_x", "left", left, "m"),
+        ("foot_x", "right", right, "m"),
+        *(_fact(key, "", value) for key, value in facts.items() if isinstance(value, float)),
+        *(_fact(key, foot, value) for foot, side in facts["sides"].items() for key, value in side.items()),
+    ]  # fmt: skip
+    quantity, foot, value, unit = zip(*rows, strict=True)
+    return as_table(about, {
+        "body": ("", [name or type(body).__name__] * len(rows)), "quantity": ("", quantity), "foot": ("", foot),
+        "value": ("unit of its row", value), "unit": ("", unit),
+    })  # fmt: skip
+
+
+def _fact(key: str, foot: str, value: float) -> tuple[str, str, float, str]:
+    for ending, unit in _UNITS.items():
+        if key.endswith(f"_{ending}"):
+            return key.removesuffix(f"_{ending}"), foot, value, unit
+    return key, foot, value, "1"  # "-" alone in a cell would be taken for the start of a formula
+
+
+def coefficient_table(answer: ImpactAnswer, about: dict[str, str]) -> Table:
+    """Return the coefficients of a body under every model."""
+    rows = [(foot, row) for foot, each in answer.tables.items() for row in each]
+    plain = [row for _, row in rows]
+    return as_table(about, {
+        "onto": ("", [foot for foot, _ in rows]),
+        "model": ("", [row.name for row in plain]),
+        "coefficient_of_restitution": ("-", [row.coefficient for row in plain]),
+        "low_95": ("-", [row.low for row in plain]),
+        "high_95": ("-", [row.high for row in plain]),
+        "impulse_ratio_k": ("-", [row.implication.impulse_ratio for row in plain]),
+        "impulse_x": ("m", [row.implication.impulse_x for row in plain]),
+        "energy_loss": ("-", [row.implication.energy_loss for row in plain]),
+        "friction_demand": ("-", [row.implication.friction_demand for row in plain]),
+        "admissible": ("1 yes, 0 no", [int(row.implication.admissible) for row in plain]),
+        "warnings": ("", ["; ".join(row.warnings) for row in plain]),
+    })  # fmt: skip
+
+
+def motion_table(motion: Motion, about: dict[str, str]) -> Table:
+    """Return time, acceleration, velocity and displacement; those of a pulse as its formulas give them."""
+    if isinstance(motion, GroundMotion):
+        curves = motion.time, motion.acceleration, ground_velocity(motion), ground_displacement(motion)
+    else:
+        fine = traces(motion)
+        curves = fine.time, fine.acceleration, fine.velocity, fine.displacement
+    names = {"time": "s", "acceleration": "m/s2", "velocity": "m/s", "displacement": "m"}
+    made = {name: (unit, values) for (name, unit), values in zip(names.items(), curves, strict=True)}
+    if isinstance(motion, GroundMotion) and motion.vertical is not None:
+        made["vertical_acceleration"] = ("m/s2", motion.vertical)
+    return as_table(about, made)
+
+
+def measures_table(motion: Motion, about: dict[str, str]) -> Table:
+    """Return the intensity measures of a motion."""
+    measures = measures_of(motion, fine_samples(motion))
+    return as_table(about, {
+        "motion": ("", [motion.name] * len(measures)),
+        "key": ("", list(measures)),
+        "measure": ("", [one.name for one in measures.values()]),
+        "value": ("unit of its row", [one.value for one in measures.values()]),
+        "unit": ("", ["1" if one.unit == "-" else one.unit for one in measures.values()]),
+    })  # fmt: skip
+
+
+def spectrum_table(motion: Motion, about: dict[str, str]) -> Table:
+    """Return the response spectrum of a motion for 5 % damping, at the periods of the picture on the screen."""
+    spectrum = spectrum_of(fine_samples(motion))
+    return as_table({**about, "damping ratio": repr(DAMPING)}, {
+        "period": ("s", spectrum.periods),
+        "pseudo_acceleration": ("m/s2", spectrum.pseudo_acceleration),
+        "pseudo_velocity": ("m/s", spectrum.pseudo_velocity),
+        "displacement": ("m", spectrum.displacement),
+        "absolute_acceleration": ("m/s2", spectrum.absolute_acceleration),
+    })  # fmt: skip
+
+
+def response_table(response: Response, about: dict[str, str]) -> Table:
+    """Return the samples of a response."""
+    return as_table(about, {key: (QUANTITIES[key].unit, values) for key, values in columns(response).items()})
+
+
+def impacts_table(responses: Mapping[str, Response], about: dict[str, str]) -> Table:
+    """Return the impacts of every response, one a row; none if there is no impact."""
+    rows = [
+        (label, number, *row)
+        for label, response in responses.items()
+        for number, row in enumerate(response.impacts.tolist(), start=1)
+    ]
+    units = {
+        "restitution": "", "impact": "-", "time": "s", "velocity_before": "rad/s", "velocity_after": "rad/s",
+        "coefficient": "-", "onto": "",
+    }  # fmt: skip
+    return as_table(about, {name: (unit, [row[k] for row in rows]) for k, (name, unit) in enumerate(units.items())})
+
+
+def outcomes_table(responses: Mapping[str, Response], about: dict[str, str]) -> Table:
+    """Return how every response ended."""
+    outcomes = [outcome_facts(response) for response in responses.values()]
+    rockers = [response.parameters for response in responses.values()]
+    return as_table(about, {
+        "restitution": ("", list(responses)),
+        "coefficient_onto_left": ("-", [rocker.left.coefficient for rocker in rockers]),
+        "coefficient_onto_right": ("-", [rocker.right.coefficient for rocker in rockers]),
+        "outcome": ("", [one["outcome"] for one in outcomes]),
+        "summary": ("", [one["summary"] for one in outcomes]),
+        "peak_rotation": ("rad", [one["peak_rotation_rad"] for one in outcomes]),
+        "peak_over_slenderness_angle": ("-", [one["peak_rotation_over_alpha"] for one in outcomes]),
+        "overturning_time": ("s", [one["overturning_time_s"] for one in outcomes]),
+        "impacts": ("-", [int(response.impacts.size) for response in responses.values()]),
+    })  # fmt: skip
+
+
+def as_table(about: dict[str, str], columns: "Mapping[str, tuple[str, Iterable[Cell] | np.ndarray]]") -> Table:
+    """Return columns, each a unit (empty for text, ``-`` for numbers without one) and values, as a table."""
+    plain = {key: plain_line(value, LONGEST_CELL) for key, value in about.items()}
+    return Table("row", {name: _column(unit, values) for name, (unit, values) in columns.items()}, plain, no_unit="-")
+
+
+def _column(unit: str, values: "Iterable[Cell] | np.ndarray") -> Column:
+    """Return a column of numbers, NaN where there is nothing, or of text that can be seen."""
+    plain: list[Any] = values.tolist() if isinstance(values, np.ndarray) else list(values)
+    if any(isinstance(value, str) for value in plain):
+        return Column(text_array(["" if v is None else plain_line(str(v), LONGEST_CELL) for v in plain]), unit)
+    if plain and all(isinstance(value, int) for value in plain):
+        return Column(np.array(plain, dtype=np.int64), unit)
+    numbers = [value if isinstance(value, (int, float)) and math.isfinite(value) else math.nan for value in plain]
+    return Column(np.array(numbers, dtype=np.float64), unit)
+
+
+def written(sheets: Sequence[tuple[str, Table]], kind: str) -> bytes:
+    """Return tables as a file: all of them, under their names, in Excel, the first one elsewhere."""
+    if kind not in MEDIA_TYPES:
+        raise NotFound(f"tables are {', '.join(MEDIA_TYPES)}, not {kind!r:.20}")
+    first = sheets[0][1]
+    with TemporaryDirectory(prefix="rocking-table-") as folder:
+        path = Path(folder) / f"table.{kind}"
+        if kind == "csv":
+            to_csv(first, path, for_excel=True)
+        elif kind == "xlsx":
+            _check_cells([one for _, one in sheets])
+            to_excel([(plain_line(name), one) for name, one in sheets], path, others="csv or mat", dressed=True)
+        elif kind == "mat":
+            to_mat(_doubles(first), path)
+        else:
+            units = {name: replace(each, unit=each.unit or "1") for name, each in _doubles(first).columns.items()}
+            to_netcdf(to_dataset(replace(first, columns=units)), path)
+        return path.read_bytes()
+
+
+def _check_cells(tables: Sequence[Table]) -> None:
+    cells = sum(len(one) * len(one.columns) for one in tables)
+    if cells > MOST_CELLS:
+        raise InvalidValueError(f"a workbook holds up to {MOST_CELLS} cells, this would have {cells}: take csv or mat")
+
+
+def _doubles(one: Table) -> Table:
+    columns = {
+        name: each if each.is_text else replace(each, values=each.values.astype(np.float64))
+        for name, each in one.columns.items()
+    }
+    return replace(one, columns=columns)

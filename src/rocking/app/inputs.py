@@ -1,0 +1,386 @@
+"""Everything that a user chose: body, motion, restitution, response, settings; its caps; and what is made of it."""
+
+import re
+import sys
+import tomllib
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import numpy as np
+from pydantic import AfterValidator, ConfigDict, Field, FiniteFloat, model_validator
+
+from rocking.app.errors import Refused, TooLarge
+from rocking.app.work import Remembered
+from rocking.bodies import Body
+from rocking.bodies.formats.schema import BODIES, BodyFile, Positive
+from rocking.bodies.formats.source import blamed
+from rocking.dynamics.response import Motion
+from rocking.errors import InvalidValueError, RockingError
+from rocking.spec.construction import body_of, motion_of
+from rocking.spec.document import OneMotionTable, ResponseTables, SettingsTable, check_start
+from rocking.spec.fields import JobTable, Words, refused
+from rocking.spec.response import ResponseProblem, problem_of
+
+if TYPE_CHECKING:
+    from rocking.app.records import RecordStore
+
+_UPLOAD = "the application reads no file by its name: upload it to /api/body/file, which answers with its points"
+MOST_REGIONS = 250
+MOST_HOLES = 500
+MOST_VERTICES = 10_000
+MOST_POINTS = 10_000
+MOST_STRETCHES = 40
+MOST_RESTITUTIONS = 24
+MOST_RECORD_SAMPLES = 2_000_000
+MOST_DRAWING_BYTES = 4 << 20
+MOST_ENTITIES = 20_000
+_X_IN_DXF = re.compile(rb"^[ \t]*10[ \t]*\r?$", re.MULTILINE)
+_ENTITY_IN_DXF = re.compile(rb"^[ \t]*0[ \t]*\r?$", re.MULTILINE)
+_MINISEED = re.compile(rb"\d{6}[DRQM][ \0]")
+CAPS = {
+    "regions": MOST_REGIONS,
+    "holes": MOST_HOLES,
+    "vertices": MOST_VERTICES,
+    "mass_points": MOST_POINTS,
+    "contact_stretches": MOST_STRETCHES,
+    "restitutions": MOST_RESTITUTIONS,
+    "record_samples": MOST_RECORD_SAMPLES,
+    "drawing_bytes": MOST_DRAWING_BYTES,
+    "drawing_entities": MOST_ENTITIES,
+}
+"""What one body and one question may hold, as the API tells it."""
+
+Hash = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$", description="SHA-256 of an uploaded record")]
+Points = Annotated[int, Field(ge=10, le=2000)]
+"""Over how many dots curves are drawn; each keeps the lowest and the highest value of every curve."""
+
+LONGEST = 4 << 20
+"""Bytes of a TOML file that is read."""
+
+_LIGHTEST = 1e-200
+"""Products of smaller masses and moments leave the range of numbers that have all their digits."""
+
+_DEEPEST = 32
+_LARGEST = 2**63
+
+
+class BodyInput(BodyFile):
+    """A unit of length, and one table that says what the body is, or width and height."""
+
+    width: Positive | None = None
+    height: Positive | None = None
+    depth: Positive | None = None
+    density: Positive | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _names_no_file(cls, table: Any) -> Any:
+        if isinstance(table, dict) and "file" in table:
+            raise refused(f"file: {_UPLOAD}")
+        return table
+
+    @model_validator(mode="after")
+    def _one_body(self) -> "BodyInput":
+        sized = self.width is not None or self.height is not None
+        found = [key for key in BODIES if getattr(self, key) is not None] + ["width and height"] * sized
+        if len(found) != 1:
+            choice = ", ".join(("width and height", *BODIES))
+            raise refused(f"a body has exactly one of {choice}, got {' and '.join(found) or 'none'}")
+        if sized and (self.width is None or self.height is None):
+            raise refused(f"{'width' if self.width is None else 'height'} is missing")
+        if not sized and (self.depth is not None or self.density is not None):
+            raise refused(f"depth and density of a {found[0]} stand in its own table")
+        for k, region in enumerate(self.section.region if self.section else ()):
+            for key in ("geojson", "dxf"):
+                if getattr(region, key) is not None:
+                    raise refused(f"section.region[{k}].{key}: {_UPLOAD}")
+        check_size(self)
+        _refuse_subnormal(self.table(), "")
+        return self
+
+    def table(self) -> dict[str, Any]:
+        """Return the body as a table of a body file or job file; what was not given is left out."""
+        return self.model_dump(exclude_none=True, exclude_unset=True)
+
+
+def _refuse_subnormal(table: Any, key: str) -> None:
+    """Refuse numbers that have lost digits already: what is computed from them would have none that are right."""
+    if isinstance(table, float) and 0.0 < abs(table) < sys.float_info.min:
+        least = f"{sys.float_info.min:.3g}"
+        raise refused(f"{key} is {table!r}, too small for a number with all its digits ({least}); a wrong unit?")
+    if isinstance(table, dict):
+        for name, value in table.items():
+            _refuse_subnormal(value, f"{key}.{name}" if key else name)
+    if isinstance(table, (list, tuple)):
+        for place, value in enumerate(table):
+            _refuse_subnormal(value, f"{key}[{place}]")
+
+
+def refuse_more(count: int, most: int, what: str, way_out: str = "") -> None:
+    """Refuse more of something than one answer takes."""
+    if count > most:
+        raise TooLarge(f"{what.format(most=most)}, got {count}" + (f"; {way_out}" if way_out else ""))
+
+
+def check_size(table: BodyFile) -> None:
+    """Refuse a body that is too large, before anything is made of it."""
+    regions, holes, vertices = _polygons(table)
+    refuse_more(regions, MOST_REGIONS, "a section holds up to {most} regions", "join those of one density")
+    refuse_more(holes, MOST_HOLES, "a section holds up to {most} holes", "leave out the small ones")
+    refuse_more(vertices, MOST_VERTICES, "outlines and holes hold up to {most} vertices", "simplify the outline")
+    points = table.mass_points
+    held = 0 if points is None else max(len(points.points), len(points.masses), len(points.contact or ()))
+    refuse_more(held, MOST_POINTS, "a body holds up to {most} points with mass")
+
+
+def check_file(content: bytes, name: str) -> None:
+    """Refuse a body file that holds far more than a body may have, before it is read."""
+    drawing = name.lower().endswith(".dxf")
+    if drawing:
+        way_out = "save only the outline in a drawing of its own"
+        refuse_more(len(content), MOST_DRAWING_BYTES, "a drawing has up to {most} bytes", way_out)
+        refuse_more(len(_ENTITY_IN_DXF.findall(content)), MOST_ENTITIES, "a drawing has up to {most} parts", way_out)
+    # a drawing may hold much that is no outline; in text a comma or a bracket stands before every point
+    points = len(_X_IN_DXF.findall(content)) // 4 if drawing else max(content.count(b","), content.count(b"[")) // 3
+    refuse_more(points, MOST_VERTICES, "a body file may describe up to {most} vertices", "simplify the outlines")
+
+
+def check_record(content: bytes) -> None:
+    """Refuse a record file of far more numbers than a record has, before any of them is read."""
+    if _MINISEED.match(content):
+        check_samples(_packed_samples(content))
+        return
+    if len(content) <= MOST_RECORD_SAMPLES or b"\0" in content:
+        return
+    octets = np.frombuffer(content, dtype=np.uint8)
+    between = (octets <= 32) | np.isin(octets, (44, 59))  # white space, comma, semicolon
+    check_samples(int(np.count_nonzero(between[:-1] & ~between[1:])) + int(not between[0]))
+
+
+def _packed_samples(content: bytes) -> int:
+    """Return how many samples the headers of a miniSEED file announce, and not one fewer than are decoded."""
+    found = 0
+    for head in _MINISEED.finditer(content):
+        years = content[head.start() + 20 : head.start() + 22]
+        order: Literal["big", "little"] = "big" if 1900 <= int.from_bytes(years, "big") <= 2200 else "little"
+        found += int.from_bytes(content[head.start() + 30 : head.start() + 32], order)
+    return found
+
+
+def check_samples(count: int) -> None:
+    """Refuse a record of too many samples."""
+    what = "a record holds up to {most} numbers"
+    refuse_more(count, MOST_RECORD_SAMPLES, what, "cut it, or leave out columns; Python reads longer ones")
+
+
+def check_contact(body: Body) -> Body:
+    """Return a body, unless its base touches the ground in too many places."""
+    what = "a base touches the ground in up to {most} separate stretches"
+    refuse_more(len(body.local_contact), MOST_STRETCHES, what, "leave out those that are no feet")
+    return body
+
+
+def size_of(table: BodyFile) -> int:
+    """Return how much there is to compute with."""
+    return _polygons(table)[-1] + (len(table.mass_points.points) if table.mass_points else 0)
+
+
+def _polygons(table: BodyFile) -> tuple[int, int, int]:
+    regions = holes = vertices = 0
+    for region in table.section.region if table.section else ():
+        words = region.wkt or ""
+        # every polygon of a text begins with two brackets, and commas stand between its points
+        polygons = 1 if region.outline is not None else max(1, words.count("(("))
+        regions += polygons
+        holes += len(region.holes or ()) + max(0, words.count(",(") + words.count(", (") - polygons + 1)
+        rings = [region.outline or [], *(region.holes or ())]
+        vertices += sum(map(len, rings)) + (words.count(",") + 1 if words else 0)
+    for shape in (table.ellipse, table.regular_polygon):
+        vertices += shape.sides if shape is not None else 0
+    return regions, holes, vertices
+
+
+def _forward(window: tuple[float, float]) -> tuple[float, float]:
+    if window[0] >= window[1]:
+        raise ValueError(f"window must be the times between which curves are drawn, got {list(window)}; in this order?")
+    return window
+
+
+Window = Annotated[tuple[FiniteFloat, FiniteFloat], Field(strict=False), AfterValidator(_forward)]
+"""The part of the time that is drawn [s]."""
+
+
+_BODY: dict[str, Any] = {"units": "cm", "width": 50, "height": 200}
+
+_MOTION: dict[str, Any] = {"pulse": "sine:amplitude=3,period=0.8"}
+
+_INPUTS: dict[str, Any] = {"body": _BODY, "motion": _MOTION, "restitution": {"models": ["ked", "housner"]}}
+
+
+def _shown(example: dict[str, Any]) -> ConfigDict:
+    """Return what puts an example into the schema."""
+    return ConfigDict(json_schema_extra={"examples": [example]})
+
+
+class MotionInput(OneMotionTable):
+    """One pulse, one uploaded record by its hash, or one motion of a synthetic family."""
+
+    record: Hash | None = None
+    file_name: Words | None = None
+
+    @model_validator(mode="after")
+    def _named_record(self) -> "MotionInput":
+        if self.file_name is not None and self.record is None:
+            raise refused("file_name goes with record only")
+        if self.vertical_file is not None:
+            raise refused("vertical_file: the application reads no file by its name; upload one with both components")
+        return self
+
+
+class Inputs(ResponseTables):
+    """Everything that a user chose: a body, and what else was given so far."""
+
+    model_config = _shown(_INPUTS)
+
+    body: BodyInput
+    motion: MotionInput | None = None
+
+    @model_validator(mode="after")
+    def _few_restitutions(self) -> "Inputs":
+        chosen = len(self.restitution.models or ()) + len(self.restitution.values or ())
+        refuse_more(chosen, MOST_RESTITUTIONS, "one question compares up to {most} restitutions")
+        if self.response.friction is not None:
+            raise refused("response.friction: the page rocks without sliding, compared with response.assumed_friction; "
+                          "`rocking simulate` lets a body slide, hop and fly")  # fmt: skip
+        return self
+
+
+class ResponseInputs(Inputs):
+    """Inputs that have a response: something moves the body."""
+
+    @model_validator(mode="after")
+    def _moves(self) -> "ResponseInputs":
+        check_start(self.motion is not None, self.response.free)
+        return self
+
+
+class ResponseAsked(ResponseInputs):
+    """Inputs that have a response, and how its curves are drawn."""
+
+    model_config = _shown(_INPUTS)
+
+    points: Points = 1000
+    window: Window | None = None
+
+
+class BodyAsked(JobTable):
+    """A body, and the gravity under which it stands."""
+
+    model_config = _shown({"body": _BODY})
+
+    body: BodyInput
+    settings: SettingsTable = SettingsTable()
+
+
+class ImpactAsked(BodyAsked):
+    """A body, and the foot on which it lands."""
+
+    model_config = _shown({"body": _BODY, "onto": "both"})
+
+    onto: Literal["left", "right", "both"] = "both"
+
+
+class MotionAsked(JobTable):
+    """A motion, and how much of it."""
+
+    model_config = _shown({"motion": _MOTION})
+
+    motion: MotionInput
+    settings: SettingsTable = SettingsTable()
+    points: Points = 1000
+    window: Window | None = None
+    spectrum: bool = True
+
+
+def parsed_toml(text: str) -> dict[str, Any]:
+    """Return the tables of a TOML text that somebody sent; every whole number in it fits into 64 bits."""
+    if len(text) > LONGEST:
+        raise Refused(f"a TOML file may have up to {LONGEST >> 20} MiB, this has {len(text) / 2**20:.1f}")
+    try:
+        tables = tomllib.loads(text.removeprefix("\ufeff"))
+    except tomllib.TOMLDecodeError as error:
+        raise Refused(f"this is not TOML that can be read: {' '.join(str(error).split())[:200]}") from error
+    except (ValueError, RecursionError) as error:
+        raise Refused("this is not TOML that can be read: nested too deeply, or a number is too long") from error
+    _check_values(tables)
+    return tables
+
+
+def _check_values(tables: dict[str, Any]) -> None:
+    level: list[Any] = [tables]
+    for _ in range(_DEEPEST):
+        for each in level:
+            _check_value(each)
+        level = [item for each in level for item in _inside(each)]
+        if not level:
+            return
+    raise Refused(f"the TOML is nested deeper than {_DEEPEST}")
+
+
+def _check_value(value: Any) -> None:
+    if type(value) is int and not -_LARGEST <= value < _LARGEST:  # not written out: that itself may be refused
+        raise Refused(f"a whole number of {value.bit_length()} bits in the TOML does not fit into 64 bits")
+    words = value if isinstance(value, dict) else (value,) if isinstance(value, str) else ()
+    if any("\0" in word for word in words):
+        raise Refused("a text in the TOML holds a NUL")
+
+
+def _inside(value: Any) -> list[Any]:
+    if isinstance(value, dict):
+        return list(value.values())
+    return value if isinstance(value, list) else []
+
+
+_BODIES: Remembered[Body] = Remembered(32)
+_SYNTHETIC: Remembered[Motion] = Remembered(16)
+
+
+def question_of(inputs: Inputs, records: "RecordStore") -> ResponseProblem:
+    """Return what a user asked, with everything read that it needs."""
+    motion = None if inputs.motion is None else motion_from(inputs.motion, records)
+    return problem_of(inputs, body_from(inputs.body), motion)
+
+
+def body_from(table: BodyInput) -> Body:
+    """Return a body; one that was asked for lately is not made again."""
+    return _BODIES.get(table.model_dump_json(exclude_none=True, exclude_unset=True), lambda: _body(table))
+
+
+def motion_from(table: MotionInput, records: "RecordStore") -> Motion:
+    """Return a motion, not scaled; one that was asked for lately is not read or made again."""
+    if table.record is not None:
+        how = (table.format, table.units, table.time_step, table.component, table.vertical)
+        return records.motion(table.record, *how)
+    with blamed("motion"):
+        if table.synthetic is None:
+            return motion_of(table)
+        alone = table.model_copy(update={"scale": 1.0})
+        return _SYNTHETIC.get(alone.model_dump_json(exclude_none=True), lambda: motion_of(table))
+
+
+def _body(table: BodyInput) -> Body:
+    with blamed("body"):
+        try:
+            return _check_inertia(check_contact(body_of(table.table(), None)))
+        except InvalidValueError as error:
+            kind = type(error.__cause__) if isinstance(error.__cause__, RockingError) else InvalidValueError
+            raise kind(str(error)) from error
+
+
+def _check_inertia(body: Body) -> Body:
+    mass, inertia = body.mass, body.moment_of_inertia
+    if min(mass, inertia or mass) < _LIGHTEST:
+        raise InvalidValueError(
+            f"mass {mass:.3g} kg and moment of inertia {inertia:.3g} kg m2 must be > {_LIGHTEST:g}, below which digits "
+            "are lost; is a density or a mass in a wrong unit?"
+        )
+    return body

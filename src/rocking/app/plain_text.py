@@ -1,0 +1,164 @@
+"""Words that came from a user, made harmless before they go into a file; and plain values as TOML that people read."""
+
+import re
+import unicodedata
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from rocking.errors import InvalidValueError
+
+LONGEST_CELL = 2000
+"""Characters of a text that are kept in one cell."""
+
+_RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
+_STRANGE = re.compile(r"(?:[^A-Za-z0-9._-]|(?<![A-Za-z0-9])\.|\.(?![A-Za-z0-9]))+")
+_OURS = ("response.toml", "readme.txt")
+_LONGEST_FILE_NAME = 80
+_LONGEST_TITLE = 120
+_HIDDEN = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"}
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+_SHORT = {"\b": r"\b", "\t": r"\t", "\n": r"\n", "\f": r"\f", "\r": r"\r", '"': r"\"", "\\": r"\\"}
+_ONE_LINE = 80
+"""Longest list that stands in one line [characters]."""
+
+
+def plain_line(text: str, longest: int = 160) -> str:
+    r"""Return a text as one line of characters that can be seen.
+
+    Control characters, marks that turn the direction of writing, line breaks and tabs are what makes a name do
+    something in a terminal, a file of XML or a comment; none of them is left.
+
+    >>> plain_line("a\n[b]\x1b[31m\u202e")
+    'a [b][31m'
+    """
+    seen = "".join(each for each in text if each.isprintable() or each.isspace())
+    line = " ".join(seen.split())
+    return line if len(line) <= longest else f"{line[: longest - 3]}..."
+
+
+def shown(text: str) -> str:
+    r"""Return words of a user as a title: one line of at most 120 characters, nothing hidden in it, never empty.
+
+    >>> shown("a\u202eb\n  c")
+    'ab c'
+    """
+    plain = "".join(" " if mark.isspace() else mark for mark in unicodedata.normalize("NFC", text[:4000]))
+    seen = "".join(mark for mark in plain if unicodedata.category(mark) not in _HIDDEN)
+    return " ".join(seen.split())[:_LONGEST_TITLE].rstrip() or "study"
+
+
+def safe_name(name: str, fallback: str = "rocking") -> str:
+    """Return a file name that is harmless on every system: ASCII letters, digits, dot, dash and underscore.
+
+    It has at most 80 characters, and is never hidden, reserved or empty.
+
+    >>> safe_name("../../Vase Nº 3 <b>.csv")
+    'Vase-No-3-b.csv'
+    >>> safe_name("statue v1.2 report.pdf")
+    'statue-v1.2-report.pdf'
+    """
+    plain = unicodedata.normalize("NFKD", name[:1000]).encode("ascii", "ignore").decode()
+    stem, dot, suffix = plain.rpartition(".")
+    if not dot or not re.fullmatch(r"[A-Za-z0-9]{1,8}", suffix):
+        stem, dot, suffix = plain, "", ""
+    stem = _STRANGE.sub("-", stem).strip("-_") or fallback
+    stem = f"{fallback}-{stem}" if _RESERVED.fullmatch(stem) else stem
+    return stem[: _LONGEST_FILE_NAME - len(suffix) - 1].rstrip(".-_") + dot + suffix
+
+
+def record_file_name(name: str, otherwise: str = "record.txt") -> str:
+    r"""Return the name of a record file beside inputs or in a study: no folders, no pattern, no reserved word.
+
+    >>> record_file_name(r"C:\records\Kobe 1995.AT2"), record_file_name("../../etc/passwd"), record_file_name("CON.txt")
+    ('Kobe_1995.AT2', 'passwd', '_CON.txt')
+    """
+    last = re.split(r"[/\\]", name)[-1]
+    safe = re.sub(r"[^A-Za-z0-9._-]+", "_", last).strip("_").lstrip(".-").rstrip(".")
+    if len(safe) > _LONGEST_FILE_NAME:
+        stem, dot, suffix = safe.rpartition(".")
+        tail = dot + suffix[:16] if dot else ""
+        safe = (stem or suffix)[: _LONGEST_FILE_NAME - len(tail)] + tail
+    if not safe.strip("._-"):
+        return otherwise
+    return f"_{safe}" if _RESERVED.fullmatch(safe) or safe.lower() in _OURS else safe
+
+
+def toml_of(document: Mapping[str, Any]) -> str:
+    r"""Return tables as TOML; numbers keep every digit, and what is None is left out.
+
+    >>> print(toml_of({"body": {"units": "m", "block": {"width": 0.5}}}), end="")
+    [body]
+    units = "m"
+    <BLANKLINE>
+    [body.block]
+    width = 0.5
+    """
+    return "\n".join(_lines(document, ())).strip("\n") + "\n"
+
+
+def toml_value(value: Any) -> str:
+    r"""Return one value as TOML in one line.
+
+    >>> toml_value([0.1, True, 'a "b"\x00'])
+    '[0.1, true, "a \\"b\\"\\u0000"]'
+    """
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, str):
+        return _quoted(value)
+    if isinstance(value, Mapping):
+        pairs = [f"{_key(key)} = {toml_value(one)}" for key, one in value.items() if one is not None]
+        return "{" + ", ".join(pairs) + "}"
+    if isinstance(value, Sequence):
+        return "[" + ", ".join(toml_value(one) for one in value) + "]"
+    raise InvalidValueError(f"a file of inputs has no place for {value!r:.60}")
+
+
+def _lines(table: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[str]:
+    present = {key: value for key, value in table.items() if value is not None}
+    for key, value in present.items():
+        if not _is_table(value) and not _is_tables(value):
+            yield f"{_key(key)} = {_value(value)}"
+    for key, value in present.items():
+        inside = (*path, key)
+        head = ".".join(map(_key, inside))
+        if _is_table(value):
+            yield from ("", f"[{head}]", *_lines(value, inside))
+        elif _is_tables(value):
+            for one in value:
+                yield from ("", f"[[{head}]]", *_lines(one, inside))
+
+
+def _is_table(value: Any) -> bool:
+    return isinstance(value, Mapping)
+
+
+def _is_tables(value: Any) -> bool:
+    return isinstance(value, (list, tuple)) and bool(value) and all(isinstance(one, Mapping) for one in value)
+
+
+def _value(value: Any) -> str:
+    words = toml_value(value)
+    if len(words) <= _ONE_LINE or not isinstance(value, (list, tuple)):
+        return words
+    return "[\n" + "".join(f"  {toml_value(one)},\n" for one in value) + "]"
+
+
+def _key(key: str) -> str:
+    return key if _BARE.fullmatch(key) else _quoted(key)
+
+
+def _quoted(text: str) -> str:
+    return '"' + "".join(map(_escaped, text)) + '"'
+
+
+def _escaped(character: str) -> str:
+    if character in _SHORT:
+        return _SHORT[character]
+    # what cannot be seen is spelled out: a reader of the file shall see all that stands in it
+    if character == " " or character.isprintable():
+        return character
+    code = ord(character)
+    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"

@@ -1,1 +1,0 @@
-"""What may stand in requests."""

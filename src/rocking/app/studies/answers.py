@@ -1,0 +1,279 @@
+"""What is said of studies: state, progress, what they found, and the history behind a point."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from rocking.app.answers import QuantityAnswer, shape
+from rocking.app.api.response import ResponseFacts
+from rocking.app.inputs import Inputs
+
+Number = float | None
+"""Null where there is no finite number."""
+
+Interval = tuple[Number, Number]
+Counts = list[list[list[int]]]
+"""By restitution, then rows along y; or by restitution, body and scale."""
+
+_OUTCOME = "0 not lifted, 1 stands, 2 overturned, 3 not computed"
+_MODE = "-3 not computed, -2 not lifted, -1 stands, n >= 0 overturns after n impacts"
+_MEASURE = "in the unit of the measure"
+_PEAK = "peak rotation over alpha"
+
+
+def _left_out(words: str, default: Any = None) -> Any:
+    """Return what describes a key that may be left out."""
+    return Field(default, description=words)
+
+
+Coordinate: Any = shape(
+    "Coordinate",
+    "A dimension of a study.",
+    name=str,
+    values=(list[float | int | str | None], "in `unit`; null where a value is not finite"),
+    unit=str,
+    words=str,
+)
+Result: Any = shape(
+    "Result",
+    "What every result tells.",
+    id=str,
+    name=str,
+    restitutions=list[str],
+    contact=(str, _left_out("in how many histories the ground would have to pull; empty if in none", "")),
+)
+PointsOfState: Any = shape(
+    "PointsOfState",
+    "How many motions reach a state at each level.",
+    x=(list[float], f"level, {_MEASURE}"),
+    reached=(list[float], "motions that reach it [-]"),
+    trials=(list[float], "motions whose history could be computed [-]"),
+    share=(list[float], "[-]"),
+    low=(list[float], "lower end of the 95 % interval [-]"),
+    high=(list[float], "upper end of the 95 % interval [-]"),
+)
+StandardErrors: Any = shape(
+    "StandardErrors",
+    "Of the parameters of a curve.",
+    median=(Number, _MEASURE),
+    dispersion=(Number, "[-]"),
+)
+FitFacts: Any = shape(
+    "FitFacts",
+    "The lognormal curve of one state; null where the data fix none.",
+    median=(Number, _MEASURE),
+    dispersion=(Number, "standard deviation of the natural logarithm [-]"),
+    median_95=(Interval, f"95 % interval, {_MEASURE}; null where it is open"),
+    dispersion_95=(Interval, "95 % interval [-]; null where it is open"),
+    interval_method=str | None,
+    standard_errors=StandardErrors | None,
+    log_likelihood=(Number, "[-]"),
+    method=str,
+    separation=str,
+    median_interval=(Interval, f"between which the median lies where no curve exists, {_MEASURE}"),
+    observations=int,
+    failures=int,
+    levels=int,
+    verdict=str,
+    exists=bool,
+    intervals_hold=bool,
+    scarcity=(str, "why the intervals do not hold; empty if they do"),
+)
+CurveOfState: Any = shape(
+    "CurveOfState",
+    "A fragility curve.",
+    x=(list[float], f"level, {_MEASURE}"),
+    probability=(list[float], "[-]"),
+    low=(list[float] | None, "lower end of the band [-]"),
+    high=(list[float] | None, "upper end of the band [-]"),
+    band=(str, "what the band is, or why there is none"),
+)
+RegressionAnswer: Any = shape(
+    "RegressionAnswer",
+    "The line of a cloud analysis, in logarithms.",
+    slope=(float, "[-]"),
+    scatter=(float, "standard deviation of the natural logarithm [-]"),
+    determination=(float, "R squared [-]"),
+    count=int,
+)
+CloudPoints: Any = shape(
+    "CloudPoints",
+    "The motions of a cloud.",
+    x=(list[Number], f"level, {_MEASURE}"),
+    rotation=(list[Number], _PEAK, "peak_ratio"),
+    outcome=(list[int], _OUTCOME),
+)
+Crossing: Any = shape(
+    "Crossing",
+    "Levels at which one motion overturns the body.",
+    motion=str | int,
+    start=(Number, _MEASURE),
+    end=(Number, f"null where it is open, {_MEASURE}"),
+)
+FirstCrossingFit: Any = shape(
+    "FirstCrossingFit",
+    "The lognormal curve of first crossings.",
+    median=(float, _MEASURE),
+    dispersion=(float, "[-]"),
+    crossings=int,
+    censored=int,
+    method=str,
+)
+AnalysisFacts: Any = shape(
+    "AnalysisFacts",
+    "The analysis of one restitution; keys that an analysis does not have are left out.",
+    restitution=str,
+    levels=(list[float], _MEASURE),
+    trials=(list[float], "motions at each level whose history could be computed [-]"),
+    failed=int,
+    states=list[str],
+    points=(dict[str, PointsOfState], "by state"),
+    fits=(dict[str, FitFacts], "by state"),
+    curves=(dict[str, CurveOfState], "by state"),
+    sentences=list[str],
+    regression=(RegressionAnswer | None, _left_out("of a cloud")),
+    regression_words=(str | None, _left_out("why a cloud has no line")),
+    cloud=(CloudPoints | None, Field(None)),
+    definitions=(dict[str, str] | None, _left_out("of an incremental analysis")),
+    first_crossings=(list[Number] | None, _left_out(f"by motion, {_MEASURE}; null if it never overturns")),
+    first_crossing=(FirstCrossingFit | None, Field(None)),
+    intervals=(list[Crossing] | None, Field(None)),
+    resurrection=(str | None, Field(None)),
+)
+FragilityResult: Any = shape(
+    "FragilityResult",
+    "Fragility curves.",
+    Result,
+    kind=Literal["stripes", "cloud", "incremental"],
+    measure=QuantityAnswer,
+    motions=Coordinate,
+    definition=str,
+    uplift_threshold=(float | None, f"least level that lifts, {_MEASURE}; null where none is known"),
+    analyses=list[AnalysisFacts],
+)
+ColumnAnswer: Any = shape(
+    "ColumnAnswer",
+    "A column of a table.",
+    name=str,
+    unit=str,
+    words=str,
+    values=(list[float | int | bool | str | None], "in `unit`"),
+)
+Share: Any = shape(
+    "Share", "How many histories end in one way.", mode=(int, _MODE), meaning=str, count=int, share=(float, "[-]")
+)
+MapResult: Any = shape(
+    "MapResult",
+    "An overturning map.",
+    Result,
+    kind=Literal["overturning-map"],
+    x=Coordinate,
+    y=Coordinate,
+    outcome=(Counts, _OUTCOME),
+    mode=(Counts, _MODE),
+    mode_words=dict[str, str],
+    peak=(list[list[list[Number]]], f"{_PEAK} [-]; null if it was not computed"),
+    impacts=Counts,
+    shares=list[list[Share]],
+    contours=(list[list[list[tuple[float, float]]]], "lines x, y around what overturns, in units"),
+    body=str,
+    motion=str,
+    tables=(dict[str, list[ColumnAnswer]], "points and boundary of a refined map; else empty"),
+)
+SpectrumCurve: Any = shape(
+    "SpectrumCurve",
+    "One curve of a rocking spectrum; entries along `x`.",
+    restitution=str,
+    angle=(float, "slenderness angle", "rotation"),
+    low=(list[Number], "16 % of the motions: peak over alpha [-]; null where they overturn"),
+    median=(list[Number], f"{_PEAK} [-]; null where half of the motions overturn"),
+    high=(list[Number], "84 % of the motions: peak over alpha [-]; null where they overturn"),
+    overturned=(list[float | None], "share that overturns of the motions with a result [-]"),
+    coefficient=(list[Number], "of restitution", "coefficient"),
+)
+SpectrumResult: Any = shape(
+    "SpectrumResult",
+    "Rocking spectra.",
+    Result,
+    kind=Literal["rocking-spectrum"],
+    x=(Coordinate, "periods 2 pi / p"),
+    angles=Coordinate,
+    motions=Coordinate,
+    semi_diagonals=Coordinate,
+    curves=list[SpectrumCurve],
+    shares=list[list[Share]],
+)
+Cells: Any = shape(
+    "Cells",
+    "Counts by restitution, body and scale.",
+    computed=Counts,
+    lifted=Counts,
+    overturned=Counts,
+    median_peak=(list[list[list[Number]]], f"of those that stand: {_PEAK}", "peak_ratio"),
+)
+HistoriesResult: Any = shape(
+    "HistoriesResult",
+    "Plain histories.",
+    Result,
+    kind=Literal["histories"],
+    motions=Coordinate,
+    bodies=Coordinate,
+    scales=Coordinate,
+    slenderness_angles=Coordinate,
+    shares=list[list[Share]],
+    cells=Cells,
+    mode=(list[Counts] | None, _left_out("of each, where there are at most 20,000")),
+    peak=(list[list[list[list[Number]]]] | None, _left_out(f"{_PEAK} of each [-]")),
+)
+MinimumResult: Any = shape(
+    "MinimumResult",
+    "Minimum overturning accelerations.",
+    Result,
+    kind=Literal["minimum-acceleration"],
+    motions=Coordinate,
+    bodies=Coordinate,
+    tables=dict[str, list[ColumnAnswer]],
+)
+StudyResult = Annotated[
+    MapResult | SpectrumResult | FragilityResult | HistoriesResult | MinimumResult, Field(discriminator="kind")
+]
+"""What a study found, by its kind."""
+
+StudyFacts: Any = shape(
+    "StudyFacts",
+    "State and progress of a study.",
+    id=(str, "its name in addresses"),
+    name=str,
+    kind=str,
+    created=(str, "when, in UTC"),
+    histories=(int, "of an adaptive study those that are known so far"),
+    state=Literal["waiting", "running", "cancelled", "interrupted", "failed", "done"],
+    message=(str, "a sentence on the state; empty where there is nothing to say"),
+    histories_done=int,
+    rate=(float | None, "while it runs [1/s]"),
+    seconds_left=(float | None, "while it runs; null while that is measured, or cannot be known [s]"),
+    seconds_left_between=(tuple[float, float] | None, "between which it probably is [s]"),
+)
+Studies: Any = shape("Studies", "All studies, the newest first.", studies=list[StudyFacts])
+Launched: Any = shape("Launched", "A study that was put in line.", id=(str, "its name in addresses"))
+StoredHistory: Any = shape(
+    "StoredHistory",
+    "What a study has of one history, to the last digit.",
+    history=(int, "its number"),
+    meaning=(str, "the mode in words"),
+    outcome=int,
+    mode=(int, _MODE),
+    impacts=int,
+    peak_rotation_rad=(float | None, "null if it was not computed"),
+    peak_rotation_over_alpha=(float | None, "null if it was not computed", "peak_ratio"),
+    overturning_time_s=(float | None, "null if it stands"),
+)
+HistoryAnswer: Any = shape(
+    "HistoryAnswer",
+    "The history behind a point of the picture of a study.",
+    stored=StoredHistory,
+    inputs=(Inputs | None, "what to ask for the same history; null where inputs cannot say it"),
+    answer=(ResponseFacts | None, "null where there is no response"),
+    difference_rad=(float | None, "between the peaks of `stored` and `answer`"),
+    note=(str, "on what is missing; empty if nothing is"),
+)

@@ -1,0 +1,159 @@
+"""Finished studies: their jobs and results in memory, the latest ones kept, and as files."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from rocking.app.errors import NotFound, Refused
+from rocking.app.studies.study import JOB, StudyFolder
+from rocking.dynamics.plane.fast_engine import Arrays
+from rocking.errors import RockingError
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from rocking.campaigns.jobs import JobFolder
+    from rocking.campaigns.jobs.adaptive import AdaptiveResult
+
+
+Crossing = Literal["refuse", "common-dispersion"]
+
+Kind = Literal["nc", "csv", "mat", "xlsx", "parquet", "toml", "png", "svg", "xml"]
+
+MEDIA_TYPES: dict[str, str] = {
+    "nc": "application/x-netcdf",
+    "csv": "text/csv; charset=utf-8",
+    "mat": "application/x-matlab-data",
+    "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+    "parquet": "application/vnd.apache.parquet",
+    "toml": "application/toml",
+    "png": "image/png",
+    "svg": "image/svg+xml",
+    "xml": "application/xml",
+}
+"""What a browser is told of a file."""
+
+
+@dataclass(frozen=True)
+class OpenStudy:
+    """A finished study with its results."""
+
+    id: str  # its name in addresses
+    folder: StudyFolder  # where it is
+    job: "JobFolder"  # the campaign with its job
+
+    @classmethod
+    def of(cls, folder: StudyFolder) -> "OpenStudy":
+        """Open a study; results are read when they are asked for."""
+        from rocking.campaigns.jobs import JobFolder
+
+        try:
+            return cls(folder.id, folder, JobFolder.open(folder.campaign, folder.path))
+        except RockingError as error:
+            raise type(error)(folder.without_paths(str(error))) from error
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """Dimensions beside the restitutions that are compared: it may be an axis, too."""
+        study = self.job.job.study
+        if self.job.job.document.map is not None:
+            return tuple(study.dims)[-2:]
+        return tuple(name for name in study.dims if name != "restitution")
+
+    @cached_property
+    def raw(self) -> Arrays:
+        """Results as the engine gave them, one entry a history."""
+        return self.job.campaign.results()
+
+    @cached_property
+    def results(self) -> Arrays:
+        """Results as users know them, over the dimensions of the study."""
+        study = self.job.job.study
+        derived = study.derived(0, study.histories.count, self.raw)
+        return {name: values.reshape(study.shape) for name, values in derived.items()}
+
+    def history(self, number: int) -> dict[str, Any]:
+        """Return the results of one history."""
+        alone = {name: values[number : number + 1] for name, values in self.raw.items()}
+        return {name: values[0] for name, values in self.job.job.study.derived(number, number + 1, alone).items()}
+
+    @cached_property
+    def analyses(self) -> dict[str, Any]:
+        """Fragility analyses by restitution."""
+        finish = self.job.job.study.finish
+        return {} if finish is None else finish(self.raw)
+
+    @cached_property
+    def answer(self) -> "AdaptiveResult":
+        """What an adaptive study has found, from all of its rounds."""
+        from rocking.campaigns.jobs import answer
+
+        return answer(self.job)
+
+    def dataset(self, restitution: int = 0) -> "xr.Dataset":
+        """Return the results with one restitution as the pictures take them."""
+        import xarray as xr
+
+        study = self.job.job.study
+        several = len(self.axes) < len(study.dims)
+        label = list(self.job.job.problem.restitutions)[restitution]
+        arrays = {name: (tuple(study.dims), values) for name, values in self.results.items()}
+        coordinates = {
+            name: (one.dims, one.values, {"units": one.unit, "long_name": one.meaning})
+            for name, one in study.coordinates.items()
+        }
+        made = xr.Dataset(arrays, coords=coordinates, attrs={**study.attributes, "restitution": label})
+        return made.isel(restitution=restitution) if several else made
+
+    @property
+    def size(self) -> int:
+        """Memory of the results, roughly [byte]."""
+        return 170 * int(self.job.job.study.histories.count) + (1 << 20)
+
+
+def written(
+    study: OpenStudy, kind: Kind, target: Path, what: str | None, restitution: int, crossing: Crossing | None = None
+) -> None:
+    """Write a finished study into a file."""
+    labels = list(study.job.job.problem.restitutions)
+    if not 0 <= restitution < len(labels):
+        raise NotFound(f"restitution must be a number from 0 to {len(labels) - 1}, got {restitution}")
+    if kind == "toml":
+        target.write_bytes((study.folder.path / JOB).read_bytes())
+    elif kind in {"png", "svg"}:
+        from rocking.app.downloads.pictures import draw_to
+
+        draw_to(_picture(study, restitution), target)
+    else:
+        _exported(study, target, what or ("fragility" if kind == "xml" else None), labels[restitution], crossing)
+
+
+def _exported(study: OpenStudy, target: Path, what: str | None, label: str, crossing: Crossing | None) -> None:
+    from rocking.campaigns.jobs import export
+
+    of_curves = what in {"fragility", "fema-p58"}
+    try:
+        export(study.job, target, what, restitution=label if of_curves else None, crossing=crossing)
+    except RockingError as error:
+        raise Refused(study.folder.without_paths(str(error)).replace(f"{target.parent}/", "")) from error
+
+
+def _picture(study: OpenStudy, restitution: int) -> "Callable[[], Figure]":
+    from rocking.plots.fragility import fragility_picture
+    from rocking.plots.incremental_dynamic_analysis import incremental_dynamic_analysis_picture
+    from rocking.plots.overturning_map import overturning_map_picture
+    from rocking.plots.rocking_spectrum import rocking_spectrum_picture
+
+    kind = str(study.job.job.document.campaign.kind)
+    of_data = {"overturning-map": overturning_map_picture, "rocking-spectrum": rocking_spectrum_picture}
+    of_analysis: dict[str, Callable[[Any], Figure]] = {
+        "stripes": fragility_picture, "cloud": fragility_picture, "incremental": incremental_dynamic_analysis_picture,
+    }  # fmt: skip
+    if kind in of_data:
+        return lambda: of_data[kind](study.dataset(restitution))
+    if kind in of_analysis:
+        return lambda: of_analysis[kind](list(study.analyses.values())[restitution])
+    raise Refused(f'a study of kind "{kind}" has no picture; take its table (.csv, .xlsx, .nc)')

@@ -1,1 +1,0 @@
-"""What stands in the tables: body, coefficients, motion, spectrum, measures, response, impacts."""
