@@ -1,1 +1,4 @@
 """Studies as campaigns of the web application: launched, watched, cancelled, resumed, looked at and taken away."""
+
+GRACE = 0.4
+"""Time that a study has between the wish to stop and its end [s]."""

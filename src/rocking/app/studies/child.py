@@ -12,11 +12,10 @@ import threading
 import time
 from pathlib import Path
 
+from rocking.app.studies import GRACE
+
 DONE, REFUSED, STOPPED = 0, 2, 3
 """Exit codes."""
-
-GRACE = 0.4
-"""Time that a study has between the wish to stop and its end [s]."""
 
 _PATIENCE = 3.0
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from rocking.app.errors import NotFound
 from rocking.app.plain_text import record_file_name
-from rocking.app.studies.child import GRACE
+from rocking.app.studies import GRACE
 from rocking.app.studies.job_document import JobDocument
 from rocking.campaigns import Estimate, disk
 from rocking.campaigns.jobs.folder import status_of
