@@ -40,7 +40,7 @@ def main(arguments: list[str]) -> int:
 def _compute(study: Path, workers: int) -> None:
     from rocking.app.studies.finished import OpenStudy
     from rocking.app.studies.results import keep_result
-    from rocking.app.studies.study import CAMPAIGN, JOB, StudyFolder
+    from rocking.app.studies.study_folder import CAMPAIGN, JOB, StudyFolder
     from rocking.campaigns import CampaignBusyError
     from rocking.campaigns.jobs import Job, JobFolder
     from rocking.dynamics.plane import fast_engine

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from rocking.app.errors import NotFound, Refused
-from rocking.app.studies.study import JOB, StudyFolder
+from rocking.app.studies.study_folder import JOB, StudyFolder
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import RockingError
 

@@ -15,7 +15,8 @@ from rocking.app.settings import Limits
 from rocking.app.studies.finished import OpenStudy
 from rocking.app.studies.job_document import JobDocument
 from rocking.app.studies.queue import GONE, StudyQueue
-from rocking.app.studies.study import (
+from rocking.app.studies.study import HostedStudy, processors
+from rocking.app.studies.study_folder import (
     CAMPAIGN,
     CANCELLED,
     DONE,
@@ -24,12 +25,10 @@ from rocking.app.studies.study import (
     META,
     RUNNING,
     WAITING,
-    HostedStudy,
     Meta,
     StudyFolder,
     is_id,
     new_id,
-    processors,
 )
 from rocking.app.work import Remembered
 from rocking.campaigns import disk

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from rocking.app.errors import Busy, NotFound
-from rocking.app.studies.study import FAILED, INTERRUPTED, RUNNING, WAITING, HostedStudy, StudyProcess
+from rocking.app.studies.study import HostedStudy, StudyProcess
+from rocking.app.studies.study_folder import FAILED, INTERRUPTED, RUNNING, WAITING
 
 LOOK = 0.2
 """Time between looks at what runs [s]."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking.app.answers import JsonAnswer
 from rocking.app.studies.finished import OpenStudy
-from rocking.app.studies.study import StudyFolder
+from rocking.app.studies.study_folder import StudyFolder
 from rocking.campaigns import disk
 from rocking.conventions import FloatArray
 from rocking.dynamics.loss_of_contact import contact_words, lost_contact

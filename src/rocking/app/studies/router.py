@@ -22,7 +22,7 @@ from rocking.app.settings import state_of
 from rocking.app.studies.answers import HistoryAnswer, Launched, Studies, StudyFacts, StudyResult
 from rocking.app.studies.finished import MEDIA_TYPES, Crossing, Kind
 from rocking.app.studies.manager import StudyManager
-from rocking.app.studies.study import StudyFolder
+from rocking.app.studies.study_folder import StudyFolder
 from rocking.app.work import heavy
 from rocking.errors import RockingError
 

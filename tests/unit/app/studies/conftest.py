@@ -11,7 +11,7 @@ from rocking.app.settings import Limits
 from rocking.app.studies.finished import OpenStudy
 from rocking.app.studies.job_document import JobDocument
 from rocking.app.studies.manager import StudyManager
-from rocking.app.studies.study import Meta, StudyFolder, new_id
+from rocking.app.studies.study_folder import Meta, StudyFolder, new_id
 from rocking.campaigns.jobs import Job, JobFolder
 
 Tables = dict[str, Any]

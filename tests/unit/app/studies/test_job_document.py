@@ -19,7 +19,7 @@ from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
 from rocking.app.studies.job_document import KINDS, JobDocument
 from rocking.app.studies.manager import StudyManager
-from rocking.app.studies.study import is_id, new_id
+from rocking.app.studies.study_folder import is_id, new_id
 from rocking.campaigns.jobs import Job
 from rocking.errors import InvalidValueError, RockingError
 

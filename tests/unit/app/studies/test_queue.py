@@ -18,7 +18,8 @@ from rocking.app.settings import Limits
 from rocking.app.studies import queue as line
 from rocking.app.studies import router
 from rocking.app.studies.manager import StudyManager
-from rocking.app.studies.study import HostedStudy, StudyFolder
+from rocking.app.studies.study import HostedStudy
+from rocking.app.studies.study_folder import StudyFolder
 from rocking.errors import RockingError
 
 pytestmark = [pytest.mark.timed, pytest.mark.skipif(sys.platform == "win32", reason="other signals")]

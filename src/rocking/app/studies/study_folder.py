@@ -1,0 +1,150 @@
+"""A study on disk: its id, what it is, its job, the records that it needs, and its campaign."""
+
+import json
+import os
+import re
+import secrets
+import shutil
+from contextlib import suppress
+from dataclasses import asdict, dataclass, fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rocking.app.errors import NotFound
+from rocking.app.plain_text import record_file_name
+from rocking.app.studies.job_document import JobDocument
+from rocking.campaigns import disk
+from rocking.campaigns.jobs.folder import status_of
+from rocking.campaigns.status import CampaignStatus
+from rocking.errors import InvalidValueError, RockingError
+
+if TYPE_CHECKING:
+    from rocking.app.records import RecordStore
+
+_ID = re.compile(r"[0-9a-f]{16}\Z")
+META, JOB, CAMPAIGN, RECORDS, LOG = "meta.json", "job.toml", "campaign", "records", "log.txt"
+"""Files and folders of a study."""
+
+WAITING, RUNNING, CANCELLED = "waiting", "running", "cancelled"
+INTERRUPTED, FAILED, DONE = "interrupted", "failed", "done"
+STATES = (WAITING, RUNNING, CANCELLED, INTERRUPTED, FAILED, DONE)
+"""What a study may be doing."""
+
+
+def new_id() -> str:
+    """Return the name of a new study's folder."""
+    return secrets.token_hex(8)
+
+
+def is_id(text: str) -> bool:
+    """Return whether words can be the name of a study's folder."""
+    return _ID.match(text) is not None
+
+
+@dataclass(frozen=True)
+class Meta:
+    """What is known of a study beside its campaign."""
+
+    name: str  # name, kind: what it is called, fit to be shown, and what it computes
+    kind: str
+    created: str  # when it was made, as of ISO 8601
+    histories: int  # how many it has
+    state: str = WAITING  # one of `STATES`
+    message: str = ""  # A sentence about how it ended; empty while there is none
+
+
+@dataclass(frozen=True)
+class StudyFolder:
+    """The folder of a study."""
+
+    path: Path  # where it is; its name is that of the study
+
+    @property
+    def id(self) -> str:
+        """Name of the study in addresses."""
+        return self.path.name
+
+    @property
+    def campaign(self) -> Path:
+        """Folder of the campaign."""
+        return self.path / CAMPAIGN
+
+    def create(self, meta: Meta, job: JobDocument, records: "RecordStore") -> None:
+        """Write what a study needs, so that it needs nothing else: a power cut leaves all of it or no `meta.json`."""
+        from rocking.campaigns.jobs import Job
+
+        try:
+            disk.make_folder(self.path)
+            self.path.chmod(0o700)
+            kept = {sha256: self._keep(sha256, records.path(sha256)) for sha256 in job.records}
+            disk.write_new(self.path / JOB, job.toml(kept.__getitem__).encode())
+            if not job.needs_long:
+                with np.errstate(all="ignore"):  # what overflows is infinite, and refused by its name
+                    count = Job.read(self.path / JOB).study.histories.count  # checks bodies, motions, axes, levels
+                if count != meta.histories:
+                    raise InvalidValueError(f"job has {count} histories, not {meta.histories}")
+            self.write(meta)
+        except BaseException as error:
+            shutil.rmtree(self.path, ignore_errors=True)
+            if isinstance(error, RockingError):
+                raise type(error)(self.without_paths(str(error))) from error
+            raise
+
+    def _keep(self, sha256: str, source: Path) -> str:
+        """Copy a record into the study, by a link where the disk can, and return its path in the study."""
+        name = f"{RECORDS}/{sha256}/{record_file_name(source.name)}"
+        target = self.path / name
+        disk.make_folder(target.parent)
+        try:
+            target.hardlink_to(source)
+        except OSError:
+            try:
+                shutil.copyfile(source, target)
+            except FileNotFoundError as error:
+                raise NotFound("a record of the job was deleted meanwhile; upload it again") from error
+        return name
+
+    def write(self, meta: Meta) -> None:
+        """Write what is known of the study, as a whole or not at all."""
+        disk.write_new(self.path / META, (json.dumps(asdict(meta), indent=1) + "\n").encode())
+
+    def read(self) -> Meta | None:
+        """Return what is known of the study; None where there is nothing, or nothing that can be read."""
+        try:
+            words = json.loads((self.path / META).read_bytes())
+            meta = Meta(**{item.name: words[item.name] for item in fields(Meta)})
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+        texts = (meta.name, meta.kind, meta.created, meta.state, meta.message)
+        sound = all(isinstance(text, str) for text in texts) and isinstance(meta.histories, int)
+        return meta if sound and meta.state in STATES else None
+
+    def status(self) -> tuple[CampaignStatus | None, bool]:
+        """Return how far the campaign is (None where nothing has begun), and whether it is complete."""
+        if not (self.campaign / JOB).is_file():
+            return None, False
+        campaign = status_of(self.campaign, verify=False)
+        return campaign.status, campaign.complete
+
+    def ended(self) -> Meta | None:
+        """Return what is known when the server starts, None of no study: what its end interrupted waits to go on."""
+        meta = self.read()
+        if meta is None or meta.state not in {WAITING, RUNNING, INTERRUPTED}:
+            return meta
+        try:
+            complete = self.status()[1]
+        except (RockingError, OSError):
+            complete = False
+        words = "" if complete else "the server ended before the study did; what was finished is safe, and it goes on"
+        meta = replace(meta, state=DONE if complete else WAITING, message=words)
+        with suppress(OSError):  # a full disk: the next start finds out again
+            self.write(meta)
+        return meta
+
+    def without_paths(self, words: str) -> str:
+        """Return a sentence without the paths of this machine in it, which are nobody's business."""
+        for folder in (self.campaign, self.path):
+            words = words.replace(f"{folder}{os.sep}", "").replace(str(folder), "the study")
+        return words.removeprefix(f"{JOB}: ")
