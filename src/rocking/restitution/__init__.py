@@ -1,8 +1,8 @@
 """What an impact costs: published and derived restitution models, and what a coefficient implies."""
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from rocking.lazy import exports
 from rocking.restitution.impact import ImpactGeometry
 from rocking.restitution.implied import Implication, implied
 from rocking.restitution.model import Flag, InertiaModel, Restitution, RestitutionModel
@@ -66,12 +66,8 @@ _HOME = {
     "projected_moment": "ked",
 }
 
-
-def __getattr__(name: str) -> Any:
-    """Import a model when it is first asked for: a response needs one of them, not all."""
-    if name not in _HOME:
-        raise AttributeError(f"module 'rocking.restitution' has no attribute {name!r}")
-    return getattr(import_module(f"rocking.restitution.{_HOME[name]}"), name)
+# a model is imported when it is first asked for: a response needs one of them, not all
+__getattr__, _ = exports("rocking.restitution", {name: f"rocking.restitution.{home}" for name, home in _HOME.items()})
 
 
 def __dir__() -> list[str]:

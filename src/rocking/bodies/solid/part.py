@@ -162,9 +162,8 @@ class Part:
         Part
             The scaled part.
         """
-        scaled = self._with(self.shape.scaled(size), self.rotation, self.translation * size)
-        factor = checks.positive("density", density)
-        return scaled if factor == 1.0 else replace_density(scaled, type(self.density)(self.density * factor))
+        value = type(self.density)(self.density * checks.positive("density", density))
+        return self._with(self.shape.scaled(size), self.rotation, self.translation * size, value)
 
     def mirrored(self) -> "Part":
         """Return the part seen in the mirror x -> -x.
@@ -223,34 +222,17 @@ class Part:
         """
         return self.shape.contains(times(points - self.translation, self.rotation))
 
-    def footprint(self, ground: float, tolerance: float) -> tuple[FloatArray, list[tuple[FloatArray, float]]]:
-        """Return what of the part stands on a level ground.
-
-        Parameters
-        ----------
-        ground : float
-            Height of the ground [m].
-        tolerance : float
-            Corners this close to it stand on it [m].
-
-        Returns
-        -------
-        points : ndarray, shape (n, 2)
-            Corners [m].
-        discs : list of (ndarray, float)
-            Centre (x, y) [m] and radius [m] of round faces.
-        """
-        print_ = self.shape.footprint()
-        points = placed_points(print_.points, self.rotation, self.translation)
-        upright = abs(abs(float(self.rotation[2, 2])) - 1.0) <= 1e-12
-        discs = [(placed_points(centre, self.rotation, self.translation), radius) for centre, radius in print_.discs]
-        standing = [(c[:2], r) for c, r in discs if upright and abs(float(c[2]) - ground) <= tolerance]
-        return points[np.abs(points[:, 2] - ground) <= tolerance, :2], standing
-
-    def _with(self, shape: Shape, rotation: FloatArray, translation: FloatArray) -> "Part":
-        return Part(shape, self.density, rotation=rotation, translation=translation)
+    def _with(
+        self, shape: Shape, rotation: FloatArray, translation: FloatArray, density: float | None = None
+    ) -> "Part":
+        return Part(shape, self.density if density is None else density, rotation=rotation, translation=translation)
 
 
-def replace_density(part: Part, density: float) -> Part:
-    """Return the part with another density."""
-    return Part(part.shape, density, rotation=part.rotation, translation=part.translation)
+def footprint(part: Part, ground: float, tolerance: float) -> tuple[FloatArray, list[tuple[FloatArray, float]]]:
+    """Return the corners, and centre and radius of the round faces, with which a part stands on a level ground [m]."""
+    whole = part.shape.footprint()
+    points = placed_points(whole.points, part.rotation, part.translation)
+    upright = abs(abs(float(part.rotation[2, 2])) - 1.0) <= 1e-12
+    discs = [(placed_points(centre, part.rotation, part.translation), radius) for centre, radius in whole.discs]
+    standing = [(c[:2], r) for c, r in discs if upright and abs(float(c[2]) - ground) <= tolerance]
+    return points[np.abs(points[:, 2] - ground) <= tolerance, :2], standing

@@ -13,7 +13,7 @@ from rocking.bodies.moments import SolidMoments, combined
 from rocking.bodies.section import Section
 from rocking.bodies.solid._admissible import check_disjoint, check_possible
 from rocking.bodies.solid.base import Base, RoundBase, SupportPolygon, hull
-from rocking.bodies.solid.part import Part, rotation_about
+from rocking.bodies.solid.part import Part, footprint, rotation_about
 from rocking.bodies.solid.prism import Prism
 from rocking.bodies.solid.shape import Shape
 from rocking.conventions import FloatArray
@@ -269,7 +269,7 @@ class Solid:
 
 def found_base(parts: Sequence[Part], tolerance: float) -> Base:
     """Return what parts stand on: the hull of their corners on the ground, or the round face there."""
-    prints = [part.footprint(0.0, tolerance) for part in parts]
+    prints = [footprint(part, 0.0, tolerance) for part in parts]
     points = np.concatenate([print_[0] for print_ in prints])
     discs = [disc for print_ in prints for disc in print_[1]]
     if not discs:
