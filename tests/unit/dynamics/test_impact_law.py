@@ -1,5 +1,6 @@
-"""Coefficients of restitution by side, by speed and at random: bounds, draws, and both engines alike."""
+"""Laws of impact: what they give, refuse, and are made of."""
 
+import hashlib
 import math
 from typing import Any
 
@@ -8,6 +9,7 @@ import pytest
 from scipy import stats
 
 import rocking as rk
+from rocking.dynamics.content import hash_of
 from rocking.dynamics.impact_laws import ConstantRestitution, interpolated, uniform
 from rocking.dynamics.plane import fast_engine
 from rocking.errors import InvalidValueError
@@ -244,3 +246,17 @@ def test_ends_of_a_cut_normal_stand_a_quarter_of_a_step_inside() -> None:
     law = rk.dynamics.RandomRestitution.normal(0.9, 0.05, seed=1, points=5)
     wanted = stats.truncnorm((0.0 - 0.9) / 0.05, (1.0 - 0.9) / 0.05, 0.9, 0.05).ppf([0.05, 0.25, 0.5, 0.75, 0.95])
     np.testing.assert_allclose(law.factors, wanted, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        np.arange(7.0), np.arange(12.0).reshape(3, 4).T, np.arange(9)[::2], np.empty(0), np.empty((0, 3)),
+        np.array(2.5), np.array([True, False]), np.arange(5, dtype=">i4"), np.broadcast_to(2.0, (4,)),
+    ],
+)  # fmt: skip
+def test_hash_is_of_kind_shape_and_bytes(values: np.ndarray) -> None:
+    """SHA-256 of the words of type and shape, then of the numbers, little-endian in the order of C."""
+    little = np.atleast_1d(values).astype(values.dtype.newbyteorder("<"))
+    said = f"('{little.dtype.str}', {little.shape})".encode()
+    assert hash_of(values) == hashlib.sha256(said + little.tobytes(order="C")).hexdigest()

@@ -1,7 +1,8 @@
-"""What `simulate`, `free_rocking` and `simulate_many` refuse, and what the message says."""
+"""The front door: what it takes, refuses and hands on."""
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,11 @@ import pytest
 
 import rocking as rk
 from rocking import conventions
+from rocking.dynamics import ImpactLaw, Settings
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
+from rocking.motions import Segments
 
 # these take rows, whatever their type
 SPEED: Any = rk.dynamics.SpeedRestitution
@@ -225,3 +230,179 @@ def test_the_doors_are_open() -> None:
     assert int(many().status.max()) == 0
     assert issubclass(InvalidValueError, RockingError)
     assert issubclass(InvalidValueError, ValueError)
+
+
+built = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
+RESPONSE = rk.simulate(BLOCK, PULSE, "housner")
+END = float(RESPONSE.time[-1])
+VERTICAL = rk.GroundMotion(np.array([0.0, 3.0, 0.0]), 0.1, vertical=np.array([0.0, 1.0, 0.0]))
+
+
+# ---- what is asked of a response ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("time", [None, "a", [True], 1j, [[0.1], [0.1, 0.2]]])
+def test_times_that_are_no_numbers(time: Any) -> None:
+    """Times that are no numbers are refused."""
+    with pytest.raises(InvalidValueError, match=r"time must be numbers \[s\], got"):
+        RESPONSE.at(time)
+
+
+@pytest.mark.parametrize("time", [math.nan, math.inf, [0.1, -math.inf], -1.0, 1e9, -1e-6, END * (1.0 + 1e-6)])
+def test_times_outside_the_response(time: Any) -> None:
+    """Times that are not finite or outside the response are refused with its range; the ends may be off by rounding."""
+    with pytest.raises(InvalidValueError, match=r"time must be in \[0, [0-9.]*\] s, where the response is known, got"):
+        RESPONSE.at(time)
+    assert RESPONSE.at([-1e-15, END * (1.0 + 1e-15)]).tolist() == [RESPONSE.rotation[0], RESPONSE.rotation[-1]]
+
+
+@pytest.mark.parametrize("friction", [math.nan, math.inf, -1.0, 0.0, None, "0.5", True])
+def test_friction(friction: Any) -> None:
+    """A coefficient of friction is above zero and finite."""
+    with pytest.raises(InvalidValueError, match="friction must be"):
+        RESPONSE.contact.warnings(friction)
+
+
+@pytest.mark.parametrize("write", ["to_csv", "to_mat", "to_netcdf"])
+def test_what_is_no_file(write: str, tmp_path: Path) -> None:
+    """A folder, an empty string or what is no path is refused as a file, and nothing is written."""
+    for folder in (tmp_path, ""):
+        with pytest.raises(InvalidValueError, match="path must be the path of a file, got the folder"):
+            getattr(RESPONSE, write)(folder)
+    bad: Any
+    for bad in (None, 5, b"out.csv", ["out.csv"]):
+        with pytest.raises(InvalidValueError, match="path must be the path of a file, got"):
+            getattr(RESPONSE, write)(bad)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_last_sample_of_a_record() -> None:
+    """Where a record ends its last sample is shown, and rest after it; a record that fills the time ends likewise."""
+    record = rk.GroundMotion(np.array([0.0, 0.0, 0.5]), 0.5)
+    found = rk.simulate(BLOCK, record, scale=-2.0).ground_acceleration
+    assert found[:3].tolist() == [0.0, 0.0, -1.0]
+    assert not found[3:].any()
+    assert rk.simulate(BLOCK, record, duration=1.0).ground_acceleration.tolist() == [0.0, 0.0, 0.5]
+    assert rk.simulate(BLOCK, record, duration=0.5).ground_acceleration.tolist() == [0.0, 0.0]
+    flat = rk.pulses.rectangular(amplitude=1.0, duration=0.5)
+    shown = rk.simulate(BLOCK, flat)
+    np.testing.assert_allclose(shown.ground_acceleration, flat.acceleration(shown.time), rtol=0.0, atol=1e-14)
+
+
+@built
+def test_error_estimate_at_the_shortest_step() -> None:
+    """Where steps cannot be halved the reference engine stands in; a step near the limit is no exception."""
+    for step in (1e-6, 1.9e-6):
+        response = rk.simulate(BLOCK, PULSE, "housner", longest_step=step, duration=0.2, rotation=0.05)
+        assert 0.0 < response.error_estimate < 1e-12
+    reference = rk.simulate(BLOCK, PULSE, "housner", longest_step=1e-6, duration=0.2, rotation=0.05, engine="reference")
+    assert 0.0 <= reference.error_estimate < 1e-12
+
+
+# ---- orders of the fast engine --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("order", [4, 6])
+@pytest.mark.parametrize("name", ["auto", pytest.param("fast", marks=built)])
+@pytest.mark.filterwarnings("ignore::rocking.errors.SlowEngineWarning")
+def test_one_history_has_order_8(order: int, name: str) -> None:
+    """Orders 4 and 6 are refused for one history, not passed over; the reference engine has an order of its own."""
+    message = f"order must be 8 for one history, got {order}: orders 4 and 6 exist only in batches"
+    with pytest.raises(InvalidValueError, match=message):
+        rk.simulate(BLOCK, PULSE, order=order, engine=name)
+    with pytest.raises(InvalidValueError, match=message):
+        rk.free_rocking(BLOCK, 0.1, order=order, engine=name)
+    assert rk.free_rocking(BLOCK, 0.1, order=order, engine="reference").engine.startswith("reference")
+
+
+@built
+@pytest.mark.parametrize("order", [4, 6])
+def test_orders_of_batches(order: int) -> None:
+    """Batches have orders 4 and 6 except for linear equations and vertical motions, where the message says so."""
+    pytest.importorskip("xarray")
+    with pytest.raises(InvalidValueError, match=f"order must be 8 for the linear equations, got {order}: orders 4 and"):
+        rk.simulate_many(BLOCK, PULSE, order=order, linear=True)
+    with pytest.raises(InvalidValueError, match=f"order must be 8 for motions with a vertical part, got {order}"):
+        rk.simulate_many(BLOCK, VERTICAL, order=order)
+    good = rk.simulate_many(BLOCK, PULSE, order=order)["peak_rotation"].item()
+    # order 4 errs by about 1e-6 at the default step
+    assert good == pytest.approx(rk.simulate_many(BLOCK, PULSE)["peak_rotation"].item(), rel=1e-4)
+    for more in ({"linear": True, "order": order}, {"linear": True, "order": 8, "engine": "fast"}):
+        engines: Any = {"engine": "reference", **more}
+        assert rk.simulate_many(BLOCK, VERTICAL, **engines)["status"].item() == 0
+
+
+@pytest.mark.parametrize("order", [8.0, np.array([4, 8]), np.float64(8.0), [8]])
+def test_orders_that_are_no_whole_numbers(order: Any) -> None:
+    """An order is a whole number, not a float that equals one, nor a row."""
+    with pytest.raises(InvalidValueError, match=r"order must be one of \(4, 6, 8\), got"):
+        Settings(order=order)
+
+
+# ---- laws of impact -------------------------------------------------------------------------------------------------
+
+
+def test_the_base_of_the_laws() -> None:
+    """The base class is no law: it says which classes are."""
+    with pytest.raises(InvalidValueError, match=r"base of the laws: take ConstantRestitution, SpeedRestitution or"):
+        rk.simulate(BLOCK, PULSE, ImpactLaw())
+
+
+@pytest.mark.parametrize("points", [None, -1, 0, 1, 2.5, True, "9", math.nan, 100_001, 10**400])
+def test_points_of_a_distribution(points: Any) -> None:
+    """A distribution is stood for by a whole number of quantiles from 2 to 100,000; both ends are taken."""
+    with pytest.raises(InvalidValueError, match=r"points must be a whole number in \[2, 100000\], got"):
+        rk.dynamics.RandomRestitution.normal(0.5, 0.1, seed=1, points=points)
+    for count in (2, 100_000):
+        assert rk.dynamics.RandomRestitution.normal(0.5, 0.1, seed=1, points=count).factors.size == count
+
+
+# ---- many histories -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("bad", "shown"),
+    [(None, "None"), (5, "5"), ("abc", "'abc'"), ([], "none"), ([None], "None at index 0"), (math.nan, "nan")],
+)
+def test_bodies_and_motions(bad: Any, shown: str) -> None:
+    """Bodies and motions of another kind are refused; the message names what was given, and where."""
+    pytest.importorskip("xarray")
+    with pytest.raises(InvalidValueError, match=f"bodies must be one or more of Body, got {shown}"):
+        rk.simulate_many(bad, PULSE)
+    with pytest.raises(
+        InvalidValueError, match=f"motions must be one or more of GroundMotion, Pulse, Mapping, got {shown}"
+    ):
+        rk.simulate_many(BLOCK, bad)
+    with pytest.raises(InvalidValueError, match=r"bodies must be one or more of Body, got Sinusoids.* at index 1"):
+        rk.simulate_many([BLOCK, PULSE], PULSE)  # type: ignore[list-item]
+
+
+@pytest.mark.parametrize("progress", [5, "print", [print]])
+def test_progress(progress: Any) -> None:
+    """Progress is told to a function; anything else is refused before anything is computed."""
+    row = {"alpha_right": 0.2, "alpha_left": 0.2, "p_right": 2.0, "p_left": 2.0, "r_right": 0.9, "r_left": 0.9}
+    batch = Batch([Segments.still(0.1, 3)], engine="reference")
+    with pytest.raises(InvalidValueError, match="progress must be a function of the histories done, or None, got"):
+        batch.run(1, lambda first, last: Rows.of(last - first, **row), progress)
+    pytest.importorskip("xarray")
+    with pytest.raises(InvalidValueError, match="progress must be a function"):
+        rk.simulate_many(BLOCK, PULSE, progress=progress)
+
+
+@pytest.mark.parametrize(
+    ("scale", "message"),
+    [
+        (2e6, r"scale must be finite and within 1e6, got 2e\+06 at index 0"),
+        ([-1e6, -1000001.0], r"within 1e6, got -1e\+06 at index 1"),
+        ([1.0, math.nan], "got nan at index 1"),
+        ([1.0, 2.0, -math.inf], "got -inf at index 2"),
+        ([], r"scale must be one number or a row of numbers, got shape \(0,\)"),
+        ([[1.0, 2.0]], r"got shape \(1, 2\)"),
+        (None, r"scale must be numbers"),
+    ],
+)
+def test_scales_by_value_and_place(scale: Any, message: str) -> None:
+    """Scales that are no row of finite numbers within 1e6 are refused by value and place."""
+    pytest.importorskip("xarray")
+    with pytest.raises(InvalidValueError, match=message):
+        rk.simulate_many(BLOCK, PULSE, scale=scale)

@@ -1,6 +1,8 @@
-"""The door of the batch engine in space: shapes, refusals, isolation of rows, threads, engines."""
+"""Batches in space: shapes, refusals, isolation of rows, threads, engines, exports, falls."""
 
+import csv
 import itertools
+import json
 import math
 
 import numpy as np
@@ -11,11 +13,12 @@ from rocking import conventions
 from rocking.dynamics import Settings
 from rocking.dynamics.space import SpatialBody, SpatialStart, fast_engine
 from rocking.dynamics.space.batch import batch_in_space
-from rocking.dynamics.space.fast_engine import batch_law
+from rocking.dynamics.space.fast_engine import FLOATS, WHOLES, batch_law
 from rocking.dynamics.space.ground import ground_of, joined
 from rocking.dynamics.space.impact_laws import FixedSpatial
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning, UnknownModelError
 from rocking.outcome import Status
+from rocking.plots.falling import falling_picture
 
 BOX = SpatialBody.box(0.5, 0.6, 2.0)
 PULSE = rk.pulses.sine(amplitude=4.0, period=0.8)
@@ -295,3 +298,118 @@ def test_settings_of_the_batch_are_those_of_one_history():
     batch, one = Settings(mechanics="space, many"), Settings(mechanics="space")
     for name in ("gravity", "rest_speed", "most_events"):
         assert getattr(batch, name) == getattr(one, name)
+
+
+@pytest.fixture(scope="module")
+def batch():
+    """Two bodies, two scales, two laws, two starts; the second body is none."""
+    loose = type("Loose", (), {"mass": 1.0, "centre": (2.0, 0.0, 1.0), "inertia": np.eye(3), "base": BOX.base})()
+    starts = [SpatialStart(), SpatialStart(0.05, 0.3)]
+    return batch_in_space([BOX, loose], (PULSE, PULSE), ["housner-3d", 0.9], scales=[0.5, 2.5], start=starts)
+
+
+def _row(batch, number):
+    return tuple(int(i) for i in np.unravel_index(number, batch.shape))
+
+
+@built
+def test_a_table_has_one_row_a_history_with_its_labels(batch):
+    """Row 5 of the table is the history that the arrays hold at its place; units are in the headings."""
+    frame = batch.to_dataframe()
+    assert len(frame) == len(batch) == 16
+    body, motion, scale, law, start = _row(batch, 5)
+    row = frame.iloc[5]
+    assert (row["body [-]"], row["motion [-]"], row["start [-]"]) == (body, motion, start)
+    assert row["scale [-]"] == (0.5, 2.5)[scale]
+    assert row["restitution"] == ("housner-3d", "0.9")[law]
+    assert row["peak_tilt [rad]"] == batch.peak_tilt[body, motion, scale, law, start]
+    # negative control: the same at the smaller scale differs
+    assert frame.iloc[1]["peak_tilt [rad]"] != row["peak_tilt [rad]"]
+
+
+@built
+def test_a_csv_keeps_every_digit(batch, tmp_path):
+    """Numbers read back from the file are the same bits, NaN where there is no result."""
+    with batch.to_csv(tmp_path / "batch.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    read = np.array([float(row["peak_tilt [rad]"]) for row in rows])
+    np.testing.assert_array_equal(read, batch.values["peak_tilt"])
+    assert np.isnan(read[8:]).all()
+    names = {name.partition(" [")[0] for name in rows[0]} - {"outcome_meaning", "status_meaning"}
+    assert names == {"body", "motion", "start", "motion_name", "restitution", "scale", "overturned", *FLOATS, *WHOLES}
+
+
+@built
+def test_a_netcdf_file_keeps_axes_units_and_provenance(batch, tmp_path):
+    """The five axes, the arrays, their units, and of what all was computed come back."""
+    import xarray
+
+    with xarray.open_dataset(batch.to_netcdf(tmp_path / "batch.nc"), engine="h5netcdf") as data:
+        assert data["peak_tilt"].dims == ("body", "motion", "scale", "restitution", "start")
+        np.testing.assert_array_equal(data["peak_tilt"].values, batch.peak_tilt)
+        assert data["lost"].attrs["units"] == "J"
+        assert list(data["restitution"].values) == ["housner-3d", "0.9"]
+        told = data.attrs
+    assert told["software"] == f"rocking {rk.__version__}"
+    assert told["setting_gravity"] == conventions.g
+    assert json.loads(told["bodies"])[0]["mass_kg"] == BOX.mass
+    assert json.loads(told["bodies"])[1] is None
+    assert "1" in json.loads(told["refused"])
+    assert json.loads(told["starts"])[1][:2] == [0.05, 0.3]
+
+
+@built
+def test_a_matlab_file_has_columns_and_units(batch, tmp_path):
+    """The structure has every column, its unit, and the provenance as JSON."""
+    from scipy.io import loadmat
+
+    made = loadmat(batch.to_mat(tmp_path / "batch.mat"), simplify_cells=True)["rocking"]
+    np.testing.assert_array_equal(made["peak_tilt"], batch.values["peak_tilt"])
+    np.testing.assert_array_equal(made["scale"], np.tile(np.repeat([0.5, 2.5], 4), 2))
+    assert made["units"]["direction"] == "rad"
+    assert json.loads(made["provenance"])["bodies_sha256"] == batch.provenance["bodies_sha256"]
+
+
+@built
+def test_another_body_has_another_digest(batch):
+    """The digest stands for the bodies: the same again, another with a millimetre more."""
+    same = batch_in_space([BOX], PULSE).provenance["bodies_sha256"]
+    assert same == batch_in_space([BOX], PULSE, scales=2.0).provenance["bodies_sha256"]
+    other = batch_in_space([SpatialBody.box(0.501, 0.6, 2.0)], PULSE).provenance["bodies_sha256"]
+    assert same != other
+
+
+@built
+def test_a_folder_that_is_not_there_is_named(batch, tmp_path):
+    """Writing into a missing folder is refused in words."""
+    with pytest.raises(InvalidValueError, match="no folder"):
+        batch.to_netcdf(tmp_path / "none" / "batch.nc")
+
+
+TALL_BOX = SpatialBody.box(0.5, 0.4, 2.0)
+ANGLES = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
+MOTIONS = [(PULSE.scaled(np.cos(a)), PULSE.scaled(np.sin(a))) for a in ANGLES]
+
+
+@built
+def test_lines_show_the_share_of_scales():
+    """The two lines of the first panel are the shares of overturning in percent, closed round; a control is not."""
+    batch = rk.simulate_many(TALL_BOX, MOTIONS, ["housner-3d", 0.95], scale=np.linspace(0.5, 3.0, 9))
+    figure = falling_picture(batch, ANGLES, [(0.25, 0.2), (-0.25, 0.2), (-0.25, -0.2), (0.25, -0.2)])
+    share = 100.0 * batch["overturned"].mean("scale").values[0, :, :, 0]
+    assert 0.0 < share.mean() < 100.0
+    for k, line in enumerate(figure.axes[0].lines):
+        drawn = np.asarray(line.get_ydata())
+        np.testing.assert_allclose(drawn, np.append(share[:, k], share[0, k]))
+        assert np.abs(drawn[:-1] - np.roll(share[:, k], 1)).max() > 0.0  # negative control
+    assert figure.axes[0].get_legend().get_texts()[1].get_text() == "r = 0.95"
+
+
+@built
+def test_a_batch_of_another_shape_is_refused():
+    """One restitution, or fewer azimuths than motions: an error that shows the shape."""
+    with pytest.raises(InvalidValueError, match="two restitutions"):
+        falling_picture(rk.simulate_many(TALL_BOX, MOTIONS), ANGLES)
+    two = rk.simulate_many(TALL_BOX, MOTIONS, ["housner-3d", 0.9])
+    with pytest.raises(InvalidValueError, match="each of 5"):
+        falling_picture(two, ANGLES[:5])
