@@ -9,7 +9,7 @@ import pytest
 
 import rocking as rk
 from rocking.campaigns import Campaign
-from rocking.dynamics.impact_laws import RandomRestitution
+from rocking.dynamics import RandomRestitution
 from rocking.studies import HistoryTable, MotionList
 
 RANGES = {"alpha": (0.08, 0.5), "p": (0.9, 5.0), "r": (0.5, 0.95)}

@@ -5,9 +5,8 @@ import hashlib
 import numpy as np
 import pytest
 
-from rocking.campaigns import Campaign, CampaignStorageError, Progress, forecast
-from rocking.campaigns.status import Estimate
-from rocking.dynamics.plane.fast_engine import RESULTS
+from rocking.campaigns import Campaign, CampaignStorageError, Estimate, Progress, forecast
+from rocking.dynamics.plane import fast_engine
 from rocking.errors import InvalidValueError
 
 
@@ -15,7 +14,7 @@ def test_results_are_those_of_the_engine(finished, work):
     """Whole, in pieces and by column: bit by bit what a bare run gives, with several outcomes."""
     bare = work.run(0, work.count, threads=1)
     whole = finished.results()
-    assert set(whole) == set(RESULTS)
+    assert set(whole) == set(fast_engine.RESULTS)
     assert len(set(bare["outcome"].tolist())) > 1
     for name, values in bare.items():
         assert whole[name].tobytes() == values.tobytes()
@@ -30,7 +29,10 @@ def test_results_are_those_of_the_engine(finished, work):
 def test_hash_is_what_it_says(finished, work):
     """The hash of the results, computed here from a bare run by its description."""
     bare = work.run(0, work.count, threads=1)
-    lines = [f"{k} {np.dtype(RESULTS[k]).name} {hashlib.sha256(bare[k].tobytes()).hexdigest()}\n" for k in RESULTS]
+    lines = [
+        f"{k} {np.dtype(fast_engine.RESULTS[k]).name} {hashlib.sha256(bare[k].tobytes()).hexdigest()}\n"
+        for k in fast_engine.RESULTS
+    ]
     assert finished.sha256() == hashlib.sha256("".join(lines).encode()).hexdigest()
 
 

@@ -16,8 +16,7 @@ from rocking.campaigns.jobs.findings import READ
 from rocking.cli import main
 from rocking.errors import InvalidValueError
 from rocking.studies import multiple_stripe_analysis
-from rocking.studies.fragility.curves import model_of
-from rocking.studies.fragility.export import to_csv, to_nrml
+from rocking.studies.fragility import model_of, to_csv, to_nrml
 
 PERIODS = [round(0.4 + 0.05 * k, 2) for k in range(24)]
 STRIPES = job(

@@ -10,9 +10,7 @@ from rocking.campaigns.jobs import Job, analyses, export
 from rocking.errors import InvalidValueError
 from rocking.spec import document
 from rocking.studies import SyntheticSet, overturning_map, rocking_spectrum
-from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_analysis
-from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
-from rocking.studies.fragility.cloud_analysis import cloud
+from rocking.studies.fragility import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
 from rocking.studies.sensitivity import SampledRestitution
 
 xr = pytest.importorskip("xarray")

@@ -20,11 +20,10 @@ from rocking.campaigns import (
 )
 from rocking.campaigns.disk import FolderLock
 from rocking.campaigns.jobs import Job, JobFolder, answer, export, forecast, status_of
-from rocking.dynamics.impact_laws import RandomRestitution
+from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
-from rocking.studies import boundary, minimum_overturning_accelerations, overturning_map
-from rocking.studies.motion_sets import SyntheticSet
+from rocking.studies import SyntheticSet, boundary, minimum_overturning_accelerations, overturning_map
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("h5netcdf")

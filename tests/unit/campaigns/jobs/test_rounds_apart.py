@@ -17,9 +17,9 @@ from rocking.campaigns import (
     CampaignStorageError,
     CampaignWorkerError,
     DaskExecutor,
+    Serial,
     reading,
 )
-from rocking.campaigns.executors import Serial
 from rocking.campaigns.identity import Identity
 from rocking.campaigns.jobs import Job, JobFolder, answer, export, forecast, rounds, status_of, verified
 from rocking.errors import InvalidValueError
