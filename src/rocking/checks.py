@@ -28,6 +28,13 @@ def number(name: str, value: Any, unit: str = "-") -> float:
     return result
 
 
+def whole(name: str, value: Any, low: int = 0, high: int = 2**63 - 1) -> int:
+    """Return `value` as a whole number between `low` and `high`."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= int(value) <= high:
+        raise InvalidValueError(f"{name} must be a whole number in [{low}, {high}], got {value!r:.60}")
+    return int(value)
+
+
 def positive(name: str, value: Any, unit: str = "-", hint: str = "") -> float:
     """Return `value` as a finite float above zero."""
     result = number(name, value, unit)

@@ -36,6 +36,15 @@ def test_numbers_pass(value):
     assert type(checks.number("x", value)) is float
 
 
+def test_whole_numbers():
+    """Python's and numpy's whole numbers within the range become an int; floats, booleans and others are refused."""
+    for value in (1, 9, np.int8(9)):
+        assert type(checks.whole("n", value, 1, 9)) is int
+    for value in (0, 10, 1.0, True, None, "1", float("nan"), np.float64(2.0)):
+        with pytest.raises(InvalidValueError, match=r"^n must be a whole number in \[1, 9\], got "):
+            checks.whole("n", value, 1, 9)
+
+
 @pytest.mark.parametrize("value", NOT_NUMBERS, ids=lambda value: type(value).__name__)
 def test_what_is_no_number(value):
     """Strings, booleans, complex numbers, sequences and nothing are refused by name."""

@@ -251,9 +251,7 @@ class DrawnRestitution(ImpactLaw):
         """
         from scipy.special import ndtr, ndtri
 
-        count: object = points
-        if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= _MOST_POINTS:
-            raise InvalidValueError(f"points must be a whole number in [2, {_MOST_POINTS}], got {points!r:.60}")
+        points = checks.whole("points", points, 2, _MOST_POINTS)
         mean = checks.within("mean", mean, 0.0, 1.0)
         deviation = checks.within("deviation", deviation, 0.0, 1.0, open_low=True)
         low, high = ndtr((0.0 - mean) / deviation), ndtr((1.0 - mean) / deviation)

@@ -180,9 +180,7 @@ def type_c(amplitude: float, period: float, n: int = 1) -> Sinusoids:
     Sinusoids
         The pulse.
     """
-    given: object = n
-    if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= 1000:
-        raise InvalidValueError(f"n must be a whole number in [1, 1000], got {n!r}")
+    n = checks.whole("n", n, 1, 1000)
     phase = _closing_phase(n)
     return _windowed(f"type C{n} pulse", amplitude, period, 0.5 * math.pi + phase, n + 0.5 - phase / math.pi)
 

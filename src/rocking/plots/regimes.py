@@ -76,14 +76,12 @@ def regime_map_picture(body: Body, largest: float = 1.5, cells: int = 40) -> "Fi
     1
     """
     largest = checks.within("largest", largest, 0.0, 100.0, open_low=True)
-    count: object = cells
-    if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= 400:
-        raise InvalidValueError(f"cells must be a whole number in [2, 400], got {cells!r}")
+    cells = checks.whole("cells", cells, 2, 400)
     slender = body.side("left").half_width / body.side("left").centre_height
     if not slender < largest:
         raise InvalidValueError(f"largest must be above b / h = {slender:g}, where the body is lifted, got {largest:g}")
     figure, (axes,) = new_figure(SINGLE, 0.95 * SINGLE)
-    middles = (np.arange(count) + 0.5) * largest / count
+    middles = (np.arange(cells) + 0.5) * largest / cells
     _cells(axes, regime_map(body, middles, middles), largest)
     _boundaries(axes, body, slender, largest)
     axes.set(xlim=(0.0, largest), ylim=(0.0, largest))

@@ -133,9 +133,7 @@ class Effort:
 
     def __post_init__(self) -> None:
         for name, low, high in (("points", 2, _MOST_POINTS), ("levels", 0, 12)):
-            value: object = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-                raise InvalidValueError(f"{name} must be a whole number in [{low}, {high}], got {value!r:.60}")
+            checks.whole(name, getattr(self, name), low, high)
         object.__setattr__(self, "tolerance", checks.within("tolerance", self.tolerance, 0.0, 0.1))
 
 

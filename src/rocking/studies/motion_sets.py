@@ -14,7 +14,7 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.processing import scaled_to
 from rocking.motions.pulse import Pulse
 from rocking.motions.synthetic.distributions import Distribution
-from rocking.motions.synthetic.families import Family, family, whole
+from rocking.motions.synthetic.families import Family, family
 
 
 class MotionSet(ABC):
@@ -153,7 +153,7 @@ class SyntheticSet(MotionSet):
         **level: float | None,
     ) -> None:
         self.family = family(which)
-        self.count, self.seed = whole("count", count, 1, MOST_MOTIONS), whole("seed", seed)
+        self.count, self.seed = checks.whole("count", count, 1, MOST_MOTIONS), checks.whole("seed", seed)
         given = {name: value for name, value in level.items() if value is not None}
         if len(given) > 1:
             raise InvalidValueError(f"motions can be scaled to {' or to '.join(given)}, not to both")

@@ -101,7 +101,7 @@ class Family:
         >>> motion.name, 5.5 <= float(motion.metadata["magnitude"]) <= 7.5
         ('point-source, seed 7, number 3', True)
         """
-        seed, number = whole("seed", seed), whole("number", number)
+        seed, number = checks.whole("seed", seed), checks.whole("number", number)
         step = self.time_step if time_step is None else checks.positive("time_step", time_step, "s")
         shares, noise = _random(seed, number, len(self.distributions))
         drawn = self.parameters(shares)
@@ -110,13 +110,6 @@ class Family:
         made = self.make(drawn, noise, step)
         line = f"parameters drawn from the family {self.name} ({self.origin}), seed {seed}, number {number}"
         return made.changed(line, name=f"{self.name}, seed {seed}, number {number}", metadata=told)
-
-
-def whole(name: str, value: object, low: int = 0, high: int = 2**63 - 1) -> int:
-    """Return a whole number within its range."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= int(value) <= high:
-        raise InvalidValueError(f"{name} must be a whole number in [{low}, {high}], got {value!r:.60}")
-    return int(value)
 
 
 def _random(seed: int, number: int, count: int) -> tuple[FloatArray, int]:

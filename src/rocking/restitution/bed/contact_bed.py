@@ -207,9 +207,7 @@ class ContactBed:
         InvalidValueError
             If there are fewer than two points or the rule is unknown.
         """
-        given: object = count
-        if isinstance(given, bool) or not isinstance(given, int) or not 2 <= count <= 100_000:
-            raise InvalidValueError(f"count must be a whole number in [2, 100000], got {count!r}")
+        count = checks.whole("count", count, 2, 100_000)
         if rule not in {"ends", "trapezoid"}:
             raise InvalidValueError(f'rule must be "ends" or "trapezoid", got {rule!r}')
         positions, lengths = _along(contact_of(body, onto), body, count, onto)

@@ -11,7 +11,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions import peak_ground_acceleration, peak_ground_velocity
 from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.processing import scaled_to
-from rocking.motions.synthetic.families import Family, whole
+from rocking.motions.synthetic.families import Family
 from rocking.studies.motion_sets import SyntheticSet
 
 VELOCITY_UNITS = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001}
@@ -142,7 +142,7 @@ class Hazard:
         Hazard
             The motions.
         """
-        count = whole("count", count, 1, MOST_MOTIONS)
+        count = checks.whole("count", count, 1, MOST_MOTIONS)
         motions = SyntheticSet(which, count, seed, **{level.kind.lower(): level.value})
         made = []
         for k in range(count):
