@@ -5,8 +5,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from rocking.campaigns.jobs import Job, JobFolder, analyses, export, measure_comparison
-from rocking.plots import write
-from rocking.plots.cloud import cloud_picture
+from rocking.plots import cloud_picture, write
 
 job = Job.of_text("""
 [campaign]

@@ -8,8 +8,7 @@ import xarray
 
 from rocking.campaigns import CampaignInterrupted
 from rocking.campaigns.jobs import Job, JobFolder, export, forecast
-from rocking.plots import write
-from rocking.plots.overturning_map import overturning_map_picture
+from rocking.plots import overturning_map_picture, write
 
 job = Job.read(Path(__file__).parent / "jobs" / "overturning_map.toml")
 print(f"{job.document.campaign.name}: {dict(job.study.dims)}")

@@ -6,8 +6,7 @@ from tempfile import TemporaryDirectory
 import rocking as rk
 from rocking import conventions
 from rocking.campaigns.jobs import Job, JobFolder, answer
-from rocking.plots import write
-from rocking.plots.transitions import transitions_of_many_picture
+from rocking.plots import transitions_of_many_picture, write
 from rocking.studies import SyntheticSet, minimum_overturning_acceleration
 
 COUNT = 12

@@ -6,8 +6,7 @@ import numpy as np
 
 import rocking as rk
 from rocking import conventions
-from rocking.plots import write
-from rocking.plots.sensitivity import difference_map_picture, sensitivity_picture
+from rocking.plots import difference_map_picture, sensitivity_picture, write
 from rocking.studies import SyntheticSet, fragility_sensitivity, map_sensitivity
 
 folder = Path("gallery-output")

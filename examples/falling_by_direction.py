@@ -7,8 +7,7 @@ import numpy as np
 import rocking as rk
 from rocking.bodies.solid import Part, Solid, box, ellipsoid, frustum, revolution
 from rocking.outcome import Outcome
-from rocking.plots import write
-from rocking.plots.falling import falling_picture
+from rocking.plots import falling_picture, write
 
 pedestal = Part(box(0.42, 0.34, 1.20), 2400.0)
 socle = Part(revolution([(0.15, 0.0), (0.10, 0.06), (0.08, 0.12), (0.10, 0.16)]), 2700.0).moved(0.0, 0.0, 1.20)

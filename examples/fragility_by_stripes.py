@@ -6,8 +6,7 @@ import numpy as np
 
 import rocking as rk
 from rocking import conventions
-from rocking.plots import write
-from rocking.plots.fragility import fragility_picture
+from rocking.plots import fragility_picture, write
 from rocking.studies import SyntheticSet, multiple_stripe_analysis
 from rocking.studies.fragility import model_of, to_csv, to_nrml
 

@@ -7,8 +7,7 @@ import numpy as np
 
 import rocking as rk
 from rocking import conventions
-from rocking.plots import write
-from rocking.plots.incremental_dynamic_analysis import incremental_dynamic_analysis_picture
+from rocking.plots import incremental_dynamic_analysis_picture, write
 from rocking.studies import SyntheticSet, incremental_dynamic_analysis
 
 # a full sine of three times the frequency parameter, r = 0.9, slender-linear equations: known in closed form

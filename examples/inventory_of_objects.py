@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from rocking.plots import write
-from rocking.plots.inventory import inventory_picture
+from rocking.plots import inventory_picture, write
 from rocking.reports.inventory_folder import write_inventory
 from rocking.studies.inventory import Hazard, IntensityLevel, assess, read_inventory
 from rocking.studies.inventory.table import advice, model_note, sentence

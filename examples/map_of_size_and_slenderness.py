@@ -6,8 +6,7 @@ import numpy as np
 
 import rocking as rk
 from rocking import conventions
-from rocking.plots import write
-from rocking.plots.overturning_map import overturning_map_picture
+from rocking.plots import overturning_map_picture, write
 from rocking.studies import boundary, map_sensitivity
 
 block = rk.Block(width=0.5, height=2.0)

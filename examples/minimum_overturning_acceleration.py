@@ -5,8 +5,7 @@ from pathlib import Path
 
 import rocking as rk
 from rocking import conventions
-from rocking.plots import write
-from rocking.plots.transitions import transitions_picture
+from rocking.plots import transitions_picture, write
 from rocking.studies import minimum_overturning_acceleration
 
 block = rk.Block(width=0.5, height=2.0)

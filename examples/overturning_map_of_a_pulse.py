@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 
 import rocking as rk
-from rocking.plots import write
-from rocking.plots.overturning_map import overturning_map_picture
+from rocking.plots import overturning_map_picture, write
 from rocking.studies import boundary, overturning_map, safe_beyond_overturning
 
 block = rk.Block(width=0.5, height=2.0)

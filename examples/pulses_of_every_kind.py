@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 
 import rocking as rk
-from rocking.plots.style import new_figure, write
+from rocking.plots import write
+from rocking.plots.style import new_figure
 
 block = rk.Block(width=0.5, height=2.0)
 pulses = [

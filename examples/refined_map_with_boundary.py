@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 
 import rocking as rk
-from rocking.plots import write
-from rocking.plots.overturning_map import refined_map_picture
+from rocking.plots import refined_map_picture, write
 from rocking.studies import boundary, overturning_map, refined_map
 
 block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.8)

@@ -6,8 +6,7 @@ import numpy as np
 
 import rocking as rk
 from rocking import conventions
-from rocking.plots import write
-from rocking.plots.rocking_spectrum import rocking_spectrum_picture
+from rocking.plots import rocking_spectrum_picture, write
 from rocking.studies import SyntheticSet, rocking_spectrum
 
 motions = SyntheticSet("point-source", count=200, seed=1, pga=0.3 * conventions.g)

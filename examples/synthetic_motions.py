@@ -6,7 +6,8 @@ import numpy as np
 
 import rocking as rk
 from rocking.motions import intensity_measures, response_spectrum, significant_duration
-from rocking.plots.style import COLORS, SINGLE, in_journal_style, look, new_figure, write
+from rocking.plots import write
+from rocking.plots.style import COLORS, SINGLE, in_journal_style, look, new_figure
 
 modulation = rk.synthetic.modulation_from_intensity(arias_intensity=1.0, significant_duration=12.0, middle=8.0)
 motions = [

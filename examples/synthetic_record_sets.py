@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from rocking.motions import peak_ground_velocity
-from rocking.plots import write
-from rocking.plots.ground_motion import record_set_picture
+from rocking.plots import record_set_picture, write
 from rocking.studies import SyntheticSet
 
 sets = {name: SyntheticSet(name, count=30, seed=1) for name in ("firm-ground", "soft-ground", "pulse-like")}

@@ -8,8 +8,7 @@ import numpy as np
 import rocking as rk
 from rocking import conventions
 from rocking.motions import scaled_to
-from rocking.plots import write
-from rocking.plots.cloud import measures_picture
+from rocking.plots import measures_picture, write
 from rocking.studies import SyntheticSet, cloud, compare_measures
 
 # far earthquakes, each brought to a PGA from 1.1 to 2.5 times what lifts the body: all of them rock

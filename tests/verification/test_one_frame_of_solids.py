@@ -78,7 +78,7 @@ def test_energy_lost_at_a_point_in_closed_form():
 def test_slices_are_drawn_where_the_body_stands():
     """Axes of level slices are x and y of the user; heights are over the ground."""
     pytest.importorskip("matplotlib")
-    from rocking.plots.solid import energy_picture, slices_picture
+    from rocking.plots import energy_picture, slices_picture
 
     solid = wedge()
     result, ((left, front, _), (right, back, _)) = over(solid), solid.box

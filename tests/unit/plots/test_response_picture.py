@@ -1,4 +1,4 @@
-"""The picture of a response: curves against closed forms, marks where events are, and no text over text."""
+"""Pictures of responses in the plane, with contact and in space: what is drawn is what the response says."""
 
 import math
 from itertools import combinations
@@ -8,13 +8,16 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
+import rocking as rk
 from rocking.bodies import Block
-from rocking.dynamics import free_rocking, simulate
+from rocking.dynamics import SpatialStart, free_rocking, simulate
+from rocking.dynamics.contact import Regime, friction_demand
+from rocking.dynamics.space import SpatialBody
 from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.motions import GroundMotion
 from rocking.motions.pulses import rectangular, sine
-from rocking.plots.response import ground_place, response_picture, shown_until, velocity_at
-from rocking.plots.style import write
+from rocking.plots import regime_map_picture, regimes_picture, response_picture, spatial_picture, write
+from rocking.plots.response import ground_place, shown_until, velocity_at
 
 G = 9.80665
 BLOCK = Block(width=0.5, height=2.0)
@@ -231,3 +234,81 @@ def test_a_body_that_lies_within_the_first_step() -> None:
     left, right = response_picture(response).axes[0].get_xlim()
     assert (left, right) == (0.0, response.dense_output.end[-1])
     assert right > response.overturning_time
+
+
+SLENDER = Block(width=1.0, height=4.0).with_feet(0.1, 1)
+
+
+def test_map_shows_four_regimes_and_the_closed_form():
+    """Cells of an image hold regimes by complementarity; the curve is friction_demand, 1 % off is told apart."""
+    (axes,) = regime_map_picture(SLENDER, cells=20).axes
+    (image,) = axes.images
+    codes = np.asarray(image.get_array())
+    assert set(codes.ravel()) == {r.code for r in (Regime.REST, Regime.SLIDE, Regime.ROCK, Regime.SLIDE_ROCK)}
+    x, y = axes.lines[-1].get_data()
+    assert y[100] == pytest.approx(friction_demand(SLENDER, x[100]), rel=1e-12)
+    assert y[100] != pytest.approx(0.99 * friction_demand(SLENDER, x[100]), rel=1e-3)
+    # cells just above the curve rock, those just below slide and rock
+    column = 15
+    push = (column + 0.5) * 1.5 / 20
+    row = int(friction_demand(SLENDER, push) / 1.5 * 20)
+    assert codes[row + 1, column] == Regime.ROCK.code
+    assert codes[row - 1, column] == Regime.SLIDE_ROCK.code
+
+
+@pytest.mark.parametrize(
+    ("options", "words"), [({"cells": 1}, "cells must be"), ({"largest": 0.2}, "largest must be above")]
+)
+def test_map_refuses_what_it_cannot_draw(options, words):
+    """Too few cells, or no room for rocking."""
+    with pytest.raises(InvalidValueError, match=words):
+        regime_map_picture(SLENDER, **options)
+
+
+def test_response_is_drawn_over_its_regimes(tmp_path):
+    """The curves are the samples, the bands cover the time axis once, and the file is the same twice."""
+    response = rk.simulate(Block(width=1.2, height=2.0), sine(amplitude=9.0, period=0.9), None, friction=0.62)
+    figure = regimes_picture(response)
+    time, rotation = max((line.get_data() for line in figure.axes[0].lines), key=lambda pair: len(pair[0]))
+    assert np.array_equal(time, response.time)
+    assert np.allclose(rotation, np.degrees(response.rotation))
+    spans = [path.vertices[:, 0] for c in figure.axes[1].collections for path in c.get_paths()]
+    assert sum(np.ptp(x) for x in spans) == pytest.approx(response.history.end, rel=1e-9)
+    files = [write(regimes_picture(response), tmp_path / f"{k}.svg").read_bytes() for k in range(2)]
+    assert files[0] == files[1]
+
+
+@pytest.fixture(scope="module")
+def wobble():
+    """A square box let go from a lean off its axes."""
+    return rk.free_rocking(
+        SpatialBody.box(1.0, 1.0, 4.0), restitution="housner", start=SpatialStart(0.1, 0.4), duration=3.0
+    )
+
+
+def test_the_curves_are_the_response(wobble):
+    """Path of the top, tilt in degrees, impacts at their times; the bar of contact covers the time without gaps."""
+    plan, tilt, _, contact = spatial_picture(wobble).axes
+    np.testing.assert_array_equal(np.column_stack(plan.lines[0].get_data()), wobble.top[:, :2])
+    np.testing.assert_allclose(tilt.lines[0].get_ydata(), np.degrees(wobble.tilt))
+    np.testing.assert_array_equal(tilt.lines[1].get_xdata(), wobble.impacts["time"])
+    bars = sorted((bar.get_x(), bar.get_width()) for bar in contact.patches)
+    assert bars[0][0] == 0.0
+    assert sum(width for _, width in bars) == pytest.approx(wobble.time[-1])
+
+
+def test_pictures_of_all_kinds_are_written_the_same_every_time(wobble, tmp_path):
+    """A wobble, an overturning and a rolling cylinder; the same bytes twice."""
+    pulse = rk.pulses.half_sine(amplitude=9.0, period=1.2)
+    cylinder = SpatialBody.cylinder(0.5, 2.0)
+    runs = [
+        wobble,
+        rk.simulate(SpatialBody.box(1.0, 1.0, 4.0), pulse, "housner"),
+        rk.free_rocking(
+            cylinder, restitution="housner", start=SpatialStart(0.1, angular_velocity=(0.3, 0.0, 0.1)), duration=2.0
+        ),
+    ]
+    for number, run in enumerate(runs):
+        first, second = (write(spatial_picture(run), tmp_path / f"{number}-{k}.png").read_bytes() for k in range(2))
+        assert first == second
+    assert math.isfinite(runs[1].overturning_direction)

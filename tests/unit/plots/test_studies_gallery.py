@@ -11,12 +11,14 @@ from scipy import stats
 import rocking as rk
 from rocking import conventions
 from rocking.errors import InvalidValueError
-from rocking.plots.cloud import cloud_picture
-from rocking.plots.ground_motion import record_set_picture
-from rocking.plots.inventory import inventory_picture
-from rocking.plots.overturning_map import refined_map_picture
-from rocking.plots.sensitivity import difference_map_picture
-from rocking.plots.transitions import transitions_of_many_picture
+from rocking.plots import (
+    cloud_picture,
+    difference_map_picture,
+    inventory_picture,
+    record_set_picture,
+    refined_map_picture,
+    transitions_of_many_picture,
+)
 from rocking.studies import (
     SyntheticSet,
     boundary,

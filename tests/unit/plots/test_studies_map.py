@@ -9,10 +9,10 @@ from matplotlib.colors import to_rgb
 
 import rocking as rk
 from rocking.errors import InvalidValueError
+from rocking.plots import overturning_map_picture, write
 from rocking.plots.labels import axis_label, geometric, plain, wrapped
 from rocking.plots.map_labels import FINE, place_in, rastered
-from rocking.plots.overturning_map import CLASSES, FIRST, ISLAND, ROCKED, SECOND, classes_of, overturning_map_picture
-from rocking.plots.style import write
+from rocking.plots.overturning_map import CLASSES, FIRST, ISLAND, ROCKED, SECOND, classes_of
 from rocking.studies._overturning_map import overturning_map
 from rocking.studies.boundaries import Polyline, boundary
 

@@ -6,7 +6,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import rocking as rk
 from rocking.errors import InvalidValueError
-from rocking.plots.sensitivity import sensitivity_picture
+from rocking.plots import sensitivity_picture
 from rocking.studies.sensitivity import fragility_sensitivity, map_sensitivity, sensitivity, spectrum_sensitivity
 
 BLOCK = rk.Block(width=0.4, height=1.2)

@@ -8,7 +8,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import rocking as rk
 from rocking.errors import InvalidValueError
-from rocking.plots.rocking_spectrum import fractiles, rocking_spectrum_picture
+from rocking.plots import rocking_spectrum_picture
+from rocking.plots.rocking_spectrum import fractiles
 from rocking.studies._rocking_spectrum import rocking_spectrum
 
 G = 9.80665

@@ -7,7 +7,7 @@ import pytest
 
 from rocking.bodies.solid import Part, Polyhedron, Solid, box, cylinder
 from rocking.errors import InvalidValueError
-from rocking.plots.solid import energy_picture, slices_picture, solid_picture
+from rocking.plots import energy_picture, slices_picture, solid_picture
 from rocking.restitution.space import impact_in_space
 
 pytest.importorskip("matplotlib")

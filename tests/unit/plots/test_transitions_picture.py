@@ -9,9 +9,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import rocking as rk
 from rocking.errors import InvalidValueError
+from rocking.plots import transitions_picture, write
 from rocking.plots.overturning_map import CLASSES, FIRST, SECOND
-from rocking.plots.style import write
-from rocking.plots.transitions import transitions_picture
 from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
 
 G = 9.80665
