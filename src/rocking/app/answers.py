@@ -105,10 +105,7 @@ def attachment(data: bytes, name: str, media_type: str) -> Response:
 
 def attachment_headers(name: str) -> dict[str, str]:
     """Return what makes a browser save an answer, under a name that is harmless on every system."""
-    return {
-        "Content-Disposition": f'attachment; filename="{safe_name(name)}"',
-        "X-Content-Type-Options": "nosniff",
-    }
+    return {"Content-Disposition": f'attachment; filename="{safe_name(name)}"', "X-Content-Type-Options": "nosniff"}
 
 
 class Answer(BaseModel):

@@ -69,10 +69,7 @@ def test_a_stout_body_is_warned_of(client):
 
 FILES = {
     "x.wkt": (b"POLYGON ((0 0, 1000 0, 1000 2000, 0 2000, 0 0))", {"units": "mm"}),
-    "x.geojson": (
-        b'{"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 2], [0, 2], [0, 0]]]}',
-        {"units": "m"},
-    ),
+    "x.geojson": (b'{"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 2], [0, 2], [0, 0]]]}', {"units": "m"}),
     "x.toml": (b'units = "m"\n[block]\nwidth = 1\nheight = 2\n', {}),
     "short.toml": (b'[body]\nunits = "m"\nwidth = 1\nheight = 2\n', {}),
 }
@@ -107,11 +104,7 @@ BROKEN = {
     "ending": ("x.exe", b"MZ", "the name must end in"),
     "not TOML": ("x.toml", b"units = ", "is not TOML"),
     "not text": ("x.toml", b"\xff\xfe", "is not TOML"),
-    "names a file": (
-        "x.toml",
-        b'units = "m"\n[[section.region]]\ndxf = "/etc/passwd"\n',
-        "reads no file by its name",
-    ),
+    "names a file": ("x.toml", b'units = "m"\n[[section.region]]\ndxf = "/etc/passwd"\n', "reads no file by its name"),
     "not WKT": ("x.wkt", b"POLYGON", ""),
 }
 

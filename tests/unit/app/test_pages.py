@@ -18,8 +18,6 @@ from rocking.app.application import create_app
 from rocking.app.server import listen, write_private
 from rocking.app.settings import ServerSettings
 
-playwright = pytest.importorskip("playwright.sync_api")
-
 
 @pytest.fixture
 def served(tmp_path):
@@ -59,6 +57,7 @@ def _check_answers(page, app):
 
 def test_page_shows_every_endpoint_and_its_calls_work(served, tmp_path):
     """Every operation has a card, nothing is asked elsewhere, no policy is broken, and the Python call runs."""
+    playwright = pytest.importorskip("playwright.sync_api")
     app, origin = served
     operations = sum(len(set(item) & {"get", "post", "delete"}) for item in app.openapi()["paths"].values())
     told = []

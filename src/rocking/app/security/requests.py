@@ -11,12 +11,7 @@ from typing import Any, NoReturn
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from rocking.app.answers import refusal
-from rocking.app.errors import (
-    Busy,
-    NotFound,
-    Refused,
-    TooLarge,
-)
+from rocking.app.errors import Busy, NotFound, Refused, TooLarge
 from rocking.app.settings import MEBIBYTE, Limits, ServerSettings
 
 _MOST_HEADERS = 100
@@ -118,8 +113,7 @@ def check_host(head: RequestHead, own: frozenset[str]) -> None:
     """Refuse a request that was sent to another name."""
     if head.headers.get("host", "").lower() not in own:
         raise Refused(
-            "the Host header is not this server's address: open it by the link that `rocking serve` prints",
-            status=403,
+            "the Host header is not this server's address: open it by the link that `rocking serve` prints", status=403
         )
 
 

@@ -53,10 +53,7 @@ PointsOfState: Any = shape(
     high=(list[float], "upper end of the 95 % interval [-]"),
 )
 StandardErrors: Any = shape(
-    "StandardErrors",
-    "Of the parameters of a curve.",
-    median=(Number, _MEASURE),
-    dispersion=(Number, "[-]"),
+    "StandardErrors", "Of the parameters of a curve.", median=(Number, _MEASURE), dispersion=(Number, "[-]")
 )
 FitFacts: Any = shape(
     "FitFacts",

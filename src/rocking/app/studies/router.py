@@ -117,11 +117,7 @@ async def _cancel_study(request: Request, study: str) -> JsonAnswer:
 
 
 @router.post(
-    "/{study}/resume",
-    summary="Go on with a study",
-    name="resume_study",
-    response_class=JsonAnswer,
-    responses=_ONE,
+    "/{study}/resume", summary="Go on with a study", name="resume_study", response_class=JsonAnswer, responses=_ONE
 )
 async def _resume_study(request: Request, study: str) -> JsonAnswer:
     """Put a study in line again."""
@@ -165,11 +161,7 @@ async def _study_result(request: Request, study: str) -> Response:
     response_class=JsonAnswer,
     responses=answered(HistoryAnswer, "The history."),
 )
-async def _study_cell(
-    request: Request,
-    study: str,
-    point: Annotated[PointAsked, Query()],
-) -> Response:
+async def _study_cell(request: Request, study: str, point: Annotated[PointAsked, Query()]) -> Response:
     """Return inputs and response of one history of a finished study."""
     manager = _studies(request)
     manager.finished(study)

@@ -67,6 +67,7 @@ class Asker:
 
     client: TestClient
     schema: dict[str, Any]
+    validators: dict[tuple[str, str], Any] = field(default_factory=dict)
     seen: set[tuple[str, str]] = field(default_factory=set)
     answers: list[tuple[tuple[str, str], Any]] = field(default_factory=list)
 
@@ -79,9 +80,11 @@ class Asker:
 
     def faults(self, place: tuple[str, str], value: Any) -> list[str]:
         """Return where a value does not have the declared shape, by a validator that is not ours."""
-        shape = self.declared(place)["content"]["application/json"]["schema"]
-        document = {**shape, "components": self.schema["components"]}
-        return [str(fault) for fault in jsonschema.Draft202012Validator(document).iter_errors(value)]
+        if place not in self.validators:
+            shape = self.declared(place)["content"]["application/json"]["schema"]
+            document = {**shape, "components": self.schema["components"]}
+            self.validators[place] = jsonschema.Draft202012Validator(document)
+        return [str(fault) for fault in self.validators[place].iter_errors(value)]
 
     def ask(self, method: str, path: str, *, fill: Tables | None = None, **how: Any) -> Any:
         """Return a good answer in JSON, which has the declared shape."""
