@@ -65,9 +65,9 @@ $(ENGINE): $(VENV)/demo CMakeLists.txt $(wildcard engine/*.cpp engine/*.hpp engi
 
 demo: $(VENV)/demo $(ENGINE)
 	@$(BIN)/rocking paper --out $(OUT)
-	@$(BIN)/rocking cor --width 1 --height 4 --picture $(OUT)/body.png
+	@$(BIN)/rocking cor --width 1 --height 4 --out $(OUT)/body.png
 	@$(BIN)/rocking simulate --width 0.5 --height 2 --motion "sine:amplitude=3.2,period=0.8" --restitution ked \
-		--picture $(OUT)/response.png --animation $(OUT)/response.html
+		--out $(OUT)/response.png --out $(OUT)/response.html
 
 # What the calibrated default and the intervals of models are read from; a test asks whether it is what would be computed.
 calibration: $(VENV)/dev

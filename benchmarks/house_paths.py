@@ -35,7 +35,7 @@ with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(SystemExit):
 _MAP = (
     "map --width 1 --height 4 --motion sine:amplitude=3,period=0.8 --x frequency_ratio=2:8:6 --y amplitude_ratio=1:8:6"
 )
-_RUN, _EXPORT = "campaign run job.toml --out c --workers 1", "campaign export c --to result.nc"
+_RUN, _EXPORT = "campaign run job.toml --out c --workers 1", "campaign export c --out result.nc"
 _JOB = """
 [campaign]
 name = "map"

@@ -47,7 +47,7 @@ with TemporaryDirectory() as home:
     ranked = measure_comparison(campaign)
     for score in ranked.scores:
         print(f"  {score.measure:20s} efficiency {score.efficiency:.2f}")
-    # the same from the shell: rocking campaign export CAMPAIGN --what measures --to cabinet_measures.csv
+    # the same from the shell: rocking campaign export CAMPAIGN --out measures=cabinet_measures.csv
     table = export(campaign, folder / "cabinet_measures.csv", "measures")
     with table.open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))

@@ -20,7 +20,7 @@ BLOCKED = "import sys; sys.modules[sys.argv[1]] = None; from rocking.cli import 
     [
         ("xarray", MAP, "data"),
         ("pandas", MAP, "data"),
-        ("matplotlib", f"{MAP} --picture map.png", "plots"),
+        ("matplotlib", f"{MAP} --out map.png", "plots"),
         ("uvicorn", "serve --no-browser", "web"),
     ],
 )

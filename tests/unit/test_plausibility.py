@@ -187,7 +187,7 @@ def test_command_line_says_it(capsys):
 ASKED = {
     "map": ("map", "sine:amplitude=3,period=.5", "--x", "scale=1:2:2", "--y", "restitution=.8:.9:2"),
     "minimum": ("minimum", "sine:amplitude=3,period=.5", "--highest", "6"),
-    "fragility": ("fragility", "--record", "sine:amplitude=3,period=.5", "--levels", "2:6:3"),
+    "fragility": ("fragility", "--motion", "sine:amplitude=3,period=.5", "--levels", "2:6:3"),
 }
 
 
@@ -205,13 +205,13 @@ def test_studies_say_what_was_assumed(capsys, command):
 def test_assumed_friction_is_said(capsys, tmp_path):
     """Friction that nobody gave is assumed on page, in JSON, and in documents; what is given is given."""
     words = ("simulate", "--width", "0.5", "--height", "2", "sine:amplitude=3,period=.5")
+    given = ("--set", "response.assumed_friction=0.5")
     assert "needed, 0.5 assumed" in run(capsys, *words)[0]
-    assert "needed, 0.5 given" in run(capsys, *words, "--friction", "0.5")[0]
-    assert "friction 0.5, assumed" in run(capsys, *words, "--contact")[0]
-    assert json.loads(run(capsys, *words, "--contact", "--friction", "0.5", "--json")[0])["friction_assumed"] is False
-    for given in ((), ("--friction", "0.5")):
-        friction = json.loads(run(capsys, *words, *given, "--json")[0])["friction"]
-        assert (friction["given"], friction["assumed"]) == (0.5, not given)
+    assert "needed, 0.5 given" in run(capsys, *words, *given)[0]
+    assert json.loads(run(capsys, *words, "--friction", "0.5", "--json")[0])["friction_assumed"] is False
+    for option in ((), given):
+        friction = json.loads(run(capsys, *words, *option, "--json")[0])["friction"]
+        assert (friction["given"], friction["assumed"]) == (0.5, not option)
     question = tmp_path / "question.toml"
     question.write_text(
         '[body]\nunits = "m"\nwidth = 0.5\nheight = 2\n[motion]\npulse = "sine:amplitude=3,period=.5"\n[response]\n'

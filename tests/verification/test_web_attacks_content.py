@@ -104,13 +104,13 @@ def test_no_word_opens_a_file(client: TestClient, secret: Path, reader: str, pla
 def test_secret_would_be_opened_elsewhere(secret: Path, tmp_path: Path) -> None:
     """Negative control: on the command line, which is the user's own, the same words open files."""
     from rocking.bodies.formats import read_body
-    from rocking.cli.inputs import models_from
+    from rocking.cli.cor import _model
 
     drawing = secret.with_name("body.wkt")
     drawing.write_text("POLYGON ((0 0, 1 0, 1 4, 0 4, 0 0))")
     assert read_body(drawing, units="m", density=1.0)
     with pytest.raises(Exception, match=r"Model|model"):
-        models_from([f"{secret}:Model"])
+        _model(f"{secret}:Model")
     assert secret.with_suffix(".ran").exists()
     secret.with_suffix(".ran").unlink()
 

@@ -16,19 +16,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("always", SlowEngineWarning)
-            warnings.showwarning = _Said()
+            warnings.showwarning = _Notes()
             # without arguments the help is the answer
-            code = application()(args=words or ["--help"], prog_name="rocking", standalone_mode=False)
+            code = application(words)(args=words or ["--help"], prog_name="rocking", standalone_mode=False)
     except RockingError as error:
         print(f"rocking: {error}", file=sys.stderr)
         sys.exit(2)
     except TyperException as error:
-        from rocking.checks import decimal_comma  # numpy with it, which help does not need
-
-        message = error.format_message() if hasattr(error, "format_message") else str(error)
-        hints = [decimal_comma(word) for word in words if not word.partition("=")[2].strip("+-,0123456789")]
-        hint = next(filter(None, hints), "") if "valid number" in message else ""
-        print(f"rocking: {message}{hint}; see rocking --help", file=sys.stderr)
+        print(f"rocking: {_refusal(error, words)}; see rocking --help", file=sys.stderr)
         sys.exit(2)
     except OSError as error:
         print(f"rocking: {error.strerror or error}: {error.filename or ''}".rstrip(": "), file=sys.stderr)
@@ -39,7 +34,20 @@ def main(arguments: Sequence[str] | None = None) -> None:
     sys.exit(code or 0)
 
 
-class _Said:
+def _refusal(error: Exception, words: list[str]) -> str:
+    """Return why the words make no sense, with how an option of earlier is said now, or a comma for a point."""
+    from rocking.checks import decimal_comma  # numpy with it, which help does not need
+    from rocking.cli.options import said_now
+
+    option = str(getattr(error, "option_name", ""))
+    if new := said_now(option):
+        return f"{option} {new}"
+    message = error.format_message() if hasattr(error, "format_message") else str(error)
+    hints = [decimal_comma(word) for word in words if not word.partition("=")[2].strip("+-,0123456789")]
+    return f"{message}{next(filter(None, hints), '') if 'valid number' in message else ''}"
+
+
+class _Notes:
     """Print a warning as a note, each sentence once: Python's own "once" forgets whenever a filter changes."""
 
     def __init__(self) -> None:

@@ -1,25 +1,23 @@
-"""The commands and their help; what they do is imported when they run."""
+"""The commands and their help; a command is imported when it is called, all of them for the list."""
+
+import ast
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from pathlib import Path
 
 import typer
 
-from rocking.cli.campaign import campaign
-from rocking.cli.cor import cor
-from rocking.cli.formats import formats
-from rocking.cli.fragility import fragility
-from rocking.cli.inventory import inventory
-from rocking.cli.map import map
-from rocking.cli.minimum import minimum
-from rocking.cli.models import models
-from rocking.cli.motion import motion
-from rocking.cli.paper import paper
-from rocking.cli.serve import serve
-from rocking.cli.simulate import simulate
-from rocking.cli.spectrum import spectrum
 from rocking.version import SOFTWARE
 
+_MODULES = {"models": "catalogues", "formats": "catalogues"}
+COMMANDS = (
+    "cor", "simulate", "map", "minimum", "spectrum", "fragility", "inventory", "paper", "models", "motion", "formats",
+    "serve",
+)  # fmt: skip
 
-def application() -> typer.Typer:
-    """Return the command line application."""
+
+def application(words: Sequence[str] | None = None) -> typer.Typer:
+    """Return the command line application; for the words of one call, no command is imported but the one they name."""
     app = typer.Typer(
         name="rocking",
         help="Predict what an impact costs a rocking body, with the evidence beside every number.",
@@ -29,10 +27,30 @@ def application() -> typer.Typer:
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback()(_root)
-    for command in (cor, simulate, map, minimum, spectrum, fragility, inventory, paper, models, motion, formats, serve):
-        app.command()(command)
-    app.add_typer(campaign, name="campaign")
+    named = words[0] if words else ""
+    for name in COMMANDS:
+        module = _MODULES.get(name, name)
+        if words is None or name == named:
+            app.command(name)(getattr(import_module(f"rocking.cli.{module}"), name))
+        else:
+            app.command(name)(_listed(module, name))
+    if named not in COMMANDS:
+        from rocking.cli.campaign import campaign
+
+        app.add_typer(campaign, name="campaign")
     return app
+
+
+def _listed(module: str, name: str) -> Callable[[], None]:
+    """Return what stands for a command in the list: its own first sentence, read without importing it."""
+    tree = ast.parse(Path(__file__).with_name(f"{module}.py").read_text("utf-8"))
+
+    def listed() -> None:
+        """Be replaced by the command itself."""
+
+    command = next(node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == name)
+    listed.__doc__ = ast.get_docstring(command)
+    return listed
 
 
 def _version(wanted: bool) -> None:

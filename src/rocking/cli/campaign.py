@@ -103,21 +103,16 @@ def verify(folder: Folder, as_json: AsJson = False) -> None:
 @campaign.command(epilog=_CODES)
 def export(
     folder: Folder,
-    to: Annotated[
-        Path,
+    out: Annotated[
+        list[str],
         typer.Option(
-            help="File: .nc, .parquet, .csv, .mat or .xlsx; .xml for NRML; of an inventory .html, .pdf, .xlsx, .csv, "
-            ".json, or a folder for all."
+            help="File, again for more: .nc, .parquet, .csv, .mat or .xlsx; .xml for NRML; of an inventory .html, "
+            ".pdf, .xlsx, .csv, .json, or a folder for all. It holds what suits the kind; WHAT=FILE says which: "
+            "histories; of fragility campaigns fragility, fragility-points, fema-p58 (.csv); of refined maps refined, "
+            "boundary; of minimum accelerations crossings, minima; of inventories report; of clouds measures; of "
+            "several restitutions flips, differences."
         ),
     ],
-    what: Annotated[
-        str | None,
-        typer.Option(
-            help="histories; of fragility campaigns fragility, fragility-points, fema-p58 (.csv); of refined maps "
-            "refined, boundary; of minimum accelerations crossings, minima; of inventories report; of clouds measures; "
-            "of several restitutions flips, differences. What suits the kind if not given."
-        ),
-    ] = None,
     restitution: Annotated[
         str | None, typer.Option(help="Which restitution's fragility or measures, where the job has several.")
     ] = None,
@@ -128,9 +123,9 @@ def export(
     inputs: Inputs = None,
     as_json: AsJson = False,
 ) -> None:
-    """Write the results of a finished campaign into a file, with where they come from."""
+    """Write the results of a finished campaign into files, with where they come from."""
     from rocking.cli import campaign_output
     from rocking.cli.campaign_export import write
 
     with campaign_output.codes(folder):
-        write(folder, to, what, restitution=restitution, crossing=crossing, inputs=inputs, as_json=as_json)
+        write(folder, out, restitution=restitution, crossing=crossing, inputs=inputs, as_json=as_json)

@@ -1,7 +1,6 @@
 """What `rocking campaign export` writes."""
 
 import hashlib
-import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,6 +11,7 @@ from rocking.campaigns.jobs import JobFolder, assessment, exports_of
 from rocking.campaigns.jobs.exporting import write_provenance
 from rocking.campaigns.jobs.rounds import finished_rounds
 from rocking.cli.campaign_output import bar
+from rocking.cli.page import print_json
 from rocking.errors import InvalidValueError, RockingError
 
 REPORT = "report"
@@ -20,12 +20,37 @@ REPORT = "report"
 _SAFE = "the campaign itself is safe"
 
 
+_WHATS = (
+    "histories", "fragility", "fragility-points", "fema-p58", "refined", "boundary", "crossings", "minima", REPORT,
+    "measures", "flips", "differences",
+)  # fmt: skip
+
+
 def write(
-    folder: Path, to: Path, what: str | None, *, restitution: str | None, crossing: str | None, inputs: Path | None,
-    as_json: bool,
-) -> None:  # fmt: skip
-    """Write the results of a campaign into a file, and say so."""
+    folder: Path, out: list[str], *, restitution: str | None, crossing: str | None, inputs: Path | None, as_json: bool
+) -> None:
+    """Write the results of a campaign into files, and say so; ``WHAT=FILE`` says what a file holds."""
     opened = JobFolder.open(folder, inputs)
+    facts: list[dict[str, Any]] = []
+    left_out: list[str] = []
+    for text in out:
+        what, equals, rest = text.partition("=")
+        named = bool(equals) and (what in _WHATS or ("/" not in what and "." not in what))
+        target = Path(rest if named else text)
+        made, missing = _written(opened, target, what if named else None, restitution, crossing, quiet=as_json)
+        facts, left_out = [*facts, *made], [*left_out, *missing]
+    if as_json:
+        print_json(facts[0] if len(facts) == 1 else facts)
+        return
+    for each in facts:
+        print(f"wrote {each['file']} ({each['bytes']} bytes, {_words(each['what'], each)})")
+    for sentence in left_out:
+        print(f"left out: {sentence}")
+
+
+def _written(
+    opened: JobFolder, to: Path, what: str | None, restitution: str | None, crossing: str | None, *, quiet: bool
+) -> tuple[list[dict[str, Any]], list[str]]:
     is_inventory = opened.job.study.assess is not None
     what = (REPORT if is_inventory else exports_of(opened)[0]) if what is None else what
     left_out: list[str] = []
@@ -34,20 +59,13 @@ def write(
             raise InvalidValueError("a report is of an inventory, without restitution and crossing")
         paths, left_out = _report(opened, to)
     else:
-        paths = [_file(opened, to, what, restitution, crossing, quiet=as_json)]
-    rounds = finished_rounds(folder)
+        paths = [_file(opened, to, what, restitution, crossing, quiet=quiet)]
+    rounds = finished_rounds(opened.path)
     # tables of an adaptive study are made from all its rounds, its histories are those of the first
     of_all = rounds is not None and what != "histories"
     total = rounds["histories"] if rounds is not None and of_all else opened.campaign.plan.count
     more = {} if rounds is None else {"rounds": rounds["rounds"], "all_histories": rounds["histories"]}
-    facts = [_facts(path, what, total) | more for path in paths]
-    if as_json:
-        print(json.dumps(facts[0] if len(facts) == 1 else facts, indent=1))
-        return
-    for told in facts:
-        print(f"wrote {told['file']} ({told['bytes']} bytes, {_words(what, told)})")
-    for sentence in left_out:
-        print(f"left out: {sentence}")
+    return [_facts(path, what, total) | more for path in paths], left_out
 
 
 def _words(what: str, told: dict[str, Any]) -> str:

@@ -1,6 +1,5 @@
 """What `rocking campaign` prints, shows while it computes, and exits with."""
 
-import json
 import shlex
 import sys
 from collections.abc import Callable, Iterator
@@ -23,6 +22,7 @@ from rocking.campaigns import (
 from rocking.campaigns.jobs import Job, JobFolder, forecast, status_of, verified
 from rocking.campaigns.jobs.folder import JOB, JobStatus
 from rocking.campaigns.jobs.rounds import resume
+from rocking.cli.page import print_json
 from rocking.errors import InvalidValueError
 
 INTERRUPTED, STORAGE, BUSY, DAMAGED = 3, 4, 5, 6
@@ -80,13 +80,13 @@ def compute(folder: JobFolder, who: tuple[str | Executor, int | None], as_json: 
         "run_seconds": done.seconds,
     }
     if as_json:
-        print(json.dumps(told, indent=1))
+        print_json(told)
         return
     print(_words(status))
     for sentence in (*done.set_aside, *done.retries):
         print(f"note: {sentence}")
     target = "report.html" if folder.job.study.assess is not None else "result.nc"
-    print(f"next: rocking campaign export {shlex.quote(str(folder.path))} --to {target}")
+    print(f"next: rocking campaign export {shlex.quote(str(folder.path))} --out {target}")
 
 
 def show_status(folder: Path, as_json: bool) -> None:
@@ -94,7 +94,7 @@ def show_status(folder: Path, as_json: bool) -> None:
     found = status_of(folder)
     status = found.status
     if as_json:
-        print(json.dumps(_facts(found), indent=1))
+        print_json(_facts(found))
     else:
         print(_words(found))
         for sentence in (*status.damaged, *status.broken) if status else ():
@@ -107,7 +107,7 @@ def show_verification(folder: Path, as_json: bool) -> None:
     """Print what was found when everything that a campaign has was read."""
     found = verified(folder)
     if as_json:
-        print(json.dumps({"folder": str(folder), "whole": found.whole, **vars(found)}, indent=1))
+        print_json({"folder": str(folder), "whole": found.whole, **vars(found)})
     else:
         share = f"{found.verified} of {found.histories} histories were read and are what was written"
         print(f"{folder}: {share}, in {found.chunks} chunks{'' if found.whole else ' and pieces of others'}")
@@ -135,7 +135,7 @@ def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> 
         **({"first_round_only": True, "later": found.later} if job.document.is_adaptive else {}),
     }
     if as_json:
-        print(json.dumps(told, indent=1))
+        print_json(told)
     else:
         over = " x ".join(f"{size} {name}" for name, size in job.study.dims.items())
         print(f"{path}: {told['campaign']} ({told['kind']}), {len(job.inputs)} input files, no mistake found")

@@ -1,66 +1,235 @@
 """`rocking cor`: the coefficient of restitution of a body under every model."""
 
+import math
+import sys
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking.bodies import Solid
 from rocking.cli import options
+from rocking.cli.exports import PICTURES, Export, Exports, picture
+from rocking.cli.numbers import in_unit
+from rocking.cli.page import Page, deliver
+from rocking.cli.question import Words, hinted
+from rocking.conventions import FEET, Foot, g
+from rocking.errors import InvalidValueError
+from rocking.spec.construction import any_body_of
+from rocking.spec.document import SettingsTable
+from rocking.spec.fields import JobTable
+from rocking.spec.reading import (
+    CommandFiles,
+    InputFiles,
+    checked,
+    is_response,
+    located,
+    read_text,
+    tables_in,
+    validated,
+)
 
-_OUTPUT = "Output"
+if TYPE_CHECKING:
+    from rocking.reports.body_facts import ImpactAnswer
+
+
+class BodyDocument(JobTable):
+    """The tables of a response's file of which only the body and the settings are looked at."""
+
+    body: dict[str, Any]
+    settings: SettingsTable = SettingsTable()
+    response: Any = None
+    motion: Any = None
+    restitution: Any = None
+
+
+def _draw(answer: Any) -> Any:
+    return answer.draw()
+
+
+def _stages(answer: Any, path: Path) -> None:
+    from rocking.plots import energy_stages_picture, write
+
+    write(energy_stages_picture(answer.impact.body, onto=next(reversed(answer.impact.tables))), path)
+
+
+EXPORTS = {
+    "picture": picture(_draw),
+    "csv": Export((".csv",), lambda answer, path: answer.write_csv(path)),
+    "stages": Export(PICTURES, _stages),
+}
 
 
 def cor(
-    body: Annotated[
-        Path | None,
-        typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF, or a mesh STL, OBJ, PLY with --units, or GLB."),
-    ] = None,
+    body: options.BodyFile = None,
     width: options.Width = None,
     height: options.Height = None,
     depth: options.Depth = None,
     density: options.Density = None,
-    angle: options.Angle = None,
-    semi_diagonal: options.SemiDiagonal = None,
     units: options.Units = None,
-    up: options.Up = None,
-    fill_holes: options.FillHoles = False,
-    base_tolerance: options.BaseTolerance = None,
     onto: Annotated[str, typer.Option(help="Foot on which the body lands: right, left or both.")] = "both",
-    model: Annotated[
+    restitution: Annotated[
         list[str] | None,
-        typer.Option(help="Model, repeatable: ked, 0.98*ked, shifted-impulse:k=0.6, my_file.py:MyModel; or ked-3d."),
+        typer.Option(help="Model, again for more: ked, 0.98*ked, shifted-impulse:k=0.6, file.py:MyModel; or ked-3d."),
     ] = None,
     eta: Annotated[float, typer.Option(help="Interface factor in (0, 1] on every model.")] = 1.0,
-    gravity: Annotated[float | None, typer.Option(help=r"Acceleration of gravity \[m/s2].")] = None,
     identities: Annotated[
         bool, typer.Option("--identities", help="Also try the identities of mechanics on every model.")
     ] = False,
+    sets: options.Set = None,
+    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
-    csv: Annotated[Path | None, typer.Option(help="Write the table for Excel.", rich_help_panel=_OUTPUT)] = None,
-    picture: Annotated[
-        Path | None,
-        typer.Option(help="Draw the body against the published data (.png, .svg, .pdf).", rich_help_panel=_OUTPUT),
-    ] = None,
-    stages: Annotated[
-        Path | None, typer.Option(help="Draw the three energy stages of KED over the body.", rich_help_panel=_OUTPUT)
-    ] = None,
 ) -> None:
     """Print the coefficient of restitution of a body under every model, with its interval and what it implies."""
-    from rocking.cli import cor_plane, cor_solid
-    from rocking.cli.inputs import is_solid
-    from rocking.conventions import LENGTH_UNITS
+    exports = Exports.of(out, EXPORTS)
+    sizes = {"width": width, "height": height, "depth": depth, "density": density}
+    words = Words({"body": body, **sizes, "units": units, "sets": sets}, ("body", "settings"))
+    subject, gravity = _body(words, quiet=as_json)
+    if isinstance(subject, Solid):
+        from rocking.cli.solids import SolidAnswer
 
-    sizes = {"width": width, "height": height, "depth": depth, "angle": angle, "semi_diagonal": semi_diagonal}
-    mesh = {"up": up, "fill_holes": fill_holes, "base_tolerance": base_tolerance}
-    (unit,) = options.units_of(units, LENGTH_UNITS)
-    told = {"density": density, "unit": unit}
-    files = {"csv": csv, "picture": picture, "stages": stages}
-    asked = {"onto": onto, "eta": eta, "identities": identities}
-    if body is not None and is_solid(body):
-        cor_solid.answer_of_solid(
-            body, sizes, {**told, **mesh}, asked, files, models=model, gravity=gravity, as_json=as_json
+        plane = {"--onto": onto != "both", "--eta": eta != 1.0, "--identities": identities}
+        plane["--out stages=FILE"] = "stages" in exports.names
+        if stated := [name for name, there in plane.items() if there]:
+            raise InvalidValueError(
+                f"a body in space rocks about every edge of its base, so it takes no {', '.join(stated)}"
+            )
+        answer: Any = SolidAnswer.of(subject, restitution, gravity, words.length or "m")
+    else:
+        from rocking.reports.body_facts import ImpactAnswer
+
+        models = None if restitution is None else [_model(text) for text in restitution]
+        impact = ImpactAnswer.of(subject, models, onto=onto, eta=eta, gravity=gravity, identities=identities)
+        answer = PlaneAnswer(impact, words.length or "m")
+    deliver(answer, exports, as_json=as_json)
+
+
+def _model(text: str) -> Any:
+    from rocking.restitution import model
+    from rocking.restitution.from_file import file_of, model_in_file
+
+    return model_in_file(text) if file_of(text) else model(text)
+
+
+def _body(words: Words, *, quiet: bool) -> tuple[Any, float]:
+    """Return the body and the gravity [m/s2], of a file of a response too; JSON stays alone on its stream."""
+    file = words.options["body"]
+    if file is not None and is_response(Path(file)):
+        sizes = [
+            f"--{name}" for name in ("width", "height", "depth", "density", "units") if words.options[name] is not None
+        ]
+        if stated := sizes or words.sized:
+            raise InvalidValueError(f"{file} has a table [body] and says everything itself, so it takes no {stated[0]}")
+        path = Path(file)
+        note = "body and gravity are taken from it; everything else it says is for `rocking simulate`."
+        print(f"{path.name}: {note}", file=sys.stderr if quiet else sys.stdout)
+        with located(file):
+            tables = tables_in(path)
+            document = validated(BodyDocument, read_text(path)) if tables is None else checked(BodyDocument, tables)
+            with located("body"):
+                body = any_body_of(document.body, InputFiles(path.parent))
+        settings = document.settings
+        if "settings" in words.sets:
+            settings = checked(SettingsTable, {**settings.model_dump(exclude_none=True), **words.sets["settings"]})
+        return body, settings.gravity or g
+    with hinted(file, None):
+        tables = {"body": words.body_table(file), "settings": words.sets.get("settings", {})}
+        document = checked(BodyDocument, tables)
+        with located("body"):
+            body = any_body_of(document.body, CommandFiles(Path()))
+    return body, document.settings.gravity or g
+
+
+@dataclass(frozen=True)
+class PlaneAnswer:
+    """Every model's coefficient of a plane body."""
+
+    impact: "ImpactAnswer"
+    length: str  # unit of lengths
+
+    def facts(self) -> dict[str, Any]:
+        """Return everything as plain values."""
+        from rocking.reports.body_facts import impact_facts
+
+        return impact_facts(self.impact)
+
+    def draw(self) -> Any:
+        """Return the body and its coefficients against the published measurements."""
+        from rocking.plots import coefficient_picture
+
+        return coefficient_picture(self.impact.body, self.impact.tables)
+
+    def write_csv(self, path: Path) -> None:
+        """Write the tables as one CSV file."""
+        write_records(path, [
+            {"onto": foot, **row.as_dict(), "warnings": "; ".join(row.warnings)}
+            for foot, rows in self.impact.tables.items() for row in rows
+        ])  # fmt: skip
+
+    def show(self, page: Page) -> None:
+        """Write body, tables and warnings."""
+        from rocking.restitution import energy_balance
+
+        impact = self.impact
+        for line in self._body_lines():
+            page.line(line)
+        for foot, rows in impact.tables.items():
+            page.line()
+            where = f" (landing on the {foot} foot)" if len(impact.tables) > 1 else ""
+            page.line(f"Coefficient of restitution, velocity after / velocity before{where}", "bold")
+            chosen = next((k for k, row in enumerate(rows) if row.name == "calibrated"), None)
+            head = ("model", "r", "+-", "k", "loss", "friction", "")
+            page.table(head, [_row(row) for row in rows], ("model", ""), bold=chosen)
+            page.warn(dict.fromkeys(f"{row.name}: {warning}" for row in rows for warning in row.warnings))
+        page.line(
+            "+- is the 95 % interval of one measured body, from each model's misfit to 39 published measurements;"
         )
-        return
-    cor_plane.answer_of_plane_body(
-        body, {**sizes, **told}, mesh, asked, files, models=model, gravity=gravity, as_json=as_json
-    )
+        page.line(
+            "k: implied impulse position over half base; loss: share of kinetic energy; friction: needed at impact."
+        )
+        for foot in impact.tables:
+            shares = energy_balance(impact.body, onto=foot).shares
+            kept = ", ".join(f"{100.0 * share:.1f} % {stage}" for stage, share in shares.items())
+            page.line(f"KED's kinetic energy onto the {foot} foot: {kept}.")
+        for name, report in impact.identities.items():
+            broken = [check for check in report if not check.holds]
+            page.line(f"\n{name}: {'keeps all identities' if not broken else 'breaks identities'}", "bold")
+            for check in broken:
+                page.line(f"  {check.sentence}")
+
+    def _body_lines(self) -> list[str]:
+        from rocking.evidence._coefficient_table import outside_evidence
+
+        body, gravity = self.impact.body, self.impact.gravity
+        x, y = (in_unit(place, self.length) for place in body.centre)
+        lines = [f"{type(body).__name__}: mass {body.mass:.4g} kg, centre of mass at x = {x}, y = {y}", *body.assumed]
+        feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
+        for foot in feet:
+            side = body.side(foot, gravity)
+            where = "" if body.is_symmetric else f"{foot} foot: "
+            lines.append(
+                f"{where}h/b = {side.slenderness_ratio:.4g}, alpha = {side.slenderness_angle:.4g} rad "
+                f"({math.degrees(side.slenderness_angle):.3g} deg), R = {in_unit(side.semi_diagonal, self.length)}, "
+                f"p = {side.frequency_parameter:.4g} rad/s, "
+                f"uplift at {side.uplift_acceleration:.3g} m/s2 ({side.uplift_acceleration / gravity:.3g} g)"
+            )
+        if body.is_symmetric and (outside := outside_evidence(body)):
+            lines.append(outside)
+        return lines
+
+
+def _row(row: Any) -> tuple[str, ...]:
+    implied = row.implication
+    return (
+        row.name, f"{row.coefficient:.6f}", f"{row.half_interval:.3f}", f"{implied.impulse_ratio:.3f}",
+        f"{100.0 * implied.energy_loss:.2f} %", f"{implied.friction_demand:.3f}", "!" if row.warnings else "",
+    )  # fmt: skip
+
+
+def write_records(path: Path, records: list[dict[str, Any]]) -> None:
+    """Write records of the same keys as CSV."""
+    from rocking.tables import Column, Table, text_array, to_csv
+
+    columns = {name: Column(text_array([record[name] for record in records]), "") for name in records[0]}
+    to_csv(Table("coefficient", columns), path)

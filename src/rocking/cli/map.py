@@ -1,83 +1,331 @@
 """`rocking map`: how a body ends over two parameters of it and its motion."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from rocking.cli import options
+from rocking.cli.exports import Export, Exports, picture
+from rocking.cli.page import Page, bar, deliver
+from rocking.spec.document import MapTable
 
-_OUTPUT = "Output"
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from rocking.spec.study import StudyProblem
+    from rocking.studies.axis import Axis
+
+MOST_CELLS = 10_000_000
+"""A larger map is a campaign."""
+
+_LINE = 1e-4
+"""How closely the boundary of a picture is bisected: finer than a pixel."""
+
+_LAST = 3
+"""Overturning after more impacts than that is printed together; JSON parts it."""
+
 _AXIS = (
-    "NAME=FIRST:LAST:COUNT, with :log for equal ratios, or NAME=A,B,C; with units where the axis has one: "
-    "pga=0.1g:1g:50, slenderness_angle=5deg:20deg:16."
+    ": NAME=FIRST:LAST:COUNT, with :log for equal ratios, or NAME=A,B,C; with units where the axis has one, "
+    "pga=0.1g:1g:50, slenderness_angle=5deg:20deg:16"
 )
+_MEANINGS = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: "overturns without impact"}
+
+
+def _draw(answer: "MapAnswer") -> Any:
+    from rocking.plots.labels import shown_in
+    from rocking.plots.overturning_map import overturning_map_picture
+    from rocking.studies.boundaries import boundary
+
+    problem = answer.problem
+    lines = boundary(
+        problem.bodies[0], problem.motions[0], *answer.axes, problem.restitution,
+        levels=answer.table.refine or 0, tolerance=_LINE, **problem.stated,
+    ) if str(answer.dataset.attrs["engine"]).startswith("fast") else []  # fmt: skip
+    figure = overturning_map_picture(answer.dataset, lines)
+    for which, axis in zip(("x", "y"), answer.axes, strict=True):
+        if axis.name in answer.written:
+            shown_in(figure.axes[0], which, *answer.unit(axis))
+    return figure
+
+
+def _write_csv(answer: "MapAnswer", path: Path) -> None:
+    import numpy as np
+
+    from rocking.cli.exports import write_columns
+
+    cells = answer.whole.drop_dims("point", errors="ignore")
+    dims = cells["mode"].dims
+    grids = np.meshgrid(*(np.asarray(cells[name].values) for name in dims), indexing="ij")
+    columns = dict(zip(dims, grids, strict=True))
+    columns |= {name: np.asarray(cells[name].transpose(*dims).values) for name in cells.data_vars}
+    # names of restitutions have no unit
+    write_columns(path, {str(n): (values.ravel(), cells[n].attrs.get("units", "")) for n, values in columns.items()})
+
+
+def _write_netcdf(answer: "MapAnswer", path: Path) -> None:
+    from rocking.tables import to_netcdf
+
+    to_netcdf(answer.whole, path)
+
+
+EXPORTS = {
+    "picture": picture(_draw),
+    "csv": Export((".csv",), _write_csv),
+    "netcdf": Export((".nc",), _write_netcdf),
+}
 
 
 def map(
+    context: typer.Context,
     body: options.BodyFile = None,
     record: options.Record = None,
     motion: options.Motion = None,
-    x: Annotated[str, typer.Option(help=_AXIS)] = "frequency_ratio=0.5:10:100",
-    y: Annotated[str, typer.Option(help="The same for the upright axis.")] = "amplitude_ratio=1:12:100",
-    restitution: Annotated[
-        list[str] | None,
-        typer.Option(help="Model as in rocking models, or a coefficient; again for more, to compare; ked if none."),
-    ] = None,
-    refine: Annotated[
-        int | None, typer.Option(help="Levels of refinement along boundaries, each of half the spacing.")
-    ] = None,
+    x: Annotated[str, options.key(MapTable, "x", _AXIS)] = "frequency_ratio=0.5:10:100",
+    y: Annotated[str, options.key(MapTable, "y")] = "amplitude_ratio=1:12:100",
+    restitution: options.Restitutions = None,
+    refine: Annotated[int | None, options.key(MapTable, "refine")] = None,
     width: options.Width = None,
     height: options.Height = None,
     depth: options.Depth = None,
     density: options.Density = None,
-    angle: options.Angle = None,
-    semi_diagonal: options.SemiDiagonal = None,
-    format: options.Format = None,
     units: options.Units = None,
-    time_step: options.TimeStep = None,
-    component: options.Component = None,
-    vertical: options.Vertical = None,
-    vertical_file: options.VerticalFile = None,
-    linear: options.Linear = False,
-    engine: options.Engine = "auto",
-    gravity: options.Gravity = None,
+    sets: options.Set = None,
     threads: options.Threads = None,
-    picture: Annotated[
-        Path | None, typer.Option(help="Draw the first map (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
-    ] = None,
-    csv: Annotated[Path | None, typer.Option(help="Write a line for every cell.", rich_help_panel=_OUTPUT)] = None,
-    netcdf: Annotated[
-        Path | None, typer.Option(help="Write everything, refined points too, as netCDF.", rich_help_panel=_OUTPUT)
-    ] = None,
+    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Print how a body ends over two parameters: shares of each way to overturn, safe islands, and where it begins."""
-    from rocking.cli import map_output
-    from rocking.cli.output import body_and_motion_of, check_files, settings_from
-    from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
+    from rocking.cli.question import as_typed
+    from rocking.cli.study import document_file, map_tables, problem_in, problem_of, words_of
 
-    check_files(picture, csv, netcdf)
-    unit, units = options.units_of(units, LENGTH_UNITS, ACCELERATION_UNITS)
-    size = {"width": width, "height": height, "depth": depth, "density": density}
-    told = {"format": format, "units": units, "time_step": time_step, "component": component}
-    question = map_output.MapQuestion.of(
-        *body_and_motion_of(
-            (body, record, motion),
-            {**size, "angle": angle, "semi_diagonal": semi_diagonal, "unit": unit},
-            {**told, "vertical": vertical, "vertical_file": vertical_file},
-        ),
-        (x, y),
-        restitution,
-        refine,
-        settings_from(gravity, engine, linear, threads),
-        drawn=picture is not None,
-    )
-    answer = question.answered(quiet=as_json)
-    written = map_output.write(answer, picture, csv, netcdf)
-    if as_json:
-        print(map_output.as_json(answer))
-        return
-    map_output.show(answer, unit or "m")
-    for path in written:
-        print(f"wrote {path}")
+    exports = Exports.of(out, EXPORTS)
+    file = document_file(context, "map")
+    if file is not None:
+        written: dict[str, str] = {}
+        problem, length = problem_in(file, "map", sets), "m"
+    else:
+        words = words_of(context.params, "map")
+        table, written = map_tables(x, y, refine, typed=restitution)
+        problem = problem_of("overturning-map", words, restitution, table)
+        length = words.length or "m"
+    with bar("histories", quiet=as_json) as tell, as_typed():
+        answer = MapAnswer.of(problem, written, length, exports, tell, threads)
+    deliver(answer, exports, as_json=as_json)
+
+
+@dataclass(frozen=True, eq=False)
+class MapAnswer:
+    """A map with the first restitution, its safe islands, and how the restitution changes it."""
+
+    problem: "StudyProblem"
+    axes: "tuple[Axis, Axis]"
+    dataset: "xr.Dataset"  # as of `overturning_map`
+    compared: Any  # maps with all restitutions, where there are several
+    written: dict[str, str] = field(default_factory=dict)  # units that axes were written in, by their name
+    length: str = "m"  # unit of lengths
+
+    @classmethod
+    def of(
+        cls,
+        problem: "StudyProblem",
+        written: dict[str, str],
+        length: str,
+        exports: Exports,
+        tell: Any,
+        threads: int | None,
+    ) -> "MapAnswer":
+        """Compute a map."""
+        from rocking.errors import InvalidValueError
+        from rocking.spec.study import axes_of
+
+        assert problem.document.map is not None
+        x, y = axes_of(problem.document.map)
+        if x.values.size * y.values.size > MOST_CELLS:
+            raise InvalidValueError(
+                f"a map must have at most {MOST_CELLS} cells, got {x.values.size} x {y.values.size}; "
+                "rocking campaign computes more"
+            )
+        if "picture" in exports.names and min(x.values.size, y.values.size) < 2:
+            raise InvalidValueError("a picture needs at least two values along --x and along --y, got one")
+        found = problem.answer(tell, threads)
+        several = len(problem.restitutions) > 1
+        first = found.datasets[next(iter(problem.restitutions))] if several else found
+        return cls(problem, (x, y), first, found if several else None, written, length)
+
+    @property
+    def table(self) -> MapTable:
+        """What was asked."""
+        assert self.problem.document.map is not None
+        return self.problem.document.map
+
+    @property
+    def islands(self) -> Any:
+        """Safe islands of the map."""
+        from rocking.studies.islands import safe_islands
+
+        return safe_islands(self.dataset)
+
+    @property
+    def whole(self) -> "xr.Dataset":
+        """Everything as one dataset, over ``restitution`` too where there are several."""
+        if self.compared is None:
+            return self.dataset
+        from rocking.errors import extra
+
+        xarray = extra("xarray", "a file of several maps")
+        maps = self.compared.datasets
+        over = xarray.DataArray(list(maps), dims="restitution", name="restitution")
+        whole: xr.Dataset = xarray.concat(list(maps.values()), over, combine_attrs="drop_conflicts")
+        return whole
+
+    def unit(self, axis: "Axis") -> tuple[str, float]:
+        """Return the unit that an axis was written in, its own if in none, and its size."""
+        from rocking.cli.numbers import UNITS
+
+        unit = self.written.get(axis.name, "")
+        return (unit, UNITS[axis.unit][unit]) if unit else (axis.unit, 1.0)
+
+    def facts(self) -> dict[str, Any]:
+        """Return everything as plain values."""
+        from rocking.cli.study import motion_facts
+
+        dataset, problem, islands = self.dataset, self.problem, self.islands
+        axes = [{"name": axis.name, "unit": axis.unit, "values": axis.values} for axis in self.axes]
+        names = ("cells", "area", "x", "y")
+        return {
+            "body": repr(problem.bodies[0]),
+            "assumed": list(problem.bodies[0].assumed),
+            "motion": motion_facts(problem.motions[0]),
+            "restitution": dataset.attrs["restitution"],
+            "engine": dataset.attrs["engine"],
+            "gravity_m_s2": problem.settings.gravity,
+            "linear": problem.settings.linear,
+            "x": axes[0],
+            "y": axes[1],
+            "mode": dataset["mode"].values,
+            "peak_ratio": dataset["peak_ratio"].values,
+            "cells": dataset["mode"].size,
+            "modes": self.shares(),
+            "refined_points": dataset.sizes.get("point"),
+            "islands": {
+                "count": len(islands),
+                "all": [{name: getattr(island, name) for name in names} for island in islands.islands],
+            },
+            "overturning": self.extent(),
+            "contact": dataset.attrs["contact"],
+            "sensitivity": self._sensitivity(),
+        }
+
+    def _sensitivity(self) -> dict[str, Any] | None:
+        if self.compared is None:
+            return None
+        names = ("count", "gained", "lost", "compared", "unknown", "share", "low", "high")
+        pairs = [{"first": a, "second": b, **{n: getattr(flips, n) for n in names}} for a, b, flips in self._pairs()]
+        return {"baseline": self.compared.baseline, "pairs": pairs}
+
+    def _pairs(self) -> list[tuple[str, str, Any]]:
+        return [(a, b, self.compared.flips_between(a, b)) for a, b in combinations(self.compared.labels, 2)]
+
+    def shares(self) -> list[dict[str, Any]]:
+        """Return mode, meaning, count and share [-] of the cells that end in each way."""
+        import numpy as np
+
+        modes, counts = np.unique(self.dataset["mode"].values, return_counts=True)
+        return [
+            {"mode": mode, "meaning": meaning(mode), "count": count, "share": count / self.dataset["mode"].size}
+            for mode, count in zip(modes.tolist(), counts.tolist(), strict=True)
+        ]
+
+    def extent(self) -> dict[str, Any] | None:
+        """Return least and greatest x and y at which anything overturns, and the lowest point along y; or None."""
+        import numpy as np
+
+        dataset = self.dataset
+        if "point" in dataset.sizes:
+            x, y, modes = (dataset[f"refined_{name}"].values for name in ("x", "y", "mode"))
+        else:
+            x, y = (grid.ravel() for grid in np.meshgrid(*(axis.values for axis in self.axes)))
+            modes = dataset["mode"].values.ravel()
+        x, y = x[modes >= 0], y[modes >= 0]
+        if not x.size:
+            return None
+        lowest = np.lexsort((x, y))[0]
+        first = {"x": float(x[lowest]), "y": float(y[lowest])}
+        return {"x": [float(x.min()), float(x.max())], "y": [float(y.min()), float(y.max())], "first": first}
+
+    def show(self, page: Page) -> None:
+        """Write the map on a page."""
+        from rocking.cli.study import body_lines
+        from rocking.conventions import percent
+
+        problem, dataset = self.problem, self.dataset
+        page.facts(body_lines(problem.bodies[0], problem.settings.gravity, self.length))
+        page.line(f"motion:       {problem.motions[0].name}")
+        page.line(f"restitution:  {dataset.attrs['restitution']};  engine: {dataset.attrs['engine']}")
+        for name, axis in zip(("x", "y"), self.axes, strict=True):
+            span = self._span(axis, (axis.values[0], axis.values[-1]))
+            page.line(f"{name}:            {span.replace(' ', ', ', 1)}, {axis.values.size} values")
+        page.line()
+        page.table(("how it ends", "cells", "share"), self._share_rows(), ("how it ends",))
+        page.line()
+        page.line(self._begins())
+        page.line(self._islands_sentence())
+        page.warn(filter(None, [dataset.attrs["contact"]]))
+        if "point" in dataset.sizes:
+            page.line(f"Refined along boundaries: {dataset.sizes['point']} points.")
+        if self.compared is not None:
+            page.line()
+            head = ("restitution", "against", "flips", "share", "only with the second", "only with the first")
+            rows = [(a, b, str(f.count), percent(f.share), str(f.gained), str(f.lost)) for a, b, f in self._pairs()]
+            page.table(head, rows, head[:2])
+            page.line(self.compared.verdict)
+
+    def _share_rows(self) -> list[tuple[str, ...]]:
+        """Return a row for each way to end; under long records the many late ones are one row."""
+        shares = self.shares()
+        late, rows = [one for one in shares if one["mode"] > _LAST], [one for one in shares if one["mode"] <= _LAST]
+        if len(late) > 1:
+            total = {name: sum(one[name] for one in late) for name in ("count", "share")}
+            late = [{"meaning": f"overturns after {_LAST + 1} or more impacts", **total}]
+        return [(one["meaning"], str(one["count"]), f"{100.0 * one['share']:.2f} %") for one in [*rows, *late]]
+
+    def _begins(self) -> str:
+        extent, (x, y) = self.extent(), self.axes
+        if extent is None:
+            return "Nothing on this map overturns."
+        first = extent["first"]
+        return (
+            f"Overturning begins at {y.name} = {self._value(y, first['y'])}, where {x.name} = "
+            f"{self._value(x, first['x'])}; it lies within {self._span(x, extent['x'])}, {self._span(y, extent['y'])}."
+        )
+
+    def _islands_sentence(self) -> str:
+        islands, (x, y) = self.islands, self.axes
+        if not len(islands):
+            return "No safe islands: no survival on this map is surrounded by overturning."
+        largest = islands[0]
+        cells = f"{largest.cells} cell{'s' if largest.cells != 1 else ''}"
+        spans = f"{self._span(x, largest.x)}, {self._span(y, largest.y)}"
+        return f"Safe islands: {len(islands)}; the largest has {cells}: {spans}."
+
+    def _span(self, axis: "Axis", ends: Sequence[float]) -> str:
+        unit, size = self.unit(axis)
+        low, high = (f"{end / size:.4g}" for end in ends)
+        return f"{axis.name} {low if low == high else f'{low} to {high}'}{'' if unit == '1' else f' {unit}'}"
+
+    def _value(self, axis: "Axis", value: float) -> str:
+        unit, size = self.unit(axis)
+        return f"{value / size:.4g}{'' if unit == '1' else f' {unit}'}"
+
+
+def meaning(mode: int) -> str:
+    """Return a mode in words.
+
+    >>> meaning(-1), meaning(2)
+    ('rocks, stays standing', 'overturns after 2 impacts')
+    """
+    return _MEANINGS.get(mode) or f"overturns after {mode} impact{'s' if mode != 1 else ''}"

@@ -1,77 +1,213 @@
 """`rocking minimum`: every acceleration at which a body begins or ceases to overturn under a motion."""
 
-from pathlib import Path
-from typing import Annotated
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from rocking.cli import options
+from rocking.cli.exports import Export, Exports, picture, write_columns
+from rocking.cli.numbers import beside_g, in_unit, quantity
+from rocking.cli.page import Page, bar, deliver, sentence
+from rocking.conventions import ACCELERATION_UNITS, g, percent
+from rocking.errors import InvalidValueError
+from rocking.spec.document import MinimumTable
 
-_HOW = "How it is computed"
-_OUTPUT = "Output"
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rocking.spec.study import StudyProblem
+    from rocking.studies.minimum_acceleration import Transitions
+
+_SPOKEN = 4
+"""Stretches of overturning that a sentence names."""
+
+
+def _draw(answer: "MinimumAnswer") -> Any:
+    from rocking.plots.transitions import transitions_picture
+
+    problem = answer.problem
+    subject = (problem.bodies[0], problem.motions[0], problem.restitution)
+    return transitions_picture(answer.found, *subject, **problem.stated)
+
+
+def _write_csv(answer: "MinimumAnswer", path: "Path") -> None:
+    found = answer.found
+    columns = {
+        "acceleration [m/s2]": found.acceleration, "acceleration [g]": found.acceleration / g,
+        "ratio [1]": found.ratio, "scale [1]": found.scale, "width [m/s2]": found.width,
+        "mode below [1]": found.modes[:, 0], "mode above [1]": found.modes[:, 1],
+    }  # fmt: skip
+    write_columns(path, {name: (values, "") for name, values in columns.items()})
+
+
+EXPORTS = {"picture": picture(_draw), "csv": Export((".csv",), _write_csv)}
 
 
 def minimum(
+    context: typer.Context,
     body: options.BodyFile = None,
     record: options.Record = None,
     motion: options.Motion = None,
     restitution: options.Restitution = "ked",
-    lowest: Annotated[
-        str | None, typer.Option(help="Where to begin: 0.1g, 1m/s2; what lifts the body if not given.")
-    ] = None,
-    highest: Annotated[
-        str | None, typer.Option(help="Where to end: 5g; 50 times what lifts the body if not given.")
-    ] = None,
-    points: Annotated[int, typer.Option(help="First samples, in equal ratios.", rich_help_panel=_HOW)] = 400,
-    levels: Annotated[
-        int, typer.Option(help="How often suspicious intervals are halved, 0 to 12.", rich_help_panel=_HOW)
-    ] = 4,
+    lowest: Annotated[str | None, options.key(MinimumTable, "lowest", ": 0.1g, 1m/s2")] = None,
+    highest: Annotated[str | None, options.key(MinimumTable, "highest", ": 5g")] = None,
+    points: Annotated[int, options.key(MinimumTable, "points", rich_help_panel=options.HOW)] = 400,
+    levels: Annotated[int, options.key(MinimumTable, "levels", rich_help_panel=options.HOW)] = 4,
     width: options.Width = None,
     height: options.Height = None,
     depth: options.Depth = None,
     density: options.Density = None,
-    angle: options.Angle = None,
-    semi_diagonal: options.SemiDiagonal = None,
-    format: options.Format = None,
     units: options.Units = None,
-    time_step: options.TimeStep = None,
-    component: options.Component = None,
-    vertical: options.Vertical = None,
-    vertical_file: options.VerticalFile = None,
-    linear: options.Linear = False,
-    engine: options.Engine = "auto",
-    gravity: options.Gravity = None,
+    sets: options.Set = None,
     threads: options.Threads = None,
-    picture: Annotated[
-        Path | None, typer.Option(help="Draw peak rotation over amplitude (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
-    ] = None,
-    csv: Annotated[Path | None, typer.Option(help="Write a line for every crossing.", rich_help_panel=_OUTPUT)] = None,
+    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Print all peak ground accelerations at which a body begins or ceases to overturn, not the first alone."""
-    from rocking.cli import minimum_output
-    from rocking.cli.output import body_and_motion_of, check_files, settings_from
-    from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
+    from rocking.cli.question import as_typed
+    from rocking.cli.study import document_file, problem_in, problem_of, words_of
 
-    check_files(picture, csv)
-    unit, units = options.units_of(units, LENGTH_UNITS, ACCELERATION_UNITS)
-    size = {"width": width, "height": height, "depth": depth, "density": density}
-    told = {"format": format, "units": units, "time_step": time_step, "component": component}
-    answer = minimum_output.MinimumAnswer.of(
-        *body_and_motion_of(
-            (body, record, motion),
-            {**size, "angle": angle, "semi_diagonal": semi_diagonal, "unit": unit},
-            {**told, "vertical": vertical, "vertical_file": vertical_file},
-        ),
-        restitution,
-        {**minimum_output.search_from(lowest, highest), "points": points, "levels": levels},
-        settings_from(gravity, engine, linear, threads),
-        quiet=as_json,
-    )
-    written = minimum_output.write(answer, picture, csv)
-    if as_json:
-        print(minimum_output.as_json(answer))
-        return
-    minimum_output.show(answer, unit or "m", units or "m/s2")
-    for path in written:
-        print(f"wrote {path}")
+    exports = Exports.of(out, EXPORTS)
+    file = document_file(context, "minimum")
+    if file is not None:
+        answer_in = problem_in(file, "minimum", sets), "m", "m/s2"
+    else:
+        words = words_of(context.params, "minimum")
+        table = {**_range(lowest, highest), "points": points, "levels": levels}
+        problem = problem_of("minimum-acceleration", words, [restitution], table)
+        answer_in = problem, words.length or "m", words.acceleration or "m/s2"
+    with bar("histories", quiet=as_json) as tell, as_typed():
+        answer = MinimumAnswer(answer_in[0], answer_in[0].answer(tell, threads), *answer_in[1:])
+    deliver(answer, exports, as_json=as_json)
+
+
+def _range(lowest: str | None, highest: str | None) -> dict[str, float]:
+    """Return the range of accelerations as keys of the table [minimum] [m/s2]."""
+    texts = {"lowest": lowest, "highest": highest}
+    ends = {name: quantity(f"--{name}", text, "m/s2")[0] for name, text in texts.items() if text is not None}
+    if len(ends) == 2 and not ends["lowest"] < ends["highest"]:
+        raise InvalidValueError(f"--lowest must be below --highest, got {lowest} and {highest}")
+    return ends
+
+
+@dataclass(frozen=True)
+class MinimumAnswer:
+    """All accelerations at which the verdict on a body changes under a motion."""
+
+    problem: "StudyProblem"
+    found: "Transitions"
+    length: str  # units of lengths and of accelerations
+    acceleration: str
+
+    @property
+    def label(self) -> str:
+        """The restitution in words."""
+        return str(getattr(self.problem.restitution, "label", self.problem.restitution))
+
+    def facts(self) -> dict[str, Any]:
+        """Return everything as plain values; modes: -2 not lifted, -1 survives, n >= 0 overturns after n impacts."""
+        from rocking.cli.study import motion_facts
+
+        found, problem = self.found, self.problem
+        return {
+            "body": repr(problem.bodies[0]),
+            "assumed": list(problem.bodies[0].assumed),
+            "motion": motion_facts(problem.motions[0]),
+            "restitution": self.label,
+            "gravity_m_s2": problem.settings.gravity,
+            "linear": problem.settings.linear,
+            "crossings": transitions_facts(found),
+            "minimum_m_s2": found.minimum,
+            "certain_m_s2": found.certain,
+            "overturning_intervals_m_s2": found.overturning_intervals,
+            "safe_intervals_m_s2": found.safe_intervals,
+            "lowest_m_s2": found.lowest,
+            "highest_m_s2": found.highest,
+            "uplift_acceleration_m_s2": found.uplift_acceleration,
+            "resolution": found.resolution,
+            "resolution_below": found.resolution_below if found.minimum is not None else None,
+            "starts_overturned": found.starts_overturned,
+            "samples": found.samples,
+            "failed": found.failed,
+            "contact": found.contact,
+            "sentence": stretches(found),
+        }
+
+    def show(self, page: Page) -> None:
+        """Write all transitions on a page."""
+        from rocking.cli.study import body_lines
+
+        problem, found, unit = self.problem, self.found, beside_g(self.acceleration)
+        lifts = found.uplift_acceleration
+        page.facts(body_lines(problem.bodies[0], problem.settings.gravity, self.length))
+        page.line(f"motion:       {problem.motions[0].name}, scaled")
+        page.line(f"restitution:  {self.label}")
+        page.line(f"lifts it:     {_g(lifts)}, {in_unit(lifts, unit, '.6g')}")
+        page.line()
+        page.line(sentence(stretches(found)), "bold")
+        if len(found):
+            head = ("PGA [g]", f"[{unit}]", "/ uplift", "below", "above")
+            page.line()
+            page.table(head, [_row(one, ACCELERATION_UNITS[unit]) for one in transitions_facts(found)])
+        if found.failed:
+            page.warn([f"{found.failed} of {found.samples} histories could not be computed"])
+        page.warn(filter(None, [found.contact]))
+
+
+def stretches(found: "Transitions") -> str:
+    """Return where the body overturns, in words: with many stretches the first and the last."""
+    falls = found.overturning_intervals
+    scanned = f"scanned from {_g(found.lowest)} to {_g(found.highest)}, resolution {percent(found.resolution)}"
+    if found.minimum is not None and found.resolution_below < 0.5 * found.resolution:
+        scanned += f" ({percent(found.resolution_below)} below the first crossing); thinner stretches may exist"
+    if not falls:
+        return f"survives everything; {scanned}"
+    if falls == ((found.lowest, found.highest),):
+        return f"overturns at every acceleration; {scanned}"
+    parts = [_stretch(found, falls, k) for k in range(len(falls))]
+    if len(parts) > _SPOKEN:
+        left_out = len(parts) - _SPOKEN
+        last = _stretch(found, falls[-1:], 0)  # it names its own beginning
+        parts = [*parts[: _SPOKEN - 1], f"{left_out} more such stretches follow", last]
+    return f"{', '.join(parts)}; {scanned}"
+
+
+def _stretch(found: "Transitions", falls: tuple[tuple[float, float], ...], k: int) -> str:
+    """Return one stretch of overturning in words, and how far it then survives."""
+    low, high = falls[k]
+    if k == len(falls) - 1 and high == found.highest:
+        return "overturns above" if k else f"overturns above {_g(low)}"
+    words = f"overturns from {_g(low)} to {_g(high)}"
+    return words + (", survives above" if k == len(falls) - 1 else f", survives to {_g(falls[k + 1][0])}")
+
+
+def _g(acceleration: float) -> str:
+    return f"{acceleration / g:.4g} g"
+
+
+def transitions_facts(found: "Transitions") -> list[dict[str, float | int]]:
+    """Return every transition as plain values; width: of its bracket, ratio: over what lifts the body."""
+    return [
+        {
+            "acceleration_m_s2": float(found.acceleration[k]),
+            "acceleration_g": float(found.acceleration[k]) / g,
+            "ratio": float(found.ratio[k]),
+            "scale": float(found.scale[k]),
+            "width_m_s2": float(found.width[k]),
+            "mode_below": int(found.modes[k, 0]),
+            "mode_above": int(found.modes[k, 1]),
+        }
+        for k in range(len(found))
+    ]
+
+
+def _row(one: dict[str, float | int], size: float) -> tuple[str, ...]:
+    numbers = one["acceleration_g"], one["acceleration_m_s2"] / size, one["ratio"]
+    return *(f"{value:.6f}" for value in numbers), _short(int(one["mode_below"])), _short(int(one["mode_above"]))
+
+
+def _short(mode: int) -> str:
+    if mode < 0:
+        return "stays standing" if mode == -1 else "not lifted"
+    return "falls, no impact" if mode == 0 else f"falls, {mode} impact{'s' if mode > 1 else ''}"

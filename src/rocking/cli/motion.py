@@ -1,62 +1,163 @@
 """`rocking motion`: what a record or a pulse is, and how strong."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking import checks
 from rocking.cli import options
+from rocking.cli.exports import Export, Exports, picture
+from rocking.cli.numbers import beside_g, in_unit
+from rocking.cli.page import Page, deliver
+from rocking.conventions import ACCELERATION_UNITS, g
+from rocking.errors import InvalidValueError
 
-_OUTPUT = "Output"
+if TYPE_CHECKING:
+    from rocking.motions.intensity import Measure
+    from rocking.reports.motion_facts import MotionAnswer
+
+_MOST_PERIODS = 1000
+
+
+def _draw(answer: "MotionPage") -> Any:
+    from rocking.plots import ground_motion_picture
+
+    return ground_motion_picture(answer.motion.motion)
+
+
+def _write_csv(answer: "MotionPage", path: Path) -> None:
+    """Write time, acceleration, velocity and displacement at the samples; of a pulse as its formulas give them."""
+    import numpy as np
+
+    from rocking.motions.integrals import ground_displacement, ground_velocity
+    from rocking.motions.motion import GroundMotion
+    from rocking.plots.traces import traces
+    from rocking.tables import Column, Table, to_csv
+
+    motion, samples = answer.motion.motion, answer.motion.samples
+    columns: dict[str, Any] = {"time_s": np.asarray(samples.time), "acceleration_m_s2": samples.acceleration}
+    if isinstance(motion, GroundMotion):
+        columns |= {"velocity_m_s": ground_velocity(motion), "displacement_m": ground_displacement(motion)}
+        if motion.vertical is not None:
+            columns["vertical_acceleration_m_s2"] = motion.vertical
+    else:
+        fine = traces(motion)
+        columns |= {"velocity_m_s": fine.velocity, "displacement_m": fine.displacement}
+    to_csv(Table("sample", {name: Column(values, "") for name, values in columns.items()}), path, blank=False)
+
+
+EXPORTS = {"picture": picture(_draw), "csv": Export((".csv",), _write_csv)}
 
 
 def motion(
-    record: Annotated[str, typer.Argument(help="Record file, or a pulse such as sine:amplitude=3,period=0.8.")],
-    format: options.Format = None,
+    record: Annotated[
+        list[str],
+        typer.Argument(
+            help="Record file, file#COMPONENT, or a pulse such as sine:amplitude=3,period=0.8; with its vertical part "
+            "x=FILE z=FILE."
+        ),
+    ],
     units: options.RecordUnits = None,
-    time_step: options.TimeStep = None,
-    component: options.Component = None,
-    vertical: options.Vertical = None,
-    vertical_file: options.VerticalFile = None,
-    scale: Annotated[float | None, typer.Option(help="Factor on the acceleration.")] = None,
+    scale: Annotated[float | None, options.key(options.tables.MotionKeys, "scale")] = None,
     damping: Annotated[float, typer.Option(help="Damping ratio of the spectrum.")] = 0.05,
     periods: Annotated[
         str, typer.Option(help=r"Periods of the spectrum, with commas between \[s].")
     ] = "0.1,0.2,0.5,1,2,3",
-    picture: Annotated[
-        Path | None, typer.Option(help="Draw it and its spectrum (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
-    ] = None,
-    csv: Annotated[
-        Path | None,
-        typer.Option(help="Write time, acceleration, velocity, displacement.", rich_help_panel=_OUTPUT),
-    ] = None,
+    sets: options.Set = None,
+    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Print what a record or a pulse is, its intensity measures and its response spectrum."""
-    from rocking.cli import motion_output
-    from rocking.cli.inputs import motion_from
-    from rocking.conventions import ACCELERATION_UNITS
+    from rocking.cli.question import Words, hinted
     from rocking.reports.motion_facts import MotionAnswer
+    from rocking.spec.construction import motion_of
+    from rocking.spec.document import OneMotionTable
+    from rocking.spec.reading import CommandFiles, checked
 
-    (units,) = options.units_of(units, ACCELERATION_UNITS)
-    subject = motion_from(
-        record,
-        format=format,
-        units=units,
-        time_step=time_step,
-        component=component,
-        vertical=vertical,
-        vertical_file=vertical_file,
-        scale=scale,
-    )
-    answer = MotionAnswer.of(subject, motion_output.periods_from(periods), damping)
-    if csv is not None:
-        motion_output.write_csv(answer, csv)
-    if picture is not None:
-        motion_output.draw(answer, picture)
-    if as_json:
-        print(motion_output.as_json(answer))
-    else:
-        motion_output.show(answer, units or "m/s2")
-        for path in filter(None, (csv, picture)):
-            print(f"wrote {path}")
+    exports = Exports.of(out, EXPORTS)
+    words = Words({"units": units, "sets": sets}, ("motion",))
+    factor = 1.0 if scale is None else checks.number("scale", scale)
+    if factor == 0.0:
+        raise InvalidValueError("scale must not be 0: nothing would move")
+    upright = next((word.rpartition("#")[2] for word in record if word.startswith("z=")), "")
+    with hinted(None, record[0].removeprefix("x="), upright):
+        subject = motion_of(checked(OneMotionTable, words.one_motion(record)), CommandFiles(Path()))
+    subject = subject if scale is None else subject.scaled(factor)
+    answer = MotionPage(MotionAnswer.of(subject, _periods(periods), damping), words.acceleration or "m/s2")
+    deliver(answer, exports, as_json=as_json)
+
+
+def _periods(text: str) -> list[float]:
+    """Return the periods of a spectrum [s].
+
+    >>> _periods("0.1, 0.5,1")
+    [0.1, 0.5, 1.0]
+    """
+    parts = [part.strip() for part in text.split(",") if part.strip()]
+    if not 1 <= len(parts) <= _MOST_PERIODS:
+        raise InvalidValueError(f"periods must be 1 to {_MOST_PERIODS} numbers such as 0.1,0.5,1, got {text[:60]!r}")
+    try:
+        numbers = [float(part) for part in parts]
+    except ValueError as error:
+        raise InvalidValueError(f"periods must be numbers such as 0.1,0.5,1 [s], got {text[:60]!r}") from error
+    hint = checks.decimal_comma(text).removeprefix("; ")
+    return [checks.positive("periods", number, "s", hint) for number in numbers]
+
+
+@dataclass(frozen=True)
+class MotionPage:
+    """A motion, what was measured on it, and the unit in which accelerations are printed."""
+
+    motion: "MotionAnswer"
+    acceleration: str
+
+    def facts(self) -> dict[str, Any]:
+        """Return everything as plain values."""
+        from rocking.reports.motion_facts import motion_facts, spectrum_facts
+
+        motion = self.motion
+        facts = motion_facts(motion.motion, motion.samples, motion.measures)
+        return {**facts, "spectrum": spectrum_facts(motion.spectrum)}
+
+    def show(self, page: Page) -> None:
+        """Write what it is, its intensity measures and its spectrum."""
+        unit, spectrum = beside_g(self.acceleration), self.motion.spectrum
+        page.line(self.motion.motion.name, "bold")
+        for name, value in self._head(unit):
+            page.line(f"  {name + ':':<12} {value}")
+        for line in getattr(self.motion.samples, "provenance", ()) if hasattr(self.motion.motion, "metadata") else ():
+            page.line(f"  {line}", "dim")
+        page.line()
+        head = ("intensity measure", "value", "unit", "")
+        rows: Sequence[Sequence[str]] = [_measure_row(one, unit) for one in self.motion.measures.values()]
+        page.table(head, rows, ("intensity measure", "unit", ""), whole=0)
+        page.line()
+        page.line(f"Response spectrum, {100.0 * spectrum.damping:.4g} % damping", "bold")
+        accelerations = spectrum.pseudo_acceleration / ACCELERATION_UNITS[unit], spectrum.pseudo_acceleration / g
+        columns = (spectrum.periods, *accelerations, spectrum.pseudo_velocity, spectrum.displacement)
+        rows = [tuple(f"{value:.4g}" for value in row) for row in zip(*columns, strict=True)]
+        page.table(("T [s]", f"PSA [{unit}]", "PSA [g]", "PSV [m/s]", "Sd [m]"), rows, whole=0)
+
+    def _head(self, unit: str) -> list[tuple[str, str]]:
+        motion: Any = self.motion.motion
+        if not hasattr(motion, "metadata"):
+            return [("kind", "pulse, known at every instant"), ("duration", f"{motion.duration:.6g} s")]
+        stated = motion.metadata
+        keys = ("format", "event", "date", "station", "component", "vertical component")
+        facts = [(key.replace("vertical component", "vertical"), stated[key]) for key in keys if stated.get(key)]
+        samples = f"{len(motion)} at {motion.time_step:.6g} s, the file in {stated.get('unit', 'm/s2')}"
+        facts += [("samples", samples), ("duration", f"{motion.duration:.6g} s")]
+        if motion.vertical is not None:
+            peak = f"{in_unit(motion.peak_vertical, unit)} ({motion.peak_vertical / g:.4g} g) at most"
+            facts.append(("upwards", peak))
+        return facts
+
+
+def _measure_row(measure: "Measure", unit: str) -> tuple[str, ...]:
+    if measure.unit != "m/s2":
+        return measure.name, f"{measure.value:.4g}", measure.unit, ""
+    value, name = in_unit(measure.value, unit).split()
+    return measure.name, value, name, f"= {measure.value / g:.4g} g"

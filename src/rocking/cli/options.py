@@ -1,40 +1,24 @@
-"""Options that several commands have."""
+"""Options of the commands; what they mean is said once, by the tables of `rocking.spec.document`."""
 
-from collections.abc import Mapping
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-_BODY = "Size, in place of a body file"
-_FILE = "What a record file leaves open"
-_MESH = "What a mesh file leaves open"
-_HOW = "How it is computed"
-_OUTPUT = "Output"
-Width = Annotated[float | None, typer.Option(help=r"Full width of a block \[m, or --units].", rich_help_panel=_BODY)]
-Height = Annotated[float | None, typer.Option(help=r"Full height of a block \[m, or --units].", rich_help_panel=_BODY)]
-Depth = Annotated[float | None, typer.Option(help=r"Depth of a block \[m, or --units].", rich_help_panel=_BODY)]
-Density = Annotated[float | None, typer.Option(help=r"Density \[kg/m3].", rich_help_panel=_BODY)]
-Angle = Annotated[
-    float | None, typer.Option(help=r"Slenderness angle alpha = atan(b/h) \[rad].", rich_help_panel=_BODY)
-]
-SemiDiagonal = Annotated[
-    float | None, typer.Option(help=r"Semi-diagonal R, with --angle \[m, or --units].", rich_help_panel=_BODY)
-]
-Up = Annotated[
-    str | None, typer.Option(help="Axis of a mesh that points up: z, or y as in GLB files.", rich_help_panel=_MESH)
-]
-FillHoles = Annotated[
-    bool, typer.Option("--fill-holes", help="Close holes of less than 1 % of the surface.", rich_help_panel=_MESH)
-]
-BaseTolerance = Annotated[
-    float | None,
-    typer.Option(
-        help=r"Points this close to the lowest one stand on the ground \[m, or --units].", rich_help_panel=_MESH
-    ),
-]
-Format = Annotated[
-    str | None, typer.Option(help="Format, if not found by content: see rocking formats.", rich_help_panel=_FILE)
-]
+from rocking.spec import document as tables
+
+SIZE, HOW, OUTPUT = "Size, in place of a body file", "How it is computed", "Output"
+
+
+def key(table: type[Any], name: str, more: str = "", **options: Any) -> Any:
+    """Return the option of a key of a table, with the key's description as its help."""
+    text = table.model_fields[name].description or ""
+    return typer.Option(help=f"{text[:1].upper()}{text[1:]}{more}.".replace("[", r"\["), **options)
+
+
+Width = Annotated[float | None, typer.Option(help=r"Full width of a block \[m, or --units].", rich_help_panel=SIZE)]
+Height = Annotated[float | None, typer.Option(help=r"Full height of a block \[m, or --units].", rich_help_panel=SIZE)]
+Depth = Annotated[float | None, typer.Option(help=r"Depth of a block \[m, or --units].", rich_help_panel=SIZE)]
+Density = Annotated[float | None, typer.Option(help=r"Density of a block or a mesh \[kg/m3].", rich_help_panel=SIZE)]
 Units = Annotated[
     str | None,
     typer.Option(
@@ -44,66 +28,76 @@ Units = Annotated[
 RecordUnits = Annotated[
     str | None, typer.Option("--units", help="Unit of the record: m/s2, cm/s2, mm/s2, gal, g, g/10, mg.")
 ]
-TimeStep = Annotated[float | None, typer.Option(help=r"Step between samples \[s].", rich_help_panel=_FILE)]
-Component = Annotated[str | None, typer.Option(help="Horizontal component, by name.", rich_help_panel=_FILE)]
-Vertical = Annotated[str | None, typer.Option(help="Vertical component, by name.", rich_help_panel=_FILE)]
-VerticalFile = Annotated[
-    str | None, typer.Option(help="File of the vertical component, where it has its own.", rich_help_panel=_FILE)
-]
-BodyFile = Annotated[
-    str | None,
-    typer.Argument(
-        help="Body file: TOML, or WKT, GeoJSON, DXF, or a mesh STL, OBJ, PLY with --units; left out with --width."
+Set = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        help="Any key of the question's file, again for more: settings.gravity=9.81, settings.linear=true, "
+        "motion.time_step=0.01, body.up=y; docs/questions.md lists them all.",
+        rich_help_panel=HOW,
     ),
 ]
-Record = Annotated[str | None, typer.Argument(help="Record file, or a pulse such as sine:amplitude=3,period=0.8.")]
-Motion = Annotated[str | None, typer.Option(help="The same, as an option.")]
+Threads = Annotated[int | None, typer.Option(help="Threads; the results do not depend on them.", rich_help_panel=HOW)]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=OUTPUT)]
+
+_BODIES = "TOML, or WKT, GeoJSON, DXF, or a mesh STL, OBJ, PLY with --units, or GLB"
+BodyFile = Annotated[str | None, typer.Argument(help=f"Body file: {_BODIES}; left out with --width.")]
+Record = Annotated[
+    str | None, typer.Argument(help="Record file, file#COMPONENT, or a pulse such as sine:amplitude=3,period=0.8.")
+]
+Motion = Annotated[
+    list[str] | None,
+    typer.Option(help="The same, as an option; along an axis x=FILE, y=FILE and z=FILE, which is up."),
+]
+Motions = Annotated[list[str] | None, typer.Option("--motion", help="The same, as an option; again for more.")]
 Restitution = Annotated[str, typer.Option(help="Model as in rocking models, my_file.py:MyModel, or a coefficient.")]
-Linear = Annotated[bool, typer.Option("--linear", help="Slender-linear equations.", rich_help_panel=_HOW)]
-Engine = Annotated[str, typer.Option(help="auto, fast or reference.", rich_help_panel=_HOW)]
-Gravity = Annotated[float | None, typer.Option(help=r"Acceleration of gravity \[m/s2].", rich_help_panel=_HOW)]
-Threads = Annotated[int | None, typer.Option(help="Threads; the results do not depend on them.", rich_help_panel=_HOW)]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)]
+Restitutions = Annotated[
+    list[str] | None,
+    typer.Option(help="Model as in rocking models, or a coefficient; again for more, to compare; ked if none."),
+]
+Scale = Annotated[float, key(tables.MotionKeys, "scale")]
 
 
-def units_of(word: str | None, *kinds: Mapping[str, float]) -> tuple[str | None, ...]:
-    """Return the unit of every kind in a word such as ``mm,g``; no unit is of two kinds.
+def out(kinds: dict[str, Any]) -> Any:
+    """Return the option `--out` of a command that writes files of some kinds."""
+    from rocking.cli.exports import described
 
-    Returns one of each kind, None where none was given.
+    return typer.Option(help=described(kinds), rich_help_panel=OUTPUT)
 
-    >>> from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
-    >>> units_of("g, mm", LENGTH_UNITS, ACCELERATION_UNITS), units_of(None, LENGTH_UNITS)
-    (('mm', 'g'), (None,))
+
+_TO_OUT = ("--csv", "--mat", "--netcdf", "--picture", "--animation", "--stages", "--p58", "--nrml", "--excel")
+_SAID_NOW = {
+    "--contact": "--friction alone lets a body slide, hop and fly",
+    "--motion-y": "--motion y=FILE",
+    "--motion-z": "--motion z=FILE",
+    "--component": "FILE#COMPONENT",
+    "--component-y": "--motion y=FILE#COMPONENT",
+    "--component-z": "--motion z=FILE#COMPONENT",
+    "--vertical": "--motion x=FILE#COMPONENT --motion z=FILE#VERTICAL",
+    "--vertical-file": "--motion x=FILE --motion z=FILE",
+    "--format": "--set motion.format=NAME",
+    "--time-step": "--set motion.time_step=SECONDS",
+    "--linear": "--set settings.linear=true",
+    "--engine": "--set settings.engine=NAME",
+    "--gravity": "--set settings.gravity=VALUE",
+    "--angle": "--set body.slenderness_angle=RAD",
+    "--semi-diagonal": "--set body.semi_diagonal=LENGTH",
+    "--up": "--set body.up=y",
+    "--fill-holes": "--set body.fill_holes=true",
+    "--base-tolerance": "--set body.base_tolerance=LENGTH",
+    "--record": "--motion FILE",
+    "--model": "--restitution MODEL",
+    "--common-dispersion": "--crossing common-dispersion",
+    "--to": "--out FILE",
+    "--what": "--out WHAT=FILE",
+    **{option: f"--out {option.removeprefix('--')}=FILE, or --out FILE by its ending" for option in _TO_OUT},
+}
+
+
+def said_now(option: str) -> str:
+    """Return how an option of earlier is said now; empty if there was none.
+
+    >>> said_now("--gravity")
+    'is now --set settings.gravity=VALUE'
     """
-    from rocking import checks
-    from rocking.errors import InvalidValueError
-
-    found: list[str | None] = [None] * len(kinds)
-    for part in [] if word is None else word.split(","):
-        name = checks.one_of("--units", part.strip(), [each for kind in kinds for each in kind])
-        place = next(k for k, kind in enumerate(kinds) if name in kind)
-        if found[place] is not None:
-            raise InvalidValueError(f"--units must have one unit of a kind, got {found[place]} and {name}")
-        found[place] = name
-    return tuple(found)
-
-
-def in_unit(value: float, unit: str, digits: str = ".4g") -> str:
-    """Return a length or an acceleration in the unit in which the question was asked.
-
-    value: length or acceleration [m or m/s2].
-
-    >>> in_unit(0.5, "mm"), in_unit(1.0, "gal")
-    ('500 mm', '100 gal')
-    """
-    from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
-
-    return f"{value / {**LENGTH_UNITS, **ACCELERATION_UNITS}[unit]:{digits}} {unit}"
-
-
-def beside_g(unit: str) -> str:
-    """Return the unit in which an acceleration is written where it stands in g too.
-
-    Returns the same, and m/s2 in place of g.
-    """
-    return "m/s2" if unit == "g" else unit
+    return f"is now {_SAID_NOW[option]}" if option in _SAID_NOW else ""

@@ -1,10 +1,17 @@
 """`rocking paper`: Mao et al. 2024, recomputed from the published measurements, with a verdict on each claim."""
 
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from rocking.cli.page import Page, print_json
+
+if TYPE_CHECKING:
+    from rocking.reports.paper_document import Reproduction
 
 
 def paper(
@@ -14,22 +21,102 @@ def paper(
     as_json: Annotated[bool, typer.Option("--json", help="Print every number as JSON.")] = False,
 ) -> None:
     """Recompute the paper: every table, figure, erratum and claim, and the league of all models."""
-    from rocking.cli import paper_output
     from rocking.reports.paper_document import reproduce
 
     result = reproduce()
     if as_json:
-        print(paper_output.as_json(result))
+        from rocking.reports.paper_folder import as_plain
+
+        print_json(as_plain(result))
     if out is None:
         if not as_json:
-            paper_output.show(result)
+            _show(result)
         return
     from rocking.reports.paper_folder import write_folder
 
-    with paper_output.progress(quiet=as_json) as step:
+    with _progress(quiet=as_json) as step:
         written, left_out = write_folder(result, out, step)
     for sentence in left_out:
         print(f"rocking: note: {sentence}", file=sys.stderr)
     if not as_json:
-        paper_output.what_to_look_at(result, written, out)
-        paper_output.show(result)
+        _what_to_look_at(result, written, out)
+        _show(result)
+
+
+def _what_to_look_at(result: "Reproduction", written: list[Path], folder: Path) -> None:
+    """Print what was written and what to look at first."""
+    from rocking.reports.paper_document import look_at
+
+    page = Page()
+    page.line("What to look at", "bold")
+    for path in written:
+        page.line(f"  {path}")
+    page.line(f"  {folder / 'figures'}  {folder / 'tables'}")
+    for name, sentence in look_at(result):
+        page.line(f"  {name}: {sentence}")
+    page.line()
+
+
+def _show(result: "Reproduction") -> None:
+    """Print the summary: tables, claims, league, verdict."""
+    from rich.padding import Padding
+    from rich.text import Text
+
+    page = Page()
+    page.line("Tables of Mao et al. (2024), recomputed", "bold")
+    for title, rows in result.tables.items():
+        entries = [entry for row in rows for entry in row.entries.values()]
+        page.line(f"  {title}: {sum(e.agrees for e in entries)} of {len(entries)} printed values agree in all digits")
+    page.line(f"  errata found: {sum(e.found for e in result.errata)} of {len(result.errata)}")
+    page.line("\nClaims", "bold")
+    page.rich(_claims(result))
+    page.line("\nLeague: RMSE of r over 39 measurements, in bands of h/b; log error of the energy loss", "bold")
+    _league(page, result)
+    page.line("\nVerdict", "bold")
+    page.rich(Padding(Text("\n".join(result.verdict)), (0, 0, 0, 2)), soft_wrap=False)
+
+
+@contextmanager
+def _progress(*, quiet: bool) -> Iterator[Callable[[str], None]]:
+    """Show a progress bar, and give the function that moves it: it takes the name of the step that begins."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    from rocking.reports.paper_folder import steps
+
+    columns = (TextColumn("{task.description:24}"), BarColumn(), TextColumn("{task.completed}/{task.total}"))
+    bar = Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True), transient=True, disable=quiet)
+    with bar:
+        task = bar.add_task("", total=steps())
+
+        def step(name: str) -> None:
+            bar.update(task, description=name, advance=1)
+
+        yield step
+
+
+def _claims(result: "Reproduction") -> Any:
+    from rich.table import Table
+
+    from rocking.evidence.claim import FAILS, HOLDS, IN_PART, UNRESOLVED
+
+    styles = {HOLDS: "green", IN_PART: "yellow", FAILS: "red", UNRESOLVED: "cyan"}
+    table = Table(box=None, show_header=False, pad_edge=False)
+    for width in (16, 8, None):
+        table.add_column(width=width, no_wrap=width is not None)
+    for claim in result.claims:
+        style = styles.get(claim.verdict, "dim")
+        table.add_row(f"  [{style}]{claim.verdict}[/]", claim.section, claim.quote)
+    return table
+
+
+def _league(page: Page, result: "Reproduction") -> None:
+    rows = [
+        (
+            f"  {row.name}", f"{row.rmse:.4f}", f"{row.bias:+.3f}", *(f"{value:.3f}" for value in row.by_band.values()),
+            f"{row.log_loss_rmse:.3f}", f"{row.bic:.1f}",
+        )
+        for row in result.league
+    ]  # fmt: skip
+    head = ("  model", "RMSE", "bias", "<=3", "3-6", ">6", "loss", "BIC")
+    page.table(head, rows, head[:1], bold={k for k, row in enumerate(result.league) if row.name in {"ked", "housner"}})

@@ -1,65 +1,211 @@
 """`rocking spectrum`: peak rotation of blocks of many sizes under motions."""
 
+import math
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from rocking.cli import options
+from rocking.cli.exports import Export, Exports, picture, write_columns
+from rocking.cli.numbers import row, values_table
+from rocking.cli.page import Page, bar, deliver
+from rocking.errors import InvalidValueError
+from rocking.spec.document import SpectrumTable
 
-_OUTPUT = "Output"
+if TYPE_CHECKING:
+    import xarray as xr
+
+_MOST = 10_000_000
+"""Histories; more are a campaign."""
+
+
+def _draw(answer: "SpectrumAnswer") -> Any:
+    from rocking.plots.rocking_spectrum import rocking_spectrum_picture
+
+    return rocking_spectrum_picture(answer.dataset)
+
+
+def _write_csv(answer: "SpectrumAnswer", path: Path) -> None:
+    table = answer.dataset.to_dataframe().reset_index()
+    units = {name: answer.dataset[name].attrs.get("units", "") for name in table.columns}
+    write_columns(path, {str(name): (table[name], units[name]) for name in table.columns})
+
+
+def _write_netcdf(answer: "SpectrumAnswer", path: Path) -> None:
+    from rocking.tables import to_netcdf
+
+    to_netcdf(answer.dataset, path)
+
+
+EXPORTS = {
+    "picture": picture(_draw),
+    "csv": Export((".csv",), _write_csv),
+    "netcdf": Export((".nc",), _write_netcdf),
+}
 
 
 def spectrum(
+    context: typer.Context,
     motions: Annotated[
-        list[str] | None, typer.Argument(help="Record files, or pulses such as sine:amplitude=3,period=0.8.")
+        list[str] | None,
+        typer.Argument(help="Record files, file#COMPONENT, or pulses such as sine:amplitude=3,period=0.8."),
     ] = None,
-    motion: Annotated[list[str] | None, typer.Option(help="The same, as an option; again for more.")] = None,
+    motion: options.Motions = None,
     slenderness: Annotated[
         str, typer.Option(help="h/b: 4,6,8 or 4:8:5; with deg or rad the angle alpha: 10deg,15deg.")
     ] = "4,6,8",
     periods: Annotated[
-        str, typer.Option(help="2 pi / p in s: FIRST:LAST:COUNT in equal ratios, or with :linear, or A,B,C.")
+        str,
+        options.key(SpectrumTable, "periods", ": FIRST:LAST:COUNT in equal ratios, or with :linear, or A,B,C"),
     ] = "1:10:100",
     restitution: options.Restitution = "ked",
-    scale: Annotated[float, typer.Option(help="Factor on the acceleration of the ground.")] = 1.0,
-    format: options.Format = None,
+    scale: Annotated[float, options.key(SpectrumTable, "scale")] = 1.0,
     units: options.RecordUnits = None,
-    time_step: options.TimeStep = None,
-    component: options.Component = None,
-    vertical: options.Vertical = None,
-    vertical_file: options.VerticalFile = None,
-    linear: options.Linear = False,
-    engine: options.Engine = "auto",
-    gravity: options.Gravity = None,
+    sets: options.Set = None,
     threads: options.Threads = None,
-    picture: Annotated[
-        Path | None, typer.Option(help="Draw the spectra (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
-    ] = None,
-    csv: Annotated[Path | None, typer.Option(help="Write a line for every block.", rich_help_panel=_OUTPUT)] = None,
-    netcdf: Annotated[Path | None, typer.Option(help="Write everything as netCDF.", rich_help_panel=_OUTPUT)] = None,
+    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Print the peak rotation of blocks of many sizes and slendernesses under motions, and which sizes overturn."""
-    from rocking.cli import spectrum_output
-    from rocking.cli.output import check_files, settings_from
+    from rocking.cli.question import NO_MOTION, Words, as_typed, hinted, is_body
+    from rocking.cli.study import document_file, motions_tables, problem_in
+    from rocking.spec.document import CampaignDocument
+    from rocking.spec.reading import CommandFiles, checked
+    from rocking.spec.study import StudyProblem
 
-    check_files(picture, csv, netcdf)
-    told = {"format": format, "units": units, "time_step": time_step, "component": component}
-    answer = spectrum_output.answer(
-        spectrum_output.motions_from([*(motions or ()), *(motion or ())], {
-            **told, "vertical": vertical, "vertical_file": vertical_file,
-        }),
-        spectrum_output.angles_from(slenderness),
-        spectrum_output.periods_from(periods),
-        restitution,
-        {**settings_from(gravity, engine, linear, threads), "scale": scale},
-        quiet=as_json,
-    )  # fmt: skip
-    written = spectrum_output.write(answer, picture, csv, netcdf)
-    if as_json:
-        print(spectrum_output.as_json(answer))
-        return
-    spectrum_output.show(answer)
-    for path in written:
-        print(f"wrote {path}")
+    exports = Exports.of(out, EXPORTS)
+    named = [*(motions or ()), *(motion or ())]
+    file = document_file(context, "spectrum", named[0] if len(named) == 1 else None)
+    if file is not None:
+        problem = problem_in(file, "spectrum", sets)
+    else:
+        words = Words({"units": units, "sets": sets}, ("motion", "settings", "spectrum"))
+        if not named:
+            raise InvalidValueError(NO_MOTION.replace("a record file", "record files"))
+        angles, times = _angles(slenderness), _periods(periods)
+        total = len(named) * angles["count"] * times.pop("count")
+        if total > _MOST:
+            raise InvalidValueError(
+                f"spectra must take at most {_MOST} histories, got {total}; rocking campaign does more"
+            )
+        own = {"slenderness_angles": angles["values"], "periods": times["table"], "scale": scale}
+        with hinted(None, next(filter(is_body, named), named[0])):
+            tables = {
+                "campaign": {"name": "spectrum", "kind": "rocking-spectrum"},
+                "motions": motions_tables(words, named),
+                "restitution": {"model": restitution},
+                "spectrum": {**own, **words.sets.get("spectrum", {})},
+                "settings": words.sets.get("settings", {}),
+            }
+            problem = StudyProblem.of(checked(CampaignDocument, tables), CommandFiles(Path()))
+    with bar("histories", quiet=as_json) as tell, as_typed():
+        answer = SpectrumAnswer(problem.answer(tell, threads))
+    deliver(answer, exports, as_json=as_json)
+
+
+def _angles(text: str) -> dict[str, Any]:
+    """Return slenderness angles [rad] and their count.
+
+    >>> _angles("1,2")["values"], _angles("45deg")["count"]
+    ([0.7853981633974483, 0.4636476090008061], 1)
+    """
+    import numpy as np
+
+    values, unit = row("--slenderness", text, "rad")
+    highest, allowed = (0.5 * math.pi, "in (0, 90) deg") if unit else (1e9, "h/b, above 0")
+    bad = values[~((values > 0.0) & (values < highest))]
+    if bad.size:
+        raise InvalidValueError(f"--slenderness must be {allowed}, got {bad[0]:g}{' rad' if unit else ''}; wrong unit?")
+    angles = values if unit else np.arctan(1.0 / values)
+    return {"values": angles.tolist(), "count": angles.size}
+
+
+def _periods(text: str) -> dict[str, Any]:
+    """Return the periods 2 pi / p [s] as a table, and their count."""
+    import numpy as np
+
+    values, _ = row("--periods", text, "s", "log")
+    if np.any(values <= 0.0) or np.any(np.diff(values) <= 0.0):
+        raise InvalidValueError(f"--periods must be above 0 s and increase, got {text!r:.60}")
+    return {"table": values_table("--periods", text, "s", "log")[0], "count": values.size}
+
+
+@dataclass(frozen=True, eq=False)
+class SpectrumAnswer:
+    """Spectra, as of `rocking_spectrum`."""
+
+    dataset: "xr.Dataset"
+
+    def facts(self) -> dict[str, Any]:
+        """Return everything as plain values, by motion, slenderness and period."""
+        found = self.dataset
+        return {
+            "motions": [str(name) for name in found["motion"].values.tolist()],
+            "restitution": found.attrs["restitution"],
+            "scale": float(found.attrs["scale"]),
+            "linear": bool(found.attrs["setting_linear"]),
+            "gravity_m_s2": float(found.attrs["setting_gravity"]),
+            "slenderness_angle_rad": found["slenderness_angle"].values,
+            "period_s": found["period"].values,
+            "semi_diagonal_m": found["semi_diagonal"].values,
+            "mode": found["mode"].values,
+            "peak_ratio": found["peak_ratio"].values,
+            "curves": self.curves(),
+            "contact": found.attrs["contact"],
+        }
+
+    def curves(self) -> list[dict[str, Any]]:
+        """Return what every curve shows: how many blocks end how, and the largest that stay standing or overturn."""
+        return [
+            {
+                "motion": str(name),
+                "slenderness_angle_rad": alpha,
+                **_curve(self.dataset.isel(motion=i, slenderness_angle=j)),
+            }
+            for i, name in enumerate(self.dataset["motion"].values.tolist())
+            for j, alpha in enumerate(self.dataset["slenderness_angle"].values.tolist())
+        ]
+
+    def show(self, page: Page) -> None:
+        """Write a line for every curve."""
+        found, curves = self.dataset, self.curves()
+        periods, sizes = found["period"].values, found["semi_diagonal"].values
+        page.line(f"restitution:  {found.attrs['restitution']}")
+        page.line(
+            f"blocks:       2 pi / p from {periods[0]:.4g} to {periods[-1]:.4g} s, R from {sizes[0]:.4g} to "
+            f"{sizes[-1]:.4g} m, {periods.size} sizes"
+        )
+        head = ("h/b", "alpha deg", "not lifted", "rocked", "overturned", "peak/alpha", "falls up to [s]")
+        each = found.sizes["slenderness_angle"]
+        for first in range(0, len(curves), each):
+            page.line(f"\n{curves[first]['motion']}", "bold")
+            page.table(head, [_row(one) for one in curves[first : first + each]])
+        page.line(
+            "\npeak/alpha is the largest of the blocks that stay standing; the last column is the largest 2 pi / p "
+            "that overturns."
+        )
+        failed = sum(one["failed"] for one in curves)
+        page.warn([f"{failed} histories could not be computed"] if failed else [])
+        page.warn(filter(None, [found.attrs["contact"]]))
+
+
+def _curve(one: "xr.Dataset") -> dict[str, Any]:
+    mode, period = one["mode"].values, one["period"].values
+    peaks, fallen = one["peak_ratio"].values[(mode == -1) | (mode == -2)], period[mode >= 0]
+    return {
+        "not_lifted": int((mode == -2).sum()),
+        "rocked": int((mode == -1).sum()),
+        "overturned": int((mode >= 0).sum()),
+        "failed": int((mode == -3).sum()),
+        "largest_peak_ratio": float(peaks.max()) if peaks.size else None,
+        "largest_overturned_period_s": float(fallen.max()) if fallen.size else None,
+    }
+
+
+def _row(one: dict[str, Any]) -> tuple[str, ...]:
+    alpha, peak, last = (one[k] for k in ("slenderness_angle_rad", "largest_peak_ratio", "largest_overturned_period_s"))
+    shape = (f"{1.0 / math.tan(alpha):.4g}", f"{math.degrees(alpha):.4g}")
+    counts = tuple(str(one[name]) for name in ("not_lifted", "rocked", "overturned"))
+    return *shape, *counts, *("-" if v is None else f"{v:.4g}" for v in (peak, last))

@@ -15,9 +15,6 @@ from rocking.bodies.formats.words import suggestion
 from rocking.bodies.solid import Solid
 from rocking.checks import length_unit
 from rocking.conventions import FEET
-from rocking.dynamics.impact_laws import RandomRestitution
-from rocking.dynamics.parameters import cut_of, cut_words
-from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
 from rocking.motions.formats.reader import read_motion
 from rocking.motions.pulses import pulse
@@ -27,6 +24,7 @@ from rocking.spec.reading import InputFiles, located
 from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
 
 if TYPE_CHECKING:
+    from rocking.dynamics.response import Motion
     from rocking.spec.document import MotionKeys, MotionTable, OneMotionTable, RandomTable, RestitutionTable
 
 MOST_IN_MEMORY = 100_000
@@ -73,6 +71,8 @@ def _model(word: str, inputs: InputFiles | None) -> RestitutionModel:
 def _drawn(
     table: "RandomTable", seed: int, bodies: Sequence[Body], inputs: InputFiles | None
 ) -> tuple[str, Any]:  # fmt: skip
+    from rocking.dynamics.impact_laws import RandomRestitution
+    from rocking.dynamics.parameters import cut_of, cut_words
     from rocking.studies.sensitivity.restitutions import SampledRestitution
 
     times = _model(table.times, inputs) if isinstance(table.times, str) else table.times
@@ -151,7 +151,7 @@ def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | So
     if inputs is None:
         raise InvalidValueError(f"names the file {table['file']!r:.60}, but a body cannot name files here")
     path = inputs.file(table["file"])
-    if path.suffix.lower() == ".toml":
+    if path.suffix.lower() == ".toml" and path.is_file():
         _note_outlines(path.read_text("utf-8-sig", "replace"), str(Path(table["file"]).parent), inputs)
     if options.get("base_tolerance") is not None:
         options["base_tolerance"] *= length_unit(options.get("units") or "m")
@@ -217,7 +217,7 @@ def motions_of(tables: "list[MotionTable]", inputs: InputFiles) -> MotionSet:
         return MotionList([each[k] for each in sets for k in range(len(each))])
 
 
-def _motions(table: "MotionTable", inputs: InputFiles) -> list[Motion] | SyntheticSet:
+def _motions(table: "MotionTable", inputs: InputFiles) -> "list[Motion] | SyntheticSet":
     if table.synthetic is not None:
         assert table.count is not None  # the table refuses to be without
         levels = {"pga": table.pga, "pgv": table.pgv, "time_step": table.time_step}
@@ -228,7 +228,7 @@ def _motions(table: "MotionTable", inputs: InputFiles) -> list[Motion] | Synthet
     return motions if table.scale == 1.0 else [motion.scaled(table.scale) for motion in motions]
 
 
-def _records(table: "MotionTable", inputs: InputFiles) -> list[Motion]:
+def _records(table: "MotionTable", inputs: InputFiles) -> "list[Motion]":
     names = [name for pattern in table.records or [] for name in inputs.named(pattern)]
     twice = sorted({name for name in names if names.count(name) > 1}) if len(names) < 1000 else []
     if twice:
@@ -241,13 +241,13 @@ def _records(table: "MotionTable", inputs: InputFiles) -> list[Motion]:
     return motions
 
 
-def _record(path: Path, table: "MotionKeys", inputs: InputFiles) -> Motion:
+def _record(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion":
     upright = None if table.vertical_file is None else inputs.file(table.vertical_file)
     keys = (table.format, table.units, table.time_step, table.component, table.vertical)
     return read_motion(path, *keys, vertical_path=upright)
 
 
-def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None) -> Motion:
+def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None) -> "Motion":
     """Return one motion, not scaled by `scale`; scaled to `pga` or `pgv`."""
     if table.pulse is not None:
         return pulse(table.pulse)

@@ -40,14 +40,14 @@ def _key(description: str, usual: Any = None, **limits: Any) -> Any:
 class RandomTable(JobTable):
     """A coefficient that is drawn: from a normal distribution, from values, or from what the measurements say."""
 
-    mean: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
-    deviation: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
-    values: Annotated[list[Annotated[float, Field(ge=0.0, le=1.0)]], Field(min_length=2)] | None = None
-    posterior: Literal[True] | None = None
-    count: Annotated[int, Field(ge=2, le=1_000_000)] | None = None
-    each: Literal["impact", "history"] = "impact"
-    times: str | float = 1.0
-    seed: Seed | None = None
+    mean: float | None = _key("mean of a normal distribution [-]", None, ge=0.0, le=1.0)
+    deviation: float | None = _key("its standard deviation [-]", None, gt=0.0, le=1.0)
+    values: Annotated[list[Annotated[float, Field(ge=0.0, le=1.0)]], Field(min_length=2)] | None = _key("a sample [-]")
+    posterior: Literal[True] | None = _key("what the published measurements say of the body")
+    count: int | None = _key("how many values are drawn from the posterior", None, ge=2, le=1_000_000)
+    each: Literal["impact", "history"] = _key("drawn anew for every impact, or once for a history", "impact")
+    times: str | float = _key("a model or a factor that the values multiply", 1.0)
+    seed: Seed | None = _key("seed of the draws; that of the campaign if not given")
 
     @model_validator(mode="after")
     def _one_distribution(self) -> "RandomTable":
@@ -66,13 +66,15 @@ class RandomTable(JobTable):
 class RestitutionTable(JobTable):
     """What an impact costs."""
 
-    model: Words | None = None
-    models: Annotated[list[Words], Field(min_length=1)] | None = None
-    value: Annotated[float, Field(ge=0.0, le=10.0)] | None = None
-    values: Annotated[list[Annotated[float, Field(ge=0.0, le=10.0)]], Field(min_length=1)] | None = None
-    left: Annotated[float, Field(ge=0.0, le=10.0)] | None = None
-    right: Annotated[float, Field(ge=0.0, le=10.0)] | None = None
-    distribution: RandomTable | None = None
+    model: Words | None = _key("a model as in rocking models, or my_file.py:MyModel")
+    models: Annotated[list[Words], Field(min_length=1)] | None = _key("several, to compare; the first is the answer")
+    value: float | None = _key("a coefficient, velocity after over before [-]", None, ge=0.0, le=10.0)
+    values: Annotated[list[Annotated[float, Field(ge=0.0, le=10.0)]], Field(min_length=1)] | None = _key(
+        "several coefficients [-]"
+    )
+    left: float | None = _key("coefficient of impacts onto the left foot [-]", None, ge=0.0, le=10.0)
+    right: float | None = _key("coefficient of impacts onto the right foot [-]", None, ge=0.0, le=10.0)
+    distribution: RandomTable | None = _key("a coefficient that is drawn: mean and deviation, values, or posterior")
 
     @model_validator(mode="after")
     def _one_choice(self) -> "RestitutionTable":
@@ -89,11 +91,11 @@ class RestitutionTable(JobTable):
 class CampaignTable(JobTable):
     """What the campaign is called and what it computes."""
 
-    name: Words
-    kind: Kind
-    note: str | None = None
-    chunk: Annotated[int, Field(ge=1, le=1 << 22)] | None = None
-    seed: Seed = 0
+    name: Words = _key("what it is called", ...)
+    kind: Kind = _key("which study", ...)
+    note: str | None = _key("anything")
+    chunk: int | None = _key("histories that are kept together", None, ge=1, le=1 << 22)
+    seed: Seed = _key("seed of what is drawn", 0)
 
 
 class MotionKeys(JobTable):
@@ -142,7 +144,7 @@ class MotionTable(MotionKeys):
 class AxisTable(Values):
     """An axis of a map."""
 
-    axis: Words
+    axis: Words = _key("what changes along it: frequency_ratio, pga, semi_diagonal and more", ...)
 
 
 class MapTable(JobTable):
@@ -175,20 +177,22 @@ class MinimumTable(JobTable):
 class ThresholdsTable(JobTable):
     """Where one light ends and the next begins; what is left out is as in every report."""
 
-    rocking: float | None = None
-    overturning_green: float | None = None
-    overturning_red: float | None = None
-    level: float | None = None
+    rocking: float | None = _key(
+        "rotation over the slenderness angle that most motions may reach where it is green [-]"
+    )
+    overturning_green: float | None = _key("share of motions that may overturn it where it is green [-]")
+    overturning_red: float | None = _key("share of motions from which on it is red [-]")
+    level: float | None = _key("confidence of the shares' intervals [-]")
 
 
 class InventoryTable(JobTable):
     """A list of objects, and how strong the shaking is: a number with its unit, such as 0.3g."""
 
-    objects: Words
-    encoding: Words = "utf-8-sig"
-    pga: Words | None = None
-    pgv: Words | None = None
-    thresholds: ThresholdsTable = ThresholdsTable()
+    objects: Words = _key("CSV file with the columns name, width_cm, depth_cm, height_cm and more", ...)
+    encoding: Words = _key("encoding of the CSV file; cp1252 for some spreadsheets", "utf-8-sig")
+    pga: Words | None = _key("peak ground acceleration of every motion: 0.3g, 2.9m/s2")
+    pgv: Words | None = _key("peak ground velocity in its place: 25cm/s, 0.25m/s")
+    thresholds: ThresholdsTable = _key("where one light ends and the next begins", ThresholdsTable())
 
     @model_validator(mode="after")
     def _one_level(self) -> "InventoryTable":
@@ -200,10 +204,10 @@ class InventoryTable(JobTable):
 class ExportTable(JobTable):
     """How files are written, how often a study is repeated for intervals, and which measures are compared."""
 
-    crossing: Literal["refuse", "common-dispersion"] = "refuse"
-    bootstrap: Annotated[int, Field(ge=99, le=100_000)] | Literal[0] = 0
-    measures: Annotated[list[Words], Field(min_length=1)] | None = None
-    columns: list[Words] | None = None
+    crossing: Literal["refuse", "common-dispersion"] = _key("what becomes of curves that cross", "refuse")
+    bootstrap: Annotated[int, Field(ge=99, le=100_000)] | Literal[0] = _key("how often a study is repeated", 0)
+    measures: Annotated[list[Words], Field(min_length=1)] | None = _key("measures of intensity that are compared")
+    columns: list[Words] | None = _key("columns of the comparison")
 
 
 class SpectrumTable(JobTable):
@@ -349,11 +353,14 @@ class OneMotionTable(MotionKeys):
 
     @model_validator(mode="after")
     def _whole(self) -> "OneMotionTable":
+        self._check_sources()
+        return self
+
+    def _check_sources(self) -> None:
         own = {"seed", "member", "pga", "pgv", "time_step", "scale"}
         self._one_source({"pulse": {"scale"}, "record": _OF_FILES, "synthetic": own})
         if self.pga is not None and self.pgv is not None:
             raise refused("motions can be scaled to pga or to pgv, not to both")
-        return self
 
 
 class ComponentsTable(OneMotionTable):
@@ -369,15 +376,13 @@ class ComponentsTable(OneMotionTable):
         along = {"x": self.x, "y": self.y, "z": self.z}
         return {axis: table for axis, table in along.items() if table is not None}
 
-    @model_validator(mode="after")
-    def _whole(self) -> "ComponentsTable":
+    def _check_sources(self) -> None:
         if not self.components:
-            super()._whole()
-        elif odd := sorted(self.model_fields_set - {"x", "y", "z"}):
+            super()._check_sources()
+        elif odd := sorted(self.model_fields_set - {"x", "y", "z", "scale"}):
             raise refused(f"{', '.join(odd)} stands with each of the motions along x, y and z")
         elif self.x is not None and self.z is not None and (self.x.vertical or self.x.vertical_file):
             raise refused("the vertical motion is given twice: beside the one along x, and along z")
-        return self
 
 
 class ResponseTables(JobTable):

@@ -86,6 +86,14 @@ class InputFiles:
         return [{"path": f.path, "sha256": f.sha256, "bytes": f.size} for _, f in sorted(self.files.items())]
 
 
+class CommandFiles(InputFiles):
+    """The files that a command names: whoever reads one says what is wrong with it, and none is hashed."""
+
+    def file(self, name: str) -> Path:
+        """Return the path of a file."""
+        return self.folder / name
+
+
 def refuse_changes(before: list[dict[str, Any]], now: list[dict[str, Any]]) -> None:
     """Refuse files that are not what they were when the campaign began."""
     was, found = ({item["path"]: item for item in items} for items in (before, now))
@@ -147,18 +155,23 @@ def document_of(text: str) -> "CampaignDocument":
 
 def validated(kind: "type[_Kind]", text: str) -> "_Kind":
     """Return the tables of a text, checked for themselves."""
+    try:
+        tables = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InvalidValueError(f"is not TOML: {error}") from error
+    except (ValueError, RecursionError) as error:
+        raise InvalidValueError(f"is not TOML that can be read: {str(error).partition(';')[0]}") from error
+    return checked(kind, tables)
+
+
+def checked(kind: "type[_Kind]", tables: dict[str, Any]) -> "_Kind":
+    """Return tables, checked for themselves; what is wrong with them is said in one sentence."""
     from pydantic import ValidationError
 
     from rocking.bodies.formats.words import sentence
 
     try:
-        given = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InvalidValueError(f"is not TOML: {error}") from error
-    except (ValueError, RecursionError) as error:
-        raise InvalidValueError(f"is not TOML that can be read: {str(error).partition(';')[0]}") from error
-    try:
-        return kind.model_validate(given)
+        return kind.model_validate(tables)
     except ValidationError as error:
         raise InvalidValueError(_nearest(sentence(error, None), error.errors(include_url=False)[0])) from error
 
@@ -180,14 +193,16 @@ def _nearest(words: str, problem: object) -> str:
     return f"{head}; did you mean {near[0]}?{mark}{tail}" if near else words
 
 
-def is_response(path: Path) -> bool:
-    """Return whether a file describes a response rather than a body: it has a table [response].
-
-    Returns false for everything that cannot be read as TOML; never raises.
-    """
+def tables_in(path: Path) -> dict[str, Any] | None:
+    """Return the tables of a TOML file, unchecked; None for everything else. Never raises."""
     if path.suffix.lower() != ".toml":
-        return False
+        return None
     try:
-        return "response" in tomllib.loads(read_text(path))
+        return tomllib.loads(read_text(path))
     except (InvalidValueError, ValueError, RecursionError):
-        return False
+        return None
+
+
+def is_response(path: Path) -> bool:
+    """Return whether a file describes a response rather than a body: it has a table [response]. Never raises."""
+    return "response" in (tables_in(path) or {})

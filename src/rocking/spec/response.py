@@ -31,7 +31,7 @@ class ResponseProblem:
     """Everything that a response depends on."""
 
     body: Any  # a plane body, or a `Solid`
-    motion: Motion | dict[str, Motion] | None  # not scaled; by axis for a body in space, None for free rocking
+    motion: Any  # not scaled; by axis for a body in space, None for free rocking
     restitutions: dict[str, Any] = field(default_factory=lambda: {"ked": "ked"})  # by label, as `simulate` takes them
     settings: Settings = field(default_factory=Settings)  # how to integrate
     engine: str = "auto"
@@ -62,7 +62,7 @@ class ResponseProblem:
         if self.free is None:
             return 0.0
         side = self.body.side("right" if self.free > 0.0 else "left", self.settings.gravity)
-        return self.free * side.slenderness_angle
+        return float(self.free * side.slenderness_angle)
 
     def answer(self, restitution: Any = ...) -> Any:
         """Return the response with one restitution, the first if none is given."""
@@ -79,10 +79,13 @@ class ResponseProblem:
             return simulate(self.body, self.motion, law, scale=self.scale, **options)
 
 
-def problem_of(tables: "ResponseTables", body: Any, motion: Any, *, scale: float | None = None) -> ResponseProblem:
+def problem_of(
+    tables: "ResponseTables", body: Any, motion: Any, *, scale: float | None = None, inputs: InputFiles | None = None
+) -> ResponseProblem:
     """Return the problem that tables describe, with the body and the motion that have been made.
 
-    scale: factor on the motion; what the tables say of their motion if not given [-].
+    scale: factor on the motion; what the tables say of their motion if not given [-]; inputs: files that may hold
+    models of the user's own, none where no file may be named.
     """
     table, start = getattr(tables, "motion", None), tables.response
     mechanics = "rocking" if start.friction is None else "contact"
@@ -98,7 +101,7 @@ def problem_of(tables: "ResponseTables", body: Any, motion: Any, *, scale: float
     return ResponseProblem(
         body,
         motion,
-        _restitutions(tables.restitution, mechanics, body),
+        _restitutions(tables.restitution, mechanics, body, inputs),
         settings,
         engine=tables.settings.engine,
         friction=start.friction,
@@ -115,11 +118,11 @@ def _refuse(reason: str, table: Any, keys: set[str]) -> None:
         raise InvalidValueError(f"{reason}, so it takes no {', '.join(stated)}")
 
 
-def _restitutions(table: "RestitutionTable", mechanics: str, body: Any) -> dict[str, Any]:
+def _restitutions(table: "RestitutionTable", mechanics: str, body: Any, inputs: InputFiles | None) -> dict[str, Any]:
     if mechanics == "contact" and table.model == COMPLEMENTARITY:
         return {COMPLEMENTARITY: None}
     if mechanics != "space":
-        return restitutions_of(table, 0, [body])
+        return restitutions_of(table, 0, [body], inputs)
     if table.distribution is not None or table.left is not None:
         raise InvalidValueError("restitution: a body in space takes model, models, value or values")
     texts = [*([] if table.model is None else [table.model]), *(table.models or [])]
@@ -163,15 +166,15 @@ class ResponseJob:
         return cls.of(validated(ResponseDocument, text), folder)
 
     @classmethod
-    def of(cls, document: "ResponseDocument", folder: str | os.PathLike[str]) -> "ResponseJob":
-        """Make what tables describe."""
-        inputs = InputFiles(Path(folder))
+    def of(cls, document: "ResponseDocument", files: str | os.PathLike[str] | InputFiles) -> "ResponseJob":
+        """Make what tables describe; files: those that they may name, or the folder of them."""
+        inputs = files if isinstance(files, InputFiles) else InputFiles(Path(files))
         with located("body"):
             body = any_body_of(document.body, inputs)
         motion = None
         if document.motion is not None:
             motion = _motion(document.motion, inputs, solid=isinstance(body, Solid))
-        return cls(document, problem_of(document, body, motion), inputs)
+        return cls(document, problem_of(document, body, motion, inputs=inputs), inputs)
 
 
 def _motion(table: "ComponentsTable", inputs: InputFiles, *, solid: bool) -> Any:

@@ -11,10 +11,11 @@ from rocking.errors import InvalidValueError
 from rocking.spec.construction import body_of, motions_of, restitutions_of
 from rocking.spec.reading import InputFiles, located
 from rocking.studies.axis import Axis, axis_of
-from rocking.studies.motion_sets import MotionSet
+from rocking.studies.motion_sets import MotionList, MotionSet
 
 if TYPE_CHECKING:
     from rocking.spec.document import CampaignDocument, MapTable
+    from rocking.studies.inventory import Hazard, Inventory, Thresholds
 
 
 @dataclass(frozen=True)
@@ -29,9 +30,9 @@ class StudyProblem:
     inputs: InputFiles  # the files that were read
 
     @classmethod
-    def of(cls, document: "CampaignDocument", folder: Path) -> "StudyProblem":
-        """Return what tables describe; the files that they name lie in a folder."""
-        inputs = InputFiles(folder)
+    def of(cls, document: "CampaignDocument", files: Path | InputFiles) -> "StudyProblem":
+        """Return what tables describe; files: those that they may name, or the folder of them."""
+        inputs = files if isinstance(files, InputFiles) else InputFiles(files)
         with located("settings"):
             settings = Settings(**document.settings.stated())
         bodies = []
@@ -48,6 +49,11 @@ class StudyProblem:
         return {**self.settings.stated, "engine": self.document.settings.engine}
 
     @property
+    def stated(self) -> dict[str, Any]:
+        """Settings that the document states, and engine."""
+        return {**self.document.settings.stated(), "engine": self.document.settings.engine}
+
+    @property
     def restitution(self) -> Any:
         """The first restitution."""
         return next(iter(self.restitutions.values()))
@@ -58,7 +64,7 @@ class StudyProblem:
         Returns what its function in `rocking.studies` does; with several restitutions a comparison of them.
         """
         compute = _ANSWERS[self.document.campaign.kind]
-        return compute(self, {**self.options, "threads": threads, "progress": progress})
+        return compute(self, {**self.stated, "threads": threads, "progress": progress})
 
     def only(self, things: str) -> Any:
         """Return the one body, motion or restitution of a study that takes no more."""
@@ -118,7 +124,8 @@ def _fragility(problem: StudyProblem, options: dict[str, Any]) -> Any:
 
     table, kind = problem.document.fragility or FragilityTable(), problem.document.campaign.kind
     options = {**options, "measure": table.measure, "states": tuple(table.states)}
-    subject = (problem.only("bodies"), problem.motions)
+    motions = MotionList([problem.motions[k] for k in range(len(problem.motions))])  # made once, for every level
+    subject = (problem.only("bodies"), motions)
     if kind == "cloud":
         factor = 1.0 if table.factor is None else table.factor
         return fragility.cloud(*subject, problem.only("restitutions"), factor=factor, **options)
@@ -128,11 +135,60 @@ def _fragility(problem: StudyProblem, options: dict[str, Any]) -> Any:
         if kind != "stripes":
             raise InvalidValueError(f"several restitutions are compared by stripes, not by {kind}")
         return fragility_sensitivity(*subject, levels, problem.restitutions, **options)
+    if kind == "incremental" and "tolerance" in options:
+        raise InvalidValueError("settings.tolerance cannot be changed in an incremental analysis; leave it out")
+    if table.tolerance is not None:
+        options["tolerance"] = table.tolerance
     study = fragility.multiple_stripe_analysis if kind == "stripes" else fragility.incremental_dynamic_analysis
     return study(*subject, levels, problem.restitution, **options)
+
+
+def inventory_of(
+    problem: StudyProblem,
+) -> "tuple[Inventory, Callable[[Callable[[int], None] | None], Hazard], Thresholds]":
+    """Return the objects of an inventory, what makes its motions, and where its lights change."""
+    from rocking.studies.inventory import Hazard, IntensityLevel, Thresholds, read_inventory
+    from rocking.studies.motion_sets import SyntheticSet
+
+    table, motions = problem.document.inventory, problem.motions
+    assert table is not None  # the document refuses to be without
+    if len(problem.restitutions) > 1:
+        raise InvalidValueError("restitution: an inventory takes one; that of Housner stands beside it")
+    try:
+        limits = Thresholds(**table.thresholds.model_dump(exclude_none=True))
+    except InvalidValueError as error:  # which begins with the key
+        raise InvalidValueError(f"inventory.thresholds.{error}") from error
+    with located("inventory"):
+        objects = read_inventory(problem.inputs.file(table.objects), table.encoding)
+        texts = {"PGA": table.pga, "PGV": table.pgv}
+        level = next((IntensityLevel.of(kind, text) for kind, text in texts.items() if text is not None), None)
+
+    def hazard(progress: Callable[[int], None] | None = None) -> Hazard:
+        with located("inventory"):
+            if isinstance(motions, SyntheticSet):
+                assert level is not None  # the document refuses to be without
+                return Hazard.of_family(
+                    motions.family, level, count=motions.count, seed=motions.seed, progress=progress
+                )
+            records = [motions[k] for k in range(len(motions))]
+            return Hazard.of_records(records, level)  # type: ignore[arg-type]  # pulses are refused by the document
+
+    return objects, hazard, limits
+
+
+def _inventory(problem: StudyProblem, options: dict[str, Any]) -> Any:
+    from rocking.studies.inventory import assess
+
+    objects, hazard, limits = inventory_of(problem)
+    gravity, threads = problem.settings.gravity, options["threads"]
+    motions = hazard(options["progress"])
+    return assess(
+        objects, motions, restitution=problem.restitution, thresholds=limits, gravity=gravity, threads=threads
+    )
 
 
 _ANSWERS: dict[str, Callable[[StudyProblem, dict[str, Any]], Any]] = {
     "overturning-map": _map, "minimum-acceleration": _minimum, "rocking-spectrum": _spectrum,
     "stripes": _fragility, "incremental": _fragility, "cloud": _fragility,
+    "inventory": _inventory,
 }  # fmt: skip

@@ -127,7 +127,8 @@ def test_the_words_are_one_line_of_a_shell():
     assert words[0] == "rocking simulate response.toml"
     assert shlex.split(words[1]) == [
         "rocking", "simulate", "--width", "50.0", "--height", "200.0", "--units", "cm",
-        "--motion", "sine:amplitude=3,period=0.8", "--scale", "1.05", "--friction", "0.4", "--restitution", "ked",
+        "--motion", "sine:amplitude=3,period=0.8", "--scale", "1.05",
+        "--set", "response.assumed_friction=0.4", "--restitution", "ked",
     ]  # fmt: skip
 
 
@@ -136,7 +137,6 @@ def test_the_words_are_one_line_of_a_shell():
     [
         {"motion": {"synthetic": "pulse-like"}},
         {"restitution": {"left": 0.9, "right": 0.8}},
-        {"settings": {"order": 8}},
         {"body": {"units": "m", "trapezoid": {"base": 1.0, "top": 0.5, "height": 2.0}}},
     ],
 )

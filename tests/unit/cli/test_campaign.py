@@ -11,8 +11,7 @@ import pytest
 
 from rocking.campaigns.disk import FolderLock
 from rocking.campaigns.jobs import status_of
-from rocking.cli import application, main
-from rocking.cli.campaign import campaign
+from rocking.cli import main
 
 JOB = """
 [campaign]
@@ -32,33 +31,15 @@ y = {{ axis = "amplitude_ratio", from = 1, to = 9, count = 20 }}
 
 PROGRAM = """
 import sys
-from rocking.cli import application, main
-from rocking.cli.campaign import campaign
-made = application.application
-def with_campaign():
-    app = made()
-    if all(group.name != "campaign" for group in app.registered_groups):
-        app.add_typer(campaign, name="campaign")
-    return app
-application.application = with_campaign
+from rocking.cli import main
 if __name__ == "__main__":
     main(["campaign", *sys.argv[1:]])
 """
 
 
 @pytest.fixture
-def run(monkeypatch, capsys):
+def run(capsys):
     """Run the command as the shell does: exit code, what it printed, what it complained of."""
-    made = application.application
-
-    def with_campaign():
-        app = made()
-        if all(group.name != "campaign" for group in app.registered_groups):
-            app.add_typer(campaign, name="campaign")
-        return app
-
-    monkeypatch.setattr(application, "application", with_campaign)
-
     def call(*words):
         with pytest.raises(SystemExit) as left:
             main(["campaign", *(str(word) for word in words)])
@@ -124,10 +105,10 @@ def test_run_status_resume_export(run, job, tmp_path):
     assert (told["complete"], told["computed_chunks"], told["resumed_chunks"]) == (True, 0, 6)
     code, out, _ = run("status", folder, "--json")
     assert (code, list(json.loads(out))) == (0, STATUS)
-    code, out, _ = run("export", folder, "--to", tmp_path / "r.csv", "--json")
+    code, out, _ = run("export", folder, "--out", tmp_path / "r.csv", "--json")
     assert (code, list(json.loads(out))) == (0, ["file", "what", "histories", "bytes", "sha256"])
     assert len((tmp_path / "r.csv").read_text().splitlines()) == 601
-    code, out, _ = run("export", folder, "--to", tmp_path / "r.mat")
+    code, out, _ = run("export", folder, "--out", tmp_path / "r.mat")
     assert (code, "wrote" in out) == (0, True)
 
 
@@ -136,7 +117,7 @@ def test_processes(run, job, tmp_path):
     assert run("run", job(), "--out", tmp_path / "a", "--executor", "processes", "--workers", 2)[0] == 0
     assert run("run", job(), "--out", tmp_path / "b")[0] == 0
     for name in "ab":
-        assert run("export", tmp_path / name, "--to", tmp_path / f"{name}.csv")[0] == 0
+        assert run("export", tmp_path / name, "--out", tmp_path / f"{name}.csv")[0] == 0
     assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
 
 
@@ -156,7 +137,7 @@ def test_processes(run, job, tmp_path):
         (("run", "{job}"), "out"),
         (("status", "{used}"), "no campaign of a job file here"),
         (("resume", "{used}"), "no campaign of a job file here"),
-        (("export", "{used}", "--to", "r.nc"), "no campaign of a job file here"),
+        (("export", "{used}", "--out", "r.nc"), "no campaign of a job file here"),
         (("stop",), "stop"),
     ],
 )
@@ -209,7 +190,7 @@ def test_half_done(run, job, tmp_path):
     assert code == 0
     assert "100 of 600 histories (1 of 6 chunks)" in out
     assert "rocking campaign resume" in out
-    code, _, err = run("export", folder, "--to", tmp_path / "r.nc")
+    code, _, err = run("export", folder, "--out", tmp_path / "r.nc")
     assert code == 2
     assert err.startswith("rocking: nothing to export because 1 of 6 chunks")
     code, out, _ = run("resume", folder, "--json")
@@ -291,7 +272,7 @@ def test_damaged_ledger_is_told_and_mended(run, job, tmp_path):
     assert (code, "ledger.sqlite is damaged" in out, err) == (6, True, "")
     assert out.endswith(f"go on with: rocking campaign resume {folder}\n")
     assert json.loads(run("verify", folder, "--json")[1])["whole"] is False
-    for words in (("status", folder), ("export", folder, "--to", tmp_path / "r.csv")):
+    for words in (("status", folder), ("export", folder, "--out", tmp_path / "r.csv")):
         code, _, err = run(*words)
         assert (code, "run the campaign again: its shards make it anew" in err, len(err.splitlines())) == (6, True, 1)
     code, out, _ = run("resume", folder)
@@ -371,7 +352,7 @@ def test_run_on_a_cluster(run, job, tmp_path):
         assert run("run", path, "--out", tmp_path / "a", *there)[0] == 0
     assert run("run", path, "--out", tmp_path / "b")[0] == 0
     for name in "ab":
-        assert run("export", tmp_path / name, "--to", tmp_path / f"{name}.csv")[0] == 0
+        assert run("export", tmp_path / name, "--out", tmp_path / f"{name}.csv")[0] == 0
     assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
 
 
@@ -424,7 +405,7 @@ def test_kill_resume_export(run, job, tmp_path):
     """SIGKILL in the middle, resume, then SIGINT, resume: the file is byte for byte that of an undisturbed run."""
     path = job(columns=6000, chunk=500)
     assert run("run", path, "--out", tmp_path / "whole")[0] == 0
-    assert run("export", tmp_path / "whole", "--to", tmp_path / "whole.nc")[0] == 0
+    assert run("export", tmp_path / "whole", "--out", tmp_path / "whole.nc")[0] == 0
     folder = tmp_path / "c"
     process = started(tmp_path, "run", path, "--out", folder, "--workers", 1)
     wait_for(folder, 3)
@@ -442,7 +423,7 @@ def test_kill_resume_export(run, job, tmp_path):
     assert len(err.splitlines()) == 1
     code, out, _ = run("resume", folder, "--json")
     assert (code, json.loads(out)["resumed_chunks"] >= before + 3) == (0, True)
-    assert run("export", folder, "--to", tmp_path / "r.nc")[0] == 0
+    assert run("export", folder, "--out", tmp_path / "r.nc")[0] == 0
     assert (tmp_path / "r.nc").read_bytes() == (tmp_path / "whole.nc").read_bytes()
 
 

@@ -40,7 +40,7 @@ def made(run, tmp_path, models='["ked"]'):
 def test_export(run, tmp_path):
     """The file has the numbers of the Python call to the last bit; JSON says what was written."""
     made(run, tmp_path)
-    code, out, _ = run("export", "c", "--to", "m.csv", "--what", "measures")
+    code, out, _ = run("export", "c", "--out", "measures=m.csv")
     assert (code, "measures of 30 histories" in out.replace("\n", " ")) == (0, True)
     with (tmp_path / "m.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -56,20 +56,20 @@ def test_export(run, tmp_path):
         assert [float(row[name]) for row in rows] == [getattr(score, name) for score in wanted.scores]
     told = [float(row["p(magnitude)"]) for row in rows]
     assert told == [score.sufficiency["magnitude"] for score in wanted.scores]
-    code, out, _ = run("export", "c", "--to", "m.nc", "--what", "measures", "--json")
+    code, out, _ = run("export", "c", "--out", "measures=m.nc", "--json")
     assert (code, json.loads(out)["what"]) == (0, "measures")
 
 
 def test_which_restitution(run, tmp_path):
     """Two restitutions: each has its own, chosen by --restitution; without it nothing is written."""
     made(run, tmp_path, '["housner", "ked"]')
-    code, _, error = run("export", "c", "--to", "m.csv", "--what", "measures")
+    code, _, error = run("export", "c", "--out", "measures=m.csv")
     assert code != 0
     assert "restitution must be one of housner, ked" in error.replace("\n", " ")
     assert not (tmp_path / "m.csv").exists()
     texts = []
     for label in ("housner", "ked"):
-        assert run("export", "c", "--to", f"{label}.csv", "--what", "measures", "--restitution", label)[0] == 0
+        assert run("export", "c", "--out", f"measures={label}.csv", "--restitution", label)[0] == 0
         texts.append((tmp_path / f"{label}.csv").read_text(encoding="utf-8"))
     assert texts[0] != texts[1]
 
@@ -79,6 +79,6 @@ def test_nothing_to_export(run, tmp_path):
     text = HEAD.replace('"cloud"', '"histories"') + MOTIONS.format(models='["ked"]')
     (tmp_path / "job.toml").write_text(text, encoding="utf-8")
     assert run("run", "job.toml", "--out", "c")[0] == 0
-    code, _, error = run("export", "c", "--to", "m.csv", "--what", "measures")
+    code, _, error = run("export", "c", "--out", "measures=m.csv")
     assert code != 0
     assert 'nothing to export because a campaign of kind "histories" has no measures' in error.replace("\n", " ")

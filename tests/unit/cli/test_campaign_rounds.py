@@ -71,23 +71,23 @@ def test_rounds_in_words_and_in_json(run, tmp_path):
     assert told["histories"] == json.loads((tmp_path / "c" / "finished.json").read_text())["histories"]
     (tmp_path / "c" / "finished.json").unlink()
     assert f"round {rounds} has begun, how many follow is not known" in run("campaign", "status", "c")[1]
-    code, _, err = run("campaign", "export", "c", "--to", "r.csv", "--what", "boundary")
+    code, _, err = run("campaign", "export", "c", "--out", "boundary=r.csv")
     assert code == 2
     assert "go on with: rocking campaign resume c" in err
     assert run("campaign", "resume", "c", "--workers", "1")[0] == 0
-    code, out, _ = run("campaign", "export", "c", "--to", "r.csv", "--what", "boundary")
+    code, out, _ = run("campaign", "export", "c", "--out", "boundary=r.csv")
     assert code == 0
     assert f"boundary of {told['histories']} histories in {rounds} rounds" in out
     provenance = json.loads((tmp_path / "r.csv.provenance.json").read_text())
     assert (provenance["rounds"], provenance["all_histories"]) == (rounds, told["histories"])
-    code, out, _ = run("campaign", "export", "c", "--to", "h.csv", "--what", "histories")
+    code, out, _ = run("campaign", "export", "c", "--out", "histories=h.csv")
     lines = (tmp_path / "h.csv").read_text().splitlines()
     assert f"9 histories of the first round, of {told['histories']} in all rounds" in out
-    found = json.loads(run("campaign", "export", "c", "--to", "h.csv", "--what", "histories", "--json")[1])
+    found = json.loads(run("campaign", "export", "c", "--out", "histories=h.csv", "--json")[1])
     assert found["histories"] == len(lines) - 1 == 9
     assert (found["rounds"], found["all_histories"]) == (rounds, told["histories"])
-    code, _, err = run("campaign", "export", "c", "--to", "r.nc", "--what", "refined")
-    assert (code, "--what histories) holds points and polylines" in err.replace("\n", " ")) == (2, True)
+    code, _, err = run("campaign", "export", "c", "--out", "refined=r.nc")
+    assert (code, "--out histories=FILE.nc) holds points and polylines" in err.replace("\n", " ")) == (2, True)
 
 
 def test_stopped_while_the_job_is_read(run, tmp_path, monkeypatch):
@@ -125,7 +125,7 @@ def test_reports_on_a_full_disk(run, tmp_path, monkeypatch, target):
     before = set(tmp_path.iterdir())
     for name in real:
         monkeypatch.setattr(pathlib.Path, name, full(name))
-    code, out, err = run("campaign", "export", "c", "--to", target)
+    code, out, err = run("campaign", "export", "c", "--out", target)
     words = err.replace("\n", " ")
     assert (code, out) == (4, "")
     assert f"cannot write {target}" in words
@@ -150,12 +150,12 @@ def test_inventory_is_that_of_the_other_command(run, tmp_path):
     assert run("inventory", "objects.csv", *shaking, "--out", "wanted")[0] == 0
     assert run("campaign", "run", "inventory.toml", "--out", "c")[0] == 0
     for suffix in (".csv", ".json", ".html"):
-        code, out, _ = run("campaign", "export", "c", "--to", f"found{suffix}")
+        code, out, _ = run("campaign", "export", "c", "--out", f"found{suffix}")
         assert (code, "report of" in out) == (0, True)
         assert (tmp_path / f"found{suffix}").read_bytes() == (tmp_path / "wanted" / f"inventory{suffix}").read_bytes()
         told = json.loads((tmp_path / f"found{suffix}.provenance.json").read_text())
         assert [each["path"] for each in told["inputs"]] == ["objects.csv"]
-    told = json.loads(run("campaign", "export", "c", "--to", "all", "--json")[1])
+    told = json.loads(run("campaign", "export", "c", "--out", "all", "--json")[1])
     assert [each["what"] for each in told] == ["report"] * len(told)
     names = {path.name for path in (tmp_path / "wanted").iterdir()}
     assert {path.name for path in (tmp_path / "all").iterdir()} == names | {"inventory.provenance.json"}
@@ -164,10 +164,10 @@ def test_inventory_is_that_of_the_other_command(run, tmp_path):
 @pytest.mark.parametrize(
     ("words", "wanted"),
     [
-        (("--to", "r.txt"), "an inventory can be written as .html, .pdf, .xlsx, .csv, .json, got '.txt'"),
-        (("--to", "r.csv", "--what", "boundary"), 'a campaign of kind "inventory" has no boundary'),
-        (("--to", "r.html", "--crossing", "refuse"), "without restitution and crossing"),
-        (("--to", "missing/r.html"), "cannot write missing/r.html"),
+        (("--out", "r.txt"), "an inventory can be written as .html, .pdf, .xlsx, .csv, .json, got '.txt'"),
+        (("--out", "boundary=r.csv"), 'a campaign of kind "inventory" has no boundary'),
+        (("--out", "r.html", "--crossing", "refuse"), "without restitution and crossing"),
+        (("--out", "missing/r.html"), "cannot write missing/r.html"),
     ],
 )
 def test_refusals_of_export(run, tmp_path, words, wanted):

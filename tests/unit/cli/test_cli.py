@@ -34,7 +34,7 @@ def test_cor_json_and_csv(capsys, tmp_path):
     """JSON and CSV hold the same numbers as each other, for both feet of an asymmetric body."""
     path = tmp_path / "cor.csv"
     statue = ROOT / "examples" / "bodies" / "statue_on_pedestal.toml"
-    code, out, _ = run(capsys, "cor", statue, "--json", "--csv", path)
+    code, out, _ = run(capsys, "cor", statue, "--json", "--out", path)
     answer = json.loads(out)
     assert code == 0
     assert set(answer["coefficients"]) == {"left", "right"}
@@ -55,8 +55,8 @@ def test_cor_options(capsys, tmp_path):
         encoding="utf-8",
     )
     picture = tmp_path / "body.svg"
-    words = ["--model", f"{own}:Mine", "--model", "ked", "--identities", "--eta", "0.9", "--picture", picture]
-    words += ["--stages", tmp_path / "stages.png"]
+    words = ["--restitution", f"{own}:Mine", "--restitution", "ked", "--identities", "--eta", "0.9", "--out", picture]
+    words += ["--out", f"stages={tmp_path / 'stages.png'}"]
     code, out, err = run(capsys, "cor", "--width", 100, "--height", 400, "--units", "cm", "--onto", "left", *words)
     assert (code, err) == (0, "")
     assert "0.450000" in out
@@ -65,26 +65,45 @@ def test_cor_options(capsys, tmp_path):
     assert "94.1 % stage 1" in out  # cos^2 alpha at h/b = 4 is 16/17
     assert (tmp_path / "stages.png").stat().st_size > 10_000
     assert picture.read_text(encoding="utf-8").startswith("<?xml")
-    code, out, _ = run(capsys, "cor", "--angle", 0.2449786631, "--semi-diagonal", 2, "--model", "housner", "--json")
+    code, out, _ = run(
+        capsys,
+        "cor",
+        "--set",
+        "body.slenderness_angle=0.2449786631",
+        "--set",
+        "body.semi_diagonal=2",
+        "--restitution",
+        "housner",
+        "--json",
+    )
     assert json.loads(out)["body"]["sides"]["left"]["slenderness_ratio"] == pytest.approx(4.0)
 
 
 REFUSED = {
-    "negative": (["cor", "--width", "-1", "--height", "4"], "width must be > 0 m, got -1"),
-    "zero": (["cor", "--width", "0", "--height", "4"], "width must be > 0 m, got 0"),
-    "nan": (["cor", "--width", "nan", "--height", "4"], "width must be finite"),
-    "degrees": (["cor", "--angle", "20", "--semi-diagonal", "1"], r"(0, pi/2) rad, got 20; degrees?"),
+    "negative": (["cor", "--width", "-1", "--height", "4"], "--width must be a number > 0 [m], got -1"),
+    "zero": (["cor", "--width", "0", "--height", "4"], "--width must be a number > 0 [m], got 0"),
+    "nan": (["cor", "--width", "nan", "--height", "4"], "--width must be a finite number [m]"),
+    "degrees": (
+        ["cor", "--set", "body.slenderness_angle=20", "--set", "body.semi_diagonal=1"],
+        r"(0, pi/2) rad, got 20; degrees?",
+    ),
     "half a block": (["cor", "--width", "1"], "--width and --height"),
     "nothing": (["cor"], "got none of them"),
     "both": (["cor", "x.toml", "--width", "1"], "not both"),
-    "unknown model": (["cor", "--width", "1", "--height", "4", "--model", "kde"], "no restitution model named 'kde'"),
+    "unknown model": (
+        ["cor", "--width", "1", "--height", "4", "--restitution", "kde"],
+        "no restitution model named 'kde'",
+    ),
     "unknown unit": (["cor", "--width", "1", "--height", "4", "--units", "gal"], "one of m, cm, mm, ft, in"),
     "missing file": (["cor", "missing.toml"], "missing.toml: there is no such file"),
     "eta": (["cor", "--width", "1", "--height", "4", "--eta", "1.5"], "eta must be in (0, 1]"),
     "onto": (["cor", "--width", "1", "--height", "4", "--onto", "up"], 'onto must be "left"'),
-    "gravity": (["cor", "--width", "1", "--height", "4", "--gravity", "0"], "gravity must be > 0"),
-    "picture": (["cor", "--width", "1", "--height", "4", "--picture", "a.bmp"], ".png, .svg or .pdf"),
-    "own file": (["cor", "--width", "1", "--height", "4", "--model", "no.py:X"], "no file no.py"),
+    "gravity": (
+        ["cor", "--width", "1", "--height", "4", "--set", "settings.gravity=0"],
+        "settings.gravity must be a number > 0",
+    ),
+    "picture": (["cor", "--width", "1", "--height", "4", "--out", "a.bmp"], ".png, .svg or .pdf"),
+    "own file": (["cor", "--width", "1", "--height", "4", "--restitution", "no.py:X"], "no file no.py"),
     "models": (["models", "kde"], "no restitution model named 'kde'"),
 }
 
@@ -105,7 +124,7 @@ def test_own_file_that_fails_is_one_sentence(capsys, tmp_path):
     for content, words in (("1/0", "ZeroDivisionError"), ("x = 1", "has no restitution model")):
         path = tmp_path / "mine.py"
         path.write_text(content, encoding="utf-8")
-        code, _, err = run(capsys, "cor", "--width", 1, "--height", 4, "--model", f"{path}:Mine")
+        code, _, err = run(capsys, "cor", "--width", 1, "--height", 4, "--restitution", f"{path}:Mine")
         assert code == 2
         assert words in err
 

@@ -57,7 +57,7 @@ def test_its_gravity_holds_unless_another_is_given(capsys, tmp_path):
     """The settings of the file say the gravity; the option says it over them; nothing need move the body yet."""
     path = tmp_path / "moon.toml"
     path.write_text(f"[response]\n{BODY}[settings]\ngravity = 1.62\n")
-    for words, gravity in (((), 1.62), (("--gravity", 3.7), 3.7)):
+    for words, gravity in (((), 1.62), (("--set", "settings.gravity=3.7"), 3.7)):
         answer = json.loads(run(capsys, "cor", path, "--json", *words)[1])
         assert answer["body"]["gravity_m_s2"] == gravity
 

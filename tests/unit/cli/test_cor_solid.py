@@ -98,7 +98,7 @@ def test_round_base(capsys, file):
         assert edge["frequency_parameter_rad_s"] == pytest.approx(
             math.sqrt(G * math.hypot(0.5, 1.0) / (0.25 / 4.0 + 4.0 / 12.0 + 1.25)), rel=1e-12
         )  # I / m = R2 / 4 + H2 / 12 + R2 + H2 / 4
-    page = run(capsys, file(DRUM), "--model", "housner")[1]
+    page = run(capsys, file(DRUM), "--restitution", "housner")[1]
     assert "Directions it may be tipped in" in page
     assert "a circle of radius 0.5 m" in page
 
@@ -134,7 +134,9 @@ def test_edge_without_a_parallel_one_lands_on_a_corner(capsys, file):
 def test_options(capsys, file, tmp_path):
     """One model, another gravity, CSV and picture: what is printed is what is written."""
     path, table, picture = file(PRISM), tmp_path / "a.csv", tmp_path / "a.png"
-    code, out, err = run(capsys, path, "--model", "ked", "--gravity", "1.6", "--csv", table, "--picture", picture)
+    code, out, err = run(
+        capsys, path, "--restitution", "ked", "--set", "settings.gravity=1.6", "--out", table, "--out", picture
+    )
     assert (code, err) == (0, "")
     assert f"wrote {table}" in out
     assert "0.947367" in out
@@ -176,33 +178,36 @@ def test_bases_of_many_corners_keep_the_most_slender_edges(capsys, file):
     angle = 2.0 * math.pi * np.arange(40) / 40.0
     outline = np.column_stack([np.cos(angle), 0.5 * np.sin(angle)]).round(6).tolist()
     path = file(f'units = "m"\n[[solid.part]]\nextrusion = {{ outline = {outline}, height = 3.0 }}\n')
-    answer = answered(capsys, path, "--model", "housner")
+    answer = answered(capsys, path, "--restitution", "housner")
     assert (len(answer["edges"]), answer["edges_left_out"]) == (16, 24)
     assert all(abs(edge["from_m"][1]) > 0.35 for edge in answer["edges"])
-    assert "24 edges that are less slender are left out" in run(capsys, path, "--model", "housner")[1]
+    assert "24 edges that are less slender are left out" in run(capsys, path, "--restitution", "housner")[1]
 
 
 REFUSED = {
     "no unit": (["a.stl"], "a.stl: STL files do not state their unit; give --units, one of m, cm, mm, ft, in"),
     "unit": (["a.stl", "--units", "km"], "--units must be one of m, cm"),
     "wrong unit": (["a.stl", "--units", "m", "--density", "1"], "is that the file's unit?"),
-    "axis": (["a.stl", "--units", "mm", "--up", "x"], '--up must be "z" or "y"'),
-    "hole": (["hole.obj", "--units", "m"], "pass --fill-holes if together they are below 1 %"),
-    "large hole": (["hole.obj", "--units", "m", "--fill-holes"], "only up to 1 % is filled"),
+    "axis": (["a.stl", "--units", "mm", "--set", "body.up=x"], 'body.up must be "z" or "y"'),
+    "hole": (["hole.obj", "--units", "m"], "pass --set body.fill_holes=true if together they are below 1 %"),
+    "large hole": (["hole.obj", "--units", "m", "--set", "body.fill_holes=true"], "only up to 1 % is filled"),
     "empty": (["empty.ply", "--units", "m"], "empty.ply: "),
     "no file": (["none.stl", "--units", "m"], "none.stl: there is no such file"),
     "density nan": (["a.stl", "--units", "mm", "--density", "nan"], "density must be finite"),
-    "tolerance": (["a.stl", "--units", "mm", "--base-tolerance", "-1"], "--base-tolerance must be > 0 m"),
-    "size": (["a.stl", "--units", "mm", "--width", "1"], "it takes no --width"),
+    "tolerance": (["a.stl", "--units", "mm", "--set", "body.base_tolerance=-1"], "body.base_tolerance must be > 0 m"),
+    "size": (["a.stl", "--units", "mm", "--width", "1"], "give a body file or dimensions, not both"),
     "foot": (["a.stl", "--units", "mm", "--onto", "left"], "it takes no --onto"),
     "eta": (["a.stl", "--units", "mm", "--eta", "0.9"], "it takes no --eta"),
-    "stages": (["a.stl", "--units", "mm", "--identities", "--stages", "s.png"], "it takes no --identities, --stages"),
-    "model": (["a.stl", "--units", "mm", "--model", "best"], "no restitution model in space is called 'best'"),
-    "gravity": (["a.stl", "--units", "mm", "--gravity", "0"], "gravity must be > 0"),
-    "picture": (["a.stl", "--units", "mm", "--picture", "a.bmp"], ".png, .svg or .pdf"),
-    "folder": (["a.stl", "--units", "mm", "--csv", "none/a.csv"], "no folder"),
-    "plane": (["--width", "1", "--height", "2", "--up", "z"], "a plane body is no mesh, so it takes no --up"),
-    "options": (["body.toml", "--up", "z"], "states up itself"),
+    "stages": (
+        ["a.stl", "--units", "mm", "--identities", "--out", "stages=s.png"],
+        "it takes no --identities, --out stages=FILE",
+    ),
+    "model": (["a.stl", "--units", "mm", "--restitution", "best"], "no restitution model in space is called 'best'"),
+    "gravity": (["a.stl", "--units", "mm", "--set", "settings.gravity=0"], "settings.gravity must be a number > 0"),
+    "picture": (["a.stl", "--units", "mm", "--out", "a.bmp"], ".png, .svg or .pdf"),
+    "folder": (["a.stl", "--units", "mm", "--out", "none/a.csv"], "no folder"),
+    "plane": (["--width", "1", "--height", "2", "--set", "body.up=z"], "unknown key 'up'; allowed: density"),
+    "options": (["body.toml", "--set", "body.up=z"], "states up itself"),
     "bad toml": (["bad.toml"], "bad.toml: solid.part[0].box.width must be a number > 0 [m], got -1.0"),
 }
 

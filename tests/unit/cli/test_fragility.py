@@ -8,11 +8,9 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
-import typer
 
 import rocking as rk
-from rocking.cli import application, main
-from rocking.cli.fragility import fragility
+from rocking.cli import main
 from rocking.studies.fragility import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
 from rocking.studies.motion_sets import SyntheticSet
 
@@ -21,16 +19,7 @@ SIZE = ("--width", "0.25", "--height", "1.25")
 BLOCK = rk.Block(width=0.25, height=1.25)
 FAMILY = ("--synthetic", "point-source", "--count", "16", "--seed", "3")
 LEVELS = ("--levels", "0.1g:0.9g:9")
-SINES = [word for t in (0.5, 0.7) for word in ("--record", f"sine:amplitude=1,period={t}")]
-
-
-@pytest.fixture(autouse=True)
-def _alone(monkeypatch):
-    """Let `main` have this command alone."""
-    app = typer.Typer(pretty_exceptions_enable=False)
-    app.callback()(lambda: None)
-    app.command()(fragility)
-    monkeypatch.setattr(application, "application", lambda: app)
+SINES = [word for t in (0.5, 0.7) for word in ("--motion", f"sine:amplitude=1,period={t}")]
 
 
 def run(capsys, *words):
@@ -56,7 +45,7 @@ def motions():
 
 
 def test_motions_follow_the_body(capsys, tmp_path):
-    """Motions are words after the body, as of other commands; --record says the same, and dimensions need no body."""
+    """Motions are words after the body, as of other commands; --motion says the same, and dimensions need no body."""
     file = tmp_path / "body.wkt"
     file.write_text("POLYGON ((0 0, 250 0, 250 1250, 0 1250, 0 0))")
     pulses, levels = SINES[1::2], ("--levels", "0.2g,0.6g")
@@ -143,7 +132,9 @@ def test_resurrection_is_said(capsys):
     block = rk.Block(width=0.4, height=1.6)
     period = 2.0 * math.pi / (3.0 * block.frequency_parameter)
     unit = G * block.slenderness_angle
-    words = ("--width", "0.4", "--height", "1.6", "--record", f"sine:amplitude=1,period={period!r}", "--linear",
+    words = (
+        "--width", "0.4", "--height", "1.6", "--motion", f"sine:amplitude=1,period={period!r}",
+        "--set", "settings.linear=true",
              "--restitution", "0.9", "--analysis", "incremental",
              "--levels", f"{3.0 * unit!r},{3.4 * unit!r},{3.55 * unit!r},{4 * unit!r}")  # fmt: skip
     (result,) = told(capsys, *words)["results"]
@@ -171,7 +162,7 @@ def test_cloud(capsys, motions):
 def test_comparison(capsys, tmp_path):
     """Several restitutions give a result each, flips counted by hand, one table of counts."""
     path = tmp_path / "counts.csv"
-    words = (*SIZE, *FAMILY, *LEVELS, "--restitution", "0.95", "--restitution", "0.7", "--csv", path)
+    words = (*SIZE, *FAMILY, *LEVELS, "--restitution", "0.95", "--restitution", "0.7", "--out", path)
     answer = told(capsys, *words)
     first, second = (np.array(one["reached"]["overturned"]) for one in answer["results"])
     base, other = answer["comparison"]["choices"]
@@ -247,7 +238,7 @@ def test_every_file(capsys, tmp_path):
         ("picture", "svg"), ("csv", "csv"), ("p58", "p58.csv"), ("nrml", "xml"), ("excel", "xlsx"), ("mat", "mat"),
         ("netcdf", "nc"))}  # fmt: skip
     words = [part for kind, path in paths.items() for part in (f"--{kind}", path)]
-    words += ["--name", "vase & stand", "--common-dispersion"]
+    words += ["--name", "vase & stand", "--crossing", "common-dispersion"]
     code, out, err = run(capsys, *SIZE, *FAMILY, *LEVELS, *words)
     assert (code, err) == (0, "")
     assert [line[6:] for line in out.splitlines() if line.startswith("wrote ")] == [str(p) for p in paths.values()]
@@ -279,18 +270,18 @@ def test_curves_that_cross_are_no_file(capsys, tmp_path):
     curves = told(capsys, *SIZE, *FAMILY, *LEVELS)["results"][0]["curves"]
     least, worst = curves["rotation > 0.5 alpha"], curves["overturned"]
     assert worst["dispersion"] > 1.2 * least["dispersion"]
-    code, _, err = run(capsys, *SIZE, *FAMILY, *LEVELS, "--nrml", tmp_path / "n.xml")
+    code, _, err = run(capsys, *SIZE, *FAMILY, *LEVELS, "--out", tmp_path / "n.xml")
     assert code == 2
     assert err.startswith("rocking: curves must not cross")
-    assert "--common-dispersion fits one for all states" in err
+    assert "--crossing common-dispersion fits one for all states" in err
     assert list(tmp_path.iterdir()) == []
-    assert run(capsys, *SIZE, *FAMILY, *LEVELS, "--mat", tmp_path / "m.mat")[0] == 0
+    assert run(capsys, *SIZE, *FAMILY, *LEVELS, "--out", tmp_path / "m.mat")[0] == 0
 
 
 def test_counts_as_csv(capsys, tmp_path):
     """Counts at each level and the fitted probability, the lognormal distribution of median and dispersion."""
     path = tmp_path / "c.csv"
-    answer = told(capsys, *SIZE, *FAMILY, *LEVELS, "--csv", path)
+    answer = told(capsys, *SIZE, *FAMILY, *LEVELS, "--out", path)
     rows = list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
     assert [float(row["pga [m/s2]"]) for row in rows] == answer["levels"]
     curve = answer["results"][0]["curves"]["overturned"]
@@ -312,14 +303,14 @@ def test_pictures(capsys, tmp_path, analysis):
         "cloud": ("--analysis", "cloud", "--factor", "4"),
         "comparison": (*LEVELS, "--restitution", "ked", "--restitution", "0.8"),
     }[analysis]
-    assert run(capsys, *SIZE, *FAMILY, *words, "--picture", path)[0] == 0
+    assert run(capsys, *SIZE, *FAMILY, *words, "--out", path)[0] == 0
     assert path.read_bytes().startswith(b"\x89PNG")
 
 
 def test_nothing_to_export(capsys, tmp_path):
     """Where there is no curve the numbers are printed, then one sentence says why there is no file."""
     path = tmp_path / "n.xml"
-    code, out, err = run(capsys, *SIZE, *FAMILY, "--levels", "0.05g,0.1g", "--nrml", path)
+    code, out, err = run(capsys, *SIZE, *FAMILY, "--levels", "0.05g,0.1g", "--out", path)
     assert code == 2
     assert "Nothing failed" in out
     assert err.startswith("rocking: nothing to export: no state")
@@ -331,7 +322,7 @@ def test_nothing_to_export(capsys, tmp_path):
     [
         ((*SIZE, *LEVELS), "what shakes it?"),
         ((*FAMILY, *LEVELS), "a body is a file, or --width"),
-        ((*SIZE, *FAMILY, "--record", "sine:amplitude=1,period=1"), "is for synthetic motions"),
+        ((*SIZE, *FAMILY, "--motion", "sine:amplitude=1,period=1"), "is for synthetic motions"),
         ((*SIZE, *FAMILY, "--units", "g"), "--units is for record files"),
         ((*SIZE, "--synthetic", "lunar"), "family must be one of firm-ground"),
         ((*SIZE, "--synthetic", "point-source", "--count", "0"), r"--count must be in \[1, 5000\], got 0"),
@@ -357,20 +348,20 @@ def test_nothing_to_export(capsys, tmp_path):
             "several --restitution",
         ),
         ((*SIZE, *FAMILY, "--restitution", "1.5"), "restitution"),
-        ((*SIZE, *FAMILY, "--engine", "slow"), "--engine must be one of auto"),
-        ((*SIZE, *FAMILY, "--picture", "p.jpg"), "a picture is .png"),
-        ((*SIZE, *FAMILY, "--csv", "nowhere/c.csv"), "no folder 'nowhere'"),
-        ((*SIZE, *FAMILY, "--measure", "housner", "--levels", "1,2", "--nrml", "n.xml"), "OpenQuake knows pga"),
+        ((*SIZE, *FAMILY, "--set", "settings.engine=slow"), "settings.engine must be one of auto"),
+        ((*SIZE, *FAMILY, "--out", "p.jpg"), "a picture is .png"),
+        ((*SIZE, *FAMILY, "--out", "nowhere/c.csv"), "no folder 'nowhere'"),
+        ((*SIZE, *FAMILY, "--measure", "housner", "--levels", "1,2", "--out", "n.xml"), "OpenQuake knows pga"),
         (
-            (*SIZE, *FAMILY, "--restitution", "1", "--restitution", "ked", "--p58", "p.csv"),
+            (*SIZE, *FAMILY, "--restitution", "1", "--restitution", "ked", "--out", "p58=p.csv"),
             "curves of one --restitution",
         ),
         (
-            (*SIZE, *FAMILY, "--picture", "p.png", *(w for r in range(3, 10) for w in ("--restitution", f"0.{r}"))),
+            (*SIZE, *FAMILY, "--out", "p.png", *(w for r in range(3, 10) for w in ("--restitution", f"0.{r}"))),
             "a picture holds 6 --restitution at most, got 7",
         ),
-        ((*SIZE, "--record", "no_such_file.txt"), "no such file"),
-        ((*SIZE, "--record", "sine:amplitude=1"), "sine"),
+        ((*SIZE, "--motion", "no_such_file.txt"), "no such file"),
+        ((*SIZE, "--motion", "sine:amplitude=1"), "sine"),
     ],
 )
 def test_refusals(capsys, monkeypatch, tmp_path, words, why):

@@ -12,15 +12,13 @@ from rocking.cli.application import application
 COMMANDS = typer.main.get_command(application()).commands
 LENGTH = "[m, or --units]"
 SIZES = {
-    **dict.fromkeys(("--width", "--height", "--depth", "--semi-diagonal"), LENGTH),
+    **dict.fromkeys(("--width", "--height", "--depth"), LENGTH),
     "--density": "[kg/m3]",
-    "--angle": "[rad]",
-    "--gravity": "[m/s2]",
 }
 UNITS = {
     "cor": SIZES,
-    "simulate": {**SIZES, "--time-step": "[s]"},
-    "motion": {"--time-step": "[s]", "--periods": "[s]"},
+    "simulate": {**SIZES, "--friction": "[-]", "--scale": "[-]"},
+    "motion": {"--periods": "[s]"},
 }
 
 

@@ -76,7 +76,7 @@ def test_records_as_recorded_and_scaled(capsys, objects, record):
     """A record of 1 m/s2 does not lift the vase, g b / h = 1.29 m/s2; scaled to 0.14 g it does."""
     lifted = []
     for level in ([], ["--pga", "0.14g"]):
-        run(objects, "--record", record, "--units", "m/s2", *level, "--json")
+        run(objects, "--motion", record, "--units", "m/s2", *level, "--json")
         answer = json.loads(capsys.readouterr().out)
         vase = next(item for item in answer["objects"] if item["name"] == "tall vase")
         lifted.append(vase["directions"][0]["lifted"])
@@ -105,9 +105,9 @@ def test_report_is_written(capsys, objects, tmp_path):
         (("--pga", "0.3g", "--count", "2", "--seed", "-1"), InvalidValueError, "seed must be"),
         (("--pga", "0.3g", "--units", "g"), InvalidValueError, "--units is for record files"),
         (("--pga", "0.3g", "--restitution", "no-such"), UnknownModelError, "no-such"),
-        (("--record", "no-such.txt"), RecordError, "no such file"),
-        (("--record", "x", "--count", "3"), InvalidValueError, "--count is for synthetic motions"),
-        (("--record", "sine:amplitude=3,period=0.8"), InvalidValueError, "--record takes record files"),
+        (("--motion", "no-such.txt"), RecordError, "no such file"),
+        (("--motion", "x", "--count", "3"), InvalidValueError, "--count is for synthetic motions"),
+        (("--motion", "sine:amplitude=3,period=0.8"), InvalidValueError, "--motion takes record files"),
     ],
 )
 def test_refusals(objects, words, kind, sentence):

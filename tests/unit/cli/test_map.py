@@ -8,13 +8,12 @@ import sys
 
 import numpy as np
 import pytest
-import typer
 
 import rocking as rk
-from rocking.cli import application, main
-from rocking.cli import output as study_output
-from rocking.cli.map import map as map_command
-from rocking.cli.map_output import axis_from
+from rocking.cli import main
+from rocking.cli.page import bar
+from rocking.cli.study import map_tables
+from rocking.spec.document import AxisTable
 from rocking.studies._overturning_map import overturning_map
 from rocking.studies.islands import safe_islands
 from rocking.studies.sensitivity import map_sensitivity
@@ -26,15 +25,6 @@ AXES = ("--x", "frequency_ratio=1:7:13", "--y", "amplitude_ratio=1:10:19")
 BLOCK = rk.Block(width=0.5, height=2.0)
 SINE = rk.pulses.sine(amplitude=3.0, period=0.6)
 RATIOS = (("frequency_ratio", np.linspace(1, 7, 13)), ("amplitude_ratio", np.linspace(1, 10, 19)))
-
-
-@pytest.fixture(autouse=True)
-def _alone(monkeypatch):
-    """Let `main` have this command alone."""
-    app = typer.Typer(pretty_exceptions_enable=False)
-    app.callback()(lambda: None)
-    app.command("map")(map_command)
-    monkeypatch.setattr(application, "application", lambda: app)
 
 
 def run(capsys, *words):
@@ -66,7 +56,15 @@ def test_overturning_begins_at_the_closed_form(capsys):
     block = rk.Block.from_angle(0.2, 1.0)
     p, time = block.frequency_parameter, 0.5
     exact = 1.0 / (1.0 - math.exp(-p * time))
-    words = ("--angle", 0.2, "--semi-diagonal", 1, f"rectangular:amplitude=2,duration={time}", "--linear")
+    words = (
+        "--set",
+        "body.slenderness_angle=0.2",
+        "--set",
+        "body.semi_diagonal=1",
+        f"rectangular:amplitude=2,duration={time}",
+        "--set",
+        "settings.linear=true",
+    )
     axes = ("--x", "restitution=0.5,0.9", "--y", "amplitude_ratio=1:3:41")
     found = {}
     for levels in ((), ("--refine", 6)):
@@ -130,7 +128,7 @@ def test_several_restitutions(capsys, tmp_path):
         assert one["count"] == int((falls[0] != falls[1]).sum())
         assert one["share"] == one["count"] / (13 * 19)
     assert pairs["ked", "0.8"]["count"] > 0
-    code, out, _ = run(capsys, *words, "--csv", tmp_path / "a.csv", "--netcdf", tmp_path / "a.nc")
+    code, out, _ = run(capsys, *words, "--out", tmp_path / "a.csv", "--out", tmp_path / "a.nc")
     assert code == 0
     assert "The choice between ked and housner changes the verdict" in out
     with (tmp_path / "a.csv").open(newline="", encoding="utf-8") as file:
@@ -146,7 +144,7 @@ def test_several_restitutions(capsys, tmp_path):
 def test_files(capsys, tmp_path):
     """Picture, table and netCDF are written and named; the table holds all digits."""
     files = [tmp_path / name for name in ("a.png", "a.csv", "a.nc")]
-    options = [word for name, path in zip(("--picture", "--csv", "--netcdf"), files, strict=True)
+    options = [word for name, path in zip(("--out", "--out", "--out"), files, strict=True)
                for word in (name, path)]  # fmt: skip
     code, out, _ = run(capsys, *SIZE, PULSE, *AXES, "--refine", 2, *options)
     assert code == 0
@@ -176,7 +174,8 @@ def test_files(capsys, tmp_path):
 )
 def test_axis_words(word, values):
     """Ranges, lists, equal ratios and units give the values that they say."""
-    assert axis_from("--x", word)[0].values == pytest.approx(values, rel=1e-14)
+    table = AxisTable.model_validate(map_tables(word, word, None, typed=None)[0]["x"])
+    assert table.numbers() == pytest.approx(values, rel=1e-14)
 
 
 REFUSALS = [
@@ -202,12 +201,12 @@ REFUSALS = [
     (("--restitution", "ked", "--y", "restitution=0.5,0.9"), "leave the option out"),
     (("--refine", "0"), "--refine must be in"),
     (("--refine", "2", "--restitution", "ked", "--restitution", "0.9"), "--refine is for one"),
-    (("--picture", "a.gif"), "a picture is .png"),
-    (("--picture", "a.png", "--x", "frequency_ratio=2"), "at least two values"),
-    (("--csv", "no-such-folder/a.csv"), "no folder"),
-    (("--engine", "warp"), "--engine must be"),
+    (("--out", "a.gif"), "by its ending a file is a picture (.png"),
+    (("--out", "a.png", "--x", "frequency_ratio=2"), "at least two values"),
+    (("--out", "no-such-folder/a.csv"), "no folder"),
+    (("--set", "settings.engine=warp"), "settings.engine must be"),
     (("--threads", "0"), "--threads must be"),
-    (("--gravity", "-1"), "--gravity must be"),
+    (("--set", "settings.gravity=-1"), "settings.gravity must be"),
     (("--density", "-5"), "density"),
     (("--units", "g"), "a pulse takes no --units"),
     (("--no-such-option",), "No such option"),
@@ -230,7 +229,7 @@ def test_refusals(capsys, words, sentence):
         (SIZE, "what moves the ground?"),
         ((PULSE,), "what moves the ground?"),
         (("--width", "0.5", PULSE), "--width and --height"),
-        ((*SIZE, PULSE, "--motion", PULSE), "one motion and one body"),
+        ((*SIZE, PULSE, "--motion", PULSE), "one motion along x"),
         ((*SIZE, "no-such-file.txt"), "no such file"),
         (("no-such-body.toml", PULSE), "no-such-body.toml"),
         ((*SIZE, "sine:amplitude=3"), "period"),
@@ -254,7 +253,7 @@ def test_bar_on_a_terminal_only(monkeypatch):
     for kind, shown in ((Terminal, True), (io.StringIO, False)):
         stream = kind()
         monkeypatch.setattr(sys, "stderr", stream)
-        with study_output.bar("histories", 40) as tell:
+        with bar("histories", 40) as tell:
             tell(10)
             tell(30)
         assert ("40/40" in stream.getvalue()) == shown

@@ -6,26 +6,15 @@ import math
 
 import numpy as np
 import pytest
-import typer
 
 import rocking as rk
-from rocking.cli import application, main
-from rocking.cli.minimum import minimum
-from rocking.cli.minimum_output import sentence
+from rocking.cli import main
+from rocking.cli.minimum import stretches as sentence
 from rocking.studies.minimum_acceleration import Transitions, minimum_overturning_acceleration
 
 G = 9.80665
 SIZE = ("--width", "0.5", "--height", "2")
 PULSE = "sine:amplitude=3,period=0.8"
-
-
-@pytest.fixture(autouse=True)
-def _alone(monkeypatch):
-    """Let `main` have this command alone."""
-    app = typer.Typer(pretty_exceptions_enable=False)
-    app.callback()(lambda: None)
-    app.command()(minimum)
-    monkeypatch.setattr(application, "application", lambda: app)
 
 
 def run(capsys, *words):
@@ -63,19 +52,20 @@ def test_minimum_is_the_closed_form(capsys):
     """Under a constant acceleration the linear block overturns above g alpha / (1 - exp(-pT)), to 1e-10."""
     alpha, time = 0.2, 0.5
     p = math.sqrt(0.75 * G)
-    words = ("--angle", alpha, "--semi-diagonal", 1, f"rectangular:amplitude=1,duration={time}", "--linear", "--json")
+    body = ("--set", f"body.slenderness_angle={alpha}", "--set", "body.semi_diagonal=1")
+    words = (*body, f"rectangular:amplitude=1,duration={time}", "--set", "settings.linear=true", "--json")
     (crossing,) = json.loads(run(capsys, *words)[1])["crossings"]
     exact = G * alpha / (1.0 - math.exp(-p * time))
     assert crossing["acceleration_m_s2"] == pytest.approx(exact, rel=1e-10)
     assert (crossing["mode_below"], crossing["mode_above"]) == (-1, 0)
     # the full equations have another threshold
-    full = json.loads(run(capsys, *[word for word in words if word != "--linear"])[1])["crossings"][0]
+    full = json.loads(run(capsys, *words[:5], "--json")[1])["crossings"][0]
     assert full["acceleration_m_s2"] != pytest.approx(exact, rel=1e-4)
 
 
 def test_page_and_files(capsys, tmp_path):
     """The sentence, a line for each crossing with the modes on both sides, and files with all digits."""
-    files = ("--picture", tmp_path / "a.png", "--csv", tmp_path / "a.csv")
+    files = ("--out", tmp_path / "a.png", "--out", tmp_path / "a.csv")
     code, out, _ = run(capsys, *SIZE, PULSE, "--restitution", "0.85", *files)
     assert code == 0
     with (tmp_path / "a.csv").open(newline="", encoding="utf-8") as file:
@@ -137,9 +127,9 @@ REFUSALS = [
     ((*SIZE, PULSE, "--levels", "13"), "levels must be"),
     ((*SIZE, PULSE, "--restitution", "no-such"), "no-such"),
     ((*SIZE, PULSE, "--restitution", "-0.5"), "restitution"),
-    ((*SIZE, PULSE, "--picture", "a.txt"), "a picture is .png"),
-    ((*SIZE, PULSE, "--csv", "no-such-folder/a.csv"), "no folder"),
-    ((*SIZE, PULSE, "--engine", "warp"), "--engine must be"),
+    ((*SIZE, PULSE, "--out", "a.txt"), "by its ending a file is a picture (.png"),
+    ((*SIZE, PULSE, "--out", "no-such-folder/a.csv"), "no folder"),
+    ((*SIZE, PULSE, "--set", "settings.engine=warp"), "settings.engine must be"),
     ((*SIZE, "sine:amplitude=0,period=1"), "peak above zero"),
     (("--width", "-1", "--height", "2", PULSE), "width"),
 ]

@@ -3,12 +3,14 @@
 import csv
 import json
 import math
+from pathlib import Path
 
 import pytest
 
 from rocking.cli import main
-from rocking.cli.inputs import motion_from
+from rocking.cli.question import Words
 from rocking.errors import InvalidValueError, RecordError, UnknownModelError
+from rocking.spec import construction, document, reading
 
 G = 9.80665
 # 0, 1, 0 m/s2 at 0.5 s: a triangle, whose integrals are 0.5 m/s, 0.25 m and 1/3 m2/s3
@@ -112,7 +114,7 @@ def test_printed_page(capsys, tmp_path):
 def test_csv(capsys, tmp_path, triangle):
     """The CSV holds time, acceleration, velocity, displacement at the samples: those of the triangle, by hand."""
     path = tmp_path / "out.csv"
-    code, out, _ = run(capsys, "motion", triangle, "--units", "m/s2", "--csv", path)
+    code, out, _ = run(capsys, "motion", triangle, "--units", "m/s2", "--out", path)
     assert code == 0
     assert f"wrote {path}" in out
     with path.open(encoding="utf-8") as file:
@@ -125,7 +127,7 @@ def test_csv(capsys, tmp_path, triangle):
 def test_csv_of_a_pulse_is_exact(capsys, tmp_path):
     """The CSV of a sine holds a sin(wt), its integrals, and ends with the pulse."""
     path = tmp_path / "out.csv"
-    assert run(capsys, "motion", "sine:amplitude=3,period=0.8", "--csv", path)[0] == 0
+    assert run(capsys, "motion", "sine:amplitude=3,period=0.8", "--out", path)[0] == 0
     with path.open(encoding="utf-8") as file:
         rows = [[float(word) for word in row] for row in list(csv.reader(file))[1:]]
     w = 2.0 * math.pi / 0.8
@@ -138,7 +140,7 @@ def test_csv_of_a_pulse_is_exact(capsys, tmp_path):
 def test_picture(capsys, tmp_path, triangle):
     """--picture writes an SVG with the axes' units in it."""
     path = tmp_path / "motion.svg"
-    assert run(capsys, "motion", triangle, "--units", "g", "--picture", path)[0] == 0
+    assert run(capsys, "motion", triangle, "--units", "g", "--out", path)[0] == 0
     text = path.read_text(encoding="utf-8")
     assert "time [s]" in text
     assert "PSA [g]" in text
@@ -150,19 +152,26 @@ def test_components(capsys, tmp_path):
     path.write_text(FOUR, encoding="utf-8")
     code, out, err = run(capsys, "motion", path, "--units", "m/s2")
     assert (code, out) == (2, "")
-    assert "--component 'column 2' or --component 'column 3' or --component 'column 4'" in err
+    assert f"say which one: {' or '.join(repr(f'{path}#column {k}') for k in (2, 3, 4))}" in err
     assert "component=" not in err
     assert err.count("\n") == 1
-    left = run(capsys, "motion", path, "--units", "m/s2", "--vertical", "column 4")[2]
-    assert "--component 'column 3'" in left
-    assert "--component 'column 4'" not in left
-    words = ["--units", "m/s2", "--component", "column 3", "--vertical", "column 4"]
-    answer = measured(capsys, path, *words, "--csv", tmp_path / "out.csv")
+    left = run(capsys, "motion", path, f"z={path}#column 4", "--units", "m/s2")[2]
+    assert f"{path}#column 3" in left
+    assert f"{path}#column 4" not in left
+    words = [f"{path}#column 3", f"z={path}#column 4", "--units", "m/s2"]
+    answer = measured(capsys, *words, "--out", tmp_path / "out.csv")
     assert (answer["component"], answer["vertical_component"]) == ("column 3", "column 4")
     assert answer["intensity"]["pga_m_s2"] == 2.0
     assert answer["peak_vertical_acceleration_m_s2"] == 0.3
     assert "vertical_acceleration_m_s2" in (tmp_path / "out.csv").read_text(encoding="utf-8").splitlines()[0]
-    assert "upwards" in run(capsys, "motion", path, *words)[1]
+    assert "upwards" in run(capsys, "motion", *words)[1]
+
+
+def motion_from(word, **options):
+    """Return the motion of a word."""
+    words = Words(options, ["motion"])
+    table = reading.checked(document.OneMotionTable, words.one_motion([word]))
+    return construction.motion_of(table, reading.InputFiles(Path()))
 
 
 def test_a_file_wins_over_a_pulse(tmp_path, monkeypatch):
@@ -183,7 +192,10 @@ REFUSED = {
     "half a pulse": (["sine"], "takes"),
     "pulse value": (["sine:amplitude=three,period=1"], "amplitude must be a number"),
     "pulse and units": (["sine:amplitude=3,period=1", "--units", "g"], "a pulse takes no --units"),
-    "pulse and step": (["sine:amplitude=3,period=1", "--time-step", "0.1"], "a pulse takes no --time-step"),
+    "pulse and step": (
+        ["sine:amplitude=3,period=1", "--set", "motion.time_step=0.1"],
+        "a pulse takes no motion.time_step",
+    ),
     "nothing moves": (["sine:amplitude=0,period=1"], "zero throughout?"),
     "scale 0": (["sine:amplitude=3,period=1", "--scale", "0"], "scale must not be 0"),
     "scale nan": (["sine:amplitude=3,period=1", "--scale", "nan"], "scale must be finite"),
@@ -192,7 +204,7 @@ REFUSED = {
     "no periods": (["sine:amplitude=3,period=1", "--periods", ","], "periods must be 1 to 1000 numbers"),
     "period 0": (["sine:amplitude=3,period=1", "--periods", "0"], "periods must be > 0 s, got 0"),
     "period nan": (["sine:amplitude=3,period=1", "--periods", "nan"], "periods must be finite"),
-    "picture": (["sine:amplitude=3,period=1", "--picture", "a.bmp"], ".png, .svg or .pdf"),
+    "picture": (["sine:amplitude=3,period=1", "--out", "a.bmp"], ".png, .svg or .pdf"),
     "no record": ([], "Missing argument"),
 }
 
@@ -212,13 +224,13 @@ def test_unit_and_format_are_asked_for_by_option(capsys, triangle):
     for words, sentence in (
         ([], "say --units one of m/s2"),
         (["--units", "furlong"], "got 'furlong'"),
-        (["--units", "g", "--time-step", "0.25"], "the file states a time step of 0.5 s, you say 0.25"),
-        (["--units", "g", "--format", "nope"], "one of peer"),
-        (["--units", "g", "--component", "north"], "got 'north'"),
+        (["--units", "g", "--set", "motion.time_step=0.25"], "the file states a time step of 0.5 s, you say 0.25"),
+        (["--units", "g", "--set", "motion.format=nope"], "one of peer"),
     ):
         code, out, err = run(capsys, "motion", triangle, *words)
         assert (code, out) == (2, "")
         assert sentence in err
+    assert "got 'north'" in run(capsys, "motion", f"{triangle}#north", "--units", "g")[2]
 
 
 def test_errors_keep_their_kind(tmp_path):
@@ -230,7 +242,7 @@ def test_errors_keep_their_kind(tmp_path):
         (str(path), {"units": "x"}, InvalidValueError),
         ("nothing", {}, RecordError),
         ("nothing:a=1", {}, UnknownModelError),
-        ("sine:amplitude=1,period=1", {"component": "x"}, InvalidValueError),
+        ("sine:amplitude=1,period=1", {"sets": ["motion.component=x"]}, InvalidValueError),
     ):
         with pytest.raises(kind):
             motion_from(word, **options)

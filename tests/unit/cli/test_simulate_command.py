@@ -11,11 +11,11 @@ from PIL import Image
 
 import rocking as rk
 from rocking.cli import main
-from rocking.cli.simulate_output import as_text
-from rocking.cli.simulate_page import show
-from rocking.cli.simulate_question import ResponseComparison
+from rocking.cli.page import Page, plain
+from rocking.cli.responses import RockingAnswer
 from rocking.dynamics.plane import fast_engine
 from rocking.evidence._coefficient_table import default_models
+from rocking.spec.response import ResponseProblem
 
 G = 9.80665
 BLOCK = rk.Block(width=0.5, height=2.0)
@@ -94,7 +94,14 @@ def test_json_is_python_to_the_last_digit(capsys, body):
         assert same(answer, expected)
         assert answer["body"]["sides"]["left"]["slenderness_angle_rad"] == pytest.approx(ALPHA, rel=1e-15)
         assert answer["motion"]["peak_acceleration_m_s2"] == pytest.approx(3.2, rel=1e-12)
-    angle = answered(capsys, "--angle", ALPHA, "--semi-diagonal", 0.5 * math.hypot(0.5, 2.0), PULSE)
+    angle = answered(
+        capsys,
+        "--set",
+        f"body.slenderness_angle={ALPHA}",
+        "--set",
+        f"body.semi_diagonal={0.5 * math.hypot(0.5, 2.0)}",
+        PULSE,
+    )
     assert angle["peak_rotation_rad"] == pytest.approx(expected.peak_rotation, rel=1e-9)
     assert same(answered(capsys, "--width", 50, "--height", 200, "--units", "cm", PULSE), expected)
     # negative control: another pulse is another response
@@ -106,9 +113,9 @@ OPTIONS = {
     "factor": (["--restitution", "0.98*shifted-impulse:k=0.6"], {"restitution": "0.98*shifted-impulse:k=0.6"}),
     "number": (["--restitution", "0.9"], {"restitution": 0.9}),
     "scale": (["--scale", "-1.25"], {"scale": -1.25}),
-    "linear": (["--linear"], {"linear": True}),
-    "reference": (["--engine", "reference"], {"engine": "reference"}),
-    "gravity": (["--gravity", "9.81"], {"gravity": 9.81}),
+    "linear": (["--set", "settings.linear=true"], {"linear": True}),
+    "reference": (["--set", "settings.engine=reference"], {"engine": "reference"}),
+    "gravity": (["--set", "settings.gravity=9.81"], {"gravity": 9.81}),
 }
 
 
@@ -139,7 +146,7 @@ def test_free_rocking_by_closed_form(capsys):
     """Let go at 0.6 alpha the linear block lands after acosh(2.5) / p at p alpha sqrt(1 - 0.16), leftwards mirrored."""
     p = math.sqrt(3.0 * G / (4.0 * 0.5 * math.hypot(0.5, 2.0)))
     for share, onto in ((0.6, "left"), (-0.6, "right")):
-        answer = answered(capsys, *SIZE, "--free", share, "--linear", "--restitution", "0.9")
+        answer = answered(capsys, *SIZE, "--free", share, "--set", "settings.linear=true", "--restitution", "0.9")
         first = answer["impacts"][0]
         assert first["time_s"] == pytest.approx(math.acosh(2.5) / p, rel=1e-10)
         assert abs(first["velocity_before_rad_s"]) == pytest.approx(p * ALPHA * math.sqrt(1.0 - 0.16), rel=1e-10)
@@ -152,17 +159,19 @@ def test_free_rocking_by_closed_form(capsys):
 
 def test_record_options(capsys, body, record):
     """Units, format, component, vertical component of a record are those of read_motion; a step at odds is refused."""
-    words = ["--units", "m/s2", "--component", "column 2"]
+    words, part = ["--units", "m/s2"], f"{record}#column 2"
     motion = rk.read_motion(record, "columns", "m/s2", component="column 2", vertical="column 3")
-    both = answered(capsys, body, record, *words, "--vertical", "column 3", "--format", "columns")
+    both = answered(
+        capsys, body, f"x={part}", *words, "--motion", f"z={record}#column 3", "--set", "motion.format=columns"
+    )
     assert same(both, rk.simulate(BLOCK, motion))
     assert (both["motion"]["kind"], both["motion"]["name"]) == ("record", motion.name)
-    assert not same(answered(capsys, body, record, *words), rk.simulate(BLOCK, motion))
-    assert run(capsys, body, record, *words, "--time-step", 0.5)[0] == 2
-    in_g = answered(capsys, body, record, "--units", "g", "--component", "column 2", "--scale", "0.1")
+    assert not same(answered(capsys, body, part, *words), rk.simulate(BLOCK, motion))
+    assert run(capsys, body, part, *words, "--set", "motion.time_step=0.5")[0] == 2
+    in_g = answered(capsys, body, part, "--units", "g", "--scale", "0.1")
     peak = max(abs(3.0 * math.sin(0.2 * k)) for k in range(60))
     assert in_g["motion"]["peak_acceleration_m_s2"] == pytest.approx(0.1 * G * peak, rel=1e-6)
-    page = run(capsys, body, record, *words, "--scale", "2", "--linear")[1]
+    page = run(capsys, body, part, *words, "--scale", "2", "--set", "settings.linear=true")[1]
     assert f"2 times {motion.name}, 1.18 s, peak {2.0 * peak:.4g} m/s2" in page
     assert "slender-linear equations" in page
     assert "2 times sine pulse, 3.2 m/s2, 0.8 s, peak 6.4 m/s2" in run(capsys, body, PULSE, "--scale", "2")[1]
@@ -215,10 +224,11 @@ def test_warnings_are_in_plain_words(capsys):
     """A body of slope 1/4 takes friction of about 1/4: with 0.2 it slides, with 0.5 not; a squat one would fly."""
     words = (*SIZE, PULSE)
     assert answered(capsys, *words)["warnings"] == []
-    slippery = answered(capsys, *words, "--friction", "0.2")
+    slip = ("--set", "response.assumed_friction=0.2")
+    slippery = answered(capsys, *words, *slip)
     assert slippery["friction"]["given"] == 0.2
     assert "with 0.2 the body would slide" in slippery["warnings"][0]
-    assert "would slide" in run(capsys, *words, "--friction", "0.2")[1]
+    assert "would slide" in run(capsys, *words, *slip)[1]
     hard = ("--width", 3, "--height", 1, "sine:amplitude=40,period=1", "--restitution", "0.5")
     flying = answered(capsys, *hard)
     assert flying["friction"]["of_motion"] is None
@@ -228,31 +238,31 @@ def test_warnings_are_in_plain_words(capsys):
 
 def test_a_model_that_does_not_fit_says_why(capsys):
     """Where a model has no coefficient for a body, the row and the JSON say so, and the verdict leaves it out."""
-    answer = ResponseComparison(rk.free_rocking(BLOCK, 0.1), 0.5, {"odd": "the impact would create energy"})
-    show(answer)
+    problem = ResponseProblem(BLOCK, None, free=0.4)
+    answer = RockingAnswer(problem, problem.answer(), {"odd": "the impact would create energy"}, "m", "m/s2")
+    answer.show(Page())
     out = capsys.readouterr().out
     assert "not for this body" in out
     assert "! odd: the impact would create energy" in out
-    assert json.loads(as_text(answer))["other_models"]["odd"] == {"error": "the impact would create energy"}
+    assert plain(answer.facts())["other_models"]["odd"] == {"error": "the impact would create energy"}
 
 
 def test_files(capsys, tmp_path):
     """Picture, page, GIF, CSV and MATLAB files are written and named; the CSV holds Python's rotation."""
-    names = {"--picture": "a.svg", "--animation": "a.html", "--csv": "a.csv", "--mat": "a.mat"}
-    paths = {option: tmp_path / name for option, name in names.items()}
-    code, out, _ = run(capsys, *SIZE, PULSE, *(word for pair in paths.items() for word in pair))
+    paths = {ending: tmp_path / f"a.{ending}" for ending in ("svg", "html", "csv", "mat")}
+    code, out, _ = run(capsys, *SIZE, PULSE, *(word for path in paths.values() for word in ("--out", path)))
     assert code == 0
     assert out.splitlines()[-4:] == [f"wrote {path}" for path in paths.values()]
     expected = rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8))
-    with paths["--csv"].open(encoding="utf-8") as file:
+    with paths["csv"].open(encoding="utf-8") as file:
         rows = [row for row in csv.reader(file) if not row[0].startswith("#")]
     column = next(k for k, word in enumerate(rows[0]) if word.startswith("rotation"))
     np.testing.assert_array_equal([float(row[column]) for row in rows[1:]], expected.rotation)
-    assert expected.summary[1:] in paths["--animation"].read_text(encoding="utf-8")
-    assert "angular" in paths["--picture"].read_text(encoding="utf-8")
-    assert paths["--mat"].stat().st_size > 1000
+    assert expected.summary[1:] in paths["svg"].read_text(encoding="utf-8")
+    assert "angular" in paths["--out"].read_text(encoding="utf-8")
+    assert paths["--out"].stat().st_size > 1000
     gif = tmp_path / "a.GIF"
-    assert run(capsys, *SIZE, "--free", "0.1", "--restitution", "0.1", "--animation", gif)[0] == 0
+    assert run(capsys, *SIZE, "--free", "0.1", "--restitution", "0.1", "--out", gif)[0] == 0
     with Image.open(gif) as film:
         assert film.format == "GIF"
 
@@ -263,7 +273,7 @@ def test_netcdf(capsys, tmp_path):
     import xarray
 
     path = tmp_path / "a.nc"
-    assert run(capsys, *SIZE, PULSE, "--netcdf", path)[0] == 0
+    assert run(capsys, *SIZE, PULSE, "--out", path)[0] == 0
     with xarray.open_dataset(path, engine="h5netcdf") as found:
         np.testing.assert_array_equal(found["rotation"], rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8)).rotation)
 

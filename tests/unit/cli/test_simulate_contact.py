@@ -1,4 +1,4 @@
-"""`rocking simulate --contact`: sliding in closed form, rocking as without it, modes on the page, refusals."""
+"""`rocking simulate`: sliding in closed form, rocking as without it, modes on the page, refusals."""
 
 import json
 import math
@@ -27,15 +27,26 @@ def run(capsys, *words):
 
 
 def answered(capsys, *words):
-    """The JSON of `rocking simulate WORDS --contact`."""
-    code, out, err = run(capsys, *words, "--contact", "--json")
+    """The JSON of `rocking simulate WORDS`."""
+    code, out, err = run(capsys, *words, "--json")
     assert (code, err) == (0, "")
     return json.loads(out, parse_constant=pytest.fail)
 
 
 def test_json_is_python_to_the_last_digit(capsys):
     """Body, friction, bounce, restitution, scale and gravity reach the engine: the same numbers as in Python."""
-    words = ("--friction", "0.3", "--bounce", "0.1", "--scale", "-2", "--gravity", "9.81", "--restitution", "housner")
+    words = (
+        "--friction",
+        "0.3",
+        "--bounce",
+        "0.1",
+        "--scale",
+        "-2",
+        "--set",
+        "settings.gravity=9.81",
+        "--restitution",
+        "housner",
+    )
     answer = answered(capsys, *SQUAT, SINE, *words)
     block, pulse = rk.Block(width=1.0, height=1.0), rk.pulses.sine(3.2, 0.8)
     response = rk.simulate(block, pulse, "housner", friction=0.3, bounce=0.1, scale=-2.0, gravity=9.81)
@@ -87,8 +98,8 @@ def test_complementarity_is_housner(capsys):
 def test_page_and_files(capsys, tmp_path):
     """Modes in words, impacts, what slid and what was lost are on the page; every file is written and opens."""
     files = {name: tmp_path / f"a.{name}" for name in ("png", "csv", "mat", "nc")}
-    words = ("--picture", files["png"], "--csv", files["csv"], "--mat", files["mat"], "--netcdf", files["nc"])
-    slides = ("--width", "1.2", "--height", "2", "sine:amplitude=9,period=0.9", "--contact", "--friction", "0.62")
+    words = ("--out", files["png"], "--out", files["csv"], "--out", files["mat"], "--out", files["nc"])
+    slides = ("--width", "1.2", "--height", "2", "sine:amplitude=9,period=0.9", "--friction", "0.62")
     code, out, err = run(capsys, *slides, *words)
     assert (code, err) == (0, "")
     for said in (
@@ -111,27 +122,27 @@ def test_page_and_files(capsys, tmp_path):
 
 def test_the_warning_names_the_option(capsys):
     """Where pure rocking takes more friction than there is, the page says what to type."""
-    page = run(capsys, *SLENDER, SINE, "--friction", "0.2")[1]
-    assert "--contact follows it" in page
+    page = run(capsys, *SLENDER, SINE, "--set", "response.assumed_friction=0.2")[1]
+    assert "--friction follows it" in page
     assert "friction=..." not in page
 
 
 REFUSED = {
-    "linear": ([*SQUAT, PUSH, "--contact", "--linear"], "takes no --linear"),
-    "engine": ([*SQUAT, PUSH, "--contact", "--engine", "fast"], "takes no --engine"),
-    "animation": ([*SQUAT, SINE, "--contact", "--animation", "a.html"], "takes no --animation"),
-    "friction": ([*SQUAT, SINE, "--contact", "--friction", "-1"], "--friction must be > 0"),
-    "friction nan": ([*SQUAT, SINE, "--contact", "--friction", "nan"], "--friction must be finite"),
-    "bounce": ([*SQUAT, SINE, "--contact", "--bounce", "1"], "bounce must be in [0, 1)"),
-    "bounce alone": ([*SQUAT, SINE, "--bounce", "0.1"], "takes no --bounce"),
-    "restitution": ([*SQUAT, SINE, "--contact", "--restitution", "best"], "no restitution model named 'best'"),
-    "percent": ([*SQUAT, SINE, "--contact", "--restitution", "90"], "90"),
-    "free far": ([*SLENDER, "--contact", "--free", "9"], "--free is a share of the slenderness angle"),
-    "no motion": ([*SQUAT, "--contact"], "what moves the ground?"),
-    "mesh": ([*SQUAT, SINE, "--contact", "--up", "z"], "takes no --up"),
-    "space": ([*SQUAT, SINE, "--motion-y", SINE], "takes no --motion-y"),
-    "picture": ([*SQUAT, SINE, "--contact", "--picture", "a.bmp"], ".png, .svg or .pdf"),
-    "folder": ([*SQUAT, SINE, "--contact", "--csv", "none/a.csv"], "no folder"),
+    "linear": ([*SQUAT, PUSH, "--friction", "1", "--set", "settings.linear=true"], "so it takes no linear"),
+    "engine": ([*SQUAT, PUSH, "--friction", "1", "--set", "settings.engine=fast"], "so it takes no engine"),
+    "animation": ([*SQUAT, SINE, "--friction", "1", "--out", "a.html"], "an animation is of pure rocking only"),
+    "friction": ([*SQUAT, SINE, "--friction", "-1"], "--friction must be a number > 0"),
+    "friction nan": ([*SQUAT, SINE, "--friction", "nan"], "--friction must be a finite number"),
+    "bounce": ([*SQUAT, SINE, "--friction", "1", "--bounce", "1"], "bounce must be in [0, 1)"),
+    "bounce alone": ([*SQUAT, SINE, "--bounce", "0.1"], "bounce goes with friction"),
+    "restitution": ([*SQUAT, SINE, "--restitution", "best"], "no restitution model named 'best'"),
+    "percent": ([*SQUAT, SINE, "--restitution", "90"], "90"),
+    "free far": ([*SLENDER, "--free", "9"], "--free is a share of the slenderness angle"),
+    "no motion": ([*SQUAT], "what moves the ground?"),
+    "mesh": ([*SQUAT, SINE, "--set", "body.up=z"], "unknown key 'up'"),
+    "space": ([*SQUAT, SINE, "--motion", f"y={SINE}"], "a plane body has one horizontal motion"),
+    "picture": ([*SQUAT, SINE, "--out", "a.bmp"], ".png, .svg or .pdf"),
+    "folder": ([*SQUAT, SINE, "--out", "none/a.csv"], "no folder"),
 }
 
 

@@ -6,9 +6,9 @@ import pytest
 
 import rocking as rk
 from rocking.cli import main
-from rocking.cli.simulate_question import Question
 from rocking.evidence import _coefficient_table
 from rocking.restitution import model
+from rocking.spec.response import ResponseProblem
 
 SIZE = ("--width", "0.5", "--height", "2")
 STATUE = Path(__file__).parents[3] / "examples" / "bodies" / "statue_on_pedestal.toml"
@@ -30,7 +30,7 @@ def test_a_library_that_is_missing_below_is_told(capsys, tmp_path, monkeypatch):
         raise ImportError("no backend for this")
 
     monkeypatch.setattr(rk.Response, "to_netcdf", broken)
-    code, out, err = run(capsys, *SIZE, PULSE, "--netcdf", tmp_path / "a.nc")
+    code, out, err = run(capsys, *SIZE, PULSE, "--out", tmp_path / "a.nc")
     assert (code, out) == (2, "")
     assert err.endswith("no backend for this\n")
 
@@ -38,7 +38,7 @@ def test_a_library_that_is_missing_below_is_told(capsys, tmp_path, monkeypatch):
 def test_a_history_without_a_result_is_refused(capsys, monkeypatch):
     """Where an engine stops, the sentence says why, and no number is printed."""
     few = rk.free_rocking(rk.Block(width=0.5, height=2.0), 0.1, most_events=3)
-    monkeypatch.setattr(Question, "answered_with", lambda self, restitution: few)
+    monkeypatch.setattr(ResponseProblem, "answer", lambda self: few)
     code, out, err = run(capsys, *SIZE, "--free", "0.5")
     assert (code, out) == (2, "")
     assert err == "rocking: there is no response: stopped: more impacts and changes of contact than allowed\n"
@@ -62,11 +62,11 @@ REFUSED = {
     "half a size": (["--width", "1", PULSE], "a body is a file"),
     "no body file": (["none.toml", PULSE], "none.toml"),
     "body and size": (["none.toml", PULSE, *SIZE], "not both"),
-    "two motions": ([*SIZE, PULSE, "--motion", PULSE], "one motion and one body"),
+    "two motions": ([*SIZE, PULSE, "--motion", PULSE], "one motion along x"),
     "free and motion": ([*SIZE, PULSE, "--free", "0.5"], "not both"),
     "free and units": ([*SIZE, "--free", "0.5", "--units", "g"], "--free has no motion, so it takes no --units"),
     "free and scale": ([*SIZE, "--free", "0.5", "--scale", "2"], "takes no --scale"),
-    "free nan": ([*SIZE, "--free", "nan"], "--free must be finite"),
+    "free nan": ([*SIZE, "--free", "nan"], "--free must be a finite number"),
     "free far": ([*SIZE, "--free", "7"], "--free is a share of the slenderness angle"),
     "free word": ([*SIZE, "--free", "half"], "'--free'"),
     "no record": ([*SIZE, "none.at2"], "none.at2: no such file"),
@@ -76,16 +76,16 @@ REFUSED = {
     "percent": ([*SIZE, PULSE, "--restitution", "90"], "a percentage?"),
     "creates energy": ([*SIZE, PULSE, "--restitution", "1.1"], "would create energy"),
     "r nan": ([*SIZE, PULSE, "--restitution", "nan"], "restitution must be finite"),
-    "r empty": ([*SIZE, PULSE, "--restitution", ""], "no restitution model"),
-    "scale nan": ([*SIZE, PULSE, "--scale", "nan"], "scale must be finite"),
+    "r empty": ([*SIZE, PULSE, "--restitution", ""], "--restitution must not be empty"),
+    "scale nan": ([*SIZE, PULSE, "--scale", "nan"], "--scale must be a finite number"),
     "scale huge": ([*SIZE, PULSE, "--scale", "1e9"], "scale must be in"),
-    "engine": ([*SIZE, PULSE, "--engine", "steam"], "steam"),
-    "gravity": ([*SIZE, PULSE, "--gravity", "0"], "--gravity must be > 0"),
-    "gravity huge": ([*SIZE, PULSE, "--gravity", "1e9"], "gravity"),
-    "friction": ([*SIZE, PULSE, "--friction", "0"], "--friction must be > 0"),
-    "picture": ([*SIZE, PULSE, "--picture", "a.bmp"], ".png, .svg or .pdf"),
-    "animation": ([*SIZE, PULSE, "--animation", "a.mp4"], "an animation is .html or .gif, got 'a.mp4'"),
-    "folder": ([*SIZE, PULSE, "--csv", "none/a.csv"], "no folder none"),
+    "engine": ([*SIZE, PULSE, "--set", "settings.engine=steam"], "steam"),
+    "gravity": ([*SIZE, PULSE, "--set", "settings.gravity=0"], "settings.gravity must be a number > 0"),
+    "gravity huge": ([*SIZE, PULSE, "--set", "settings.gravity=1e9"], "gravity"),
+    "friction": ([*SIZE, PULSE, "--friction", "0"], "--friction must be a number > 0"),
+    "picture": ([*SIZE, PULSE, "--out", "a.bmp"], ".png, .svg or .pdf"),
+    "animation": ([*SIZE, PULSE, "--out", "a.mp4"], "an animation (.html or .gif)"),
+    "folder": ([*SIZE, PULSE, "--out", "none/a.csv"], "no folder 'none'"),
     "unknown": ([*SIZE, PULSE, "--speed", "2"], "--speed"),
 }
 

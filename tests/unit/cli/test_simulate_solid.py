@@ -70,11 +70,11 @@ def test_json_is_python_to_the_last_digit(capsys, body):
     expected = rk.simulate(solid, {"x": MOTION, "y": other})
     assert len({c for _, _, c, _ in expected.intervals}) > 2
     for words in ((SINE,), ("--motion", SINE)):
-        answer = answered(capsys, body, *words, "--motion-y", "sine:amplitude=2.9,period=0.6")
+        answer = answered(capsys, body, *words, "--motion", "y=sine:amplitude=2.9,period=0.6")
         assert same(answer, expected)
     assert answer["body"]["mass_kg"] == pytest.approx(1200.0)
-    ked = ("--restitution", "ked", "--scale", "-1.1", "--gravity", "9.81")
-    found = answered(capsys, body, "--motion-z", "sine:amplitude=1,period=0.3", "--motion-y", SINE, *ked)
+    ked = ("--restitution", "ked", "--scale", "-1.1", "--set", "settings.gravity=9.81")
+    found = answered(capsys, body, "--motion", "z=sine:amplitude=1,period=0.3", "--motion", f"y={SINE}", *ked)
     wanted = rk.simulate(solid, {"y": MOTION, "z": rk.pulses.sine(1.0, 0.3)}, "ked-3d", scale=-1.1, gravity=9.81)
     assert same(found, wanted)
     # negative control: the components are not taken for each other
@@ -84,36 +84,36 @@ def test_json_is_python_to_the_last_digit(capsys, body):
 def test_along_one_axis_it_is_the_plane_solution(capsys, body):
     """A prism shaken along x or y rocks as the plane block does, to 1e-9."""
     plane = rk.simulate(rk.Block(width=0.5, height=2.0), MOTION)
-    for option in ("--motion", "--motion-y"):
-        answer = answered(capsys, body, option, SINE)
+    for axis in ("x", "y"):
+        answer = answered(capsys, body, "--motion", f"{axis}={SINE}")
         assert answer["peak_tilt_rad"] == pytest.approx(plane.peak_rotation, rel=1e-9)
         times = [row["time_s"] for row in answer["impacts"][:5]]
         assert times == pytest.approx(plane.impacts["time"][:5].tolist(), rel=1e-9)
 
 
 def test_three_components_of_one_file(capsys, body, record):
-    """Each direction names its component of the file; the vertical part of x may be --vertical or --motion-z."""
+    """Each direction names its component of the file; the vertical part may stand with x too."""
     file = ("--units", "m/s2")
     names = [part.name for part in rk.motions.formats.read_record(record, units="m/s2").components]
     x, y, z = names
-    along = ("--component", x, "--motion-y", record, "--component-y", y)
-    found = answered(capsys, body, record, *file, *along, "--motion-z", record, "--component-z", z)
+    along = (f"{record}#{x}", *file, "--motion", f"y={record}#{y}")
+    found = answered(capsys, body, *along, "--motion", f"z={record}#{z}")
     motions = [rk.read_motion(record, units="m/s2", component=name) for name in names]
     assert found["peak_tilt_rad"] == rk.simulate(read_body(body), motions).peak_tilt
-    other = answered(capsys, body, record, *file, *along, "--vertical", z)
+    other = answered(capsys, body, *along, "--set", f"motion.vertical={z}")
     assert other["peak_tilt_rad"] == pytest.approx(found["peak_tilt_rad"], rel=1e-12)
     # negative control: without the vertical motion it is another response
-    level = answered(capsys, body, record, *file, *along)
+    level = answered(capsys, body, *along)
     assert level["peak_tilt_rad"] != pytest.approx(found["peak_tilt_rad"], rel=1e-3)
-    mixed = answered(capsys, body, SINE, "--motion-y", record, *file, "--component-y", y)
+    mixed = answered(capsys, body, SINE, "--motion", f"y={record}#{y}", *file)
     assert mixed["peak_tilt_rad"] == rk.simulate(read_body(body), {"x": MOTION, "y": motions[1]}).peak_tilt
 
 
 def test_page_and_files(capsys, body, tmp_path):
     """Body, motions, outcome, contacts and impacts are on the page; every file is written and opens."""
     files = {name: tmp_path / f"a.{name}" for name in ("png", "csv", "mat", "nc")}
-    words = ("--picture", files["png"], "--csv", files["csv"], "--mat", files["mat"], "--netcdf", files["nc"])
-    code, out, err = run(capsys, body, SINE, "--motion-y", "sine:amplitude=2.9,period=0.6", *words)
+    words = ("--out", files["png"], "--out", files["csv"], "--out", files["mat"], "--out", files["nc"])
+    code, out, err = run(capsys, body, SINE, "--motion", "y=sine:amplitude=2.9,period=0.6", *words)
     assert (code, err) == (0, "")
     for said in ("prism: 0.5 x 0.5 x 2 m, 1 part, mass 1200 kg", "ked-3d", "turning about a vertex", "peak tilt:"):
         assert said in out
@@ -140,11 +140,11 @@ def test_meshes_rock_too(capsys, tmp_path):
 
 def test_overturning_names_edge_and_direction(capsys, body):
     """Shaken hard along y it lies along y, over one of the edges there; the direction is in radians."""
-    answer = answered(capsys, body, "--motion-y", SINE, "--scale", "2")
+    answer = answered(capsys, body, "--motion", f"y={SINE}", "--scale", "2")
     assert answer["outcome"] == "overturned"
     assert abs(answer["overturning_direction_rad"]) == pytest.approx(0.5 * math.pi, abs=1e-9)
     assert answer["overturned_over"] in {"edge 0-1", "edge 2-3"}
-    assert "it overturned" in run(capsys, body, "--motion-y", SINE, "--scale", "2")[1]
+    assert "it overturned" in run(capsys, body, "--motion", f"y={SINE}", "--scale", "2")[1]
 
 
 def test_a_history_without_a_result_is_refused(capsys, body, monkeypatch):
@@ -159,28 +159,27 @@ def test_a_history_without_a_result_is_refused(capsys, body, monkeypatch):
 REFUSED = {
     "no motion": ([], "what moves the ground?"),
     "two motions": ([SINE, "--motion", SINE], "one motion along x, please"),
-    "free": (["--free", "0.5"], "takes no --free"),
-    "width": ([SINE, "--width", "1"], "takes no --width"),
-    "friction": ([SINE, "--friction", "0.4"], "takes no --friction"),
-    "contact": ([SINE, "--contact"], "takes no --contact"),
-    "linear": ([SINE, "--linear"], "takes no --linear"),
-    "engine": ([SINE, "--engine", "fast"], "takes no --engine"),
-    "animation": ([SINE, "--animation", "a.gif"], "takes no --animation"),
+    "free": (["--free", "0.5"], "so it takes no free"),
+    "width": ([SINE, "--width", "1"], "give a body file or dimensions, not both"),
+    "friction": ([SINE, "--friction", "0.4"], "so it takes no friction"),
+    "linear": ([SINE, "--set", "settings.linear=true"], "so it takes no linear"),
+    "engine": ([SINE, "--set", "settings.engine=fast"], "so it takes no engine"),
+    "animation": ([SINE, "--out", "a.gif"], "an animation is of pure rocking only"),
     "model": ([SINE, "--restitution", "best"], "'best"),
     "plane model": ([SINE, "--restitution", "plastic-winkler"], "plastic-winkler"),
     "creates energy": ([SINE, "--restitution", "1.1"], "restitution must be in [0, 1], got 1.1"),
     "nan": ([SINE, "--restitution", "nan"], "restitution must be"),
-    "gravity": ([SINE, "--gravity", "0"], "--gravity must be > 0"),
-    "scale": ([SINE, "--scale", "nan"], "scale must be finite"),
+    "gravity": ([SINE, "--set", "settings.gravity=0"], "settings.gravity must be a number > 0"),
+    "scale": ([SINE, "--scale", "nan"], "--scale must be a finite number"),
     "no record": (["none.at2"], "none.at2: no such file"),
     "units of a pulse": ([SINE, "--units", "g"], "a pulse takes no --units"),
-    "component of a pulse": ([SINE, "--motion-y", SINE, "--component-y", "N"], "a pulse takes no --component-y"),
-    "component alone": ([SINE, "--component-z", "UP"], "names a component of --motion-z, which is not given"),
-    "component unknown": (["record.txt", "--units", "m/s2", "--component", "up"], "'up'"),
-    "components": (["--motion-y", "record.txt", "--units", "m/s2"], "--component-y"),
+    "component of a pulse": ([SINE, "--set", "motion.component=N"], "a pulse takes no motion.component"),
+    "component by name": ([SINE, "--component-z", "UP"], "--component-z is now --motion z=FILE#COMPONENT"),
+    "component unknown": (["record.txt#up", "--units", "m/s2"], "'up'"),
+    "components": (["--motion", "y=record.txt", "--units", "m/s2"], "record.txt#column 2"),
     "unit": ([SINE, "--units", "cm"], 'states units = "m"'),
-    "picture": ([SINE, "--picture", "a.bmp"], ".png, .svg or .pdf"),
-    "folder": ([SINE, "--netcdf", "none/a.nc"], "no folder"),
+    "picture": ([SINE, "--out", "a.bmp"], ".png, .svg or .pdf"),
+    "folder": ([SINE, "--out", "none/a.nc"], "no folder"),
 }
 
 
@@ -198,8 +197,8 @@ def test_bad_input_gives_one_sentence_and_exit_code_2(capsys, words, sentence, b
 def test_vertical_twice_is_refused(capsys, body, record):
     """The vertical motion is given once: as a part of x or as z."""
     names = [part.name for part in rk.motions.formats.read_record(record, units="m/s2").components]
-    words = ("--units", "m/s2", "--component", names[0], "--vertical", names[2], "--motion-z", SINE)
-    code, out, err = run(capsys, body, record, *words)
+    words = ("--units", "m/s2", "--set", f"motion.vertical={names[2]}", "--motion", f"z={SINE}")
+    code, out, err = run(capsys, body, f"{record}#{names[0]}", *words)
     assert (code, out) == (2, "")
     assert "the vertical motion is given twice" in err
 

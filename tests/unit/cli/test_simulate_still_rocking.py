@@ -35,7 +35,7 @@ def long_record(tmp_path):
 
 def test_last_state_is_the_closed_form(capsys):
     """After the last impact of the linear equations theta is alpha - alpha cosh + v / p sinh, on the right foot."""
-    told = json.loads(printed(capsys, *PULSE, "--linear", "--json"))
+    told = json.loads(printed(capsys, *PULSE, "--set", "settings.linear=true", "--json"))
     last, end = told["impacts"][-1], told["still_rocking"]
     alpha, p = math.atan(0.25), math.sqrt(0.75 * G / math.hypot(0.25, 1.0))
     sign, speed = math.copysign(1.0, last["velocity_after_rad_s"]), abs(last["velocity_after_rad_s"])
@@ -88,9 +88,9 @@ def test_python_says_it():
 
 
 def test_contact_says_it(capsys):
-    """With --contact the last state, of the energy after the last impact, is told on the page and in --json; nothing
+    """With the last state, of the energy after the last impact, is told on the page and in --json; nothing
     is said of a response that comes to rest."""
-    question = ("--friction", "10", "--contact")
+    question = ("--friction", "10")
     told, page = json.loads(printed(capsys, *PULSE, *question, "--json")), printed(capsys, *PULSE, *question)
     end, last = told["still_rocking"], told["impacts"][-1]
     alpha, p = math.atan(0.25), math.sqrt(0.75 * G / math.hypot(0.25, 1.0))

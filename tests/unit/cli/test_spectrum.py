@@ -6,26 +6,16 @@ import math
 
 import numpy as np
 import pytest
-import typer
 
 import rocking as rk
-from rocking.cli import application, main
-from rocking.cli.spectrum import spectrum
-from rocking.cli.spectrum_output import angles_from, periods_from
+from rocking.cli import main
+from rocking.cli.spectrum import _angles, _periods
+from rocking.spec.fields import Values
 from rocking.studies._rocking_spectrum import rocking_spectrum
 
 G = 9.80665
 SINE, COSINE = "sine:amplitude=3,period=0.8", "cosine:amplitude=3,period=0.8"
 FEW = ("--slenderness", "4,6", "--periods", "1:8:9")
-
-
-@pytest.fixture(autouse=True)
-def _alone(monkeypatch):
-    """Let `main` have this command alone."""
-    app = typer.Typer(pretty_exceptions_enable=False)
-    app.callback()(lambda: None)
-    app.command()(spectrum)
-    monkeypatch.setattr(application, "application", lambda: app)
 
 
 def run(capsys, *words):
@@ -56,7 +46,17 @@ def test_largest_block_that_falls_is_the_closed_form(capsys):
     """Under a constant acceleration the linear block falls if a > g alpha / (1 - exp(-2 pi T / period))."""
     alpha, a, time = 0.2, 3.0, 0.5
     exact = 2.0 * math.pi * time / -math.log(1.0 - G * alpha / a)
-    words = ("--slenderness", f"{alpha}rad", "--periods", "1:10:2000", "--restitution", "0.9", "--linear", "--json")
+    words = (
+        "--slenderness",
+        f"{alpha}rad",
+        "--periods",
+        "1:10:2000",
+        "--restitution",
+        "0.9",
+        "--set",
+        "settings.linear=true",
+        "--json",
+    )
     _, out, _ = run(capsys, f"rectangular:amplitude={a},duration={time}", *words)
     (curve,) = json.loads(out)["curves"]
     step = 10.0 ** (1.0 / 1999.0)
@@ -70,7 +70,7 @@ def test_largest_block_that_falls_is_the_closed_form(capsys):
 def test_page_and_files(capsys, tmp_path):
     """A heading for every motion, a line for every slenderness; files are named and hold all digits."""
     files = [tmp_path / name for name in ("a.svg", "a.csv", "a.nc")]
-    options = [word for pair in zip(("--picture", "--csv", "--netcdf"), files, strict=True) for word in pair]
+    options = [word for pair in zip(("--out", "--out", "--out"), files, strict=True) for word in pair]
     code, out, _ = run(capsys, SINE, COSINE, *FEW, *options)
     assert code == 0
     lines = out.splitlines()
@@ -91,14 +91,13 @@ def test_page_and_files(capsys, tmp_path):
 )
 def test_slenderness_words(word, degrees):
     """Without a unit it is h/b = 1 / tan alpha, with one the angle."""
-    assert np.degrees(angles_from(word)) == pytest.approx(degrees, rel=1e-8)
+    assert np.degrees(_angles(word)["values"]) == pytest.approx(degrees, rel=1e-8)
 
 
 def test_period_words():
     """A range goes by equal ratios unless it says otherwise."""
-    assert periods_from("1:16:5") == pytest.approx([1, 2, 4, 8, 16], rel=1e-13)
-    assert periods_from("1:5:5:linear") == pytest.approx([1, 2, 3, 4, 5], rel=1e-13)
-    assert periods_from("1,3,4").tolist() == [1.0, 3.0, 4.0]
+    for text, values in (("1:16:5", [1, 2, 4, 8, 16]), ("1:5:5:linear", [1, 2, 3, 4, 5]), ("1,3,4", [1, 3, 4])):
+        assert Values.model_validate(_periods(text)["table"]).numbers() == pytest.approx(values, rel=1e-13)
 
 
 REFUSALS = [
@@ -116,9 +115,9 @@ REFUSALS = [
     ((SINE, "--periods", "1:5:99999", "--slenderness", "4:8:200"), "rocking campaign"),
     ((SINE, "--restitution", "no-such"), "no-such"),
     ((SINE, "--scale", "nan"), "scale"),
-    ((SINE, "--picture", "a.bmp"), "a picture is .png"),
-    ((SINE, "--netcdf", "no-such-folder/a.nc"), "no folder"),
-    ((SINE, "--gravity", "0"), "--gravity must be"),
+    ((SINE, "--out", "a.bmp"), "by its ending a file is a picture (.png"),
+    ((SINE, "--out", "no-such-folder/a.nc"), "no folder"),
+    ((SINE, "--set", "settings.gravity=0"), "settings.gravity must be"),
 ]
 
 

@@ -38,7 +38,7 @@ def numbers(axis):
 def test_map_in_g_and_degrees(drawn, capsys, tmp_path):
     """A map over PGA in g and alpha in degrees has those units on its axes and in its sentences."""
     axes = ("--x", "pga=0.1g:1.5g:8", "--y", "slenderness_angle=5deg:20deg:6")
-    out = run(capsys, "map", *SIZE, PULSE, *axes, "--picture", str(tmp_path / "map.png"))
+    out = run(capsys, "map", *SIZE, PULSE, *axes, "--out", str(tmp_path / "map.png"))
     assert "pga, 0.1 to 1.5 g" in out
     assert "slenderness_angle, 5 to 20 deg" in out
     assert "m/s2" not in out.replace("3 m/s2", "")
@@ -57,7 +57,7 @@ def test_fragility_in_g(analysis, drawn, capsys, tmp_path):
     """Levels in g give medians in g, and axes in g."""
     motions = ("--synthetic", "pulse-like", "--count", "12", "--seed", "1", "--levels", "0.1g:1.5g:6")
     where = str(tmp_path / "curves.png")
-    out = run(capsys, "fragility", *SIZE, *motions, "--analysis", analysis, "--picture", where)
+    out = run(capsys, "fragility", *SIZE, *motions, "--analysis", analysis, "--out", where)
     assert "median [g]" in out
     (figure,) = drawn
     labels = [axes.get_xlabel() for axes in figure.axes] + [axes.get_ylabel() for axes in figure.axes]
@@ -68,7 +68,7 @@ def test_fragility_in_g(analysis, drawn, capsys, tmp_path):
 def test_without_a_unit_nothing_changes(drawn, capsys, tmp_path):
     """Negative control: numbers without a unit are in m/s2, and so is the picture."""
     axes = ("--x", "pga=1:15:8", "--y", "slenderness_angle=0.1:0.3:6")
-    out = run(capsys, "map", *SIZE, PULSE, *axes, "--picture", str(tmp_path / "map.png"))
+    out = run(capsys, "map", *SIZE, PULSE, *axes, "--out", str(tmp_path / "map.png"))
     assert "pga, 1 to 15 m/s2" in out
     assert drawn[0].axes[0].get_xlabel() == "peak ground acceleration [m/s$^2$]"
 
@@ -135,7 +135,7 @@ RADIUS = "alpha = 0.245 rad (14 deg), R = 1031 mm, p = 2.671 rad/s"  # R = sqrt(
 )
 def test_block_in_mm_is_told_in_mm(command, more, record, capsys):
     """A block and a record that are given in mm and g are described in mm and g, by every command alike."""
-    out = run(capsys, command, *IN_MM, "--record" if command == "fragility" else "--motion", record, *more)
+    out = run(capsys, command, *IN_MM, "--motion", record, *more)
     assert RADIUS in out
     assert " m," not in out
     if command == "simulate":
@@ -151,7 +151,7 @@ def test_centre_of_a_block_in_mm(capsys):
 
 def test_slip_in_mm(record, capsys):
     """What slides is told in the unit of lengths; the numbers are those in m, times a thousand."""
-    options = ("--motion", record, "--contact", "--friction", "0.2")
+    options = ("--motion", record, "--friction", "0.2")
     metres = run(capsys, "simulate", "--width", "1", "--height", "1", "--units", "g", *options)
     millimetres = run(capsys, "simulate", "--width", "1000", "--height", "1000", "--units", "mm,g", *options)
     assert ("slid [m]" in metres, "slid [mm]" in millimetres) == (True, True)

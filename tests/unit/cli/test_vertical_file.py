@@ -1,4 +1,4 @@
-"""`--vertical-file` of `rocking simulate` and `rocking motion`: the vertical component in a file of its own."""
+"""`--motion x=FILE --motion z=FILE` and `rocking motion x=FILE z=FILE`: the vertical component in a file of its own."""
 
 import json
 
@@ -45,7 +45,7 @@ def test_both_files_reach_the_engine(capsys, files):
     along, up = files
     motion = rk.read_motion(along, vertical_path=up)
     expected = rk.simulate(rk.Block(width=0.5, height=2.0), motion)
-    assert answered(capsys, "simulate", *SIZE, along, "--vertical-file", up)["peak_rotation_rad"] == (
+    assert answered(capsys, "simulate", *SIZE, along, "--motion", f"z={up}")["peak_rotation_rad"] == (
         expected.peak_rotation
     )
     assert answered(capsys, "simulate", *SIZE, along)["peak_rotation_rad"] != expected.peak_rotation
@@ -54,28 +54,26 @@ def test_both_files_reach_the_engine(capsys, files):
 def test_motion_tells_both(capsys, files, tmp_path):
     """`rocking motion` tells the peak and the name of the vertical part, both files, and writes its samples."""
     along, up = files
-    answer = answered(capsys, "motion", along, "--vertical-file", up, "--csv", tmp_path / "out.csv")
+    answer = answered(capsys, "motion", along, f"z={up}", "--out", tmp_path / "out.csv")
     assert answer["intensity"]["pga_m_s2"] == pytest.approx(np.abs(ALONG).max(), rel=1e-6)
     assert answer["peak_vertical_acceleration_m_s2"] == pytest.approx(2.0, rel=1e-6)
     assert answer["vertical_component"] == "UP"
     assert [name in line for name, line in zip(("90.at2", "UP.at2"), answer["provenance"], strict=True)] == [True] * 2
     assert "vertical_acceleration_m_s2" in (tmp_path / "out.csv").read_text(encoding="utf-8")
-    assert "upwards" in run(capsys, "motion", along, "--vertical-file", up)[1]
+    assert "upwards" in run(capsys, "motion", along, f"z={up}")[1]
     assert answered(capsys, "motion", along)["peak_vertical_acceleration_m_s2"] is None
 
 
 def test_a_file_of_several_components(capsys, files, tmp_path):
-    """--vertical names the component of the second file, --component that of the first, which are chosen apart."""
+    """Components of one file or of two are chosen apart, by their names after the files."""
     table = tmp_path / "table.txt"
     table.write_text("\n".join(f"{t:.2f} {a:.7f} {b:.7f}" for t, a, b in zip(TIME, ALONG, UP, strict=True)))
-    words = ("motion", table, "--units", "m/s2")
-    beside = (*words, "--vertical-file", table, "--vertical", "column 3")
-    both = answered(capsys, *beside, "--component", "column 2")
+    units = ("--units", "m/s2")
+    both = answered(capsys, "motion", f"{table}#column 2", f"z={table}#column 3", *units)
     assert both["peak_vertical_acceleration_m_s2"] == pytest.approx(2.0, rel=1e-6)
-    code, out, err = run(capsys, *beside)
+    code, out, err = run(capsys, "motion", table, f"z={table}#column 3", *units)
     assert (code, out) == (2, "")
-    assert "say --component one of these; that is, --component 'column 2' or --component 'column 3'" in err
-    assert "say --vertical one of these" in run(capsys, *words[:2], *beside[2:6], "--component", "column 2")[2]
+    assert f"say which one: '{table}#column 2' or" in err
 
 
 def test_refusals(capsys, files, tmp_path):
@@ -85,13 +83,14 @@ def test_refusals(capsys, files, tmp_path):
     write_record(Record("peer", (Component("UP", UP, "m/s2", 0.04),)), slow, "peer")
     pulse = "sine:amplitude=3.2,period=0.8"
     for words, sentence in (
-        (("motion", pulse, "--vertical-file", up), "a pulse takes no --vertical-file"),
-        (("simulate", *SIZE, pulse, "--vertical-file", up), "a pulse takes no --vertical-file"),
-        (("simulate", *SIZE, "--free", "0.5", "--vertical-file", up), "so it takes no --vertical-file"),
-        (("motion", along, "--vertical-file", "none.at2"), "none.at2: no such file"),
-        (("motion", along, "--vertical-file", pulse), "no such file"),
-        (("motion", along, "--vertical-file", along), "cannot be the vertical one"),
-        (("motion", along, "--vertical-file", slow), "0.02 s, got 0.04 s; resample one first"),
+        (("motion", pulse, f"z={up}"), "stands in a record file, as the one along x"),
+        (("simulate", *SIZE, pulse, f"--motion=z={up}"), "stands in a record file, as the one along x"),
+        (("simulate", *SIZE, "--free", "0.5", f"--motion=z={up}"), "give a motion or --free, not both"),
+        (("simulate", *SIZE, f"--motion=z={up}"), "give the motion along x too"),
+        (("motion", along, "z=none.at2"), "none.at2: no such file"),
+        (("motion", along, f"z={pulse}"), "stands in a record file"),
+        (("motion", along, f"z={along}"), "cannot be the vertical one"),
+        (("motion", along, f"z={slow}"), "0.02 s, got 0.04 s; resample one first"),
     ):
         code, out, err = run(capsys, *words)
         assert (code, out) == (2, "")

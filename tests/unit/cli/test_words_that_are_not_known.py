@@ -75,7 +75,7 @@ def test_nothing_is_guessed_from_far():
     ("words", "said"),
     [
         (("simulate", "--width", "0,5", "--height", "2", PULSE), "numbers have a decimal point: 0.5"),
-        (("simulate", *SIZE, PULSE, "--engine", "quick"), "engine must be one of auto, fast, reference"),
+        (("simulate", *SIZE, PULSE, "--set", "settings.engine=quick"), "settings.engine must be one of 'auto', 'fast'"),
         (("minimum", *SIZE, PULSE, "--lowest", "0,1g"), "numbers have a decimal point: 0.1"),
         (("motion", PULSE, "--periods", "0,5"), "numbers have a decimal point: 0.5"),
         (("simulat", *SIZE, PULSE), "Did you mean 'simulate'"),

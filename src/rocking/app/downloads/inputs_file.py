@@ -16,8 +16,6 @@ from rocking.bodies.formats.words import sentence
 from rocking.conventions import Assumed
 from rocking.version import SOFTWARE
 
-_OF_FILES = ("format", "units", "time_step", "component", "vertical")
-_SETTINGS = {"gravity", "linear", "engine"}
 FILE_NAME = "response.toml"
 """What such a file is called."""
 
@@ -156,7 +154,7 @@ def _body(body: Mapping[str, Any]) -> list[str] | None:
 
 def _start(inputs: Mapping[str, Any], record: str | None) -> list[str] | None:
     motion, response = inputs.get("motion"), inputs.get("response") or {}
-    friction = _options({"friction": response.get("assumed_friction")})
+    friction = _sets("response", {"assumed_friction": response.get("assumed_friction")})
     if motion is None:
         return None if response.get("free") is None else [*_options({"free": response["free"]}), *friction]
     scale = _options({"scale": motion.get("scale")})
@@ -164,7 +162,12 @@ def _start(inputs: Mapping[str, Any], record: str | None) -> list[str] | None:
         return ["--motion", str(motion["pulse"]), *scale, *friction]
     if record is None or motion.get("record") is None:
         return None
-    return ["--motion", record, *_options({name: motion.get(name) for name in _OF_FILES}), *scale, *friction]
+    component, vertical = motion.get("component"), motion.get("vertical")
+    file = record if component is None else f"{record}#{component}"
+    upright = [] if vertical is None else ["--motion", f"z={record}#{vertical}"]
+    units = _options({"units": motion.get("units")})
+    rare = _sets("motion", {name: motion.get(name) for name in ("format", "time_step")})
+    return ["--motion", f"x={file}" if upright else file, *upright, *units, *rare, *scale, *friction]
 
 
 def _restitution(inputs: Mapping[str, Any]) -> list[str] | None:
@@ -176,12 +179,17 @@ def _restitution(inputs: Mapping[str, Any]) -> list[str] | None:
 
 def _how(inputs: Mapping[str, Any]) -> list[str] | None:
     settings = {name: value for name, value in (inputs.get("settings") or {}).items() if value is not None}
-    if set(settings) - _SETTINGS:
-        return None
-    linear = ["--linear"] if settings.pop("linear", False) else []
     if settings.get("engine") == "auto":
         del settings["engine"]
-    return [*linear, *_options(settings)]
+    if not settings.get("linear"):
+        settings.pop("linear", None)
+    return _sets("settings", settings)
+
+
+def _sets(table: str, values: Mapping[str, Any]) -> list[str]:
+    stated = {name: value for name, value in values.items() if value is not None}
+    texts = {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in stated.items()}
+    return [word for name, text in texts.items() for word in ("--set", f"{table}.{name}={text}")]
 
 
 def _options(values: Mapping[str, Any]) -> list[str]:

@@ -179,7 +179,9 @@ async def _export_study(
     request: Request,
     study: str,
     kind: Kind,
-    what: Annotated[str | None, Query(max_length=40, description="as `rocking campaign export --what`")] = None,
+    what: Annotated[
+        str | None, Query(max_length=40, description="WHAT of `rocking campaign export --out WHAT=FILE`")
+    ] = None,
     restitution: Annotated[Whole, Query(description="of pictures and curves, counted from 0")] = 0,
     crossing: Annotated[Crossing | None, Query(description="what to do with fragility curves that cross")] = None,
 ) -> Response:

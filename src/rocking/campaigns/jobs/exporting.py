@@ -221,7 +221,7 @@ def _check_what(
     if suffix not in allowed:
         more = "; .xml (NRML) is for the fragility" if suffix == ".xml" and what == "histories" else ""
         if suffix == ".nc" and what in {"refined", "boundary"}:
-            more = "; the .nc of the histories (--what histories) holds points and polylines too"
+            more = "; the .nc of the histories (--out histories=FILE.nc) holds points and polylines too"
         raise InvalidValueError(f"{what} can be written as {', '.join(allowed)}, got {suffix or 'no ending'!r}{more}")
     if what not in _OF_ONE and restitution is not None:
         raise InvalidValueError("restitution goes with fragility, fema-p58 and measures; every history has its own")

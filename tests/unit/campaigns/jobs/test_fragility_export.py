@@ -124,7 +124,7 @@ def test_command_line(tmp_path, capsys, monkeypatch):
     """`rocking campaign export` writes what the job asks for."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "job.toml").write_text(ASKED, encoding="utf-8")
-    for words in (("run", "job.toml", "--out", "c"), ("export", "c", "--to", "r.csv", "--what", "fragility")):
+    for words in (("run", "job.toml", "--out", "c"), ("export", "c", "--out", "fragility=r.csv")):
         with suppress(SystemExit):
             main(["campaign", *words])
     capsys.readouterr()

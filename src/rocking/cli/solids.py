@@ -1,6 +1,5 @@
-"""`rocking cor` of solids: what it computes, prints and writes."""
+"""`rocking cor` of solids: every edge of the base, and what follows when the body falls back from it."""
 
-import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,10 +9,9 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies.solid import Base, Corner, Edge, RoundBase, Solid, SupportPolygon
-from rocking.cli.inputs import refuse, solid_from, spelt
-from rocking.cli.options import in_unit
-from rocking.cli.output import check_files
-from rocking.conventions import LENGTH_UNITS, g
+from rocking.cli.numbers import in_unit
+from rocking.cli.page import Page
+from rocking.conventions import LENGTH_UNITS
 from rocking.errors import GeometryError
 from rocking.restitution.space import SpatialModel, SpatialRestitution, impact_in_space, spatial_model, spatial_models
 
@@ -57,9 +55,17 @@ class EdgeImpact:
 class SolidAnswer:
     """A body in space and its edges."""
 
-    solid: Solid  # the body, and what was done to read it
+    solid: Solid
     edges: tuple[EdgeImpact, ...]  # edges of the base, at most `MOST_EDGES`; of a round one, directions
     gravity: float  # acceleration of gravity [m/s2]
+    length: str  # unit of lengths
+
+    @classmethod
+    def of(cls, solid: Solid, models: list[str] | None, gravity: float, length: str) -> "SolidAnswer":
+        """Compute the impacts; gravity: acceleration of gravity [m/s2]."""
+        pull = checks.positive("gravity", gravity, "m/s2")
+        chosen = [spatial_model(name) for name in models or spatial_models()]
+        return cls(solid, tuple(_edges(solid, chosen, pull)), pull, length)
 
     @property
     def left_out(self) -> int:
@@ -67,15 +73,67 @@ class SolidAnswer:
         base = self.solid.base
         return len(base.vertices) - len(self.edges) if isinstance(base, SupportPolygon) else 0
 
-    @classmethod
-    def of(cls, solid: Solid, models: list[str] | None, gravity: float) -> "SolidAnswer":
-        """Compute what is printed.
+    @property
+    def notes(self) -> list[str]:
+        """What limits the use of the coefficients: one sentence each; none for a base with corners."""
+        return [ROUND_BASE] if isinstance(self.solid.base, RoundBase) else []
 
-        gravity: acceleration of gravity [m/s2].
-        """
-        pull = checks.positive("gravity", gravity, "m/s2")
-        asked = [spatial_model(name) for name in models or spatial_models()]
-        return cls(solid, tuple(_edges(solid, asked, pull)), pull)
+    def facts(self) -> dict[str, Any]:
+        """Return everything as plain values."""
+        return {
+            "body": body_facts(self.solid),
+            "base": base_facts(self.solid.base),
+            "gravity_m_s2": self.gravity,
+            "edges": [edge_facts(edge) for edge in self.edges],
+            "edges_left_out": self.left_out,
+            "repairs": list(self.solid.repairs),
+            "notes": self.notes,
+        }
+
+    def draw(self) -> Any:
+        """Return the body on its base."""
+        from rocking.plots.solid import solid_picture
+
+        return solid_picture(self.solid)
+
+    def write_csv(self, path: Path) -> None:
+        """Write edges and coefficients as one CSV file."""
+        from rocking.cli.cor import write_records
+
+        write_records(path, [_record(edge, name) for edge in self.edges for name in edge.results])
+
+    def show(self, page: Page) -> None:
+        """Write body, repairs, base, and edges with the coefficients of every model."""
+        show_body(page, self.solid, self.length)
+        page.line()
+        numbered = not isinstance(self.solid.base, RoundBase)
+        page.line("Edges it may rock about" if numbered else "Directions it may be tipped in", "bold")
+        places = (f"from (x, y) {self.length}", f"to (x, y) {self.length}")
+        head = ("edge", *places, "alpha rad", "deg", "h/b", f"R {self.length}", "p rad/s")
+        page.table(head, [_geometry(edge, self.length) for edge in self.edges], ("edge",))
+        page.line()
+        page.line("Coefficient of restitution, angular velocity after / before", "bold")
+        rows = [
+            (edge.name, edge.onto, *(f"{r.coefficient:.6f}{' !' if r.flags else ''}" for r in edge.results.values()))
+            for edge in self.edges
+        ]
+        page.table(("from edge", "onto", *self.edges[0].results), rows, ("from edge", "onto"))
+        if self.left_out:
+            page.line(f"{self.left_out} edges that are less slender are left out", "dim")
+        page.warn(self._flags())
+        for sentence in self.notes:
+            page.line(f"! {sentence}")
+
+    def _flags(self) -> list[str]:
+        edges_of: dict[tuple[str, str], list[str]] = {}
+        for edge in self.edges:
+            for name, result in edge.results.items():
+                for flag in result.flags:
+                    edges_of.setdefault((name, flag.value), []).append(edge.name)
+        return [
+            f"{name}, from {', '.join(edges[:_MOST])}{' ...' if len(edges) > _MOST else ''}: {sentence}"
+            for (name, sentence), edges in edges_of.items()
+        ]
 
 
 def _edges(solid: Solid, models: list[SpatialModel], gravity: float) -> list[EdgeImpact]:
@@ -137,22 +195,6 @@ def _ends(base: Base, name: str, edge: Edge) -> tuple[tuple[float, float], tuple
     return point, (x, y)
 
 
-def solid_facts(answer: SolidAnswer) -> dict[str, Any]:
-    """Return everything that is said of a body in space, as plain values.
-
-    Returns ``body``, ``base``, ``edges`` with ``coefficients`` by model, ``edges_left_out``, ``repairs``,
-    ``gravity_m_s2``.
-    """
-    return {
-        "body": body_facts(answer.solid),
-        "base": base_facts(answer.solid.base),
-        "gravity_m_s2": answer.gravity,
-        "edges": [edge_facts(edge) for edge in answer.edges],
-        "edges_left_out": answer.left_out,
-        "repairs": list(answer.solid.repairs),
-    }
-
-
 def body_facts(solid: Solid) -> dict[str, Any]:
     """Return mass and geometry of a body in space."""
     low, high = solid.box
@@ -208,137 +250,36 @@ def edge_facts(edge: EdgeImpact) -> dict[str, Any]:
     }
 
 
-def notes(found: SolidAnswer) -> list[str]:
-    """Return what limits the use of the coefficients.
-
-    Returns one sentence each; none for a base with corners.
-    """
-    return [ROUND_BASE] if isinstance(found.solid.base, RoundBase) else []
-
-
-def answer_of_solid(
-    body: Path,
-    size: dict[str, Any],
-    told: dict[str, Any],
-    asked: dict[str, Any],
-    files: dict[str, Path | None],
-    *,
-    models: list[str] | None,
-    gravity: float | None,
-    as_json: bool,
-) -> None:
-    """Print, write and draw the coefficients of a body in space.
-
-    body: TOML file with [solid], or a mesh; gravity: acceleration of gravity; the standard one if not given [m/s2].
-    """
-    refuse("a body in space has its size from its file", spelt(size))
-    plane = {
-        "--onto": None if asked["onto"] == "both" else asked["onto"],
-        "--eta": None if asked["eta"] == 1.0 else asked["eta"],
-        "--identities": asked["identities"],
-        "--stages": files["stages"],
-    }
-    refuse("a body in space rocks about every edge of its base", plane)
-    csv, picture = files["csv"], files["picture"]
-    check_files(picture, csv)
-    found = SolidAnswer.of(solid_from(body, **told), models, g if gravity is None else gravity)
-    if csv is not None:
-        write_csv(found, csv)
-    if picture is not None:
-        draw(found.solid, picture)
-    if as_json:
-        facts = json.loads(as_text(found))
-        print(json.dumps({**facts, "notes": notes(found)}, indent=2, allow_nan=False))
-        return
-    show(found, told["unit"] or "m")
-    for sentence in notes(found):
-        print(f"! {sentence}")
-    for path in filter(None, (csv, picture)):
-        print(f"wrote {path}")
-
-
-def show(answer: SolidAnswer, length: str = "m") -> None:
-    """Print body, repairs, base, and edges with the coefficients of every model."""
-    from rich.console import Console
-
-    console = Console(highlight=False, soft_wrap=True)
-    show_body(answer.solid, length)
-    console.print()
-    console.print("Edges it may rock about" if _numbered(answer) else "Directions it may be tipped in", style="bold")
-    console.print(_geometry(answer.edges, length))
-    console.print()
-    console.print("Coefficient of restitution, angular velocity after / before", style="bold")
-    console.print(_coefficients(answer.edges))
-    if answer.left_out:
-        console.print(f"{answer.left_out} edges that are less slender are left out", style="dim")
-    for sentence in _flags(answer):
-        console.print(f"! {sentence}", style="yellow", markup=False)
-
-
-def show_body(solid: Solid, length: str = "m") -> None:
-    """Print mass, centre, base and repairs of a body in space."""
-    from rich.console import Console
-
-    console = Console(highlight=False, soft_wrap=True)
-    x, y, z = (solid.centre - [0.0, 0.0, solid.ground]).tolist()
-    size = " x ".join(f"{side / LENGTH_UNITS[length]:.4g}" for side in (solid.box[1] - solid.box[0]).tolist())
-    parts = len(solid.local_parts)
-    console.print(
-        f"{solid.name}: {size} {length}, {parts} part{'s' * (parts > 1)}, mass {solid.mass:.6g} kg, "
-        f"volume {solid.volume:.6g} m3",
-        markup=False,
-    )
-    middle = f"x = {_rounded(x, length)} {length}, y = {_rounded(y, length)} {length}"
-    console.print(f"centre of mass at {middle}, {in_unit(z, length, '.5g')} above the ground")
-    console.print(_base(solid, length), markup=False)
-    for sentence in solid.assumed:
-        console.print(sentence, markup=False)
-    for sentence in solid.repairs:
-        console.print(f"! {sentence}", style="yellow", markup=False)
-
-
-def as_text(answer: SolidAnswer) -> str:
-    """Return everything as JSON.
-
-    Returns one object; SI units, named in the keys where a quantity has one.
-    """
-    return json.dumps(solid_facts(answer), indent=2, allow_nan=False)
-
-
-def write_csv(answer: SolidAnswer, path: Path) -> None:
-    """Write edges and coefficients as one CSV file."""
-    from rocking.tables import Column, Table, text_array, to_csv
-
-    records = [_record(edge, name) for edge in answer.edges for name in edge.results]
-    columns = {name: Column(text_array([record[name] for record in records]), "") for name in records[0]}
-    to_csv(Table("coefficient", columns), path)
-
-
-def draw(solid: Solid, path: Path) -> None:
-    """Draw the body on its base."""
-    from rocking.plots.solid import solid_picture
-    from rocking.plots.style import write
-
-    write(solid_picture(solid), path)
-
-
 def _record(edge: EdgeImpact, name: str) -> dict[str, Any]:
     facts = edge_facts(edge)
-    found = facts.pop("coefficients")[name]
+    result = facts.pop("coefficients")[name]
     start, end = facts.pop("from_m"), facts.pop("to_m")
     places = {"from_x_m": start[0], "from_y_m": start[1], "to_x_m": end[0], "to_y_m": end[1]}
     return {
         **facts,
         **places,
         "model": name,
-        "coefficient_of_restitution": found["coefficient"],
-        "energy_ratio": found["energy_ratio"],
-        "flags": " ".join(found["flags"]),
+        "coefficient_of_restitution": result["coefficient"],
+        "energy_ratio": result["energy_ratio"],
+        "flags": " ".join(result["flags"]),
     }
 
 
-def _numbered(answer: SolidAnswer) -> bool:
-    return not isinstance(answer.solid.base, RoundBase)
+def show_body(page: Page, solid: Solid, length: str) -> None:
+    """Write mass, centre, base and repairs of a body in space."""
+    x, y, z = (solid.centre - [0.0, 0.0, solid.ground]).tolist()
+    size = " x ".join(f"{side / LENGTH_UNITS[length]:.4g}" for side in (solid.box[1] - solid.box[0]).tolist())
+    parts = len(solid.local_parts)
+    page.line(
+        f"{solid.name}: {size} {length}, {parts} part{'s' * (parts > 1)}, mass {solid.mass:.6g} kg, "
+        f"volume {solid.volume:.6g} m3"
+    )
+    middle = f"x = {_rounded(x, length)} {length}, y = {_rounded(y, length)} {length}"
+    page.line(f"centre of mass at {middle}, {in_unit(z, length, '.5g')} above the ground")
+    page.line(_base(solid, length))
+    for sentence in solid.assumed:
+        page.line(sentence)
+    page.warn(solid.repairs)
 
 
 def _base(solid: Solid, length: str) -> str:
@@ -358,48 +299,13 @@ def _rounded(place: float, length: str) -> str:
     return f"{(round(place, 9) + 0.0) / LENGTH_UNITS[length]:.5g}"
 
 
-def _geometry(edges: tuple[EdgeImpact, ...], length: str) -> Any:
-    from rich.table import Table
-
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    places = (f"from (x, y) {length}", f"to (x, y) {length}")
-    for word in ("edge", *places, "alpha rad", "deg", "h/b", f"R {length}", "p rad/s"):
-        table.add_column(word, justify="left" if word == "edge" else "right")
-    for edge in edges:
-        ends = (f"{_rounded(x, length)}, {_rounded(y, length)}" for x, y in edge.ends)
-        table.add_row(
-            edge.name,
-            *ends,
-            f"{edge.slenderness_angle:.4f}",
-            f"{math.degrees(edge.slenderness_angle):.2f}",
-            f"{1.0 / math.tan(edge.slenderness_angle):.3f}",
-            f"{edge.semi_diagonal / LENGTH_UNITS[length]:.{4 if length == 'm' else 2}f}",
-            f"{edge.frequency_parameter:.4f}",
-        )
-    return table
-
-
-def _coefficients(edges: tuple[EdgeImpact, ...]) -> Any:
-    from rich.table import Table
-
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    table.add_column("from edge")
-    table.add_column("onto")
-    for name in edges[0].results:
-        table.add_column(name, justify="right")
-    for edge in edges:
-        found = (f"{one.coefficient:.6f}{' !' if one.flags else ''}" for one in edge.results.values())
-        table.add_row(edge.name, edge.onto, *found)
-    return table
-
-
-def _flags(answer: SolidAnswer) -> list[str]:
-    told: dict[tuple[str, str], list[str]] = {}
-    for edge in answer.edges:
-        for name, found in edge.results.items():
-            for flag in found.flags:
-                told.setdefault((name, flag.value), []).append(edge.name)
-    return [
-        f"{name}, from {', '.join(edges[:_MOST])}{' ...' if len(edges) > _MOST else ''}: {sentence}"
-        for (name, sentence), edges in told.items()
-    ]
+def _geometry(edge: EdgeImpact, length: str) -> tuple[str, ...]:
+    return (
+        edge.name,
+        *(f"{_rounded(x, length)}, {_rounded(y, length)}" for x, y in edge.ends),
+        f"{edge.slenderness_angle:.4f}",
+        f"{math.degrees(edge.slenderness_angle):.2f}",
+        f"{1.0 / math.tan(edge.slenderness_angle):.3f}",
+        f"{edge.semi_diagonal / LENGTH_UNITS[length]:.{4 if length == 'm' else 2}f}",
+        f"{edge.frequency_parameter:.4f}",
+    )

@@ -1,0 +1,84 @@
+"""`rocking models` and `rocking formats`: what there is to choose from."""
+
+import textwrap
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+import typer
+
+from rocking.cli.page import Page, deliver
+
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+
+
+def models(
+    name: Annotated[str | None, typer.Argument(help="One model, or my_file.py:MyModel; all if left out.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """List the restitution models, in the plane and in space: reference, assumptions, domain, known defects."""
+    from rocking import checks, restitution
+    from rocking.errors import UnknownModelError
+    from rocking.restitution.from_file import file_of, model_in_file
+    from rocking.restitution.space import spatial_models
+
+    known: dict[str, Any] = {**restitution.models(), **spatial_models()}
+    if name is not None and file_of(name):
+        known[name] = type(model_in_file(name))
+    name = checks.spelling(name, known)
+    if name is not None and name not in known:
+        near = checks.nearest(name, known)
+        raise UnknownModelError(f"no restitution model named {name!r}; there are {', '.join(known)}{near}")
+    deliver(_Models({key: kind for key, kind in known.items() if name in {None, key}}), as_json=as_json)
+
+
+@dataclass(frozen=True)
+class _Models:
+    kinds: dict[str, Any]
+
+    def facts(self) -> dict[str, dict[str, Any]]:
+        names = ("title", "reference", "assumptions", "domain", "known_defects")
+        return {key: {name: getattr(kind, name) for name in names} for key, kind in self.kinds.items()}
+
+    def show(self, page: Page) -> None:
+        for key, entry in self.facts().items():
+            page.line(f"{key}: {entry.pop('title')}")
+            for name, value in entry.items():
+                for k, line in enumerate([value] if isinstance(value, str) else value):
+                    first = f"  {name.replace('_', ' ') + ':' if k == 0 else '':<15}"
+                    page.line(textwrap.fill(line, width=100, initial_indent=first, subsequent_indent=" " * 17))
+            page.line()
+
+
+def formats(as_json: AsJson = False) -> None:
+    """List the formats of ground-motion files: name, endings, whether they state unit and step, what to know."""
+    deliver(_Formats(), as_json=as_json)
+
+
+class _Formats:
+    def facts(self) -> dict[str, dict[str, Any]]:
+        from rocking.motions.formats import formats as registered
+
+        names = ("title", "suffixes", "states_unit", "states_time_step", "notes")
+        return {key: {name: getattr(kind, name) for name in names} for key, kind in registered().items()}
+
+    def show(self, page: Page) -> None:
+        from rich.console import Console
+        from rich.table import Table
+        from rich.text import Text
+
+        console = Console(highlight=False)
+        if not console.is_terminal:  # into a file or a pipe: the same width everywhere
+            console = Console(highlight=False, width=100)
+        table = Table(box=None, pad_edge=False, header_style="bold")
+        for head in ("name", "files", "unit", "step"):
+            table.add_column(head, no_wrap=head != "files", max_width=14)
+        table.add_column("what it is, and what to know", ratio=1)
+        for name, fact in self.facts().items():
+            about = Text(fact["title"])
+            if fact["notes"]:
+                about.append(f"\n{fact['notes']}\n", style="dim")
+            stated = ("stated" if fact[key] else "you say" for key in ("states_unit", "states_time_step"))
+            table.add_row(name, " ".join(fact["suffixes"]) or "any", *stated, about)
+        console.print(table)
+        page.line("unit, step: stated in the file, or you say them with --units and --set motion.time_step=SECONDS.")
+        page.line("Content decides which format a file has, not its ending; --set motion.format=NAME overrides.")

@@ -1,0 +1,119 @@
+"""`--out FILE`: what is written, by the ending of the file; `--out NAME=FILE` where an ending has several meanings."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rocking.errors import InvalidValueError, MissingExtraError
+
+PICTURES = (".png", ".svg", ".pdf")
+
+
+@dataclass(frozen=True)
+class Export:
+    """One kind of file that an answer can be written as."""
+
+    endings: tuple[str, ...]
+    write: Callable[[Any, Path], Any]  # takes the answer and the file
+    needs: str = ""  # module without which it cannot be written
+
+
+@dataclass(frozen=True)
+class Exports:
+    """Files that were asked for, by the name of their kind."""
+
+    kinds: dict[str, Export]
+    files: tuple[tuple[str, Path], ...]
+
+    @classmethod
+    def of(cls, texts: Sequence[str] | None, kinds: dict[str, Export]) -> "Exports":
+        """Return what `--out` says, refusing what could not be written before anything is computed."""
+        files = tuple(_file(text, kinds) for text in texts or ())
+        paths = [path for _, path in files]
+        if twice := next((path for path in paths if paths.count(path) > 1), None):
+            raise InvalidValueError(f"--out {twice} is given twice")
+        for name, path in files:
+            if not path.parent.is_dir():
+                raise InvalidValueError(f"no folder {str(path.parent)!r} to write {path.name!r} into")
+            if kinds[name].needs:
+                from rocking.errors import extra
+
+                extra(kinds[name].needs, path.name)
+        return cls(kinds, files)
+
+    @property
+    def names(self) -> set[str]:
+        """The kinds that were asked for."""
+        return {name for name, _ in self.files}
+
+    def write(self, answer: Any) -> list[Path]:
+        """Write every file; return them."""
+        for name, path in self.files:
+            try:
+                self.kinds[name].write(answer, path)
+            except MissingExtraError:
+                raise
+            except ImportError as error:  # some libraries only notice when they write that one of theirs is not there
+                raise MissingExtraError(f"cannot write {path}: {error}") from error
+        return [path for _, path in self.files]
+
+
+def _file(text: str, kinds: dict[str, Export]) -> tuple[str, Path]:
+    name, equals, rest = text.partition("=")
+    if equals and name in kinds:
+        path = Path(rest)
+        if path.suffix.lower() not in kinds[name].endings:
+            raise InvalidValueError(f"{_article(name)} is {_or(kinds[name].endings)}, got {path.name!r:.60}")
+        return name, path
+    path = Path(text)
+    chosen = next((kind for kind, export in kinds.items() if path.suffix.lower() in export.endings), None)
+    if chosen is None:
+        raise InvalidValueError(f"--out {path.name!r:.60}: by its ending a file is {_possible(kinds)}")
+    return chosen, path
+
+
+def _possible(kinds: dict[str, Export]) -> str:
+    seen: set[str] = set()
+    parts = []
+    for name, export in kinds.items():
+        prefix = f"{name}=FILE with " if seen & set(export.endings) else ""
+        parts.append(f"{_article(name)} ({prefix}{_or(export.endings)})")
+        seen |= set(export.endings)
+    return ", ".join(parts)
+
+
+def described(kinds: dict[str, Export]) -> str:
+    """Return the kinds of files, for the help of `--out`."""
+    return f"Write a file, again for more; its ending says what: {_possible(kinds)}."
+
+
+def _article(name: str) -> str:
+    return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
+
+
+def _or(endings: Sequence[str]) -> str:
+    return endings[0] if len(endings) == 1 else f"{', '.join(endings[:-1])} or {endings[-1]}"
+
+
+def picture(draw: Callable[[Any], Any], needs: str = "") -> Export:
+    """Return the export of a picture, from what draws the figure of an answer."""
+
+    def write(answer: Any, path: Path) -> None:
+        from rocking.plots import write as write_picture
+
+        write_picture(draw(answer), path)
+
+    return Export(PICTURES, write, needs)
+
+
+def write_columns(path: Path, columns: dict[str, tuple[Any, str]]) -> None:
+    """Write values with their units as comma-separated values, all digits kept."""
+    import numpy as np
+
+    from rocking.quantities import QUANTITIES
+    from rocking.tables import Column, Table, to_csv
+
+    codes = {name: QUANTITIES[name].codes if name in QUANTITIES else {} for name in columns}
+    table = {name: Column(np.asarray(v), unit, codes=codes[name]) for name, (v, unit) in columns.items()}
+    to_csv(Table("row", table, no_unit="1"), path, blank=False)

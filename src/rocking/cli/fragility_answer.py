@@ -1,0 +1,316 @@
+"""What `rocking fragility` shows and writes."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from rocking.cli.page import Page, sentence
+from rocking.errors import InvalidValueError
+from rocking.spec.document import FragilityTable
+from rocking.statistics.separation import Separation
+from rocking.studies.fragility import IncrementalDynamicAnalysis
+
+if TYPE_CHECKING:
+    from rocking.spec.study import StudyProblem
+    from rocking.statistics.lognormal import LognormalFit
+    from rocking.tables import Table
+
+WIDE = 0.01
+"""Survivals of less width over their level are named apart: in them the body balances on its corner [-]."""
+
+
+@dataclass(eq=False)
+class FragilityAnswer:
+    """The analyses of one body, by restitution."""
+
+    problem: "StudyProblem"
+    results: dict[str, Any]  # by label; the first is that of the files of curves
+    compared: Any  # with several restitutions, what differs
+    written: str  # unit that the levels were written in, empty if none; medians are printed in it
+    length: str  # unit of lengths
+    name: str | None = None  # of the body, in files
+    crossing: str = "refuse"  # what becomes of curves that cross, in files
+
+    @classmethod
+    def of(
+        cls, problem: "StudyProblem", tell: Any, threads: int | None, *, written: str, length: str
+    ) -> "FragilityAnswer":
+        """Compute an analysis."""
+        found = problem.answer(tell, threads)
+        several = len(problem.restitutions) > 1
+        results = found.results if several else {next(iter(problem.restitutions)): found}
+        return cls(problem, results, found if several else None, written, length)
+
+    @property
+    def first(self) -> Any:
+        """The analysis with the first restitution."""
+        return next(iter(self.results.values()))
+
+    @property
+    def table(self) -> FragilityTable:
+        """What was asked."""
+        return self.problem.document.fragility or FragilityTable()
+
+    @property
+    def kind(self) -> str:
+        """Stripes, cloud or incremental."""
+        return self.problem.document.campaign.kind
+
+    @property
+    def unit(self) -> tuple[str, float]:
+        """Unit that the levels were written in, that of the measure if in none, and its size."""
+        from rocking.cli.numbers import UNITS
+
+        unit = self.first.subject.measure.unit
+        return (self.written, UNITS[unit][self.written]) if self.written else (unit, 1.0)
+
+    @cached_property
+    def curves(self) -> Any:
+        """The curves, as files hold them."""
+        from rocking.studies.fragility.curves import model_of, nested
+
+        model = model_of(self.first, self.name or type(self.problem.bodies[0]).__name__.lower())
+        return nested(model, "common-dispersion") if self.crossing == "common-dispersion" else model
+
+    def check_crossing(self) -> None:
+        """Refuse curves that cross, of which FEMA P-58 and OpenQuake can make nothing."""
+        from rocking.studies.fragility.curves import nested
+
+        try:
+            nested(self.curves)
+        except InvalidValueError as error:
+            text = str(error).replace('crossing="common-dispersion"', "--crossing common-dispersion")
+            raise InvalidValueError(text) from error
+
+    def counted(self) -> "Table":
+        """Return what was counted at each level, and the fitted probability beside it, empty without a curve."""
+        from rocking.tables import Table
+
+        measure, states = self.first.subject.measure, list(self.first.counts)
+        first = ("restitution", f"{measure.name} [{measure.unit}]", "histories [-]")
+        head = (*first, *(f"reached {name} [-]" for name in states), *(f"fitted {name} [-]" for name in states))
+        rows: list[tuple[str | int | float, ...]] = []
+        for label, result in self.results.items():
+            fits = [result.fits.get(name) for name in states]
+            fitted = [fit.probability(result.levels) if fit is not None and fit.exists else None for fit in fits]
+            for k, level in enumerate(result.levels.tolist()):
+                reached = [int(result.counts[name][k]) for name in states]
+                likely = ["" if values is None else float(values[k]) for values in fitted]
+                rows.append((label, level, int(result.trials[k]), *reached, *likely))
+        return Table.of_rows("counted", head, rows)
+
+    def draw(self) -> Any:
+        """Return the picture of the analysis."""
+        from rocking.plots.labels import axis_label, shown_in
+
+        if self.compared is not None:
+            from rocking.plots.sensitivity import sensitivity_picture
+
+            figure = sensitivity_picture(self.compared, unit=self.unit)
+        elif self.kind == "incremental":
+            from rocking.plots.incremental_dynamic_analysis import incremental_dynamic_analysis_picture
+
+            figure = incremental_dynamic_analysis_picture(self.first)
+        else:
+            from rocking.plots.fragility import fragility_picture
+
+            figure = fragility_picture(self.first)
+        measure = self.first.subject.measure
+        own = axis_label(measure.name, measure.unit)
+        for axes in figure.axes if self.written else []:
+            for which in ("x", "y"):
+                if getattr(axes, f"get_{which}label")() == own:
+                    shown_in(axes, which, *self.unit)
+        return figure
+
+    def facts(self) -> dict[str, Any]:
+        """Return everything as plain values."""
+        body, first, compared = self.problem.bodies[0], self.first, self.compared
+        return {
+            "body": repr(body),
+            "assumed": list(body.assumed),
+            "motions": self._motions_facts(),
+            "gravity_m_s2": self.problem.settings.gravity,
+            "linear": self.problem.settings.linear,
+            "analysis": self.kind,
+            "measure": first.subject.measure.name,
+            "unit": first.subject.measure.unit,
+            "states": list(self.table.states),
+            "uplift_threshold": first.subject.uplift_threshold,
+            "levels": first.levels,
+            "results": [_result_facts(one) for one in self.results.values()],
+            "comparison": None if compared is None else {"choices": compared.summary(), "verdict": compared.verdict},
+        }
+
+    def _motions_facts(self) -> dict[str, Any]:
+        from rocking.motions.pulse import Pulse
+
+        table, motions = self.problem.document.motions[0], self.problem.motions
+        if table.synthetic is not None:
+            seed = table.seed or 0
+            family = getattr(motions, "family", None)
+            name = table.synthetic if family is None else family.name
+            return {"kind": "synthetic", "count": len(motions), "family": name, "seed": seed}
+        names = [motions[k].name for k in range(len(motions))]
+        kind = "pulses" if isinstance(motions[0], Pulse) else "records"
+        return {"kind": kind, "count": len(names), "names": names}
+
+    def show(self, page: Page) -> None:
+        """Write the curves, and what is to be known of them."""
+        from rocking.cli.study import body_lines
+
+        first, labels = self.first, dict.fromkeys(one.subject.parameters.label for one in self.results.values())
+        page.facts(body_lines(self.problem.bodies[0], self.problem.settings.gravity, self.length))
+        page.facts([
+            ("motions", _motions_line(self._motions_facts())),
+            ("restitution", ", ".join(labels)),
+            ("measure", f"{first.subject.measure.name}, {first.subject.measure.words}"),
+            ("rocking", self._uplift()),
+        ])  # fmt: skip
+        page.line(sentence(first.definition))
+        page.line()
+        for label, result in self.results.items():
+            head, rows = self._curve_rows(label if self.compared is not None else "state", result)
+            page.table(head, rows, head[:1])
+            page.line()
+        for line in self._sentences():
+            page.line(line)
+
+    def _uplift(self) -> str:
+        check = self.first.uplift
+        if check.threshold is None:
+            return str(check.verdict)
+        unit, factor = self.unit
+        return (
+            f"certain above {check.threshold / factor:.4g} {unit}, impossible below; "
+            f"{check.contradictions} of {check.checked} histories contradict it"
+        )
+
+    def _curve_rows(self, first: str, result: Any) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+        unit, factor = self.unit
+        rows: list[tuple[str, ...]] = []
+        for name, fit in result.fits.items():
+            summary = fit.summary()
+            median = "none" if fit.median is None else f"{fit.median / factor:.4g}"
+            spread = "none" if fit.dispersion is None else f"{fit.dispersion:.3g}"
+            known = fit.exists and not _too_few(fit)
+            ends = (summary["median_95"], factor), (summary["dispersion_95"], 1.0)
+            middle, wide = (_interval(*each) if known else "" for each in ends)
+            rows.append((name, median, middle, spread, wide))
+        return (first, f"median [{unit}]", "95 %", "dispersion", "95 %"), rows
+
+    def _sentences(self) -> list[str]:
+        lines: list[str] = []
+        for label, result in self.results.items():
+            before = f"{label}, " if self.compared is not None else ""
+            lines += [f"{before}{text}" for text in _verdicts(result)]
+            failed = result.failed
+            if failed:
+                lines.append(f"! {before}{failed} histories could not be computed; they count at no level")
+            if contact := result.responses.contact:
+                lines.append(f"! {before}{contact}")
+        lines += [_regression(self.first)] if self.kind == "cloud" else self._intervals()
+        if isinstance(self.first, IncrementalDynamicAnalysis):
+            lines += self._transitions(self.first)
+        if self.compared is not None:
+            lines.append(self.compared.told(self.unit))
+        return lines
+
+    def _intervals(self) -> list[str]:
+        """Return what the intervals are, and why there are none."""
+        fits = [(name, fit) for result in self.results.values() for name, fit in result.fits.items() if fit.exists]
+        whys = {_too_few(fit): name for name, fit in fits}
+        lines = [
+            f"No interval of {name}: motions serve at every level, and there are too few of them ({why})."
+            for why, name in whys.items()
+            if why
+        ]
+        if "" not in whys:
+            return lines
+        how = (
+            "the values of the parameter under which so few, or so many, failures as these are no rarity, each motion "
+            "with one capacity"
+            if any(fit.counts.draws_capacities for _, fit in fits)
+            else "whole motions drawn anew"
+        )
+        return [*lines, f"Intervals: {how}, since a motion serves at every level."]
+
+    def _transitions(self, found: IncrementalDynamicAnalysis) -> list[str]:
+        unit, factor = self.unit
+        first, whole = found.first_crossing_fit, int(found.complete.sum())
+        curve = (
+            "too few motions overturn it for a curve"
+            if first is None or first.median is None or first.dispersion is None
+            else f"median {first.median / factor:.4g} {unit}, dispersion {first.dispersion:.3g}"
+        )
+        return [
+            sentence(f"{found.definitions['first crossing']}: {curve}"),
+            f"{len(found.resurrected())} of {whole} motion{'s' * (whole != 1)} left it standing at levels above one "
+            f"that overturns it, {len(found.resurrected(WIDE))} of them over more than 1 % of the level.",
+        ]
+
+
+def _result_facts(found: Any) -> dict[str, Any]:
+    summary = found.summary()
+    facts = {
+        "restitution": found.subject.parameters.label,
+        "definition": found.definition,
+        "uplift": summary["uplift"],
+        "failed": summary["failed"],
+        "contact": found.responses.contact,
+        "trials": found.trials,
+        "reached": dict(found.counts),
+        "curves": {name: fit.summary() for name, fit in found.fits.items()},
+    }
+    if "regression" in summary:
+        facts["regression"] = summary["regression"]
+    if isinstance(found, IncrementalDynamicAnalysis):
+        facts |= {
+            "first_crossing": summary["first crossing"],
+            "first_crossings": found.first_crossings,
+            "overturning_intervals": [{"motion": i.motion, "start": i.start, "end": i.end} for i in found.intervals],
+            "resurrected_motions": found.resurrected(),
+            "resurrected_motions_over_1_percent": found.resurrected(WIDE),
+        }
+    return facts
+
+
+def _motions_line(facts: dict[str, Any]) -> str:
+    if facts["kind"] == "synthetic":
+        return f"{facts['count']} synthetic motions of the family {facts['family']}, seed {facts['seed']}"
+    kind = facts["kind"] if facts["count"] > 1 else facts["kind"][:-1]
+    return f"{facts['count']} {kind}: {', '.join(' '.join(name.split()) for name in facts['names'][:4])}" + (
+        ", ..." if facts["count"] > 4 else ""
+    )
+
+
+def _interval(ends: list[float | None], factor: float) -> str:
+    low, high = ("open" if end is None else f"{end / factor:.3g}" for end in ends)
+    return f"{low} to {high}"
+
+
+def _too_few(fit: "LognormalFit") -> str:
+    """Return why motions that serve at several levels are too few for an interval; empty if they are not."""
+    return fit.counts.scarcity if fit.counts.is_clustered else ""
+
+
+def _verdicts(result: Any) -> list[str]:
+    """Return what is to be known of curves that are not likeliest, the same words once; intervals are told apart."""
+    states: dict[str, list[str]] = {}
+    for name, fit in result.fits.items():
+        if fit.separation is not Separation.OVERLAP or not fit.exists:
+            text = fit.verdict.split(" Outcomes of one cluster")[0].split(" Intervals are")[0]
+            states.setdefault(text, []).append(name)
+    where = "" if (unit := result.subject.measure.unit) == "-" else f" (levels in {unit})"
+    return [f"{', '.join(names)}: {text}{where}" for text, names in states.items()]
+
+
+def _regression(found: Any) -> str:
+    try:
+        line = found.regression
+    except InvalidValueError as error:
+        return f"No line of the rotation over the measure: {error}"
+    return (
+        f"Of {line.count} histories that rocked and stayed standing, ln(theta/alpha) grows with slope {line.slope:.3g} "
+        f"over ln({found.subject.measure.name}), scatter {line.scatter:.3g}, R squared {line.determination:.3g}."
+    )

@@ -1,0 +1,120 @@
+"""Numbers with units, as they are typed, and as they are printed."""
+
+import math
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from rocking import checks
+from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, FloatArray
+from rocking.errors import InvalidValueError
+
+UNITS: dict[str, dict[str, float]] = {
+    "m/s2": ACCELERATION_UNITS,
+    "m/s": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001},
+    "m": LENGTH_UNITS,
+    "s": {"s": 1.0, "ms": 0.001},
+    "rad": {"rad": 1.0, "deg": math.pi / 180.0},
+    "1": {},
+}
+"""By the unit in which a value is computed: the units in which it may be written."""
+
+MOST_VALUES = 100_000
+"""No row of values has more."""
+
+_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z/][A-Za-z0-9/]*)?")
+
+
+def quantity(name: str, text: str, unit: str) -> tuple[float, str]:
+    """Return one number [unit], and the unit in which it was written, empty if none.
+
+    >>> quantity("semi_diagonal", "40cm", "m"), quantity("scale", "2", "1")
+    ((0.4, 'cm'), (2.0, ''))
+    """
+    match, known = _NUMBER.fullmatch(text.strip()), UNITS[unit]
+    if match is None or (match[2] and match[2] not in known):
+        allowed = f", alone or with one of {', '.join(known)}" if known else " without a unit"
+        raise InvalidValueError(f"{name} must be a number{allowed}, got {text!r:.60}{checks.decimal_comma(text)}")
+    value = float(match[1]) * (known[match[2]] if match[2] else 1.0)
+    if not math.isfinite(value):
+        raise InvalidValueError(f"{name} must be a finite number, got {text!r:.60}")
+    return value, match[2] or ""
+
+
+def values_table(name: str, text: str, unit: str, spacing: str = "linear") -> tuple[dict[str, Any], str]:
+    """Return a row of values as the table of a document, and the unit in which all were written, empty if none.
+
+    text: numbers with commas between, or FIRST:LAST:COUNT, or that with :log or :linear.
+
+    >>> values_table("pga", "1:3:3", "m/s2")
+    ({'from': 1.0, 'to': 3.0, 'count': 3, 'spacing': 'linear'}, '')
+    >>> values_table("periods", "1,2,4", "s")
+    ({'values': [1.0, 2.0, 4.0]}, '')
+    """
+    parts = text.split(":")
+    if len(parts) == 1:
+        values, written = _quantities(name, text.split(","), unit)
+        return {"values": values}, written
+    if len(parts) not in {3, 4} or (len(parts) == 4 and parts[3].strip() not in {"linear", "log"}):
+        raise InvalidValueError(f"{name} must be FIRST:LAST:COUNT, or that with :log, or A,B,C, got {text!r:.60}")
+    (first, last), written = _quantities(name, parts[:2], unit)
+    if not re.fullmatch(r"\s*[0-9]{1,9}\s*", parts[2]) or not 2 <= int(parts[2]) <= MOST_VALUES:
+        raise InvalidValueError(f"{name} must have a COUNT from 2 to {MOST_VALUES}, got {parts[2]!r:.60}")
+    spacing = parts[3].strip() if len(parts) == 4 else spacing
+    if spacing == "log" and min(first, last) <= 0.0:
+        raise InvalidValueError(f"{name} must be above 0 to be spaced by equal ratios, got {text!r:.60}")
+    return {"from": first, "to": last, "count": int(parts[2]), "spacing": spacing}, written
+
+
+def row(name: str, text: str, unit: str, spacing: str = "linear") -> tuple[FloatArray, str]:
+    """Return a row of values [unit], and the unit in which all were written, empty if none.
+
+    >>> values, _ = row("pga", "0.1g:0.3g:3", "m/s2")
+    >>> (values / 9.80665).round(12).tolist()
+    [0.1, 0.2, 0.3]
+    """
+    from rocking.spec.fields import Values
+
+    table, written = values_table(name, text, unit, spacing)
+    return Values.model_validate(table).numbers(), written
+
+
+def _quantities(name: str, texts: list[str], unit: str) -> tuple[list[float], str]:
+    if len(texts) > MOST_VALUES:
+        raise InvalidValueError(f"{name} must have at most {MOST_VALUES} values, got {len(texts)}")
+    pairs = [quantity(name, text, unit) for text in texts]
+    written = [one for _, one in pairs]
+    if "" in written and any(written):  # 0.1:1g could mean either
+        why = checks.decimal_comma(",".join(texts))
+        raise InvalidValueError(f"{name} must have a unit at every number or at none, got {':'.join(texts)!r:.60}{why}")
+    return [value for value, _ in pairs], written[0]
+
+
+def units_of(text: str | None, *kinds: Mapping[str, float]) -> tuple[str | None, ...]:
+    """Return the unit of every kind in a text such as ``mm,g``, None where none was given.
+
+    >>> units_of("g, mm", LENGTH_UNITS, ACCELERATION_UNITS), units_of(None, LENGTH_UNITS)
+    (('mm', 'g'), (None,))
+    """
+    units: list[str | None] = [None] * len(kinds)
+    for part in [] if text is None else text.split(","):
+        name = checks.one_of("--units", part.strip(), [each for kind in kinds for each in kind])
+        place = next(k for k, kind in enumerate(kinds) if name in kind)
+        if units[place] is not None:
+            raise InvalidValueError(f"--units must have one unit of a kind, got {units[place]} and {name}")
+        units[place] = name
+    return tuple(units)
+
+
+def in_unit(value: float, unit: str, digits: str = ".4g") -> str:
+    """Return a length [m] or an acceleration [m/s2] in the unit in which the question was asked.
+
+    >>> in_unit(0.5, "mm"), in_unit(1.0, "gal")
+    ('500 mm', '100 gal')
+    """
+    return f"{value / {**LENGTH_UNITS, **ACCELERATION_UNITS}[unit]:{digits}} {unit}"
+
+
+def beside_g(unit: str) -> str:
+    """Return the unit in which an acceleration is written where it stands in g too: m/s2 in place of g."""
+    return "m/s2" if unit == "g" else unit

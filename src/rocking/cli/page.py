@@ -1,0 +1,129 @@
+"""The one renderer of answers: facts, tables and sentences on the terminal, or JSON."""
+
+import json
+import sys
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from rocking.cli.exports import Exports
+
+Facts = Iterable[tuple[str, str]]
+
+
+class Answer(Protocol):
+    """What every command has to show."""
+
+    def facts(self) -> Any:
+        """Return everything as plain values: SI units, named in the keys, None where something does not exist."""
+
+    def show(self, page: "Page") -> None:
+        """Write it on a page."""
+
+
+class Page:
+    """Lines, facts and tables on the terminal."""
+
+    def __init__(self) -> None:
+        from rich.console import Console
+
+        self._console = Console(highlight=False, soft_wrap=True)
+
+    def line(self, text: str = "", style: str | None = None) -> None:
+        """Write a line."""
+        self._console.print(text, style=style, markup=False)
+
+    def rich(self, made: Any, **options: Any) -> None:
+        """Write what rich has made."""
+        self._console.print(made, **options)
+
+    def facts(self, facts: Facts, width: int = 13) -> None:
+        """Write a line for each fact, its name before it."""
+        for name, value in facts:
+            self.line(f"{name + ':':<{width}} {value}")
+
+    def warn(self, sentences: Iterable[str]) -> None:
+        """Write what a reader should not miss."""
+        for sentence in sentences:
+            self.line(f"! {sentence}", style="yellow")
+
+    def table(
+        self,
+        head: Sequence[str],
+        rows: Iterable[Sequence[str]],
+        left: Sequence[str] = (),
+        *,
+        bold: int | Container[int] | None = None,
+        dense: bool = False,
+        whole: int | None = None,
+    ) -> None:
+        """Write a table without lines.
+
+        left: columns of text, the others being numbers; bold: numbers of rows that stand out; whole: column that is
+        never folded.
+        """
+        from rich.table import Table
+        from rich.text import Text
+
+        table = Table(box=None, pad_edge=False, collapse_padding=dense, header_style="bold")
+        for k, name in enumerate(head):
+            how = {"no_wrap": True} if k == whole else {"overflow": "fold"}
+            table.add_column(Text(name), justify="left" if name in left else "right", **how)
+        chosen = bold if isinstance(bold, Container) else (bold,)
+        for k, row in enumerate(rows):
+            table.add_row(*map(Text, row), style="bold" if k in chosen else None)
+        self._console.print(table)
+
+
+def sentence(text: str) -> str:
+    """Return a sentence that begins and ends as one."""
+    return f"{text[:1].upper()}{text[1:]}."
+
+
+def print_json(facts: Any) -> None:
+    """Print plain values as JSON, with null where there is no finite number."""
+    print(json.dumps(plain(facts), indent=1, allow_nan=False))
+
+
+def plain(values: Any) -> Any:
+    """Return values as JSON knows them.
+
+    >>> import numpy as np
+    >>> plain({"a": np.array([[1.0, float("nan")]]), "b": (1, float("inf"))})
+    {'a': [[1.0, None]], 'b': [1, None]}
+    """
+    if isinstance(values, dict):
+        return {str(name): plain(one) for name, one in values.items()}
+    if isinstance(values, (list, tuple)):
+        return [plain(one) for one in values]
+    if hasattr(values, "tolist"):
+        return plain(values.tolist())
+    return None if isinstance(values, float) and not abs(values) < float("inf") else values
+
+
+def deliver(answer: Answer, exports: "Exports | None" = None, *, as_json: bool) -> None:
+    """Write the files that were asked for, and print an answer."""
+    written: list[Path] = [] if exports is None else exports.write(answer)
+    if as_json:
+        print_json(answer.facts())
+        return
+    answer.show(Page())
+    for path in written:
+        print(f"wrote {path}")
+
+
+@contextmanager
+def bar(what: str, total: int | None = None, *, quiet: bool = False) -> Iterator[Callable[[int], None]]:
+    """Show on a terminal how far it is; what is yielded takes the number done since it was last called."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda done: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as shown:
+        task = shown.add_task(what, total=total)
+        yield lambda done: shown.update(task, advance=done)
