@@ -203,7 +203,7 @@ def _table(
 def _problem(words: "Words", kind: str, own: dict[str, Any], restitution: list[str] | None) -> "StudyProblem":
     from rocking.cli.question import as_typed
     from rocking.cli.study import problem_of
-    from rocking.studies.fragility import limit_states
+    from rocking.studies.fragility.subject import limit_states
 
     limit_states(tuple(own["states"]))
     motions = _motions(words)

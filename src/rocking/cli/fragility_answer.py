@@ -240,7 +240,7 @@ class FragilityAnswer:
         first, whole = found.first_crossing_fit, int(found.complete.sum())
         curve = (
             "too few motions overturn it for a curve"
-            if first is None or first.median is None or first.dispersion is None
+            if first is None
             else f"median {first.median / factor:.4g} {unit}, dispersion {first.dispersion:.3g}"
         )
         return [

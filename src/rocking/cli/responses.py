@@ -246,8 +246,8 @@ class ContactAnswer:
         page.line(sentence(response.summary), "bold")
         head = ("from [s]", "to [s]", "mode", "feet", f"slid [{length}]")
         _some(page, response.regimes.tolist(), _FIRST, head, self._mode_row, ("mode", "feet"))
-        head = ("impact [s]", "feet", "velocity before [rad/s]", "after [rad/s]", "lost [J]", "feet slide")
-        _some(page, response.impacts.tolist(), _FIRST, head, _contact_impact_row, ("feet",))
+        names = ("impact [s]", "feet", "velocity before [rad/s]", "after [rad/s]", "lost [J]", "feet slide")
+        _some(page, response.impacts.tolist(), _FIRST, names, _contact_impact_row, ("feet",))
         page.line()
         page.facts(self._measures(), 16)
 
@@ -357,8 +357,8 @@ class SpaceAnswer:
         page.line(sentence(response.summary), "bold")
         head = ("from [s]", "to [s]", "contact", "vertices")
         _some(page, response.intervals, _FIRST, head, _interval_row, ("contact", "vertices"))
-        head = ("impact [s]", "energy before [J]", "after [J]", "impulse [N s]", "stays", "vertices")
-        _some(page, response.impacts.tolist(), _FIRST, head, _space_impact_row, ("stays", "vertices"))
+        names = ("impact [s]", "energy before [J]", "after [J]", "impulse [N s]", "stays", "vertices")
+        _some(page, response.impacts.tolist(), _FIRST, names, _space_impact_row, ("stays", "vertices"))
         page.line()
         fell = response.outcome is Outcome.OVERTURNED
         peak = "it overturned" if fell else f"{math.degrees(response.peak_tilt):.6g} deg"

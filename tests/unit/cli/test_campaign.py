@@ -40,6 +40,7 @@ if __name__ == "__main__":
 @pytest.fixture
 def run(capsys):
     """Run the command as the shell does: exit code, what it printed, what it complained of."""
+
     def call(*words):
         with pytest.raises(SystemExit) as left:
             main(["campaign", *(str(word) for word in words)])
