@@ -69,7 +69,7 @@ def is_body(text: str) -> bool:
 def is_file(text: str) -> bool:
     """Return whether there is a file of a name."""
     try:
-        return Path(text).exists()
+        return bool(text) and Path(text).exists()
     except (OSError, ValueError):  # no file can have such a name
         return False
 

@@ -258,9 +258,9 @@ def test_files(capsys, tmp_path):
         rows = [row for row in csv.reader(file) if not row[0].startswith("#")]
     column = next(k for k, word in enumerate(rows[0]) if word.startswith("rotation"))
     np.testing.assert_array_equal([float(row[column]) for row in rows[1:]], expected.rotation)
-    assert expected.summary[1:] in paths["svg"].read_text(encoding="utf-8")
-    assert "angular" in paths["--out"].read_text(encoding="utf-8")
-    assert paths["--out"].stat().st_size > 1000
+    assert expected.summary[1:] in paths["html"].read_text(encoding="utf-8")
+    assert "angular" in paths["svg"].read_text(encoding="utf-8")
+    assert paths["mat"].stat().st_size > 1000
     gif = tmp_path / "a.GIF"
     assert run(capsys, *SIZE, "--free", "0.1", "--restitution", "0.1", "--out", gif)[0] == 0
     with Image.open(gif) as film:

@@ -128,8 +128,8 @@ def test_the_warning_names_the_option(capsys):
 
 
 REFUSED = {
-    "linear": ([*SQUAT, PUSH, "--friction", "1", "--set", "settings.linear=true"], "so it takes no linear"),
-    "engine": ([*SQUAT, PUSH, "--friction", "1", "--set", "settings.engine=fast"], "so it takes no engine"),
+    "linear": ([*SQUAT, SINE, "--friction", "1", "--set", "settings.linear=true"], "so it takes no linear"),
+    "engine": ([*SQUAT, SINE, "--friction", "1", "--set", "settings.engine=fast"], "so it takes no engine"),
     "animation": ([*SQUAT, SINE, "--friction", "1", "--out", "a.html"], "an animation is of pure rocking only"),
     "friction": ([*SQUAT, SINE, "--friction", "-1"], "--friction must be a number > 0"),
     "friction nan": ([*SQUAT, SINE, "--friction", "nan"], "--friction must be a finite number"),

@@ -73,7 +73,7 @@ def test_a_file_of_several_components(capsys, files, tmp_path):
     assert both["peak_vertical_acceleration_m_s2"] == pytest.approx(2.0, rel=1e-6)
     code, out, err = run(capsys, "motion", table, f"z={table}#column 3", *units)
     assert (code, out) == (2, "")
-    assert f"say which one: '{table}#column 2' or" in err
+    assert f"say which one: '{table}#column 2'" in err
 
 
 def test_refusals(capsys, files, tmp_path):
