@@ -10,7 +10,7 @@ import typer
 
 from rocking.bodies import Solid
 from rocking.cli import options
-from rocking.cli.exports import PICTURES, Export, Exports, picture
+from rocking.cli.exports import PICTURES, Export, Exports, picture, write_records
 from rocking.cli.numbers import in_unit
 from rocking.cli.page import Page, deliver
 from rocking.cli.question import Words, hinted
@@ -225,11 +225,3 @@ def _row(row: Any) -> tuple[str, ...]:
         row.name, f"{row.coefficient:.6f}", f"{row.half_interval:.3f}", f"{implied.impulse_ratio:.3f}",
         f"{100.0 * implied.energy_loss:.2f} %", f"{implied.friction_demand:.3f}", "!" if row.warnings else "",
     )  # fmt: skip
-
-
-def write_records(path: Path, records: list[dict[str, Any]]) -> None:
-    """Write records of the same keys as CSV."""
-    from rocking.tables import Column, Table, text_array, to_csv
-
-    columns = {name: Column(text_array([record[name] for record in records]), "") for name in records[0]}
-    to_csv(Table("coefficient", columns), path)

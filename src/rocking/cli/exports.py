@@ -117,3 +117,11 @@ def write_columns(path: Path, columns: dict[str, tuple[Any, str]]) -> None:
     codes = {name: QUANTITIES[name].codes if name in QUANTITIES else {} for name in columns}
     table = {name: Column(np.asarray(v), unit, codes=codes[name]) for name, (v, unit) in columns.items()}
     to_csv(Table("row", table, no_unit="1"), path, blank=False)
+
+
+def write_records(path: Path, records: list[dict[str, Any]]) -> None:
+    """Write records of the same keys as CSV."""
+    from rocking.tables import Column, Table, text_array, to_csv
+
+    columns = {name: Column(text_array([record[name] for record in records]), "") for name in records[0]}
+    to_csv(Table("coefficient", columns), path)

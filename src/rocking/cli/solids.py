@@ -98,7 +98,7 @@ class SolidAnswer:
 
     def write_csv(self, path: Path) -> None:
         """Write edges and coefficients as one CSV file."""
-        from rocking.cli.cor import write_records
+        from rocking.cli.exports import write_records
 
         write_records(path, [_record(edge, name) for edge in self.edges for name in edge.results])
 
