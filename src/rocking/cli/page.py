@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 Facts = Iterable[tuple[str, str]]
 
 
-class Answer(Protocol):
+class CommandAnswer(Protocol):
     """What every command has to show."""
 
     def facts(self) -> Any:
@@ -103,7 +103,7 @@ def plain(values: Any) -> Any:
     return None if isinstance(values, float) and not abs(values) < float("inf") else values
 
 
-def deliver(answer: Answer, exports: "Exports | None" = None, *, as_json: bool) -> None:
+def deliver(answer: CommandAnswer, exports: "Exports | None" = None, *, as_json: bool) -> None:
     """Write the files that were asked for, and print an answer."""
     written: list[Path] = [] if exports is None else exports.write(answer)
     if as_json:
