@@ -4,7 +4,8 @@ from pathlib import Path
 
 from rocking.plots import inventory_picture, write
 from rocking.reports.inventory_folder import write_inventory
-from rocking.studies.inventory import Hazard, IntensityLevel, assess, read_inventory
+from rocking.studies.inventory import assess, read_inventory
+from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.table import advice, model_note, sentence
 
 inventory = read_inventory(Path(__file__).with_name("inventory.csv"))

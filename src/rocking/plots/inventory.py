@@ -47,7 +47,8 @@ def inventory_picture(assessment: Assessment) -> "Figure":
 
     Examples
     --------
-    >>> from rocking.studies.inventory import Hazard, Inventory, InventoryObject, IntensityLevel, assess
+    >>> from rocking.studies.inventory import Inventory, InventoryObject, assess
+    >>> from rocking.studies.inventory.hazard import Hazard, IntensityLevel
     >>> hazard = Hazard.of_family("point-source", IntensityLevel.of("PGA", "0.3g"), count=5, seed=1)
     >>> vase = InventoryObject(name="vase", width=0.12, depth=0.12, height=0.6)
     >>> figure = inventory_picture(assess(Inventory((vase,)), hazard))

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
-    from rocking.studies import Polyline
     from rocking.studies.adaptive_grid import RefinedMap
+    from rocking.studies.boundaries import Polyline
 
     Window = tuple[tuple[float, float], tuple[float, float]]
 

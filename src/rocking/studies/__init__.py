@@ -7,9 +7,9 @@ from rocking.lazy import exports
 if TYPE_CHECKING:
     from rocking.studies._overturning_map import overturning_map
     from rocking.studies._rocking_spectrum import rocking_spectrum
-    from rocking.studies.adaptive_grid import RefinedMap, refined_map
+    from rocking.studies.adaptive_grid import refined_map
     from rocking.studies.axis import axes
-    from rocking.studies.boundaries import Polyline, boundary
+    from rocking.studies.boundaries import boundary
     from rocking.studies.fragility import (
         cloud,
         compare_measures,
@@ -17,9 +17,8 @@ if TYPE_CHECKING:
         multiple_stripe_analysis,
     )
     from rocking.studies.histories import Histories, HistoryTable, Product
-    from rocking.studies.islands import Islands, safe_beyond_overturning, safe_islands
+    from rocking.studies.islands import safe_beyond_overturning, safe_islands
     from rocking.studies.minimum_acceleration import (
-        Transitions,
         minimum_overturning_acceleration,
         minimum_overturning_accelerations,
     )
@@ -35,16 +34,12 @@ if TYPE_CHECKING:
 __all__ = [
     "Histories",
     "HistoryTable",
-    "Islands",
     "MotionList",
     "MotionSet",
-    "Polyline",
     "Product",
-    "RefinedMap",
     "SampledRestitution",
     "Sensitivity",
     "SyntheticSet",
-    "Transitions",
     "axes",
     "boundary",
     "cloud",
@@ -68,16 +63,12 @@ __getattr__, __dir__ = exports(
     {
         "Histories": "rocking.studies.histories",
         "HistoryTable": "rocking.studies.histories",
-        "Islands": "rocking.studies.islands",
         "MotionList": "rocking.studies.motion_sets",
         "MotionSet": "rocking.studies.motion_sets",
-        "Polyline": "rocking.studies.boundaries",
         "Product": "rocking.studies.histories",
-        "RefinedMap": "rocking.studies.adaptive_grid",
         "SampledRestitution": "rocking.studies.sensitivity",
         "Sensitivity": "rocking.studies.sensitivity",
         "SyntheticSet": "rocking.studies.motion_sets",
-        "Transitions": "rocking.studies.minimum_acceleration",
         "axes": "rocking.studies.axis",
         "boundary": "rocking.studies.boundaries",
         "cloud": "rocking.studies.fragility",

@@ -217,25 +217,13 @@ def verdicts(modes: IntArray) -> BoolArray:
 
 @dataclass(frozen=True, eq=False)
 class RefinedMap:
-    """Points of a map that has been refined along the boundaries between modes.
+    """Points of a map that has been refined along the boundaries between modes."""
 
-    Parameters
-    ----------
-    x, y : ndarray
-        Coordinates of all points, in the units of the axes.
-    modes : ndarray of int
-        How each ended: -3 failed, -2 not lifted, -1 survived, n >= 0 overturned after n impacts.
-    peak_ratio : ndarray
-        Peak rotation over the slenderness angle [-].
-    base : ndarray of bool
-        Whether a point is one of the map before refinement.
-    """
-
-    x: FloatArray
+    x: FloatArray  # x, y: coordinates of all points, in the units of the axes
     y: FloatArray
-    modes: IntArray
-    peak_ratio: FloatArray
-    base: BoolArray
+    modes: IntArray  # how each ended: -3 failed, -2 not lifted, -1 survived, n >= 0 overturned after n impacts
+    peak_ratio: FloatArray  # peak rotation over the slenderness angle [-]
+    base: BoolArray  # whether a point is one of the map before refinement
 
 
 def refined(

@@ -24,26 +24,16 @@ _MOST_ROUNDS = 60
 
 @dataclass(frozen=True, eq=False)
 class Polyline:
-    """A stretch of the boundary of a region.
+    """A stretch of the boundary of a region."""
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 2)
-        Vertices x, y, in the units of the axes, each on an edge of the grid; the first is repeated at the end if the
-        polyline is closed.
-    modes : ndarray of int, shape (n, 2)
-        At each vertex the modes outside and inside the region: -2 not lifted, -1 survived, n >= 0 overturned after n
-        impacts.
-    region : str
-        What lies inside: ``overturned``, or ``overturned after n impacts``.
-    axes : tuple of (str, str)
-        Names of the axes.
-    """
-
+    # vertices x, y, in the units of the axes, each on an edge of the grid; the first is repeated at the end if the
+    # polyline is closed
     points: FloatArray
+    # at each vertex the modes outside and inside the region: -2 not lifted, -1 survived, n >= 0 overturned after n
+    # impacts
     modes: IntArray
-    region: str
-    axes: tuple[str, str]
+    region: str  # what lies inside: ``overturned``, or ``overturned after n impacts``
+    axes: tuple[str, str]  # names of the axes
 
     @property
     def closed(self) -> bool:

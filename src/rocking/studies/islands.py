@@ -30,21 +30,11 @@ class Island:
 
 @dataclass(frozen=True, eq=False)
 class Islands:
-    """All safe islands of a map.
+    """All safe islands of a map."""
 
-    Parameters
-    ----------
-    labels : ndarray of int, shape (y, x)
-        Number of the island at each point of the map; 0 for none.
-    islands : tuple of Island
-        The largest first.
-    axes : tuple of (str, str)
-        Names of the axes, x and y.
-    """
-
-    labels: IntArray
-    islands: tuple[Island, ...]
-    axes: tuple[str, str]
+    labels: IntArray  # number of the island at each point of the map; 0 for none
+    islands: tuple[Island, ...]  # the largest first
+    axes: tuple[str, str]  # names of the axes, x and y
 
     def __len__(self) -> int:
         return len(self.islands)

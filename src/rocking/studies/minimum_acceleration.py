@@ -31,48 +31,27 @@ class Transitions:
     ones have been looked for where the peak rotation comes close to the top, has a maximum, overturning takes
     longest, or the way of overturning changes; that is a search, not a proof. Under a record thinner stretches may lie
     anywhere: below the minimum it has been searched again and again, to `resolution_below`.
-
-    Parameters
-    ----------
-    acceleration : ndarray
-        Peak ground accelerations of the crossings, increasing [m/s2].
-    ratio : ndarray
-        The same over `uplift_acceleration` [-].
-    scale : ndarray
-        The same as factors on the motion [-].
-    modes : ndarray of int, shape (n, 2)
-        How the body ends just below and just above: -2 not lifted, -1 survived, n >= 0 overturned after n impacts.
-    width : ndarray
-        Widths of the brackets; the crossings are their middles [m/s2].
-    lowest, highest : float
-        Range that was searched [m/s2].
-    uplift_acceleration : float
-        Ground acceleration that lifts the body: g tan alpha, or g alpha in the linear equations [m/s2].
-    resolution : float
-        Relative spacing of the first samples [-].
-    starts_overturned : bool
-        Whether the lowest acceleration overturns already.
-    samples, failed : int
-        Histories that were computed, and those that have no result; a bracket stays wide where one failed.
-    resolution_below : float
-        Widest relative gap between samples below the minimum; NaN if there is no minimum [-].
-    lost_contact : ndarray
-        1 for histories in which the ground would have to pull, 0 for others, NaN for those that have no result [-].
     """
 
-    acceleration: FloatArray
-    ratio: FloatArray
-    scale: FloatArray
+    acceleration: FloatArray  # peak ground accelerations of the crossings, increasing [m/s2]
+    ratio: FloatArray  # the same over `uplift_acceleration` [-]
+    scale: FloatArray  # the same as factors on the motion [-]
+    # how the body ends just below and just above: -2 not lifted, -1 survived, n >= 0 overturned after n impacts
     modes: IntArray
-    width: FloatArray
-    lowest: float
+    width: FloatArray  # widths of the brackets; the crossings are their middles [m/s2]
+    lowest: float  # lowest, highest: range that was searched [m/s2]
     highest: float
+    # ground acceleration that lifts the body: g tan alpha, or g alpha in the linear equations [m/s2]
     uplift_acceleration: float
-    resolution: float
-    starts_overturned: bool
+    resolution: float  # relative spacing of the first samples [-]
+    starts_overturned: bool  # whether the lowest acceleration overturns already
+    # samples, failed: histories that were computed, and those that have no result; a bracket stays wide where one
+    # failed
     samples: int
     failed: int
+    # widest relative gap between samples below the minimum; NaN if there is no minimum [-]
     resolution_below: float = math.nan
+    # 1 for histories in which the ground would have to pull, 0 for others, NaN for those that have no result [-]
     lost_contact: FloatArray = field(default_factory=lambda: np.empty(0), repr=False)
 
     def __len__(self) -> int:

@@ -27,7 +27,8 @@ from rocking.studies import (
     minimum_overturning_acceleration,
     refined_map,
 )
-from rocking.studies.inventory import Hazard, IntensityLevel, Inventory, InventoryObject, Thresholds, assess
+from rocking.studies.inventory import Inventory, InventoryObject, Thresholds, assess
+from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 
 BLOCK, PULSE = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.8)
 AXES = ("frequency_ratio", np.linspace(0.5, 8.0, 16)), ("amplitude_ratio", np.linspace(1.0, 10.0, 13))

@@ -10,7 +10,8 @@ import rocking as rk
 from rocking.cli import main
 from rocking.errors import InvalidValueError
 from rocking.studies import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
-from rocking.studies.inventory import Hazard, InventoryObject, Thresholds, assess
+from rocking.studies.inventory import InventoryObject, Thresholds, assess
+from rocking.studies.inventory.hazard import Hazard
 
 pytest.importorskip("xarray")
 

@@ -7,13 +7,9 @@ import pytest
 
 import rocking as rk
 from rocking.errors import InvalidValueError
-from rocking.studies import (
-    SyntheticSet,
-    Transitions,
-    minimum_overturning_acceleration,
-    minimum_overturning_accelerations,
-)
+from rocking.studies import SyntheticSet, minimum_overturning_acceleration, minimum_overturning_accelerations
 from rocking.studies.amplitude_search import Samples, below, suspicious
+from rocking.studies.minimum_acceleration import Transitions
 from rocking.studies.question import FAILED
 
 BLOCK = rk.Block.from_angle(0.2, 1.0)

@@ -14,7 +14,8 @@ from rocking.outcome import Outcome, Status, overturned
 from rocking.plots import falling_picture, rocking_spectrum_picture
 from rocking.reports.response_facts import response_facts
 from rocking.studies import cloud, multiple_stripe_analysis
-from rocking.studies.inventory import Hazard, InventoryObject, assess
+from rocking.studies.inventory import InventoryObject, assess
+from rocking.studies.inventory.hazard import Hazard
 from rocking.studies.inventory.table import sentence
 from rocking.studies.minimum_acceleration import Cases, Effort, searched
 

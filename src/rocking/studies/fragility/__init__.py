@@ -7,22 +7,17 @@ from rocking.lazy import exports
 if TYPE_CHECKING:
     from rocking.studies.fragility._fragility import fragility, fragility_analysis
     from rocking.studies.fragility._incremental_dynamic_analysis import (
-        IncrementalDynamicAnalysis,
         incremental_dynamic_analysis,
     )
-    from rocking.studies.fragility._multiple_stripe_analysis import MultipleStripeAnalysis, multiple_stripe_analysis
-    from rocking.studies.fragility.cloud_analysis import CloudAnalysis, cloud
+    from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
+    from rocking.studies.fragility.cloud_analysis import cloud
     from rocking.studies.fragility.curves import FragilityCurve, FragilityModel, model_of
     from rocking.studies.fragility.export import fema_p58_table, to_csv, to_excel, to_mat, to_netcdf, to_nrml
-    from rocking.studies.fragility.measure_comparison import MeasureComparison, compare_measures
+    from rocking.studies.fragility.measure_comparison import compare_measures
 
 __all__ = [
-    "CloudAnalysis",
     "FragilityCurve",
     "FragilityModel",
-    "IncrementalDynamicAnalysis",
-    "MeasureComparison",
-    "MultipleStripeAnalysis",
     "cloud",
     "compare_measures",
     "fema_p58_table",
@@ -41,12 +36,8 @@ __all__ = [
 __getattr__, __dir__ = exports(
     __name__,
     {
-        "CloudAnalysis": "rocking.studies.fragility.cloud_analysis",
         "FragilityCurve": "rocking.studies.fragility.curves",
         "FragilityModel": "rocking.studies.fragility.curves",
-        "IncrementalDynamicAnalysis": "rocking.studies.fragility._incremental_dynamic_analysis",
-        "MeasureComparison": "rocking.studies.fragility.measure_comparison",
-        "MultipleStripeAnalysis": "rocking.studies.fragility._multiple_stripe_analysis",
         "cloud": "rocking.studies.fragility.cloud_analysis",
         "compare_measures": "rocking.studies.fragility.measure_comparison",
         "fema_p58_table": "rocking.studies.fragility.export",

@@ -46,17 +46,11 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
 
     A stronger motion may leave standing what a weaker one overturns (resurrection). Two definitions of the probability
     of overturning therefore differ; both are given, each with its name.
-
-    Parameters
-    ----------
-    subject, states, histories, responses, levels
-        As for `MultipleStripeAnalysis`; the histories of the search between the levels apart.
-    intervals : tuple of OverturningInterval
-        All intervals of levels in which a motion overturns the body, by motion and level, of motions without a failed
-        history. Survival between overturning to one side and to the other is always found; other intervals of either
-        kind that are narrower than the distance between levels may be missed.
     """
 
+    # all intervals of levels in which a motion overturns the body, by motion and level, of motions without a failed
+    # history. Survival between overturning to one side and to the other is always found; other intervals of either
+    # kind that are narrower than the distance between levels may be missed
     intervals: tuple[OverturningInterval, ...]
 
     kind = "incremental"
@@ -108,33 +102,14 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
     def resurrected(self, wider_than: float = 0.0) -> list[int]:
         """Return which motions leave the body standing at levels above one at which they overturn it.
 
-        Parameters
-        ----------
-        wider_than : float
-            Least width of these levels, over the lowest of them. Long records have survivals as narrow as anyone cares
-            to search for, in which the body balances on its corner; a width such as 0.01 leaves these out [-].
-
-        Returns
-        -------
-        list of int
-            Numbers of the motions.
+        Long records have survivals as narrow as anyone cares to search for, in which the body balances on its corner; a
+        width over the lowest of these levels such as 0.01 leaves these out [-].
         """
         least = checks.within("wider_than", wider_than, 0.0, 1e6)
         return sorted({motion for motion, low, high in self.survivals if high - low > least * low})
 
     def share_resurrected(self, wider_than: float = 0.0) -> float:
-        """Return the share of resurrected motions among those without a failed history.
-
-        Parameters
-        ----------
-        wider_than : float
-            As for `resurrected` [-].
-
-        Returns
-        -------
-        float
-            From 0 to 1 [-].
-        """
+        """Return the share of resurrected motions among those without a failed history, from 0 to 1 [-]."""
         return len(self.resurrected(wider_than)) / max(1, int(self.complete.sum()))
 
     @property

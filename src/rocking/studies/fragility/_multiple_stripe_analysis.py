@@ -32,23 +32,9 @@ DEFINITION = (
 
 @dataclass(frozen=True, eq=False)
 class MultipleStripeAnalysis(FragilityAnalysis):
-    """The outcome of a multiple stripe analysis.
+    """The outcome of a multiple stripe analysis; states and rotations are of shape (motions, levels)."""
 
-    Parameters
-    ----------
-    subject : Subject
-        The body, the motions and the measure.
-    states : tuple of LimitState
-        From rocking to overturned.
-    histories : Product
-        What was computed.
-    responses : Responses
-        States and rotations, of shape (motions, levels).
-    levels : ndarray
-        Levels of the measure [its unit].
-    """
-
-    levels: FloatArray
+    levels: FloatArray  # levels of the measure [its unit]
 
     kind = "multiple stripes"
     definition = DEFINITION

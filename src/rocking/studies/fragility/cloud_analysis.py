@@ -67,26 +67,10 @@ class ClearShare:
 
 @dataclass(frozen=True, eq=False)
 class CloudAnalysis(FragilityAnalysis):
-    """The outcome of a cloud analysis.
+    """The outcome of a cloud analysis; states and rotations have one entry a motion."""
 
-    Parameters
-    ----------
-    subject : Subject
-        The body, the motions and the measure.
-    states : tuple of LimitState
-        From rocking to overturned.
-    histories : Product
-        What was computed: one history a motion.
-    responses : Responses
-        States and rotations, one entry a motion.
-    motion_levels : ndarray
-        Measure of each motion, with the factor [its unit].
-    least : float
-        Rotation over alpha below which a history counts as barely lifted, and is left out of the line [-].
-    """
-
-    motion_levels: FloatArray
-    least: float = LEAST
+    motion_levels: FloatArray  # measure of each motion, with the factor [its unit]
+    least: float = LEAST  # rotation over alpha below which a history is barely lifted, and left out of the line [-]
 
     kind = "cloud"
     definition = DEFINITION
@@ -134,18 +118,7 @@ class CloudAnalysis(FragilityAnalysis):
         return ClearShare(self.motion_levels, self.responses, self.least)
 
     def probability_of_rocking(self, level: Any) -> FloatArray:
-        """Return the probability that the body rocks or overturns.
-
-        Parameters
-        ----------
-        level : float or array_like
-            Levels of the measure [its unit].
-
-        Returns
-        -------
-        ndarray
-            Zero or one where a level decides it, else the fitted curve [-].
-        """
+        """Return the probability that the body rocks or overturns: 0 or 1 where a level decides it, else fitted [-]."""
         levels = checks.positive_array("level", level, self.subject.measure.unit)
         threshold = self.subject.uplift_threshold
         if threshold is not None:
@@ -153,38 +126,18 @@ class CloudAnalysis(FragilityAnalysis):
         return np.asarray(self.fits["rocking"].probability(levels), dtype=np.float64)
 
     def probability(self, level: Any, rotation: float) -> FloatArray:
-        """Return the probability that the rotation exceeds a value, from all three parts.
+        """Return the probability that the rotation exceeds a value over alpha, at least `least` [-], at levels.
 
-        Parameters
-        ----------
-        level : float or array_like
-            Levels of the measure [its unit].
-        rotation : float
-            Rotation over alpha, at least `least` [-].
-
-        Returns
-        -------
-        ndarray
-            P(overturned) + P(rocked, not overturned) P(rotation exceeded | rocked, not overturned) [-].
+        P(overturned) + P(rocked, not overturned) P(rotation exceeded | rocked, not overturned).
         """
         parts = self.parts(level, rotation)
         return parts["overturned"] + parts["exceeded"]  # Eq. 221
 
     def parts(self, level: Any, rotation: float) -> dict[str, FloatArray]:
-        """Return the parts of the total probability, which add up to one.
+        """Return the parts of the total probability, which add up to one, at levels and for a rotation over alpha [-].
 
-        Parameters
-        ----------
-        level : float or array_like
-            Levels of the measure [its unit].
-        rotation : float
-            Rotation over alpha, at least `least`: what is barely lifted reaches none above it [-].
-
-        Returns
-        -------
-        dict of str to ndarray
-            ``no rocking``, ``below`` (rocked, not beyond the rotation), ``exceeded`` (rocked beyond it, did not
-            overturn) and ``overturned`` [-].
+        ``no rocking``, ``below`` (rocked, not beyond the rotation), ``exceeded`` (rocked beyond it, did not overturn)
+        and ``overturned``. What is barely lifted reaches no rotation above `least`.
         """
         levels = checks.positive_array("level", level, self.subject.measure.unit)
         hint = "the line knows nothing of histories barely lifted; choose another least="

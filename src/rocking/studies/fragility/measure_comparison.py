@@ -50,21 +50,12 @@ class MeasureScore:
 
 @dataclass(frozen=True)
 class MeasureComparison:
-    """Measures of intensity ranked by efficiency, the best first.
+    """Measures of intensity ranked by efficiency, the best first."""
 
-    Parameters
-    ----------
-    scores : tuple of MeasureScore
-        One a measure.
-    left_out : dict of str to str
-        Measures that cannot be ranked, and why: one that is the same for all motions says nothing about them.
-    least : float
-        Rotation over alpha below which a history counts as barely lifted [-].
-    """
-
-    scores: tuple[MeasureScore, ...]
+    scores: tuple[MeasureScore, ...]  # one a measure
+    # measures that cannot be ranked, and why: one that is the same for all motions says nothing about them
     left_out: Mapping[str, str]
-    least: float = LEAST
+    least: float = LEAST  # rotation over alpha below which a history counts as barely lifted [-]
 
     @property
     def best(self) -> str:
@@ -72,13 +63,7 @@ class MeasureComparison:
         return self.scores[0].measure
 
     def rows(self) -> list[dict[str, Any]]:
-        """Return the table as rows of plain values.
-
-        Returns
-        -------
-        list of dict
-            Rank, the fields of `MeasureScore`, and a column ``p(name)`` for each column of the metadata.
-        """
+        """Return rank, the fields of `MeasureScore`, and ``p(name)`` for each column of the metadata."""
         made = []
         for rank, score in enumerate(self.scores, 1):
             fields = {name: value for name, value in vars(score).items() if name != "sufficiency"}
@@ -86,13 +71,7 @@ class MeasureComparison:
         return made
 
     def to_dataframe(self) -> "pd.DataFrame":
-        """Return the table, one row a measure, by rank.
-
-        Returns
-        -------
-        pandas.DataFrame
-            The fields of `MeasureScore`.
-        """
+        """Return the table, one row a measure, by rank."""
         frame: pd.DataFrame = extra("pandas", "a table").DataFrame(self.rows()).set_index("rank")
         return frame
 

@@ -341,13 +341,7 @@ class FragilityAnalysis(ABC):
         return labelled
 
     def summary(self) -> dict[str, Any]:
-        """Return what is printed, as plain values: the definition, the check and the curves.
-
-        Returns
-        -------
-        dict
-            Medians in the unit of the measure.
-        """
+        """Return what is printed, as plain values, medians in the unit of the measure: definition, check, curves."""
         return {
             "analysis": self.kind,
             "definition": self.definition,

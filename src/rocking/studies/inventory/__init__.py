@@ -1,16 +1,12 @@
 """Inventories: which objects of a list stay standing at a level of shaking, in a ranked table and plain words."""
 
 from rocking.studies.inventory._inventory import inventory
-from rocking.studies.inventory.assessment import Assessment, assess
-from rocking.studies.inventory.hazard import Hazard, IntensityLevel
+from rocking.studies.inventory.assessment import assess
 from rocking.studies.inventory.lights import Thresholds
 from rocking.studies.inventory.objects import InventoryObject
 from rocking.studies.inventory.reading import Inventory, parse_inventory, read_inventory
 
 __all__ = [
-    "Assessment",
-    "Hazard",
-    "IntensityLevel",
     "Inventory",
     "InventoryObject",
     "Thresholds",

@@ -100,46 +100,20 @@ class Verdict:
 
 @dataclass(frozen=True, eq=False)
 class Assessment:
-    """An inventory assessed.
+    """An inventory assessed."""
 
-    Parameters
-    ----------
-    verdicts : tuple of Verdict
-        The worst first.
-    not_assessed : tuple of NotAssessed
-        Rows without a verdict.
-    hazard : Hazard
-        The motions.
-    thresholds : Thresholds
-        What the lights mean.
-    restitution, comparison : str
-        The two models of impact, in words.
-    source : str
-        Name of the inventory.
-    ignored : tuple of str
-        Columns of the file that were not read.
-    gravity : float
-        Acceleration of gravity [m/s2].
-    """
-
-    verdicts: tuple[Verdict, ...]
-    not_assessed: tuple[NotAssessed, ...]
-    hazard: Hazard
-    thresholds: Thresholds
-    restitution: str
+    verdicts: tuple[Verdict, ...]  # the worst first
+    not_assessed: tuple[NotAssessed, ...]  # rows without a verdict
+    hazard: Hazard  # the motions
+    thresholds: Thresholds  # what the lights mean
+    restitution: str  # restitution, comparison: the two models of impact, in words
     comparison: str
-    source: str = "objects"
-    ignored: tuple[str, ...] = ()
-    gravity: float = g
+    source: str = "objects"  # name of the inventory
+    ignored: tuple[str, ...] = ()  # columns of the file that were not read
+    gravity: float = g  # acceleration of gravity [m/s2]
 
     def counts(self) -> dict[Light, int]:
-        """Return how many rows show each light, the worst first.
-
-        Returns
-        -------
-        dict of Light to int
-            Rows, not pieces [-].
-        """
+        """Return how many rows, not pieces, show each light, the worst first."""
         return {light: sum(each.light is light for each in self.verdicts) for light in reversed(Light)}
 
 

@@ -28,23 +28,10 @@ _LEVEL = re.compile(r"((?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(
 
 @dataclass(frozen=True)
 class IntensityLevel:
-    """Peak ground acceleration or velocity to which motions are scaled.
+    """Peak ground acceleration or velocity to which motions are scaled."""
 
-    Parameters
-    ----------
-    kind : {"PGA", "PGV"}
-        Which of the two.
-    value : float
-        The level [m/s2 or m/s].
-
-    Examples
-    --------
-    >>> IntensityLevel.of("PGA", "0.3g").value, str(IntensityLevel.of("PGV", "25 cm/s"))
-    (2.941995, 'PGV 0.25 m/s')
-    """
-
-    kind: str
-    value: float
+    kind: str  # which of the two
+    value: float  # the level [m/s2 or m/s]
 
     def __post_init__(self) -> None:
         if self.kind not in {"PGA", "PGV"}:
@@ -60,20 +47,7 @@ class IntensityLevel:
 
     @classmethod
     def of(cls, kind: str, words: str) -> "IntensityLevel":
-        """Return a level from a number with its unit, which is never guessed.
-
-        Parameters
-        ----------
-        kind : {"PGA", "PGV"}
-            Which of the two.
-        words : str
-            Such as ``0.3g``, ``2.9 m/s2`` or ``25cm/s``.
-
-        Returns
-        -------
-        IntensityLevel
-            The level.
-        """
+        """Return a level from a number with its unit, such as ``0.3g`` or ``25cm/s``: it is never guessed."""
         if kind not in {"PGA", "PGV"}:
             raise InvalidValueError(f"a level is a PGA or a PGV, got {kind!r:.40}")
         units = ACCELERATION_UNITS if kind == "PGA" else VELOCITY_UNITS
@@ -89,30 +63,12 @@ class IntensityLevel:
 
 @dataclass(frozen=True, eq=False)
 class Hazard:
-    """Motions that shake every object of an inventory.
+    """Motions that shake every object of an inventory."""
 
-    Parameters
-    ----------
-    motions : tuple of GroundMotion
-        The motions, scaled.
-    level : IntensityLevel or None
-        To what they are scaled; None for records as they are.
-    source : str
-        Where they come from, in words.
-    description : dict
-        The same as plain values.
-
-    Examples
-    --------
-    >>> hazard = Hazard.of_family("point-source", IntensityLevel.of("PGA", "0.3g"), count=3, seed=1)
-    >>> [round(motion.peak, 6) for motion in hazard.motions]
-    [2.941995, 2.941995, 2.941995]
-    """
-
-    motions: tuple[GroundMotion, ...]
-    level: IntensityLevel | None
-    source: str
-    description: dict[str, Any]
+    motions: tuple[GroundMotion, ...]  # the motions, scaled
+    level: IntensityLevel | None  # to what they are scaled; None for records as they are
+    source: str  # where they come from, in words
+    description: dict[str, Any]  # the same as plain values
 
     @classmethod
     def of_family(
@@ -124,24 +80,7 @@ class Hazard:
         seed: int = SEED,
         progress: Callable[[int], None] | None = None,
     ) -> "Hazard":
-        """Return synthetic motions scaled to a level.
-
-        Parameters
-        ----------
-        which : str or Family
-            The family.
-        level : IntensityLevel
-            To what each motion is scaled; the families do not say how strong the shaking is.
-        count, seed : int
-            How many motions, and the seed of the set [-].
-        progress : callable, optional
-            Told how many motions have been made since it was last called.
-
-        Returns
-        -------
-        Hazard
-            The motions.
-        """
+        """Return synthetic motions scaled to a level: the families do not say how strong the shaking is."""
         count = checks.whole("count", count, 1, MOST_MOTIONS)
         motions = SyntheticSet(which, count, seed, **{level.kind.lower(): level.value})
         made = []
@@ -155,20 +94,7 @@ class Hazard:
 
     @classmethod
     def of_records(cls, records: Sequence[GroundMotion], level: IntensityLevel | None = None) -> "Hazard":
-        """Return records, each scaled with its vertical component if a level is given.
-
-        Parameters
-        ----------
-        records : sequence of GroundMotion
-            The records.
-        level : IntensityLevel, optional
-            To what each is scaled; as they are if not given.
-
-        Returns
-        -------
-        Hazard
-            The motions.
-        """
+        """Return records, each scaled with its vertical component if a level is given."""
         found = [checked_motion(record, f"records[{k}]") for k, record in enumerate(records)]
         if not 1 <= len(found) <= MOST_MOTIONS:
             raise InvalidValueError(f"records must be 1 to {MOST_MOTIONS} motions, got {len(found)}")
@@ -190,13 +116,7 @@ class Hazard:
         return any(motion.vertical is not None for motion in self.motions)
 
     def words(self) -> str:
-        """Return how strong the shaking is.
-
-        Returns
-        -------
-        str
-            The level, or the range of the records' own.
-        """
+        """Return how strong the shaking is: the level, or the range of the records' own."""
         if self.level is not None:
             return str(self.level)
         peaks = [peak_ground_acceleration(motion) / g for motion in self.motions]
@@ -205,23 +125,11 @@ class Hazard:
         return f"PGA {min(peaks):.3g} to {max(peaks):.3g} g"
 
     def peak(self) -> float:
-        """Return the largest peak ground acceleration of all motions.
-
-        Returns
-        -------
-        float
-            The acceleration [m/s2].
-        """
+        """Return the largest peak ground acceleration of all motions [m/s2]."""
         return max(peak_ground_acceleration(motion) for motion in self.motions)
 
     def velocity(self) -> tuple[float, float]:
-        """Return the range of the peak ground velocity.
-
-        Returns
-        -------
-        tuple of float
-            The least and the most [m/s].
-        """
+        """Return the least and the most of the peak ground velocity [m/s]."""
         found = [peak_ground_velocity(motion) for motion in self.motions]
         return min(found), max(found)
 

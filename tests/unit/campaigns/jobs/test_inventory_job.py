@@ -7,7 +7,8 @@ from rocking.campaigns import CampaignDamagedError, CampaignIncompleteError
 from rocking.campaigns.jobs import Job, JobFolder, assessment, export
 from rocking.errors import InvalidValueError
 from rocking.motions.formats import read_motion
-from rocking.studies.inventory import Hazard, IntensityLevel, Thresholds, assess, read_inventory
+from rocking.studies.inventory import Thresholds, assess, read_inventory
+from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.table import as_plain
 
 OBJECTS = """name,width_cm,depth_cm,height_cm,centre_of_mass_height_cm,note

@@ -13,16 +13,9 @@ from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.motions import GroundMotion
 from rocking.outcome import Outcome
-from rocking.studies.inventory import (
-    Hazard,
-    IntensityLevel,
-    InventoryObject,
-    Thresholds,
-    assess,
-    parse_inventory,
-    table,
-)
+from rocking.studies.inventory import InventoryObject, Thresholds, assess, parse_inventory, table
 from rocking.studies.inventory import assessment as module
+from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.lights import Light
 from rocking.studies.inventory.table import HEADER, as_csv, as_plain, rows
 from rocking.tables import escaped

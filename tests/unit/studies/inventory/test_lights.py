@@ -9,7 +9,8 @@ from scipy import stats
 from rocking.errors import InvalidValueError
 from rocking.motions import GroundMotion, peak_ground_velocity
 from rocking.statistics import share_interval
-from rocking.studies.inventory import Hazard, IntensityLevel, Thresholds
+from rocking.studies.inventory import Thresholds
+from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.lights import Light, percent
 
 
