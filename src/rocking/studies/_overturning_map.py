@@ -88,15 +88,15 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
     results, work = plane.answers(*plane.mesh(), progress=progress)
     shape = (plane.y.values.size, plane.x.values.size)
     dims = (plane.y.name, plane.x.name)
-    made: xr.Dataset = xarray.Dataset(
+    labelled: xr.Dataset = xarray.Dataset(
         {name: (dims, results[name].reshape(shape), attributes(name)) for name in HISTORY},
         coords={axis.name: (axis.name, axis.values, axis.attributes) for axis in (plane.y, plane.x)},
         attrs={**plane.question.attributes(work), "contact": contact_words(results["lost_contact"])},
     )
     if refine is None:
-        return made
+        return labelled
     points = refined(plane, results["mode"].reshape(shape), refine, progress, results["peak_ratio"])
-    return made.assign(
+    return labelled.assign(
         refined_x=("point", points.x, plane.x.attributes),
         refined_y=("point", points.y, plane.y.attributes),
         refined_mode=("point", points.modes, attributes("mode")),

@@ -84,41 +84,41 @@ def rocking_spectrum(
     angles = _row("slenderness_angles", slenderness_angles, "rad")
     times = _row("periods", periods, "s")
     sizes = 0.75 * settings.gravity * (0.5 * times / np.pi) ** 2  # Eq. 180
-    given = MotionList(motions)
+    all_motions = MotionList(motions)
     blocks = [Block.from_angle(float(alpha), float(size)) for alpha in angles for size in sizes]
-    question = Question(blocks[0], given[0], restitution, settings, threads, engine)
+    question = Question(blocks[0], all_motions[0], restitution, settings, threads, engine)
     sides = sides_of([question.parameters_of(block) for block in blocks])
     histories = Product(
-        given, {name: v[:, None] for name, v in sides.items()}, np.array([scale]),
+        all_motions, {name: v[:, None] for name, v in sides.items()}, np.array([scale]),
         law=question.law, settings=settings, engine=engine,
     )  # fmt: skip
     results = results_of(histories, threads=threads, progress=progress)
-    shape = (len(given), angles.size, times.size)
-    alpha = np.tile(sides["alpha_right"], len(given))
+    shape = (len(all_motions), angles.size, times.size)
+    alpha = np.tile(sides["alpha_right"], len(all_motions))
     results |= {"mode": modes_of(results), **flags(results)}
     results["peak_ratio"] = peak_ratio(results["peak_rotation"], alpha, alpha)
     data = {name: (_DIMENSIONS, results[name].reshape(shape), attributes(name)) for name in HISTORY}
     constant = isinstance(question.law, ConstantRestitution)
     coefficient = np.where(constant, sides["r_right"], np.nan).reshape(shape[1:])
-    made: xr.Dataset = xarray.Dataset(
+    labelled: xr.Dataset = xarray.Dataset(
         data,
         coords={
-            "motion": [given[k].name for k in range(len(given))],
+            "motion": [all_motions[k].name for k in range(len(all_motions))],
             "slenderness_angle": ("slenderness_angle", angles, {"units": "rad", "long_name": "slenderness angle"}),
             "period": ("period", times, {"units": "s", "long_name": "2 pi / p"}),
             "semi_diagonal": ("period", sizes, {"units": "m", "long_name": "semi-diagonal R of the block"}),
             "coefficient": (_DIMENSIONS[1:], coefficient, {"units": "1", "long_name": "coefficient of restitution"}),
         },
         attrs={
-            **_attributes(question, settings, scale, given),
+            **_attributes(question, settings, scale, all_motions),
             "contact": contact_words(results["lost_contact"]),
         },
     )
-    return made
+    return labelled
 
 
-def _row(name: str, given: Any, unit: str) -> FloatArray:
-    values = np.atleast_1d(checks.positive_array(name, given, unit))
+def _row(name: str, row: Any, unit: str) -> FloatArray:
+    values = np.atleast_1d(checks.positive_array(name, row, unit))
     if values.ndim != 1 or not values.size:
         raise InvalidValueError(f"{name} must be a row of numbers [{unit}], got shape {values.shape}")
     return values
@@ -126,6 +126,6 @@ def _row(name: str, given: Any, unit: str) -> FloatArray:
 
 def _attributes(question: Question, settings: Settings, scale: float, motions: MotionList) -> dict[str, Any]:
     kept = question.attributes({})
-    told = {k: v for k, v in kept.items() if k in {"software", "seed"} or k.startswith("setting_")}
+    about = {k: v for k, v in kept.items() if k in {"software", "seed"} or k.startswith("setting_")}
     hashes = "; ".join(item["sha256"] for item in motions.description()["motions"])
-    return {**told, "restitution": question.parameters.label, "scale": scale, "motion_sha256": hashes}
+    return {**about, "restitution": question.parameters.label, "scale": scale, "motion_sha256": hashes}

@@ -1,4 +1,4 @@
-"""A lattice between the values of two axes, ever finer, computed only where the mode changes."""
+"""A grid between the values of two axes, ever finer, computed only where the mode changes."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -81,8 +81,8 @@ class AdaptiveGrid:
     """Points between the values of two axes, numbered in steps of the finest level, and what is known of them."""
 
     def __init__(self, plane: Plane, levels: int, progress: Callable[[int], None] | None = None) -> None:
-        given: object = levels
-        if isinstance(given, bool) or not isinstance(given, int) or not 0 <= given <= MOST_LEVELS:
+        number: object = levels
+        if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number <= MOST_LEVELS:
             raise InvalidValueError(f"levels of refinement must be a whole number in [0, {MOST_LEVELS}], got {levels}")
         if plane.question.law.kind == 2:
             raise InvalidValueError("a restitution drawn at random has no boundary to refine; sample it instead")
@@ -95,7 +95,7 @@ class AdaptiveGrid:
         self.peaks: FloatArray = np.empty(0)
 
     def coordinates(self, i: IntArray, j: IntArray) -> tuple[FloatArray, FloatArray]:
-        """Return the coordinates of lattice points; those of the axes' own values to the last bit."""
+        """Return the coordinates of grid points; those of the axes' own values to the last bit."""
         return self._between(self.plane.x, i), self._between(self.plane.y, j)
 
     def _between(self, axis: Axis, places: IntArray) -> FloatArray:
@@ -113,10 +113,10 @@ class AdaptiveGrid:
         new = absent(keys, self.keys)
         if not new.size:
             return
-        found, _ = self.plane.answers(
+        results, _ = self.plane.answers(
             *self.coordinates(new % self.columns, new // self.columns), progress=self.progress
         )
-        self.learn(new, found["mode"], found["peak_ratio"])
+        self.learn(new, results["mode"], results["peak_ratio"])
 
     def learn(self, keys: IntArray, modes: IntArray, peaks: FloatArray) -> None:
         """Take in the modes and relative peaks [-] of new points."""
@@ -156,12 +156,12 @@ class AdaptiveGrid:
     def _differing_base(self, label: Label) -> tuple[IntArray, IntArray]:
         """Return the cells between the axes' own values whose corners differ."""
         across, up = self.plane.x.values.size - 1, self.plane.y.values.size - 1
-        found = [(np.empty(0, np.int64), np.empty(0, np.int64))]
+        cells = [(np.empty(0, np.int64), np.empty(0, np.int64))]
         for first in range(0, across * up, _PIECE):
             j, i = np.divmod(np.arange(first, min(first + _PIECE, across * up)), across)
             mixed = differing(label(self.corners(i * self.step, j * self.step, self.step)))
-            found.append((i[mixed] * self.step, j[mixed] * self.step))
-        columns, rows = zip(*found, strict=True)
+            cells.append((i[mixed] * self.step, j[mixed] * self.step))
+        columns, rows = zip(*cells, strict=True)
         return np.concatenate(columns), np.concatenate(rows)
 
     def _compute_corners(self, i: IntArray, j: IntArray, step: int) -> None:
@@ -233,30 +233,30 @@ def refined(
     return refine(AdaptiveGrid(plane, levels, progress), modes, peaks)[0]
 
 
-def refine(lattice: AdaptiveGrid, modes: IntArray, peaks: Any = None) -> tuple[RefinedMap, tuple[IntArray, IntArray]]:
+def refine(grid: AdaptiveGrid, modes: IntArray, peaks: Any = None) -> tuple[RefinedMap, tuple[IntArray, IntArray]]:
     """Return a map that is known, refined on a grid of which nothing is known yet, and its mixed finest cells.
 
     The map's own points come first, in its order; the cells, whose corners differ, are where `outlines` begins.
     """
-    first = lattice.base()
+    first = grid.base()
     known = np.full(first.size, np.nan) if peaks is None else np.asarray(peaks, dtype=np.float64).ravel()
-    lattice.learn(first, np.asarray(modes, dtype=np.int64).ravel(), known)
-    cells = lattice.finest(_whole)
-    own = np.zeros(lattice.keys.size, dtype=np.bool_)
-    own[np.searchsorted(lattice.keys, first)] = True
+    grid.learn(first, np.asarray(modes, dtype=np.int64).ravel(), known)
+    cells = grid.finest(_whole)
+    own = np.zeros(grid.keys.size, dtype=np.bool_)
+    own[np.searchsorted(grid.keys, first)] = True
     places = np.concatenate([np.flatnonzero(own), np.flatnonzero(~own)])  # the map's own first
-    x, y = _coordinates(lattice, places)
+    x, y = _coordinates(grid, places)
     base = np.arange(places.size) < first.size
-    return RefinedMap(x, y, lattice.modes[places], lattice.peaks[places], base), cells
+    return RefinedMap(x, y, grid.modes[places], grid.peaks[places], base), cells
 
 
-def _coordinates(lattice: AdaptiveGrid, places: IntArray) -> tuple[FloatArray, FloatArray]:
+def _coordinates(grid: AdaptiveGrid, places: IntArray) -> tuple[FloatArray, FloatArray]:
     """Return the coordinates of known points, made piece by piece: on the way they take many times their room."""
     x, y = np.empty(places.size), np.empty(places.size)
     for first in range(0, places.size, _PIECE):
         part = slice(first, first + _PIECE)
-        keys = lattice.keys[places[part]]
-        x[part], y[part] = lattice.coordinates(keys % lattice.columns, keys // lattice.columns)
+        keys = grid.keys[places[part]]
+        x[part], y[part] = grid.coordinates(keys % grid.columns, keys // grid.columns)
     return x, y
 
 
@@ -292,8 +292,8 @@ def refined_map(
         All points; the map's own first, x varying fastest.
     """
     plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, **options)
-    found, _ = plane.answers(*plane.mesh(), progress=progress)
-    return refined(plane, found["mode"], levels, progress, found["peak_ratio"])
+    results, _ = plane.answers(*plane.mesh(), progress=progress)
+    return refined(plane, results["mode"], levels, progress, results["peak_ratio"])
 
 
 def _whole(modes: IntArray) -> IntArray:

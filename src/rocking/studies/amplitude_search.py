@@ -92,10 +92,10 @@ class AmplitudeSearch:
     def compute(self, body: IntArray, scale: FloatArray) -> Samples:
         """Return histories at factors on the motion [-]; random numbers of a body are the same at every factor."""
         values = {name: array[body] for name, array in self.sides.items()}
-        found = self.run({**values, "scale": scale}, body)
+        results = self.run({**values, "scale": scale}, body)
         names = ("mode", "side", "peak_ratio", "overturning_time")
-        mode, side, peak, time = (found[name] for name in names)
-        return Samples(body, scale, mode, side, peak, time, lost_contact(found))
+        mode, side, peak, time = (results[name] for name in names)
+        return Samples(body, scale, mode, side, peak, time, lost_contact(results))
 
     def zoom(self) -> None:
         """Halve the intervals in which a change of verdict may hide between ends that agree."""
@@ -131,19 +131,19 @@ class AmplitudeSearch:
         One whose middle failed stays as wide as it was.
         """
         s = self.samples.good
-        found = ScaleBrackets.between(s, s.same_body & (s.falls[1:] != s.falls[:-1]))
-        stuck = np.zeros(found.body.size, dtype=np.bool_)
+        brackets = ScaleBrackets.between(s, s.same_body & (s.falls[1:] != s.falls[:-1]))
+        stuck = np.zeros(brackets.body.size, dtype=np.bool_)
         for _ in range(_MOST_ROUNDS):
-            rows = found.wide(tolerance)
+            rows = brackets.wide(tolerance)
             rows = rows[~stuck[rows]]
             if not rows.size:
                 break
-            middle = self.compute(found.body[rows], found.ends[rows].mean(axis=1))
+            middle = self.compute(brackets.body[rows], brackets.ends[rows].mean(axis=1))
             failed = middle.mode == FAILED
             stuck[rows[failed]] = True
             rows, middle = rows[~failed], middle.where(~failed)
-            found.move(rows, middle.falls != (found.modes[rows, 0] >= 0), middle)
-        return found
+            brackets.move(rows, middle.falls != (brackets.modes[rows, 0] >= 0), middle)
+        return brackets
 
 
 def suspicious(s: Samples) -> BoolArray:
@@ -177,7 +177,7 @@ _SHIFTS, _ENOUGH = (0.25, 0.75, 0.5, 0.125), 2
 
 
 @dataclass(frozen=True)
-class Below:
+class SamplesBelow:
     """Samples of one body up to the first that overturns."""
 
     scales: FloatArray  # factors on the motion, increasing; all but the last survive [-]
@@ -188,13 +188,13 @@ class Below:
         return float(np.max(self.scales[1:] / self.scales[:-1])) - 1.0
 
 
-def below(samples: Samples) -> dict[int, Below]:
+def below_minimum(samples: Samples) -> dict[int, SamplesBelow]:
     """Return the samples of each body up to the first that overturns.
 
     Returns by the number of the body; without those that never overturn, or do so at the lowest sample.
 
     >>> n, x = np.array([0, 0, 0, 1, 1]), np.array([1.0, 2.0, 3.0, 1.0, 2.0])
-    >>> found = below(Samples(n, x, np.array([-1, -1, 2, -1, -1]), n, x, x, x))
+    >>> found = below_minimum(Samples(n, x, np.array([-1, -1, 2, -1, -1]), n, x, x, x))
     >>> {k: each.scales.tolist() for k, each in found.items()}
     {0: [1.0, 2.0, 3.0]}
     """
@@ -203,7 +203,7 @@ def below(samples: Samples) -> dict[int, Below]:
     for body, first, last in zip(bodies.tolist(), start, np.append(start, samples.body.size)[1:], strict=True):
         falls = np.flatnonzero(samples.falls[first:last])
         if falls.size and falls[0] > 0:
-            made[body] = Below(samples.scale[first : first + falls[0] + 1])
+            made[body] = SamplesBelow(samples.scale[first : first + falls[0] + 1])
     return made
 
 
@@ -215,14 +215,14 @@ def search_below(scan: AmplitudeSearch, points: int) -> None:
     """
     held: dict[int, int] = {}
     for shift in _SHIFTS:
-        known = {k: each.scales for k, each in below(scan.samples.good).items() if held.get(k, 0) < _ENOUGH}
+        known = {k: each.scales for k, each in below_minimum(scan.samples.good).items() if held.get(k, 0) < _ENOUGH}
         if not known:
             return
         share = (np.arange(points) + shift) / points
         scales = np.concatenate([s[0] * (s[-1] / s[0]) ** share for s in known.values()])
-        found = scan.compute(np.repeat(np.array(list(known)), points), scales)
-        scan.samples = scan.samples.joined(found)
+        new = scan.compute(np.repeat(np.array(list(known)), points), scales)
+        scan.samples = scan.samples.joined(new)
         least = np.full(1 + max(known), -np.inf)
         least[list(known)] = [s[-2] for s in known.values()]
-        news = set(np.unique(found.body[found.falls & (found.scale < least[found.body])]).tolist())
+        news = set(np.unique(new.body[new.falls & (new.scale < least[new.body])]).tolist())
         held |= {k: 0 if k in news else held.get(k, 0) + 1 for k in known}

@@ -325,19 +325,19 @@ def axes() -> dict[str, type[Axis]]:
     return {kind.name: kind for kind in _ALL}
 
 
-def axis_of(given: Any) -> Axis:
+def axis_of(axis: Any) -> Axis:
     """Return an axis, or the one of a name and values.
 
     >>> axis_of(("pga", [1.0, 2.0])).unit
     'm/s2'
     """
-    if isinstance(given, Axis):
-        return given
-    if not isinstance(given, Sequence) or isinstance(given, str) or len(given) != 2 or not isinstance(given[0], str):
-        raise InvalidValueError(f'an axis is written as ("scale", values), got {given!r:.60}')
+    if isinstance(axis, Axis):
+        return axis
+    if not isinstance(axis, Sequence) or isinstance(axis, str) or len(axis) != 2 or not isinstance(axis[0], str):
+        raise InvalidValueError(f'an axis is written as ("scale", values), got {axis!r:.60}')
     known = axes()
-    name = checks.spelling(given[0], known)
+    name = checks.spelling(axis[0], known)
     if name not in known:
         there, near = ", ".join(sorted(known)), checks.nearest(name, known)
         raise InvalidValueError(f"no axis named {name!r}; there are {there}{near}")
-    return known[name](given[1])
+    return known[name](axis[1])

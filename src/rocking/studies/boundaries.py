@@ -43,7 +43,7 @@ class Polyline:
 
 @dataclass(frozen=True)
 class Edges:
-    """Crossed edges of a lattice, to be bisected all at once."""
+    """Crossed edges of a grid, to be bisected all at once."""
 
     number: IntArray  # their numbers, increasing
     point: FloatArray  # vertices x, y; shape (edges, 2)
@@ -107,9 +107,9 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
     """
     plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, **options)
     tolerance = checked(plane, by, tolerance)
-    lattice = AdaptiveGrid(plane, levels, progress)
+    grid = AdaptiveGrid(plane, levels, progress)
     # refined by mode whatever is asked: a sliver of survival lies between two modes, long before its corners tell
-    return outlines(lattice, lattice.finest(lambda modes: modes), by, tolerance)
+    return outlines(grid, grid.finest(lambda modes: modes), by, tolerance)
 
 
 def checked(plane: Plane, by: str, tolerance: float) -> float:
@@ -122,79 +122,79 @@ def checked(plane: Plane, by: str, tolerance: float) -> float:
     return checks.within("tolerance", tolerance, 1e-15, 0.1)
 
 
-def outlines(lattice: AdaptiveGrid, seeds: tuple[IntArray, IntArray], by: str, tolerance: float) -> list[Polyline]:
+def outlines(grid: AdaptiveGrid, seeds: tuple[IntArray, IntArray], by: str, tolerance: float) -> list[Polyline]:
     """Return the boundary on a grid that has been refined, to a width over the coordinate [-]."""
     if by == "verdict":
-        return _outlined(lattice, verdicts, "overturned", tolerance, seeds)
-    made: list[Polyline] = []
-    for n in np.unique(lattice.modes[lattice.modes >= 0]).tolist():
-        made += _outlined(lattice, partial(np.equal, n), f"overturned after {n} impacts", tolerance, seeds)
-    return made
+        return _outlined(grid, verdicts, "overturned", tolerance, seeds)
+    lines: list[Polyline] = []
+    for n in np.unique(grid.modes[grid.modes >= 0]).tolist():
+        lines += _outlined(grid, partial(np.equal, n), f"overturned after {n} impacts", tolerance, seeds)
+    return lines
 
 
 def _outlined(
-    lattice: AdaptiveGrid, inside: Inside, region: str, tolerance: float, seeds: tuple[IntArray, IntArray]
+    grid: AdaptiveGrid, inside: Inside, region: str, tolerance: float, seeds: tuple[IntArray, IntArray]
 ) -> list[Polyline]:
     """Return the outline of a region, followed from some cells."""
-    i, j = _cells_passed(lattice, inside, seeds)
+    i, j = _cells_passed(grid, inside, seeds)
     if not i.size:
         return []
-    corners = inside(lattice.corners(i, j, 1))
-    numbers = edge_numbers(i, j, lattice.columns)
-    joined = segments(corners, numbers, _centres(lattice, inside, corners, i, j))
-    edges = bisected(lattice, inside, np.unique(joined), tolerance)
-    made = []
+    corners = inside(grid.corners(i, j, 1))
+    numbers = edge_numbers(i, j, grid.columns)
+    joined = segments(corners, numbers, _centres(grid, inside, corners, i, j))
+    edges = bisected(grid, inside, np.unique(joined), tolerance)
+    lines = []
     for chain in chains(joined):
         places = np.searchsorted(edges.number, chain)
-        names = (lattice.plane.x.name, lattice.plane.y.name)
-        made.append(Polyline(edges.point[places], edges.modes[places], region, names))
-    return made
+        names = (grid.plane.x.name, grid.plane.y.name)
+        lines.append(Polyline(edges.point[places], edges.modes[places], region, names))
+    return lines
 
 
-def _cells_passed(lattice: AdaptiveGrid, inside: Inside, seeds: tuple[IntArray, IntArray]) -> tuple[IntArray, IntArray]:
+def _cells_passed(grid: AdaptiveGrid, inside: Inside, seeds: tuple[IntArray, IntArray]) -> tuple[IntArray, IntArray]:
     """Return all finest cells that the boundary passes, also those that refinement alone would not have reached."""
     i, j = seeds
     known, seen = np.empty(0, np.int64), np.empty(0, np.int64)
-    new = absent(j * lattice.columns + i, seen)
+    new = absent(j * grid.columns + i, seen)
     while new.size:
-        i, j = new % lattice.columns, new // lattice.columns
-        corners = lattice.corners(i, j, 1)
+        i, j = new % grid.columns, new // grid.columns
+        corners = grid.corners(i, j, 1)
         good = (corners != FAILED).all(axis=1)
         i, j, crossed = i[good], j[good], crossed_edges(inside(corners[good]))
         seen = merged(seen, new)
         passed = crossed.any(axis=1)
         i, j, crossed = i[passed], j[passed], crossed[passed]
-        known = merged(known, j * lattice.columns + i)
+        known = merged(known, j * grid.columns + i)
         steps = ((0, -1), (1, 0), (0, 1), (-1, 0))  # below, right, above, left
-        beside = [_cells(lattice, i[crossed[:, k]] + a, j[crossed[:, k]] + b) for k, (a, b) in enumerate(steps)]
+        beside = [_cells(grid, i[crossed[:, k]] + a, j[crossed[:, k]] + b) for k, (a, b) in enumerate(steps)]
         new = absent(np.concatenate(beside), seen)
-    return known % lattice.columns, known // lattice.columns
+    return known % grid.columns, known // grid.columns
 
 
-def _cells(lattice: AdaptiveGrid, i: IntArray, j: IntArray) -> IntArray:
-    within = (i >= 0) & (j >= 0) & (i < lattice.columns - 1) & (j < lattice.rows - 1)
-    return np.asarray(j[within] * lattice.columns + i[within])
+def _cells(grid: AdaptiveGrid, i: IntArray, j: IntArray) -> IntArray:
+    within = (i >= 0) & (j >= 0) & (i < grid.columns - 1) & (j < grid.rows - 1)
+    return np.asarray(j[within] * grid.columns + i[within])
 
 
-def _centres(lattice: AdaptiveGrid, inside: Inside, corners: BoolArray, i: IntArray, j: IntArray) -> BoolArray:
+def _centres(grid: AdaptiveGrid, inside: Inside, corners: BoolArray, i: IntArray, j: IntArray) -> BoolArray:
     """Return whether the centres of saddles are inside; False elsewhere."""
     centre = np.zeros(i.size, dtype=np.bool_)
     saddle = crossed_edges(corners).all(axis=1)
     if saddle.any():
-        low = lattice.coordinates(i[saddle], j[saddle])
-        high = lattice.coordinates(i[saddle] + 1, j[saddle] + 1)
+        low = grid.coordinates(i[saddle], j[saddle])
+        high = grid.coordinates(i[saddle] + 1, j[saddle] + 1)
         middle = [0.5 * (a + b) for a, b in zip(low, high, strict=True)]
-        centre[saddle] = inside(lattice.plane.answers(middle[0], middle[1], progress=lattice.progress)[0]["mode"])
+        centre[saddle] = inside(grid.plane.answers(middle[0], middle[1], progress=grid.progress)[0]["mode"])
     return centre
 
 
-def bisected(lattice: AdaptiveGrid, inside: Inside, numbers: IntArray, tolerance: float) -> Edges:
+def bisected(grid: AdaptiveGrid, inside: Inside, numbers: IntArray, tolerance: float) -> Edges:
     """Return where the boundary of a region crosses edges of a grid: one batch for each halving."""
     upright = numbers % 2 == 1
-    i, j = (numbers // 2) % lattice.columns, (numbers // 2) // lattice.columns
+    i, j = (numbers // 2) % grid.columns, (numbers // 2) // grid.columns
     ends = [(i, j), (i + ~upright, j + upright)]
-    points = np.stack([np.stack(lattice.coordinates(*end), axis=1) for end in ends], axis=1)
-    modes = np.stack([lattice.modes_at(*end) for end in ends], axis=1)
+    points = np.stack([np.stack(grid.coordinates(*end), axis=1) for end in ends], axis=1)
+    modes = np.stack([grid.modes_at(*end) for end in ends], axis=1)
     swap = inside(modes[:, 0])  # outside first, inside second
     points[swap], modes[swap] = points[swap][:, ::-1], modes[swap][:, ::-1]
     along = np.where(upright, 1, 0)
@@ -205,9 +205,9 @@ def bisected(lattice: AdaptiveGrid, inside: Inside, numbers: IntArray, tolerance
         if not rows.size:
             break
         middle = points[rows].mean(axis=1)
-        found = lattice.plane.answers(middle[:, 0], middle[:, 1], progress=lattice.progress)[0]["mode"]
-        side = inside(found).astype(np.int64)
-        points[rows, side], modes[rows, side] = middle, found
+        mode = grid.plane.answers(middle[:, 0], middle[:, 1], progress=grid.progress)[0]["mode"]
+        side = inside(mode).astype(np.int64)
+        points[rows, side], modes[rows, side] = middle, mode
     return Edges(numbers, points.mean(axis=1), modes)
 
 
@@ -259,8 +259,8 @@ def chains(joined: IntArray) -> list[list[int]]:
         neighbours.setdefault(b, []).append(a)
     starts = [edge for edge, near in neighbours.items() if len(near) == 1]
     seen: set[int] = set()
-    found = [_chain_from(start, neighbours, seen) for start in (*starts, *neighbours) if start not in seen]
-    return [chain for chain in found if len(chain) > 1]
+    lines = [_chain_from(start, neighbours, seen) for start in (*starts, *neighbours) if start not in seen]
+    return [chain for chain in lines if len(chain) > 1]
 
 
 def _chain_from(start: int, neighbours: dict[int, list[int]], seen: set[int]) -> list[int]:

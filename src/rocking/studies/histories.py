@@ -211,9 +211,9 @@ class Histories(ABC):
 
     def _made(self, wanted: np.ndarray, rows: Rows, threads: int | None) -> Arrays:
         """Run some histories with their motions, made here; the rows number these from nought."""
-        made = [self._segments(int(k)) for k in wanted]
+        segments = [self._segments(int(k)) for k in wanted]
         self._forget()
-        batch = Batch(made, self.law, self.settings, threads, self.engine)
+        batch = Batch(segments, self.law, self.settings, threads, self.engine)
         return batch.run(len(rows), lambda first, last: part(rows, first, last))[0]
 
 
@@ -358,9 +358,9 @@ class Product(Histories):
         return {"shape": list(self.shape), "scales": hash_of(self.scales), **hashes}
 
 
-def _own(array: np.ndarray, given: object) -> np.ndarray:
+def _own(array: np.ndarray, original: object) -> np.ndarray:
     """Return the array, read-only, and as a copy where it is the caller's: what has been named must not change."""
-    mine = array.copy() if np.may_share_memory(array, np.asarray(given)) else array
+    mine = array.copy() if np.may_share_memory(array, np.asarray(original)) else array
     mine.setflags(write=False)
     return mine
 

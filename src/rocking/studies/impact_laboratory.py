@@ -255,12 +255,12 @@ def study(
         "contacts": ("1", impacts.contacts.astype(np.float64)),
         "audit": ("1", impacts.audit),
     }
-    made: xr.Dataset = xarray.Dataset(
+    labelled: xr.Dataset = xarray.Dataset(
         {key: (name, value, about(key, of)) for key, (of, value) in results.items()},
         coords={name: (name, row, about(name, unit))},
         attrs=provenance(name, start),
     )
-    return LaboratoryStudy(made)
+    return LaboratoryStudy(labelled)
 
 
 def whole(name: str, value: Any, least: int) -> int:
@@ -345,9 +345,9 @@ def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laborat
     True
     """
     xarray = extra("xarray", "the impact laboratory")
-    found = large_bodies(widths, hollow=hollow, laboratory=laboratory)
-    found["hollow_minus_ked"] = found["hollow"] - found["ked"]
-    data = {name: ("width", values, {"units": "1"}) for name, values in found.items()}
+    results = large_bodies(widths, hollow=hollow, laboratory=laboratory)
+    results["hollow_minus_ked"] = results["hollow"] - results["ked"]
+    data = {name: ("width", values, {"units": "1"}) for name, values in results.items()}
     coords = {"width": ("width", np.atleast_1d(np.asarray(widths, dtype=np.float64)), about("width", "m"))}
     return LaboratoryStudy(xarray.Dataset(data, coords, provenance("width", layered(laboratory))))
 
@@ -356,8 +356,8 @@ def large_bodies(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | 
     """Return flat, hollow and ked over widths [m]: `large_bodies_study` without labelled arrays."""
     start, row = layered(laboratory), np.atleast_1d(checks.positive_array("width", widths, "m"))
     beds = {"flat": start.but(profile=()), "hollow": start.but(profile=profile("concave", hollow, start.points))}
-    found = {name: coefficients(bed.but(width=w) for w in row.tolist()) for name, bed in beds.items()}
-    return {**found, "ked": np.full(row.shape, Ked().coefficient(start.block))}
+    results = {name: coefficients(bed.but(width=w) for w in row.tolist()) for name, bed in beds.items()}
+    return {**results, "ked": np.full(row.shape, Ked().coefficient(start.block))}
 
 
 @dataclass(frozen=True, eq=False)

@@ -86,16 +86,16 @@ def safe_islands(overturning: "xr.Dataset", *, enclosed: bool = True) -> Islands
     main = np.unique(labels[modes == UNLIFTED])
     near = _near_edge(modes)
     areas = np.outer(_shares(y), _shares(x))
-    found = []
+    islands = []
     for label in range(1, count + 1):
         mask = labels == label
         free = not bool((mask & near).any()) and _surrounded_by_one(mask, modes)
         if label not in main and (free or not enclosed):
             rows, columns = np.nonzero(mask)
             spans = (float(x[columns.min()]), float(x[columns.max()])), (float(y[rows.min()]), float(y[rows.max()]))
-            found.append(Island(label, int(mask.sum()), float(areas[mask].sum()), *spans, free))
-    found.sort(key=lambda island: (-island.area, island.label))
-    return _numbered(labels, found, axes)
+            islands.append(Island(label, int(mask.sum()), float(areas[mask].sum()), *spans, free))
+    islands.sort(key=lambda island: (-island.area, island.label))
+    return _numbered(labels, islands, axes)
 
 
 def safe_beyond_overturning(overturning: "xr.Dataset", along: str | None = None) -> "xr.DataArray":
@@ -129,12 +129,12 @@ def safe_beyond_overturning(overturning: "xr.Dataset", along: str | None = None)
     )
 
 
-def _read(given: Any) -> tuple[IntArray, FloatArray, FloatArray, tuple[str, str]]:
-    mode = given["mode"] if hasattr(given, "data_vars") and "mode" in given else None
+def _read(overturning: Any) -> tuple[IntArray, FloatArray, FloatArray, tuple[str, str]]:
+    mode = overturning["mode"] if hasattr(overturning, "data_vars") and "mode" in overturning else None
     if mode is None or mode.ndim != 2:
-        raise InvalidValueError(f"a map is a dataset with a mode over two axes, got {type(given).__name__}")
+        raise InvalidValueError(f"a map is a dataset with a mode over two axes, got {type(overturning).__name__}")
     y, x = (str(name) for name in mode.dims)
-    return np.asarray(mode.values), np.asarray(given[x].values), np.asarray(given[y].values), (x, y)
+    return np.asarray(mode.values), np.asarray(overturning[x].values), np.asarray(overturning[y].values), (x, y)
 
 
 def _near_edge(modes: IntArray) -> BoolArray:
@@ -161,9 +161,9 @@ def _shares(values: FloatArray) -> FloatArray:
     return np.diff(np.concatenate([values[:1], middles, values[-1:]]))
 
 
-def _numbered(labels: Any, found: list[Island], axes: tuple[str, str]) -> Islands:
+def _numbered(labels: Any, islands: list[Island], axes: tuple[str, str]) -> Islands:
     from dataclasses import replace
 
     numbers = np.zeros(int(labels.max(initial=0)) + 1, dtype=np.int64)
-    numbers[[island.label for island in found]] = np.arange(1, len(found) + 1)
-    return Islands(numbers[labels], tuple(replace(i, label=k) for k, i in enumerate(found, 1)), axes)
+    numbers[[island.label for island in islands]] = np.arange(1, len(islands) + 1)
+    return Islands(numbers[labels], tuple(replace(i, label=k) for k, i in enumerate(islands, 1)), axes)

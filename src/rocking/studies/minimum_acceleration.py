@@ -17,7 +17,7 @@ from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
-from rocking.studies.amplitude_search import AmplitudeSearch, Run, below, search_below
+from rocking.studies.amplitude_search import AmplitudeSearch, Run, below_minimum, search_below
 from rocking.studies.question import FAILED, Question, sides_of
 
 Interval = tuple[float, float]
@@ -33,12 +33,12 @@ class Transitions:
     anywhere: below the minimum it has been searched again and again, to `resolution_below`.
     """
 
-    acceleration: FloatArray  # peak ground accelerations of the crossings, increasing [m/s2]
+    acceleration: FloatArray  # peak ground accelerations of the transitions, increasing [m/s2]
     ratio: FloatArray  # the same over `uplift_acceleration` [-]
     scale: FloatArray  # the same as factors on the motion [-]
     # how the body ends just below and just above: -2 not lifted, -1 survived, n >= 0 overturned after n impacts
     modes: IntArray
-    width: FloatArray  # widths of the brackets; the crossings are their middles [m/s2]
+    width: FloatArray  # widths of the brackets; the transitions are their middles [m/s2]
     lowest: float  # lowest, highest: range that was searched [m/s2]
     highest: float
     # ground acceleration that lifts the body: g tan alpha, or g alpha in the linear equations [m/s2]
@@ -118,7 +118,7 @@ class Effort:
 
 @dataclass(frozen=True)
 class Cases:
-    """Bodies whose crossings are looked for together, each under a motion."""
+    """Bodies whose transitions are looked for together, each under a motion."""
 
     sides: dict[str, FloatArray]  # sides of the bodies, as of `sides_of` [rad, rad/s, -]
     peak: FloatArray  # peak acceleration of the motion of each [m/s2]
@@ -158,7 +158,7 @@ def searched(cases: Cases, effort: Effort, run: Run) -> tuple[Transitions | None
     for _ in range(effort.levels):
         scan.zoom()
     scan.hunt()
-    return _crossings(scan, cases, effort)
+    return _transitions(scan, cases, effort)
 
 
 def _range(
@@ -181,34 +181,43 @@ def _range(
     return lifts.min(axis=0), (low, high)
 
 
-def _crossings(scan: AmplitudeSearch, cases: Cases, effort: Effort) -> tuple[Transitions | None, ...]:
-    found, all_modes, count = scan.brackets(effort.tolerance), scan.samples.mode, cases.uplift.size
-    gaps = {k: each.gap for k, each in below(scan.samples.good).items()}
+def _transitions(scan: AmplitudeSearch, cases: Cases, effort: Effort) -> tuple[Transitions | None, ...]:
+    brackets, all_modes, count = scan.brackets(effort.tolerance), scan.samples.mode, cases.uplift.size
+    gaps = {k: each.gap for k, each in below_minimum(scan.samples.good).items()}
     # both are sorted by body
-    bounds, marks = (np.searchsorted(each.body, np.arange(count + 1)) for each in (found, scan.samples))
-    made: list[Transitions | None] = []
+    bounds, marks = (np.searchsorted(each.body, np.arange(count + 1)) for each in (brackets, scan.samples))
+    transitions: list[Transitions | None] = []
     for k in range(count):
         own, mine = slice(bounds[k], bounds[k + 1]), slice(marks[k], marks[k + 1])
         modes = all_modes[mine]
         known = modes != FAILED
         good = modes[known]
         if not good.size:
-            made.append(None)
+            transitions.append(None)
             continue
-        scale, low, high = found.ends[own].mean(axis=1), float(cases.low[k]), float(cases.high[k])
+        scale, low, high = brackets.ends[own].mean(axis=1), float(cases.low[k]), float(cases.high[k])
         peak, uplift = float(cases.peak[k]), float(cases.uplift[k])
         # what is said of the ends of the range is said of the outermost histories that have a result
         first, last = (scan.samples.scale[mine][known][[0, -1]] * peak).tolist()
-        ends = low if known[0] else first, high if known[-1] else last
-        made.append(
+        transitions.append(
             Transitions(
-                scale * peak, scale * peak / uplift, scale, found.modes[own], np.diff(found.ends[own])[:, 0] * peak,
-                *ends, uplift, (high / low) ** (1.0 / (effort.points - 1)) - 1.0, bool(good[0] >= 0),
-                int(modes.size), int(np.sum(modes == FAILED)), gaps.get(k, math.nan),
-                scan.samples.lost[mine],
+                acceleration=scale * peak,
+                ratio=scale * peak / uplift,
+                scale=scale,
+                modes=brackets.modes[own],
+                width=np.diff(brackets.ends[own])[:, 0] * peak,
+                lowest=low if known[0] else first,
+                highest=high if known[-1] else last,
+                uplift_acceleration=uplift,
+                resolution=(high / low) ** (1.0 / (effort.points - 1)) - 1.0,
+                starts_overturned=bool(good[0] >= 0),
+                samples=int(modes.size),
+                failed=int(np.sum(modes == FAILED)),
+                resolution_below=gaps.get(k, math.nan),
+                lost_contact=scan.samples.lost[mine],
             )
-        )  # fmt: skip
-    return tuple(made)
+        )
+    return tuple(transitions)
 
 
 def minimum_overturning_acceleration(
@@ -279,8 +288,8 @@ def minimum_overturning_acceleration(
             f"body must be a Block, Section or MassPoints, got {body!r:.60}; for several bodies "
             "there is minimum_overturning_accelerations"
         )
-    told: dict[str, Any] = {"lowest": lowest, "highest": highest, "points": points, "tolerance": tolerance}
-    return minimum_overturning_accelerations([body], motion, restitution, **told, **options)[0]
+    search: dict[str, Any] = {"lowest": lowest, "highest": highest, "points": points, "tolerance": tolerance}
+    return minimum_overturning_accelerations([body], motion, restitution, **search, **options)[0]
 
 
 def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a question that users ask
@@ -317,8 +326,8 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
     InvalidValueError
         If a value is outside its range, or the motion is zero throughout.
     """
-    given: object = bodies
-    if not isinstance(given, Sequence) or not given:
+    several: object = bodies
+    if not isinstance(several, Sequence) or not several:
         raise InvalidValueError(f"bodies must be a sequence of at least one body, got {bodies!r:.60}")
     engine = settings.pop("engine", "auto")
     question = Question(bodies[0], motion, restitution, settings_of(gravity, settings), threads, engine)
@@ -329,11 +338,11 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
     def run(values: dict[str, FloatArray], body: IntArray) -> Arrays:
         return question.run(values, np.ones(body.size), body, progress)[0]
 
-    found = []
+    transitions = []
     for k, each in enumerate(searched(cases, effort, run)):
         if each is None:
             raise InvalidValueError(
                 f"no history of body {k} could be computed; is the range of accelerations too wide?"
             )
-        found.append(each)
-    return tuple(found)
+        transitions.append(each)
+    return tuple(transitions)

@@ -101,10 +101,10 @@ def digest(motion: Motion) -> str:
     import numpy as np
 
     segments = motion.segments()
-    made = hashlib.sha256(np.array([segments.step, segments.degree], "<f8").tobytes())
+    hashed = hashlib.sha256(np.array([segments.step, segments.degree], "<f8").tobytes())
     for part in (segments.horizontal, segments.vertical):
-        made.update(b"none" if part is None else np.ascontiguousarray(part, "<f8").tobytes())
-    return made.hexdigest()
+        hashed.update(b"none" if part is None else np.ascontiguousarray(part, "<f8").tobytes())
+    return hashed.hexdigest()
 
 
 MOST_MOTIONS = 10_000_000

@@ -80,13 +80,13 @@ class Question:
             self.check_stretching("an axis")
         quick = {n: v * stretch if n in {"p_right", "p_left"} else v for n, v in values.items()}  # Eq. 179
         rows = Rows.of(count, 0, stream, **quick)
-        found, work = self.batch.run(count, lambda a, b: part(rows, a, b), progress)
+        results, work = self.batch.run(count, lambda a, b: part(rows, a, b), progress)
         for name in ("peak_time", "overturning_time", "first_uplift"):
-            found[name] = found[name] * stretch
-        found["peak_velocity"] = found["peak_velocity"] / stretch
-        found |= {"mode": modes_of(found), **flags(found)}
-        found["peak_ratio"] = peak_ratio(found["peak_rotation"], values["alpha_right"], values["alpha_left"])
-        return found, work
+            results[name] = results[name] * stretch
+        results["peak_velocity"] = results["peak_velocity"] / stretch
+        results |= {"mode": modes_of(results), **flags(results)}
+        results["peak_ratio"] = peak_ratio(results["peak_rotation"], values["alpha_right"], values["alpha_left"])
+        return results, work
 
     def check_stretching(self, name: str) -> None:
         """Refuse to stretch time where the restitution would notice."""

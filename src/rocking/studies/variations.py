@@ -43,17 +43,17 @@ class Case:
         return replace(self, sides={name: values[places.ravel()] for name, values in table.items()})
 
     def _parameters(self, dimensions: list[dict[str, float]]) -> list[RockingParameters | None]:
-        made: list[RockingParameters | None] = []
+        parameters: list[RockingParameters | None] = []
         refused: InvalidValueError | None = None
         for each in dimensions:
             try:
-                made.append(self.question.parameters_of(changed_body(self.question.body, each)))
+                parameters.append(self.question.parameters_of(changed_body(self.question.body, each)))
             except InvalidValueError as error:
-                made.append(None)
+                parameters.append(None)
                 refused = error
-        if refused is not None and not any(made):
+        if refused is not None and not any(parameters):
             raise refused
-        return made
+        return parameters
 
     @property
     def slenderness_angle(self) -> FloatArray:
@@ -105,9 +105,9 @@ def changed_body(body: Body, parameters: Mapping[str, float]) -> Body:
     return Block(width=width, height=height, depth=body.depth, density=body.density)
 
 
-def _dimensions(block: Block, given: Mapping[str, float]) -> tuple[float, float]:
-    alpha, diagonal = given.get("slenderness_angle"), given.get("semi_diagonal")
-    width, height = given.get("width"), given.get("height")
+def _dimensions(block: Block, dimensions: Mapping[str, float]) -> tuple[float, float]:
+    alpha, diagonal = dimensions.get("slenderness_angle"), dimensions.get("semi_diagonal")
+    width, height = dimensions.get("width"), dimensions.get("height")
     if alpha is not None:
         if height is not None:
             return height * math.tan(alpha), height
@@ -118,7 +118,7 @@ def _dimensions(block: Block, given: Mapping[str, float]) -> tuple[float, float]
     if diagonal is not None:
         known = width if height is None else height
         other = _leg(diagonal, 0.0 if known is None else known)
-        return (width, other) if width is not None else (other, given["height"])
+        return (width, other) if width is not None else (other, dimensions["height"])
     return (block.width if width is None else width), (block.height if height is None else height)
 
 

@@ -8,7 +8,7 @@ import pytest
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.studies import SyntheticSet, minimum_overturning_acceleration, minimum_overturning_accelerations
-from rocking.studies.amplitude_search import Samples, below, suspicious
+from rocking.studies.amplitude_search import Samples, below_minimum, suspicious
 from rocking.studies.minimum_acceleration import Transitions
 from rocking.studies.question import FAILED
 
@@ -244,8 +244,8 @@ def test_samples_up_to_the_first_fall():
     body = np.array([0, 0, 0, 0, 1, 1, 2, 2, 3])
     scale = np.array([1.0, 1.5, 1.8, 9.0, 1.0, 2.0, 1.0, 2.0, 1.0])
     mode = np.array([-2, -1, 0, -1, -1, -1, 0, -1, 3])
-    found = below(Samples(body, scale, mode, body, scale, scale, scale))
+    found = below_minimum(Samples(body, scale, mode, body, scale, scale, scale))
     assert list(found) == [0]
     assert found[0].gap == pytest.approx(0.5)
-    assert below(Samples(*(np.empty(0, dtype=np.int64) for _ in range(7)))) == {}
+    assert below_minimum(Samples(*(np.empty(0, dtype=np.int64) for _ in range(7)))) == {}
     assert math.isnan(minimum_overturning_acceleration(BLOCK, SINE, 0.85, highest=2.0, threads=1).resolution_below)

@@ -99,11 +99,11 @@ def fragility(  # noqa: PLR0913 - every one of them is a question that users ask
     >>> round(float(median), 2), median.attrs["units"]
     (3.83, 'm/s2')
     """
-    found = fragility_analysis(
+    of_kind = fragility_analysis(
         body, motions, levels, restitution, analysis=analysis, measure=measure, states=states, factor=factor,
         least=least, tolerance=tolerance, progress=progress, **options,
     )  # fmt: skip
-    return _with_curves(found)
+    return _with_curves(of_kind)
 
 
 def fragility_analysis(  # noqa: PLR0913 - those of `fragility`

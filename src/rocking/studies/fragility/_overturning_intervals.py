@@ -113,9 +113,9 @@ def _cut(
     levels = brackets.low[:, None] + share * (brackets.high - brackets.low)[:, None]
     levels[:, -1] = brackets.high
     shape = (len(brackets), parts - 1)
-    found, good = outcomes(np.repeat(brackets.motion, parts - 1), levels[:, 1:-1].ravel())
+    inner, good = outcomes(np.repeat(brackets.motion, parts - 1), levels[:, 1:-1].ravel())
     known = good.reshape(shape).all(axis=1)
-    sides = np.hstack([brackets.before[:, None], found.reshape(shape), brackets.after[:, None]])[known]
+    sides = np.hstack([brackets.before[:, None], inner.reshape(shape), brackets.after[:, None]])[known]
     pieces = brackets_of(np.flatnonzero(known), levels[known], sides)
     if not every:
         pieces = _lowest(pieces, brackets)
@@ -139,24 +139,24 @@ def _lowest(pieces: OutcomeBrackets, parents: OutcomeBrackets) -> OutcomeBracket
 def intervals_of(brackets: OutcomeBrackets) -> list[OverturningInterval]:
     """Return the intervals of levels that overturn, from where they start and stop."""
     brackets = brackets.chosen(brackets.starts | brackets.stops)
-    found = []
+    intervals = []
     middle, width = 0.5 * (brackets.low + brackets.high), brackets.high - brackets.low
     for k in np.flatnonzero(brackets.starts):
         motion, end, end_width = int(brackets.motion[k]), math.inf, 0.0
         if k + 1 < len(brackets) and brackets.motion[k + 1] == motion:
             end, end_width = float(middle[k + 1]), float(width[k + 1])
-        found.append(OverturningInterval(motion, float(middle[k]), end, float(width[k]), end_width))
-    return found
+        intervals.append(OverturningInterval(motion, float(middle[k]), end, float(width[k]), end_width))
+    return intervals
 
 
 def survivals_of(intervals: Sequence[OverturningInterval], highest: float) -> list[tuple[int, float, float]]:
     """Return motion and ends of the levels, above an overturning one, at which the body stays standing."""
-    found = []
+    survivals = []
     for one, after in pairwise([*intervals, None]):
         if one is not None and not one.is_open:
             same = after is not None and after.motion == one.motion
-            found.append((one.motion, one.end, after.start if after is not None and same else highest))
-    return found
+            survivals.append((one.motion, one.end, after.start if after is not None and same else highest))
+    return survivals
 
 
 def overturning_intervals(
@@ -172,8 +172,8 @@ def overturning_intervals(
     def outcomes(which: IntArray, level: FloatArray) -> tuple[IntArray, BoolArray]:
         factors = (level / subject.intensities[which]) ** (1.0 / subject.measure.power)
         arrays = results_of(subject.table(which, factors), threads=threads)
-        found = Responses.of(arrays, subject.parameters, which.shape)
-        return found.sides, found.good
+        reached = Responses.of(arrays, subject.parameters, which.shape)
+        return reached.sides, reached.good
 
     brackets = brackets_of(motion, levels, sides)
     return intervals_of(refined(brackets, outcomes, tolerance))

@@ -184,8 +184,8 @@ class FragilityModel:
         words = {word: "; ".join(f"{c.state}: {getattr(c, word)}" for c in self.curves) for word in CLAIMS}
         words |= {f"without_curve {state}": why for state, why in self.without.items()}
         about = {"component": self.name, "measure": self.measure, "source": self.source, **words, **self.about}
-        made: xr.Dataset = xarray.Dataset(data, coords=coords, attrs=about)
-        return made
+        labelled: xr.Dataset = xarray.Dataset(data, coords=coords, attrs=about)
+        return labelled
 
 
 def model_of(
@@ -221,13 +221,13 @@ def model_of(
     """
     chosen = checks.one_of("method", method, ORDERED_METHODS)
     subject: Subject = analysis.subject
-    found = {state: curve_of(state, fit) for state, fit in analysis.fits.items()}
-    found = {
+    by_state = {state: curve_of(state, fit) for state, fit in analysis.fits.items()}
+    by_state = {
         state: curve and with_evidence(curve, analysis.fits[state], analysis.levels, bootstrap, seed)
-        for state, curve in found.items()
+        for state, curve in by_state.items()
     }
-    without = [state for state, curve in found.items() if curve is None]
-    curves = tuple(curve for curve in found.values() if curve is not None)
+    without = [state for state, curve in by_state.items() if curve is None]
+    curves = tuple(curve for curve in by_state.values() if curve is not None)
     if not curves:
         raise InvalidValueError(
             f"nothing to export: no state of {name!r:.60} has a lognormal curve; the histories must both reach a "
@@ -247,10 +247,10 @@ def curve_of(state: str, fit: LognormalFit) -> FragilityCurve | None:
     median, dispersion = fit.median, fit.dispersion
     if median is None or dispersion is None or not 0.0 < median < math.inf or not 0.0 < dispersion < math.inf:
         return None
-    told = fit.summary()
+    summary = fit.summary()
     return FragilityCurve(
-        state, float(median), float(dispersion), fit.method, fit.verdict, tuple(told["median_95"]),
-        tuple(told["dispersion_95"]), told["interval_method"],
+        state, float(median), float(dispersion), fit.method, fit.verdict, tuple(summary["median_95"]),
+        tuple(summary["dispersion_95"]), summary["interval_method"],
     )  # fmt: skip
 
 
@@ -269,8 +269,8 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
         raise InvalidValueError(f"counts of all states are needed for one dispersion, got none of {missing[0]!r:.60}")
     tried = np.asarray(model.trials) > 0
     reached = np.array([np.asarray(model.reached[c.state], dtype=np.float64)[tried] for c in model.curves])
-    found = nested_curves(model.levels[tried], reached, np.asarray(model.trials, dtype=np.float64)[tried])
-    curves = tuple(_common(curve, *pair) for curve, pair in zip(model.curves, found, strict=True))
+    fitted = nested_curves(model.levels[tried], reached, np.asarray(model.trials, dtype=np.float64)[tried])
+    curves = tuple(_common(curve, *pair) for curve, pair in zip(model.curves, fitted, strict=True))
     return replace(model, curves=curves)
 
 
@@ -284,10 +284,10 @@ def _common(curve: FragilityCurve, median: float, dispersion: float) -> Fragilit
 
 def variables_of(curves: Sequence[FragilityCurve], levels: int, unit: str) -> dict[str, Any]:
     """Return intervals, goodness of fit and bootstrap of curves, over state; NaN where there is none."""
-    told = "95 % interval, missing where it is open, or there is none"
+    meaning = "95 % interval, missing where it is open, or there is none"
     variables: dict[str, Any] = {}
     for name, of in (("median_95", unit), ("dispersion_95", "1")):
-        variables[name] = (_BOTH, np.array([ends_of(getattr(curve, name)) for curve in curves]), _told(of, told))
+        variables[name] = (_BOTH, np.array([ends_of(getattr(curve, name)) for curve in curves]), _told(of, meaning))
     agreements = [curve.agreement or Agreement() for curve in curves]
     for name, words in STATISTICS.items():
         value, p_value = np.array([each.numbers[name] for each in agreements]).T
@@ -298,13 +298,13 @@ def variables_of(curves: Sequence[FragilityCurve], levels: int, unit: str) -> di
 
 
 def _repeated(curves: Sequence[FragilityCurve], levels: int, unit: str) -> dict[str, Any]:
-    told = "95 % interval from the bootstrap, missing where it is open, or there is none"
+    meaning = "95 % interval from the bootstrap, missing where it is open, or there is none"
     each = [curve.repeated or Repeated() for curve in curves]
     bands = np.array([one.band_at(levels) for one in each])
     return {
-        "median_bootstrap_95": (_BOTH, np.array([ends_of(one.median_95) for one in each]), _told(unit, told)),
-        "dispersion_bootstrap_95": (_BOTH, np.array([ends_of(one.dispersion_95) for one in each]), _told("1", told)),
-        "probability_bootstrap_95": (("state", "end", "level"), bands, _told("1", told)),
+        "median_bootstrap_95": (_BOTH, np.array([ends_of(one.median_95) for one in each]), _told(unit, meaning)),
+        "dispersion_bootstrap_95": (_BOTH, np.array([ends_of(one.dispersion_95) for one in each]), _told("1", meaning)),
+        "probability_bootstrap_95": (("state", "end", "level"), bands, _told("1", meaning)),
         "bootstrap": ("state", np.array([one.words for one in each])),
     }
 
@@ -321,16 +321,16 @@ class Excess:
 
 def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Excess | None:
     """Return where neighbouring curves are most out of order between two levels; None if they never are."""
-    found = None
+    largest = None
     for lesser, worse in zip(model.curves[:-1], model.curves[1:], strict=True):
         with np.errstate(over="ignore", under="ignore"):
             extremes = np.exp(difference_extremes(*((c.median, c.dispersion) for c in (lesser, worse))))
         places = np.array([lowest, highest, *extremes[(extremes > lowest) & (extremes < highest)]])
         apart = worse.probability(places) - lesser.probability(places)
         k = int(np.argmax(apart))
-        if apart[k] > (0.0 if found is None else found.size):
-            found = Excess(lesser.state, worse.state, float(places[k]), float(apart[k]))
-    return found
+        if apart[k] > (0.0 if largest is None else largest.size):
+            largest = Excess(lesser.state, worse.state, float(places[k]), float(apart[k]))
+    return largest
 
 
 def nested(model: FragilityModel, crossing: Crossing = "refuse", highest: float | None = None) -> FragilityModel:

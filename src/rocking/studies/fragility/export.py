@@ -38,11 +38,11 @@ Destination = str | os.PathLike[str]
 
 def table(model: FragilityModel, which: str = "parameters", *, crossing: Crossing = "refuse") -> Table:
     """Return one of the tables of a model."""
-    made = {"parameters": _parameters, "points": _points}
-    given: object = which
-    if not isinstance(given, str) or which not in TABLES:
+    makers = {"parameters": _parameters, "points": _points}
+    word: object = which
+    if not isinstance(word, str) or which not in TABLES:
         raise InvalidValueError(f"table must be one of {', '.join(TABLES)}, got {which!r:.60}")
-    return made[which](model) if which in made else fema_p58_table(model, crossing=crossing)
+    return makers[which](model) if which in makers else fema_p58_table(model, crossing=crossing)
 
 
 def _bracket(model: FragilityModel) -> str:
@@ -85,9 +85,9 @@ def _agreement(curve: FragilityCurve) -> tuple[Cell, ...]:
     return (*("" if math.isnan(number) else number for number in numbers), curve.agreement.words)
 
 
-def _repeated(found: Repeated | None) -> tuple[Cell, ...]:
-    told = found or Repeated()
-    return (*_cells(told.median_95), *_cells(told.dispersion_95), told.words)
+def _repeated(repeated: Repeated | None) -> tuple[Cell, ...]:
+    intervals = repeated or Repeated()
+    return (*_cells(intervals.median_95), *_cells(intervals.dispersion_95), intervals.words)
 
 
 def _cells(interval: Ends | None) -> tuple[Cell, Cell]:
@@ -277,13 +277,13 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
 
 def _evidence(model: FragilityModel) -> dict[str, Any]:
     """Return intervals, goodness of fit and bootstrap, one row a state, and why states have no curve."""
-    found = {
+    evidence = {
         name: np.asarray(values)
         for name, (_, values, *_) in variables_of(model.curves, model.levels.size, model.unit).items()
     }
-    words = {name: values.astype(object) for name, values in found.items() if values.dtype.kind == "U"}
+    words = {name: values.astype(object) for name, values in evidence.items() if values.dtype.kind == "U"}
     without = {"state": list(model.without), "why": list(model.without.values())}
-    return found | words | {"without_curve": {name: np.array(v, dtype=object) for name, v in without.items()}}
+    return evidence | words | {"without_curve": {name: np.array(v, dtype=object) for name, v in without.items()}}
 
 
 def to_netcdf(model: FragilityModel, path: Destination) -> Path:
@@ -411,21 +411,21 @@ def moments_of_lognormal(median: float, dispersion: float) -> tuple[float, float
     return mean, mean * math.sqrt(math.expm1(dispersion**2))  # Eq. 228
 
 
-def _description(model: FragilityModel, given: str) -> str:
+def _description(model: FragilityModel, description: str) -> str:
     claims = [f"{c.state}: {'; '.join(filter(None, (c.method, c.verdict)))}" for c in model.curves if c.method]
-    return " | ".join([given or model.source or "fragility of a rocking body", *claims])
+    return " | ".join([description or model.source or "fragility of a rocking body", *claims])
 
 
 def _identifier(name: str) -> str:
-    made = re.sub(r"[^A-Za-z0-9_-]+", "_", name).strip("_")[:60]
-    return made or "fragility"
+    plain = re.sub(r"[^A-Za-z0-9_-]+", "_", name).strip("_")[:60]
+    return plain or "fragility"
 
 
 def _identifiers(names: list[str]) -> list[str]:
     """Names of limit states stand in a list separated by blanks: they hold letters, digits and underscores only."""
-    made = [re.sub(r"[^A-Za-z0-9]+", "_", name.replace(">", "above")).strip("_") or "state" for name in names]
-    made = [name if name[0].isalpha() else f"state_{name}" for name in made]
-    return [name if made.count(name) == 1 else f"{name}_{k}" for k, name in enumerate(made, 1)]
+    plain = [re.sub(r"[^A-Za-z0-9]+", "_", name.replace(">", "above")).strip("_") or "state" for name in names]
+    plain = [name if name[0].isalpha() else f"state_{name}" for name in plain]
+    return [name if plain.count(name) == 1 else f"{name}_{k}" for k, name in enumerate(plain, 1)]
 
 
 def _word(text: str) -> str:

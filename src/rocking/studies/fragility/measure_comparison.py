@@ -64,11 +64,11 @@ class MeasureComparison:
 
     def rows(self) -> list[dict[str, Any]]:
         """Return rank, the fields of `MeasureScore`, and ``p(name)`` for each column of the metadata."""
-        made = []
+        rows = []
         for rank, score in enumerate(self.scores, 1):
             fields = {name: value for name, value in vars(score).items() if name != "sufficiency"}
-            made.append({"rank": rank, **fields, **{f"p({k})": v for k, v in score.sufficiency.items()}})
-        return made
+            rows.append({"rank": rank, **fields, **{f"p({k})": v for k, v in score.sufficiency.items()}})
+        return rows
 
     def to_dataframe(self) -> "pd.DataFrame":
         """Return the table, one row a measure, by rank."""
@@ -183,8 +183,8 @@ def _sufficiency(line: Regression, values: FloatArray) -> float:
     return regression(values, line.residuals).p_value
 
 
-def _column(name: str, given: Any, analysis: CloudAnalysis) -> FloatArray:
-    values = checks.real_array(f"metadata[{name!r:.40}]", given)
+def _column(name: str, column: Any, analysis: CloudAnalysis) -> FloatArray:
+    values = checks.real_array(f"metadata[{name!r:.40}]", column)
     count = len(analysis.subject.motions)
     if values.shape != (count,) or not np.isfinite(values).all():
         raise InvalidValueError(

@@ -51,8 +51,8 @@ class IntensityLevel:
         if kind not in {"PGA", "PGV"}:
             raise InvalidValueError(f"a level is a PGA or a PGV, got {kind!r:.40}")
         units = ACCELERATION_UNITS if kind == "PGA" else VELOCITY_UNITS
-        given: object = words
-        match = _LEVEL.fullmatch(given.strip()) if isinstance(given, str) else None
+        text: object = words
+        match = _LEVEL.fullmatch(text.strip()) if isinstance(text, str) else None
         if match is None or match[2] not in units:
             raise InvalidValueError(
                 f"{kind} must be a number with its unit, one of {', '.join(units)}, "
@@ -83,25 +83,25 @@ class Hazard:
         """Return synthetic motions scaled to a level: the families do not say how strong the shaking is."""
         count = checks.whole("count", count, 1, MOST_MOTIONS)
         motions = SyntheticSet(which, count, seed, **{level.kind.lower(): level.value})
-        made = []
+        shaken = []
         for k in range(count):
-            made.append(motions[k])
+            shaken.append(motions[k])
             if progress is not None:
                 progress(1)
         name = motions.family.name
         words = f"{count} synthetic motions of the family {name} ({motions.family.title}), seed {seed}"
-        return cls(tuple(made), level, words, motions.description())
+        return cls(tuple(shaken), level, words, motions.description())
 
     @classmethod
     def of_records(cls, records: Sequence[GroundMotion], level: IntensityLevel | None = None) -> "Hazard":
         """Return records, each scaled with its vertical component if a level is given."""
-        found = [checked_motion(record, f"records[{k}]") for k, record in enumerate(records)]
-        if not 1 <= len(found) <= MOST_MOTIONS:
-            raise InvalidValueError(f"records must be 1 to {MOST_MOTIONS} motions, got {len(found)}")
-        scaled = [_scaled(record, level) for record in found]
+        checked = [checked_motion(record, f"records[{k}]") for k, record in enumerate(records)]
+        if not 1 <= len(checked) <= MOST_MOTIONS:
+            raise InvalidValueError(f"records must be 1 to {MOST_MOTIONS} motions, got {len(checked)}")
+        scaled = [_scaled(record, level) for record in checked]
         how = "as recorded" if level is None else f"each scaled to {level}"
-        names = [record.name for record in found]
-        words = f"{len(found)} record{'s' if len(found) > 1 else ''}, {how}"
+        names = [record.name for record in checked]
+        words = f"{len(checked)} record{'s' if len(checked) > 1 else ''}, {how}"
         plain = {"kind": "records", "names": names, "provenance": [list(one.provenance) for one in scaled]}
         return cls(tuple(scaled), level, words, plain)
 
@@ -130,8 +130,8 @@ class Hazard:
 
     def velocity(self) -> tuple[float, float]:
         """Return the least and the most of the peak ground velocity [m/s]."""
-        found = [peak_ground_velocity(motion) for motion in self.motions]
-        return min(found), max(found)
+        peaks = [peak_ground_velocity(motion) for motion in self.motions]
+        return min(peaks), max(peaks)
 
 
 def _scaled(record: GroundMotion, level: IntensityLevel | None) -> GroundMotion:

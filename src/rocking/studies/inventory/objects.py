@@ -73,8 +73,8 @@ class InventoryObject:
     row: int = 0
 
     def __post_init__(self) -> None:
-        given: object = self.name
-        if not isinstance(given, str) or not given.strip():
+        word: object = self.name
+        if not isinstance(word, str) or not word.strip():
             raise InvalidValueError("name must not be empty")
         for name in ("width", "depth", "height"):
             object.__setattr__(self, name, _length(name, getattr(self, name)))
@@ -101,8 +101,8 @@ class InventoryObject:
         float
             That of the body if no other was given [m].
         """
-        found = self.base_width if direction == "width" else self.base_depth
-        return self._size(direction) if found is None else found
+        size = self.base_width if direction == "width" else self.base_depth
+        return self._size(direction) if size is None else size
 
     def uplift_acceleration(self, direction: Direction, gravity: float = g) -> float:
         """Return the ground acceleration ``g b / h`` below which the object stays still, with half the base.
@@ -154,23 +154,23 @@ class InventoryObject:
 
     @staticmethod
     def _base(name: str, value: float, most: float) -> float:
-        found = _length(name, value)
-        if found > most * (1.0 + 1e-9):
+        size = _length(name, value)
+        if size > most * (1.0 + 1e-9):
             raise InvalidValueError(
-                f"{name} must be at most the {name.removeprefix('base_')} of the body, {most:g} m, got {found:g} m; "
+                f"{name} must be at most the {name.removeprefix('base_')} of the body, {most:g} m, got {size:g} m; "
                 "an object fixed to a wider plinth is measured together with it"
             )
-        return most if found > most * (1.0 - 1e-9) else found
+        return most if size > most * (1.0 - 1e-9) else size
 
     def _check_centre(self) -> None:
         if self.centre_of_mass_height is None:
             return
-        found = _length("centre_of_mass_height", self.centre_of_mass_height)
-        if not found < self.height:
+        height = _length("centre_of_mass_height", self.centre_of_mass_height)
+        if not height < self.height:
             raise InvalidValueError(
-                f"centre_of_mass_height must be below the height of the body, {self.height:g} m, got {found:g} m"
+                f"centre_of_mass_height must be below the height of the body, {self.height:g} m, got {height:g} m"
             )
-        object.__setattr__(self, "centre_of_mass_height", found)
+        object.__setattr__(self, "centre_of_mass_height", height)
 
     def _check_mass(self) -> None:
         if self.mass is None:

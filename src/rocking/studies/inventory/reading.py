@@ -124,12 +124,12 @@ class DecimalMark:
     """
 
     def __init__(self, cells: Iterable[str], *, comma_delimited: bool = False) -> None:
-        found = set()
+        marks = set()
         for cell in cells:
             match = _NUMBER.fullmatch(cell.strip())
             if match and match[1] and not _THOUSANDS.fullmatch(cell.strip()):
-                found.add(match[1])
-        self.commas, self.points, self.comma_delimited = "," in found, "." in found, comma_delimited
+                marks.add(match[1])
+        self.commas, self.points, self.comma_delimited = "," in marks, "." in marks, comma_delimited
 
     def number(self, name: str, cell: str) -> float:
         """Return the number in a cell, in the unit of the column."""
@@ -254,8 +254,8 @@ def parse_inventory(text: str, source: str = "objects") -> Inventory:
     columns, ignored = columns_of(rows[0][1], source)
     body = [(line, cells) for line, cells in rows[1:] if any(cell.strip() for cell in cells)]
     numeric = [k for k, column in enumerate(columns) if column and column.fields[0] not in _TEXTS]
-    found = (cells[k] for _, cells in body for k in numeric if k < len(cells))
-    mark = DecimalMark(found, comma_delimited=delimiter == ",")
+    numbers = (cells[k] for _, cells in body for k in numeric if k < len(cells))
+    mark = DecimalMark(numbers, comma_delimited=delimiter == ",")
     objects, refused = [], []
     for line, cells in body:
         try:
@@ -269,8 +269,8 @@ def parse_inventory(text: str, source: str = "objects") -> Inventory:
 
 def _separator(text: str) -> tuple[str, tuple[str, ...]]:
     """Return a text with Excel's line about the separator emptied, and what may separate the fields."""
-    given = _SEPARATOR.match(text)
-    return (text[given.end() :], (given[1],)) if given else (text, _DELIMITERS)
+    line = _SEPARATOR.match(text)
+    return (text[line.end() :], (line[1],)) if line else (text, _DELIMITERS)
 
 
 def _delimiter(text: str, allowed: tuple[str, ...], source: str) -> str:
@@ -286,18 +286,18 @@ def _delimiter(text: str, allowed: tuple[str, ...], source: str) -> str:
 
 def _rows(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]]]:
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
-    found: list[tuple[int, list[str]]] = []
+    rows: list[tuple[int, list[str]]] = []
     line = 1
     try:
         for cells in reader:
-            if found or any(cell.strip() for cell in cells):
-                found.append((line, cells))
+            if rows or any(cell.strip() for cell in cells):
+                rows.append((line, cells))
             line = reader.line_num + 1
-            if len(found) > MOST_ROWS:
+            if len(rows) > MOST_ROWS:
                 raise InvalidValueError(f"{source}: an inventory must have at most {MOST_ROWS} rows")
     except csv.Error as error:
         raise InvalidValueError(f"{source}: not a table, line {line}: {error}; a quotation mark left open?") from error
-    return found
+    return rows
 
 
 def _object(

@@ -91,8 +91,8 @@ def difference_of(first: "xr.Dataset", second: "xr.Dataset", name: str) -> "xr.D
     """
     if name == "verdict":
         flag = "-1 overturned in the baseline only, 0 same verdict, 1 overturned only here, 2 one of the two failed"
-        made = first["outcome"].copy(data=flip_map(first["outcome"].values, second["outcome"].values))
-        return made.rename("verdict").assign_attrs(units="1", long_name=flag)
+        flips = first["outcome"].copy(data=flip_map(first["outcome"].values, second["outcome"].values))
+        return flips.rename("verdict").assign_attrs(units="1", long_name=flag)
     names = sorted(str(k) for k, v in first.data_vars.items() if v.dtype.kind in "if" and k in second)
     if name not in names:
         raise InvalidValueError(f"name must be verdict or one of {', '.join(names)}, got {name!r}")
@@ -216,12 +216,12 @@ def curve_change(
     good = np.isfinite(drawn).all(axis=(0, 1))
     enough = int(good.sum()) >= max(_FEWEST * good.size, 1)
     samples = _moved(drawn[:, 0, good], drawn[:, 1, good])
-    found = [
+    changes = [
         Change(float(value), _ends(sample) if enough else None)
         for value, sample in zip(_moved(log_median, dispersion), samples, strict=True)
     ]
     level = float(np.exp(curve_distance(log_median, dispersion)[1]))
-    return CurveChange(found[0], found[1], found[2], level, good.size, good.size - int(good.sum()))
+    return CurveChange(changes[0], changes[1], changes[2], level, good.size, good.size - int(good.sum()))
 
 
 def _moved(log_median: FloatArray, dispersion: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -282,9 +282,9 @@ def _ends(sample: FloatArray) -> tuple[float, float]:
 
 
 def _indicators(name: str, values: Any, levels: int) -> FloatArray:
-    found = np.asarray(values, dtype=np.float64)
-    if found.ndim != 2 or found.shape[1] != levels or not len(found):
-        raise InvalidValueError(f"{name} must be of shape (motions, {levels} levels), got {found.shape}")
-    if not np.isin(found[np.isfinite(found)], (0.0, 1.0)).all():
+    indicators = np.asarray(values, dtype=np.float64)
+    if indicators.ndim != 2 or indicators.shape[1] != levels or not len(indicators):
+        raise InvalidValueError(f"{name} must be of shape (motions, {levels} levels), got {indicators.shape}")
+    if not np.isin(indicators[np.isfinite(indicators)], (0.0, 1.0)).all():
         raise InvalidValueError(f"{name} must be 0 or 1 (NaN for a history that failed)")
-    return found
+    return indicators

@@ -20,7 +20,7 @@ from rocking.studies.axis import RestitutionAxis, axis_of
 from rocking.studies.fragility._multiple_stripe_analysis import MultipleStripeAnalysis, multiple_stripe_plan
 from rocking.studies.motion_sets import MotionSet
 from rocking.studies.sensitivity.changes import CurveChange, Flips, curve_change, difference_of, flips_of
-from rocking.studies.sensitivity.restitutions import named_choices, sampled
+from rocking.studies.sensitivity.restitutions import named_restitutions, sampled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -60,7 +60,7 @@ class Sensitivity:
     def __post_init__(self) -> None:
         if self.baseline not in self.results:
             raise InvalidValueError(f"baseline must be one of {', '.join(self.results)}, got {self.baseline!r:.60}")
-        shapes = {label: dict(found["outcome"].sizes) for label, found in self.datasets.items()}
+        shapes = {label: dict(dataset["outcome"].sizes) for label, dataset in self.datasets.items()}
         odd = next((label for label, shape in shapes.items() if shape != shapes[self.baseline]), None)
         if odd is not None:
             raise InvalidValueError(
@@ -120,10 +120,10 @@ class Sensitivity:
         pairs = [self.flips_between(first, second) for first, second in product(self.labels, self.labels)]
         shape, both = (len(self.labels),) * 2, ("first", "second")
         data = {name: (both, np.array([getattr(p, name) for p in pairs]).reshape(shape)) for name in _COUNTS}
-        made: xr.Dataset = xarray.Dataset(data, coords={name: list(self.labels) for name in both})
+        table: xr.Dataset = xarray.Dataset(data, coords={name: list(self.labels) for name in both})
         clusters = max(pair.clusters for pair in pairs)
         independent = f"{clusters} motions" if clusters else self.cases if self.drawn else "nothing"
-        return made.assign_attrs(cases=self.cases, independent=independent)
+        return table.assign_attrs(cases=self.cases, independent=independent)
 
     def differences(self, name: str = "verdict") -> "xr.DataArray":
         """Return how a value moves from the baseline to every other choice.
@@ -142,8 +142,10 @@ class Sensitivity:
         xarray = extra("xarray", "a map of differences")
         base, others = self.datasets[self.baseline], self.labels[1:]
         maps = [difference_of(base, self.datasets[label], name) for label in others]
-        made: xr.DataArray = xarray.concat(maps, xarray.DataArray(list(others), dims="restitution", name="restitution"))
-        return made.assign_attrs(maps[0].attrs, baseline=self.baseline)
+        labelled: xr.DataArray = xarray.concat(
+            maps, xarray.DataArray(list(others), dims="restitution", name="restitution")
+        )
+        return labelled.assign_attrs(maps[0].attrs, baseline=self.baseline)
 
     def curve_change(self, choice: str, state: str = "overturned", *, baseline: str | None = None) -> CurveChange:
         """Return what changes of a fragility curve.
@@ -256,22 +258,22 @@ class Sensitivity:
         ]
         return "; ".join(words) + "."
 
-    def _of(self, label: str, found: dict[str, Any]) -> Any:
-        if label not in found:
+    def _of(self, label: str, by_label: dict[str, Any]) -> Any:
+        if label not in by_label:
             raise InvalidValueError(f"choice must be one of {', '.join(self.labels)}, got {label!r:.60}")
-        return found[label]
+        return by_label[label]
 
 
 def _dataset(label: str, result: Any) -> "xr.Dataset":
-    found = getattr(result, "dataset", result)
-    if not hasattr(found, "data_vars") or "outcome" not in found:
+    data = getattr(result, "dataset", result)
+    if not hasattr(data, "data_vars") or "outcome" not in data:
         raise InvalidValueError(
-            f"the study must return a dataset with an outcome, or an analysis with one, got {found!r:.60} with {label}"
+            f"the study must return a dataset with an outcome, or an analysis with one, got {data!r:.60} with {label}"
         )
-    if found.sizes.get("restitution", 1) > 1:
+    if data.sizes.get("restitution", 1) > 1:
         raise InvalidValueError("the study varies the restitution itself: give one of its axes to the study instead")
-    made: xr.Dataset = found.squeeze("restitution", drop=True) if "restitution" in found.dims else found
-    return made
+    squeezed: xr.Dataset = data.squeeze("restitution", drop=True) if "restitution" in data.dims else data
+    return squeezed
 
 
 def _known(value: float) -> float | None:
@@ -296,9 +298,9 @@ def _plain(state: str, change: CurveChange | str) -> dict[str, Any]:
         return {f"{state}: no comparison": change}
     plain: dict[str, Any] = {}
     for name, word in (("median", "median ratio"), ("dispersion", "dispersion"), ("distance", "largest distance")):
-        found = getattr(change, name)
-        plain[f"{state}: {word}"] = found.value
-        plain |= {f"{state}: {word} {end}": v for end, v in zip(("low", "high"), found.interval or (), strict=False)}
+        changed = getattr(change, name)
+        plain[f"{state}: {word}"] = changed.value
+        plain |= {f"{state}: {word} {end}": v for end, v in zip(("low", "high"), changed.interval or (), strict=False)}
     return plain
 
 
@@ -348,7 +350,7 @@ def sensitivity(
     """
     if not callable(study):
         raise InvalidValueError(f"study must be a function that takes restitution=, got {study!r:.60}")
-    choices = named_choices(restitutions)
+    choices = named_restitutions(restitutions)
     first = next(iter(choices)) if baseline is None else baseline
     if first not in choices:
         raise InvalidValueError(f"baseline must be one of {', '.join(choices)}, got {baseline!r:.60}")
@@ -460,10 +462,10 @@ def fragility_sensitivity(
     from rocking.studies.histories import results_of
 
     threads, progress = options.pop("threads", None), options.pop("progress", None)
-    given = _kept(motions)
+    same_motions = _kept(motions)
 
     def study(*, restitution: Any) -> Any:
-        histories, finish = multiple_stripe_plan(body, given, levels, restitution, **options)
+        histories, finish = multiple_stripe_plan(body, same_motions, levels, restitution, **options)
         return finish(results_of(sampled(histories), threads=threads, progress=progress))
 
     return sensitivity(study, restitutions, baseline, repetitions=repetitions, seed=seed)

@@ -17,10 +17,10 @@ from rocking.restitution import RestitutionModel, model
 from rocking.studies.histories import Histories, described_law
 
 
-def named_choices(restitutions: Any) -> dict[str, Any]:
+def named_restitutions(restitutions: Any) -> dict[str, Any]:
     """Return restitutions by name: models, coefficients [-], pairs by side, laws; names are made for a sequence.
 
-    >>> named_choices(["housner", 0.9, {"left": 0.8, "right": 0.9}])
+    >>> named_restitutions(["housner", 0.9, {"left": 0.8, "right": 0.9}])
     {'housner': 'housner', '0.9': 0.9, 'left 0.8, right 0.9': {'left': 0.8, 'right': 0.9}}
     """
     if isinstance(restitutions, Mapping):
@@ -59,8 +59,8 @@ def label_of(choice: Any) -> str:
 
 def _drawn(law: DrawnRestitution) -> str:
     each = "history" if law.per_history else "impact"
-    found = [f"{middle:.4g} [{low:.4g}, {high:.4g}]" for low, middle, high in (_middle(law, foot) for foot in FEET)]
-    sides = found[0] if law.factors.ndim == 1 else f"left {found[0]}, right {found[1]}"
+    of_feet = [f"{middle:.4g} [{low:.4g}, {high:.4g}]" for low, middle, high in (_middle(law, foot) for foot in FEET)]
+    sides = of_feet[0] if law.factors.ndim == 1 else f"left {of_feet[0]}, right {of_feet[1]}"
     cut = cut_words(dict(zip(FEET, law.cut, strict=True)))
     return f"drawn per {each}, {sides}, seed {law.seed}{_times(law.times)}{cut}"
 

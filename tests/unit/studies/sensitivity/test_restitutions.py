@@ -14,7 +14,7 @@ from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome, Status
 from rocking.restitution import Fixed
 from rocking.studies import HistoryTable, MotionList, Product, SampledRestitution
-from rocking.studies.sensitivity.restitutions import SampledHistories, label_of, named_choices, sampled, uniforms
+from rocking.studies.sensitivity.restitutions import SampledHistories, label_of, named_restitutions, sampled, uniforms
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 PULSES = MotionList([rk.pulses.sine(3.0, period) for period in (0.5, 0.7, 0.9)])
@@ -231,7 +231,7 @@ def test_every_choice_has_a_name(choice, label):
 
 def test_a_dict_names_the_choices():
     """Names that the user gives are kept, in their order."""
-    assert list(named_choices({"new": "ked", "old": "housner"})) == ["new", "old"]
+    assert list(named_restitutions({"new": "ked", "old": "housner"})) == ["new", "old"]
 
 
 @pytest.mark.parametrize(
@@ -251,11 +251,11 @@ def test_a_dict_names_the_choices():
 def test_what_cannot_be_compared_is_refused(given, message):
     """Fewer than two choices, equal names and what is no restitution are refused before anything is computed."""
     with pytest.raises(RockingError, match=message):
-        named_choices(given)
+        named_restitutions(given)
 
 
 def test_equal_choices_can_be_compared_under_names():
     """The same choice twice is allowed once it is named: the comparison must then find nothing."""
-    assert named_choices({"a": 0.9, "b": 0.9}) == {"a": 0.9, "b": 0.9}
+    assert named_restitutions({"a": 0.9, "b": 0.9}) == {"a": 0.9, "b": 0.9}
     with pytest.raises(InvalidValueError, match="name: choice"):
-        named_choices([0.9, 0.9])
+        named_restitutions([0.9, 0.9])
