@@ -8,7 +8,7 @@ from rocking.cli.page import Page, sentence
 from rocking.errors import InvalidValueError
 from rocking.spec.document import FragilityTable
 from rocking.statistics.separation import Separation
-from rocking.studies.fragility import IncrementalDynamicAnalysis
+from rocking.studies.fragility._incremental_dynamic_analysis import IncrementalDynamicAnalysis
 
 if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem

@@ -13,7 +13,7 @@ from rocking.spec.document import InventoryTable
 
 if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
-    from rocking.studies.inventory import Assessment
+    from rocking.studies.inventory.assessment import Assessment
 
 _SHAKING = "How it shakes"
 _STYLES = {"GREEN": "bold green", "AMBER": "bold yellow", "RED": "bold red"}

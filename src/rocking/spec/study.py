@@ -15,7 +15,8 @@ from rocking.studies.motion_sets import MotionList, MotionSet
 
 if TYPE_CHECKING:
     from rocking.spec.document import CampaignDocument, MapTable
-    from rocking.studies.inventory import Hazard, Inventory, Thresholds
+    from rocking.studies.inventory import Inventory, Thresholds
+    from rocking.studies.inventory.hazard import Hazard
 
 
 @dataclass(frozen=True)
@@ -147,7 +148,8 @@ def inventory_of(
     problem: StudyProblem,
 ) -> "tuple[Inventory, Callable[[Callable[[int], None] | None], Hazard], Thresholds]":
     """Return the objects of an inventory, what makes its motions, and where its lights change."""
-    from rocking.studies.inventory import Hazard, IntensityLevel, Thresholds, read_inventory
+    from rocking.studies.inventory import Thresholds, read_inventory
+    from rocking.studies.inventory.hazard import Hazard, IntensityLevel
     from rocking.studies.motion_sets import SyntheticSet
 
     table, motions = problem.document.inventory, problem.motions
