@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PAGES = ["README.md", *(f"docs/{name}.md" for name in ("conventions", "theory", "gallery", "extending"))]
+PAGES = ["README.md", *(f"docs/{name}.md" for name in ("architecture", "conventions", "theory", "gallery", "extending", "application"))]
 
 
 def test_readme_examples_run():
@@ -35,6 +35,15 @@ def test_links_lead_somewhere(page):
         assert ((ROOT / page).parent / target).exists(), target
     for target in re.findall(r"tests/[\w/]+\.py", text):
         assert (ROOT / target).exists(), target
+
+
+def test_the_plan_of_the_house_names_files_that_exist():
+    """Rooms, and files of a room, of the engine or of the tests, as docs/architecture.md calls them."""
+    text = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
+    named = re.findall(r"`([\w./]+/[\w.]*)`", text)
+    assert len(named) > 15
+    for path in named:
+        assert any((place / path).exists() for place in (ROOT, ROOT / "src" / "rocking")), path
 
 
 @pytest.mark.parametrize("folder", ["src", "engine", "examples", "benchmarks"])
