@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PAGES = ["README.md", *(f"docs/{name}.md" for name in ("architecture", "conventions", "theory", "gallery", "extending", "application"))]
+_DOCUMENTS = ("architecture", "conventions", "theory", "gallery", "extending", "application")
+PAGES = ["README.md", *(f"docs/{name}.md" for name in _DOCUMENTS)]
 
 
 def test_readme_examples_run():
