@@ -16,7 +16,10 @@ import json
 from numpy._core import _multiarray_umath as n
 print(json.dumps([f for f in n.__cpu_dispatch__ if n.__cpu_features__.get(f)]))
 """
-_ENGINES = "from rocking.dynamics import engine; print(*(engine.instruction_sets() if engine.available() else []))"
+_ENGINES = """
+from rocking.dynamics.plane import fast_engine
+print(*(fast_engine.instruction_sets() if fast_engine.available() else []))
+"""
 
 
 def settings() -> dict[str, dict[str, str]]:
