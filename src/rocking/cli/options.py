@@ -67,7 +67,7 @@ def out(kinds: dict[str, Any]) -> Any:
 
 _TO_OUT = ("--csv", "--mat", "--netcdf", "--picture", "--animation", "--stages", "--p58", "--nrml", "--excel")
 _SAID_NOW = {
-    "--contact": "--friction alone lets a body slide, hop and fly",
+    "--contact": "--friction VALUE alone, with which a body slides, hops and flies",
     "--motion-y": "--motion y=FILE",
     "--motion-z": "--motion z=FILE",
     "--component": "FILE#COMPONENT",
