@@ -237,7 +237,7 @@ def test_every_file(capsys, tmp_path):
     paths = {kind: tmp_path / f"f.{end}" for kind, end in (
         ("picture", "svg"), ("csv", "csv"), ("p58", "p58.csv"), ("nrml", "xml"), ("excel", "xlsx"), ("mat", "mat"),
         ("netcdf", "nc"))}  # fmt: skip
-    words = [part for kind, path in paths.items() for part in (f"--{kind}", path)]
+    words = [part for kind, path in paths.items() for part in ("--out", f"{kind}={path}")]
     words += ["--name", "vase & stand", "--crossing", "common-dispersion"]
     code, out, err = run(capsys, *SIZE, *FAMILY, *LEVELS, *words)
     assert (code, err) == (0, "")
@@ -348,8 +348,8 @@ def test_nothing_to_export(capsys, tmp_path):
             "several --restitution",
         ),
         ((*SIZE, *FAMILY, "--restitution", "1.5"), "restitution"),
-        ((*SIZE, *FAMILY, "--set", "settings.engine=slow"), "settings.engine must be one of auto"),
-        ((*SIZE, *FAMILY, "--out", "p.jpg"), "a picture is .png"),
+        ((*SIZE, *FAMILY, "--set", "settings.engine=slow"), "settings.engine must be one of 'auto'"),
+        ((*SIZE, *FAMILY, "--out", "p.jpg"), "by its ending a file is a picture (.png"),
         ((*SIZE, *FAMILY, "--out", "nowhere/c.csv"), "no folder 'nowhere'"),
         ((*SIZE, *FAMILY, "--measure", "housner", "--levels", "1,2", "--out", "n.xml"), "OpenQuake knows pga"),
         (
