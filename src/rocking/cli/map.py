@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from rocking.spec.study import StudyProblem
+    from rocking.studies._overturning_map import MapArrays
     from rocking.studies.axis import Axis
 
 MOST_CELLS = 10_000_000
@@ -44,8 +45,8 @@ def _draw(answer: "MapAnswer") -> Any:
     lines = boundary(
         problem.bodies[0], problem.motions[0], *answer.axes, problem.restitution,
         levels=answer.table.refine or 0, tolerance=_LINE, **problem.stated,
-    ) if str(answer.dataset.attrs["engine"]).startswith("fast") else []  # fmt: skip
-    figure = overturning_map_picture(answer.dataset, lines)
+    ) if str(answer.arrays.attributes["engine"]).startswith("fast") else []  # fmt: skip
+    figure = overturning_map_picture(answer.arrays.to_xarray(), lines)
     for which, axis in zip(("x", "y"), answer.axes, strict=True):
         if axis.name in answer.written:
             shown_in(figure.axes[0], which, *answer.unit(axis))
@@ -123,7 +124,7 @@ class MapAnswer:
 
     problem: "StudyProblem"
     axes: "tuple[Axis, Axis]"
-    dataset: "xr.Dataset"  # as of `overturning_map`
+    arrays: "MapArrays"  # with the first restitution
     compared: Any  # maps with all restitutions, where there are several
     written: dict[str, str] = field(default_factory=dict)  # units that axes were written in, by their name
     length: str = "m"  # unit of lengths
@@ -141,6 +142,7 @@ class MapAnswer:
         """Compute a map."""
         from rocking.errors import InvalidValueError
         from rocking.spec.study import axes_of
+        from rocking.studies._overturning_map import MapArrays
 
         assert problem.document.map is not None
         x, y = axes_of(problem.document.map)
@@ -153,8 +155,12 @@ class MapAnswer:
             raise InvalidValueError("a picture needs at least two values along --x and along --y, got one")
         found = problem.answer(tell, threads)
         several = len(problem.restitutions) > 1
-        first = found.datasets[next(iter(problem.restitutions))] if several else found
-        return cls(problem, (x, y), first, found if several else None, written, length)
+        if several:
+            first = next(iter(found.datasets.values()))
+            variables = {str(name): each.to_numpy() for name, each in first.data_vars.items()}
+            arrays = MapArrays((x, y), variables, first.attrs)
+            return cls(problem, (x, y), arrays, found, written, length)
+        return cls(problem, (x, y), found, None, written, length)
 
     @property
     def table(self) -> MapTable:
@@ -167,13 +173,13 @@ class MapAnswer:
         """Safe islands of the map."""
         from rocking.studies.islands import safe_islands
 
-        return safe_islands(self.dataset)
+        return safe_islands(self.arrays)
 
     @property
     def whole(self) -> "xr.Dataset":
         """Everything as one dataset, over ``restitution`` too where there are several."""
         if self.compared is None:
-            return self.dataset
+            return self.arrays.to_xarray()
         from rocking.errors import extra
 
         xarray = extra("xarray", "a file of several maps")
@@ -193,30 +199,30 @@ class MapAnswer:
         """Return everything as plain values."""
         from rocking.cli.study import motion_facts
 
-        dataset, problem, islands = self.dataset, self.problem, self.islands
+        arrays, problem, islands = self.arrays, self.problem, self.islands
         axes = [{"name": axis.name, "unit": axis.unit, "values": axis.values} for axis in self.axes]
         names = ("cells", "area", "x", "y")
         return {
             "body": repr(problem.bodies[0]),
             "assumed": list(problem.bodies[0].assumed),
             "motion": motion_facts(problem.motions[0]),
-            "restitution": dataset.attrs["restitution"],
-            "engine": dataset.attrs["engine"],
+            "restitution": arrays.attributes["restitution"],
+            "engine": arrays.attributes["engine"],
             "gravity_m_s2": problem.settings.gravity,
             "linear": problem.settings.linear,
             "x": axes[0],
             "y": axes[1],
-            "mode": dataset["mode"].values,
-            "peak_ratio": dataset["peak_ratio"].values,
-            "cells": dataset["mode"].size,
+            "mode": arrays["mode"],
+            "peak_ratio": arrays["peak_ratio"],
+            "cells": arrays["mode"].size,
             "modes": self.shares(),
-            "refined_points": dataset.sizes.get("point"),
+            "refined_points": arrays.points,
             "islands": {
                 "count": len(islands),
                 "all": [{name: getattr(island, name) for name in names} for island in islands.islands],
             },
             "overturning": self.extent(),
-            "contact": dataset.attrs["contact"],
+            "contact": arrays.attributes["contact"],
             "sensitivity": self._sensitivity(),
         }
 
@@ -234,9 +240,9 @@ class MapAnswer:
         """Return mode, meaning, count and share [-] of the cells that end in each way."""
         import numpy as np
 
-        modes, counts = np.unique(self.dataset["mode"].values, return_counts=True)
+        modes, counts = np.unique(self.arrays["mode"], return_counts=True)
         return [
-            {"mode": mode, "meaning": meaning(mode), "count": count, "share": count / self.dataset["mode"].size}
+            {"mode": mode, "meaning": meaning(mode), "count": count, "share": count / self.arrays["mode"].size}
             for mode, count in zip(modes.tolist(), counts.tolist(), strict=True)
         ]
 
@@ -244,12 +250,11 @@ class MapAnswer:
         """Return least and greatest x and y at which anything overturns, and the lowest point along y; or None."""
         import numpy as np
 
-        dataset = self.dataset
-        if "point" in dataset.sizes:
-            x, y, modes = (dataset[f"refined_{name}"].values for name in ("x", "y", "mode"))
+        if self.arrays.points is not None:
+            x, y, modes = (self.arrays[f"refined_{name}"] for name in ("x", "y", "mode"))
         else:
             x, y = (grid.ravel() for grid in np.meshgrid(*(axis.values for axis in self.axes)))
-            modes = dataset["mode"].values.ravel()
+            modes = self.arrays["mode"].ravel()
         x, y = x[modes >= 0], y[modes >= 0]
         if not x.size:
             return None
@@ -262,10 +267,10 @@ class MapAnswer:
         from rocking.cli.study import body_lines
         from rocking.conventions import percent
 
-        problem, dataset = self.problem, self.dataset
+        problem, arrays = self.problem, self.arrays
         page.facts(body_lines(problem.bodies[0], problem.settings.gravity, self.length))
         page.line(f"motion:       {problem.motions[0].name}")
-        page.line(f"restitution:  {dataset.attrs['restitution']};  engine: {dataset.attrs['engine']}")
+        page.line(f"restitution:  {arrays.attributes['restitution']};  engine: {arrays.attributes['engine']}")
         for name, axis in zip(("x", "y"), self.axes, strict=True):
             span = self._span(axis, (axis.values[0], axis.values[-1]))
             page.line(f"{name}:            {span.replace(' ', ', ', 1)}, {axis.values.size} values")
@@ -274,9 +279,9 @@ class MapAnswer:
         page.line()
         page.line(self._begins())
         page.line(self._islands_sentence())
-        page.warn(filter(None, [dataset.attrs["contact"]]))
-        if "point" in dataset.sizes:
-            page.line(f"Refined along boundaries: {dataset.sizes['point']} points.")
+        page.warn(filter(None, [arrays.attributes["contact"]]))
+        if arrays.points is not None:
+            page.line(f"Refined along boundaries: {arrays.points} points.")
         if self.compared is not None:
             page.line()
             head = ("restitution", "against", "flips", "share", "only with the second", "only with the first")

@@ -62,7 +62,7 @@ class StudyProblem:
     def answer(self, progress: Callable[[int], None] | None = None, threads: int | None = None) -> Any:
         """Compute the study in memory.
 
-        Returns what its function in `rocking.studies` does; with several restitutions a comparison of them.
+        Returns what its function in `rocking.studies` does, a map as `MapArrays`; of several restitutions a comparison.
         """
         compute = _ANSWERS[self.document.campaign.kind]
         return compute(self, {**self.stated, "threads": threads, "progress": progress})
@@ -86,16 +86,17 @@ def axes_of(table: "MapTable") -> tuple[Axis, Axis]:
 
 
 def _map(problem: StudyProblem, options: dict[str, Any]) -> Any:
-    from rocking.studies import overturning_map
-    from rocking.studies.sensitivity import map_sensitivity
+    from rocking.studies._overturning_map import map_arrays
 
     table = problem.document.map
     assert table is not None  # the document refuses to be without
     subject = (problem.only("bodies"), problem.only("motions"), *axes_of(table))
     if len(problem.restitutions) == 1:
-        return overturning_map(*subject, problem.restitution, refine=table.refine, **options)
+        return map_arrays(*subject, problem.restitution, refine=table.refine, **options)
     if table.refine is not None:
         raise InvalidValueError("map.refine is for one restitution: several are compared cell by cell")
+    from rocking.studies.sensitivity import map_sensitivity
+
     return map_sensitivity(*subject, problem.restitutions, **options)
 
 

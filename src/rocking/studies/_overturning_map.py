@@ -1,7 +1,10 @@
 """Overturning maps: how a body ends over any two parameters of it and its motion."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from rocking import conventions
 from rocking.bodies import Body
@@ -83,22 +86,70 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
     >>> found["mode"].sel(frequency_ratio=1.0, amplitude_ratio=[1.0, 3.0]).values.tolist()
     [-2, 0]
     """
-    xarray = extra("xarray", "overturning_map")
+    return map_arrays(
+        body, motion, x, y, restitution, gravity=gravity, threads=threads, progress=progress, refine=refine, **settings
+    ).to_xarray()
+
+
+@dataclass(frozen=True, eq=False)
+class MapArrays:
+    """An overturning map as arrays: a dataset is made only when it is returned or written."""
+
+    axes: tuple[Axis, Axis]  # x, y
+    variables: dict[str, np.ndarray]  # results over y and x; with names that begin with refined_, over the points
+    attributes: dict[str, Any]  # provenance, as of the dataset
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.variables[name]
+
+    @property
+    def points(self) -> int | None:
+        """How many points a refined map has; None if it is not."""
+        return len(self["refined_mode"]) if "refined_mode" in self.variables else None
+
+    def to_xarray(self) -> "xr.Dataset":
+        """Return the labelled dataset."""
+        xarray = extra("xarray", "overturning_map")
+        x, y = self.axes
+        own = {"refined_x": x.attributes, "refined_y": y.attributes}
+        dataset: xr.Dataset = xarray.Dataset(
+            {
+                name: (
+                    "point" if name.startswith("refined_") else (y.name, x.name),
+                    values,
+                    own.get(name) or attributes(name.removeprefix("refined_")),
+                )
+                for name, values in self.variables.items()
+            },
+            coords={axis.name: (axis.name, axis.values, axis.attributes) for axis in (y, x)},
+            attrs=self.attributes,
+        )
+        return dataset
+
+
+def map_arrays(  # noqa: PLR0913
+    body: Body,
+    motion: Motion,
+    x: Axis | tuple[str, Any],
+    y: Axis | tuple[str, Any],
+    restitution: Any = "ked",
+    *,
+    gravity: float = conventions.g,
+    threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
+    refine: int | None = None,
+    **settings: Any,
+) -> MapArrays:
+    """Return an overturning map as arrays; parameters as of `overturning_map`."""
     plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, threads=threads, **settings)
     results, work = plane.answers(*plane.mesh(), progress=progress)
     shape = (plane.y.values.size, plane.x.values.size)
-    dims = (plane.y.name, plane.x.name)
-    labelled: xr.Dataset = xarray.Dataset(
-        {name: (dims, results[name].reshape(shape), attributes(name)) for name in HISTORY},
-        coords={axis.name: (axis.name, axis.values, axis.attributes) for axis in (plane.y, plane.x)},
-        attrs={**plane.question.attributes(work), "contact": contact_words(results["lost_contact"])},
-    )
-    if refine is None:
-        return labelled
-    points = refined(plane, results["mode"].reshape(shape), refine, progress, results["peak_ratio"])
-    return labelled.assign(
-        refined_x=("point", points.x, plane.x.attributes),
-        refined_y=("point", points.y, plane.y.attributes),
-        refined_mode=("point", points.modes, attributes("mode")),
-        refined_peak_ratio=("point", points.peak_ratio, attributes("peak_ratio")),
-    )
+    variables = {name: results[name].reshape(shape) for name in HISTORY}
+    if refine is not None:
+        points = refined(plane, variables["mode"], refine, progress, results["peak_ratio"])
+        variables |= {
+            "refined_x": points.x, "refined_y": points.y, "refined_mode": points.modes,
+            "refined_peak_ratio": points.peak_ratio,
+        }  # fmt: skip
+    stated = {**plane.question.attributes(work), "contact": contact_words(results["lost_contact"])}
+    return MapArrays((plane.x, plane.y), variables, stated)

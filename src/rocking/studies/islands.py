@@ -7,6 +7,7 @@ import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
+from rocking.studies._overturning_map import MapArrays
 from rocking.studies.question import FAILED, UNLIFTED
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ class Islands:
         return self.islands[index]
 
 
-def safe_islands(overturning: "xr.Dataset", *, enclosed: bool = True) -> Islands:
+def safe_islands(overturning: "xr.Dataset | MapArrays", *, enclosed: bool = True) -> Islands:
     """Return the regions of survival that are apart from the one in which the body is never lifted.
 
     Points of survival are neighbours also diagonally, so that an oblique strip is not cut into pieces by the grid.
@@ -130,11 +131,15 @@ def safe_beyond_overturning(overturning: "xr.Dataset", along: str | None = None)
 
 
 def _read(overturning: Any) -> tuple[IntArray, FloatArray, FloatArray, tuple[str, str]]:
+    if isinstance(overturning, MapArrays):
+        x, y = overturning.axes
+        return overturning["mode"], x.values, y.values, (x.name, y.name)
     mode = overturning["mode"] if hasattr(overturning, "data_vars") and "mode" in overturning else None
     if mode is None or mode.ndim != 2:
         raise InvalidValueError(f"a map is a dataset with a mode over two axes, got {type(overturning).__name__}")
-    y, x = (str(name) for name in mode.dims)
-    return np.asarray(mode.values), np.asarray(overturning[x].values), np.asarray(overturning[y].values), (x, y)
+    along_y, along_x = (str(name) for name in mode.dims)
+    x, y = (np.asarray(overturning[name].values) for name in (along_x, along_y))
+    return np.asarray(mode.values), x, y, (along_x, along_y)
 
 
 def _near_edge(modes: IntArray) -> BoolArray:
