@@ -132,8 +132,8 @@ def safe_beyond_overturning(overturning: "xr.Dataset", along: str | None = None)
 
 def _read(overturning: Any) -> tuple[IntArray, FloatArray, FloatArray, tuple[str, str]]:
     if isinstance(overturning, MapArrays):
-        x, y = overturning.axes
-        return overturning["mode"], x.values, y.values, (x.name, y.name)
+        first, second = overturning.axes
+        return overturning["mode"], first.values, second.values, (first.name, second.name)
     mode = overturning["mode"] if hasattr(overturning, "data_vars") and "mode" in overturning else None
     if mode is None or mode.ndim != 2:
         raise InvalidValueError(f"a map is a dataset with a mode over two axes, got {type(overturning).__name__}")
