@@ -139,7 +139,7 @@ struct Queue {
 struct Work {
     std::int64_t steps = 0;  // Taylor steps of active lanes
     std::int64_t sweeps = 0; // steps of all lanes together
-    std::int64_t events = 0; // visits to the lane-by-lane part
+    std::int64_t events = 0; // of single lanes
     std::int64_t orders = 0; // steps times their order
 };
 

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "batch.hpp"
-#include "falls.hpp"
+#include "simple_roots.hpp"
 #include "law.hpp"
 #include "pack.hpp"
 #include "roots.hpp"
@@ -75,8 +75,8 @@ class Kernel {
         int lane, side;
         std::int64_t row;
         double stretch, tau, length, upto, end;
-    } tops[M * P];
-    int tops_waiting = 0;
+    } peaks[M * P];
+    int peaks_waiting = 0;
     struct {  // the row that comes next, made ready so that no lane waits for memory
         Lane lane;
         bool still;                // whether it starts at rest
@@ -154,13 +154,13 @@ class Kernel {
     ROCKING_APART void sample(int i);
     ROCKING_APART void note(int i, EventKind kind, double time, double before, double after, double coefficient);
     void arc(int i, Step made, double* c) const;
-    ROCKING_APART void visit(int i, Step made, bool near);
+    ROCKING_APART void resolve_event(int i, Step made, bool near);
     double first_contact(double* c) const;
-    void keep_top(int i, Step made, double upto, double height, bool comes_down);
-    ROCKING_APART void find_tops();
+    void keep_peak(int i, Step made, double upto, double height, bool comes_down);
+    ROCKING_APART void find_peaks();
     void raise_peak(const Top& top, double at, double y);
     void raise_peak(int i, double y, double time);
-    bool has_tops(int i) const;
+    bool has_peaks(int i) const;
     ROCKING_APART void note_forces(int base, Bits beats);
     ROCKING_INLINE void force_at(int i, double sine, double cosine, double speed, double push, double weight);
     void force_at_end(int i);
@@ -200,7 +200,7 @@ class Kernel {
     int preferred(int i, std::int64_t at, double from) const;
     void lift(int i, std::int64_t at, int side, double when);
     void conclude(int i);
-    void falls(int i, double when);
+    void overturns(int i, double when);
     static double energy(const Side& s, double u_, double speed);
     static double height(const Side& s, double e);
 
@@ -236,6 +236,6 @@ Work run_rows(const Motions& m, const Law& law, const Rows& r, const Settings& s
 #include "resting.hpp"
 #include "rows.hpp"
 #include "step.hpp"
-#include "tops.hpp"
+#include "peaks.hpp"
 #include "verdict.hpp"
-#include "visits.hpp"
+#include "events.hpp"

@@ -15,7 +15,7 @@ void Kernel<G, U, N, D, Z, L>::finish(int i, Outcome outcome, Status status) {
     }
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const bool good = status == kGood, down = outcome == kOverturned;
-    if (good && !down && has_tops(i)) find_tops();
+    if (good && !down && has_peaks(i)) find_peaks();
     rows.outcome[row] = outcome;
     rows.status[row] = status;
     rows.side[row] = outcome == kOverturned ? static_cast<std::int8_t>(lane.side) : 0;
@@ -67,8 +67,8 @@ void Kernel<G, U, N, D, Z, L>::move_lane(int from, int to) {
         value[to] = value[from];
     for (std::int64_t* value : {idx, last}) value[to] = value[from];
     lanes[to] = lanes[from];
-    for (int s = 0; s < tops_waiting; ++s)
-        if (tops[s].lane == from) tops[s].lane = to;
+    for (int s = 0; s < peaks_waiting; ++s)
+        if (peaks[s].lane == from) peaks[s].lane = to;
     idle(from);
 }
 

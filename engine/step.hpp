@@ -5,7 +5,7 @@
 namespace rocking {
 namespace ROCKING_ISA {
 
-// One Taylor step of every lane, then visits to those that need one. Those that may touch the ground go side by side.
+// One Taylor step of every lane, then the events of those that have one. Those that may touch the ground go side by side.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::sweep() {
     int landing[W], landings = 0;
@@ -26,7 +26,7 @@ void Kernel<G, U, N, D, Z, L>::sweep() {
         }
         for (Bits left = flagged & ~near; left; left &= left - 1) {
             const int k = lowest(left), i = first * P + k;
-            visit(i, {&fresh[0][k], U * P}, false);
+            resolve_event(i, {&fresh[0][k], U * P}, false);
             if (lanes[i].row < 0) fill(i);
         }
     }
@@ -36,7 +36,7 @@ void Kernel<G, U, N, D, Z, L>::sweep() {
     while (used > Q && active <= (used - Q) * P) close_ranks();
 }
 
-// One Taylor step of some registers; lanes that need a visit keep their state until they have had it. The loops stay
+// One Taylor step of some registers; lanes that have an event keep their state until it is resolved. The loops stay
 // rolled up: what they hold is as much as a processor looks ahead, and as fits where it keeps what it has decoded.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& near) {
@@ -141,15 +141,15 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
             const Pack t1 = t0 + h[j];
             const Mask done = t1 >= Pack(kWhole);
             const Whole i1 = i0.plus(stride, done);
-            const Mask visit = !clear | beyond | turning | (done & (i1 >= Whole::load(last + at)));
-            flagged |= static_cast<Bits>(visit.bits()) << col;
+            const Mask event = !clear | beyond | turning | (done & (i1 >= Whole::load(last + at)));
+            flagged |= static_cast<Bits>(event.bits()) << col;
             near |= static_cast<Bits>((!clear).bits()) << col;
 
-            const Mask goes = !visit;
+            const Mask goes = !event;
             u1.store_where(goes, u + at);
             v1.store_where(goes, v + at);
             select(done, zero, t1).store_where(goes, tau + at);
-            select(visit, i0, i1).store(idx + at);
+            select(event, i0, i1).store(idx + at);
             u1.store(u_end + at);
             v1.store(v_end + at);
             // what happens beyond a quarter turn is of no interest

@@ -55,7 +55,7 @@ void Kernel<G, U, N, D, Z, L>::still_to_come(int i, double& back, double& weight
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::conclude(int i) {
     Lane& lane = lanes[i];
-    if (has_tops(i)) find_tops();  // in their order, so that the first of several equal ones counts
+    if (has_peaks(i)) find_peaks();  // in their order, so that the first of several equal ones counts
     raise_peak(i, alpha[i] - u[i], now(i, 0.0));
     if (idx[i] >= last[i]) force_at_end(i);
     const double speed = v[i] / lane.step;
@@ -63,14 +63,14 @@ void Kernel<G, U, N, D, Z, L>::conclude(int i) {
     const bool inward = speed > 0.0, passes = e > energy(here(i), 0.0, 0.0);
     if (u[i] < 0.0 && !(inward && passes)) {
         if (!(lane.over_time >= 0.0)) forces_up_to_here(i);
-        return falls(i, lane.over_time >= 0.0 ? lane.over_time : now(i, 0.0));
+        return overturns(i, lane.over_time >= 0.0 ? lane.over_time : now(i, 0.0));
     }
     if (!inward && passes) {  // on resting ground the force grows from here to the top, unless it pulls or q < 0.3
         double s, c;
         sine_cosine(u[i], s, c);
         force_at(i, s, c, v[i], 0.0, 1.0);
         forces_up_to_here(i);
-        return falls(i, now(i, 0.0));
+        return overturns(i, now(i, 0.0));
     }
     if (!inward) raise_peak(i, height(here(i), e), now(i, 0.0));
     double arrival = here(i).p * std::sqrt(2.0 * std::max(e, 0.0));
@@ -85,7 +85,7 @@ void Kernel<G, U, N, D, Z, L>::conclude(int i) {
         touch(i, arrival * lane.step, 0.0, 1.0);
         if (f > energy(here(i), 0.0, 0.0)) {
             forces_up_to_here(i);
-            return falls(i, now(i, 0.0));
+            return overturns(i, now(i, 0.0));
         }
         raise_peak(i, height(here(i), f), now(i, 0.0));
     }
@@ -96,7 +96,7 @@ void Kernel<G, U, N, D, Z, L>::conclude(int i) {
 }
 
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::falls(int i, double when) {
+void Kernel<G, U, N, D, Z, L>::overturns(int i, double when) {
     lanes[i].over_time = when;
     finish(i, kOverturned, kGood);
 }

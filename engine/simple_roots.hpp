@@ -10,7 +10,7 @@ namespace ROCKING_ISA {
 
 // Zeros of y = c0 + c1 x + ... on (0, 1) and the slopes there, for M registers of polynomials.
 template <int degree, int M>
-class Falls {
+class SimpleRoots {
     static constexpr int P = Pack::width;
     Pack c[degree + 1][M], d[degree][M], e[degree - 1][M];  // the polynomial, its slope, its second derivative
     Pack curve[M], twist[M];                 // bounds on half its second and a sixth of its third derivative

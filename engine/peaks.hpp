@@ -8,28 +8,28 @@ namespace ROCKING_ISA {
 // Takes over a step, up to a place in it at which the body stands `height` above the ground; whether it comes down there
 // tells, with the way in which it starts, that it has turned round.
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::keep_top(int i, Step made, double upto, double height, bool comes_down) {
-    const int s = tops_waiting++;
+void Kernel<G, U, N, D, Z, L>::keep_peak(int i, Step made, double upto, double height, bool comes_down) {
+    const int s = peaks_waiting++;
     ROCKING_UNROLL
     for (int k = 0; k <= N; ++k) waiting[k][s] = made[k];
     const bool turns = made[0] < 0.0 && comes_down;
     bases[s] = alpha[i] - u[i];
-    tops[s] = {i, lanes[i].side, lanes[i].row, stretch_of(i), tau[i], length(i), upto, turns ? height : -1.0};
+    peaks[s] = {i, lanes[i].side, lanes[i].row, stretch_of(i), tau[i], length(i), upto, turns ? height : -1.0};
     // Never by more, even when the highest point is found: what the lane does next must not depend on when that is, and
     // so on other lanes.
     if (turns) peak[i] = std::max(peak[i], std::max(bases[s], height));
-    if (tops_waiting == M * P) find_tops();
+    if (peaks_waiting == M * P) find_peaks();
 }
 
 // Where the velocity changes its sign: all steps that wait, side by side.
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::find_tops() {
+void Kernel<G, U, N, D, Z, L>::find_peaks() {
     alignas(64) double at[M * P], height[M * P];
     Pack rise[N + 1][M];
     ROCKING_UNROLL
     for (int k = 0; k <= N; ++k)
         for (int m = 0; m < M; ++m) rise[k][m] = Pack(0.0) - Pack::load(&waiting[k][m * P]);
-    Falls<N, M> ends;
+    SimpleRoots<N, M> ends;
     const Bits found = ends.solve(rise);
     for (int m = 0; found && m < M; ++m) {
         Pack y = rise[N][m] * Pack(1.0 / (N + 1));
@@ -38,8 +38,8 @@ void Kernel<G, U, N, D, Z, L>::find_tops() {
         ends.zero[m].store(at + m * P);
         fma(y, ends.zero[m], Pack::load(bases + m * P)).store(height + m * P);
     }
-    for (int s = 0; s < tops_waiting; ++s) {
-        const Top& top = tops[s];
+    for (int s = 0; s < peaks_waiting; ++s) {
+        const Top& top = peaks[s];
         if (lanes[top.lane].row != top.row) continue;  // it has ended since
         if (found >> s & 1) {
             raise_peak(top, at[s], height[s]);
@@ -54,7 +54,7 @@ void Kernel<G, U, N, D, Z, L>::find_tops() {
         }
         raise_peak(top, top.upto, top.end);  // a body may turn round at the end to rounding
     }
-    tops_waiting = 0;
+    peaks_waiting = 0;
 }
 
 ROCKING_KERNEL
@@ -76,9 +76,9 @@ void Kernel<G, U, N, D, Z, L>::raise_peak(int i, double y, double time) {
 
 // Whether a step of this lane waits.
 ROCKING_KERNEL
-bool Kernel<G, U, N, D, Z, L>::has_tops(int i) const {
-    for (int s = 0; s < tops_waiting; ++s)
-        if (tops[s].lane == i && tops[s].row == lanes[i].row) return true;
+bool Kernel<G, U, N, D, Z, L>::has_peaks(int i) const {
+    for (int s = 0; s < peaks_waiting; ++s)
+        if (peaks[s].lane == i && peaks[s].row == lanes[i].row) return true;
     return false;
 }
 

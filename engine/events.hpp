@@ -1,11 +1,11 @@
-// Visits to single lanes: impacts, tops, the ends of motions, and whatever else is not a plain step.
+// Events of single lanes: impacts, peaks, the ends of motions, and whatever else is not a plain step.
 #pragma once
 #include "kernel.hpp"
 
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Visits to lanes that may touch the ground, in M registers.
+// Lanes that may touch the ground, in M registers.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
     alignas(64) double zero[M * P], speed[M * P];
@@ -17,7 +17,7 @@ void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
             const Pack term = Pack::load(&queued[k][from + m * P]);
             arcs[k + 1][m] = k > 0 ? term * Pack(-1.0 / (k + 1)) : Pack(0.0) - term;
         }
-    Falls<N + 1, M> landings;
+    SimpleRoots<N + 1, M> landings;
     const Bits found = landings.solve(arcs) & ((Bits(1) << count) - 1);
     Bits rising = 0;
     if (found) {
@@ -35,7 +35,7 @@ void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
     int settling[M * P], settlings = 0;
     for (Bits left = found & rising; left; left &= left - 1) {
         const int s = lowest(left);
-        keep_top(who[s], {&queued[0][from + s], W + M * P}, zero[s], 0.0, true);
+        keep_peak(who[s], {&queued[0][from + s], W + M * P}, zero[s], 0.0, true);
     }
     for (Bits left = found; left; left &= left - 1) {
         const int s = lowest(left);
@@ -45,7 +45,7 @@ void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
     for (int k = 0; k < settlings; ++k) settle(settling[k]);
     for (Bits left = ~found & ((Bits(1) << count) - 1); left; left &= left - 1) {
         const int s = lowest(left);
-        visit(who[s], {&queued[0][from + s], W + M * P}, true);
+        resolve_event(who[s], {&queued[0][from + s], W + M * P}, true);
     }
 }
 
@@ -71,7 +71,7 @@ void Kernel<G, U, N, D, Z, L>::note(int i, EventKind kind, double time, double b
 }
 
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::visit(int i, Step made, bool near) {
+void Kernel<G, U, N, D, Z, L>::resolve_event(int i, Step made, bool near) {
     double sum = 0.0;
     for (int k = 0; k <= N; ++k) sum += std::fabs(made[k]);
     if (!(sum < 1e100)) return finish(i, kFailed, kNotFinite);
@@ -83,12 +83,12 @@ void Kernel<G, U, N, D, Z, L>::visit(int i, Step made, bool near) {
     if (!(zero <= 1.0)) {
         // one term above the sum of the others, or of those that follow it where it starts from rest: no turn
         const bool comes_down = v_end[i] >= 0.0, none = 2.0 * std::fabs(made[0] != 0.0 ? made[0] : made[1]) > sum;
-        if (!none || (made[0] < 0.0 && comes_down)) keep_top(i, made, 1.0, alpha[i] - u_end[i], comes_down);
+        if (!none || (made[0] < 0.0 && comes_down)) keep_peak(i, made, 1.0, alpha[i] - u_end[i], comes_down);
         return advance(i, made);
     }
     double slopes[N + 1];
     slopes_of<N + 1>(c, slopes);
-    keep_top(i, made, zero, 0.0, true);
+    keep_peak(i, made, zero, 0.0, true);
     if (bounce(i, zero, std::max(0.0, -value_of<N>(slopes, zero) / length(i)))) settle(i);
 }
 
