@@ -8,7 +8,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test coverage portable portable-quick lint golden engine campaign fuzz fuzz-web durability bench mutants gallery lock clean
+.PHONY: help demo test coverage portable portable-quick lint golden engine campaign fuzz fuzz-web durability questions bench mutants gallery lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
@@ -93,6 +93,11 @@ test: lint
 # The unit tests and the examples of docstrings run 95 % of the lines by themselves; looking on takes half as long again.
 coverage: $(VENV)/dev $(ENGINE)
 	$(BIN)/python -m pytest tests/unit src -n 2 --dist loadfile -m "not timed" --cov
+
+# The documentation of the keys of questions, from their tables; a test asks whether it is what would be written.
+questions: $(VENV)/dev
+	$(BIN)/python -c "from pathlib import Path; from rocking.spec.reference import reference; page = Path('docs/questions.md'); \
+		page.write_text(page.read_text('utf-8').partition('### [response]')[0] + reference(), 'utf-8')"
 
 WHAT ?= compare
 golden: $(VENV)/dev $(ENGINE)

@@ -165,5 +165,7 @@ QUANTITIES: dict[str, Quantity] = {
     for each in (*_HISTORY, *_HISTORY_WITH_FRICTION, *_HISTORY_IN_SPACE, *_SAMPLES, *_IMPACTS_AND_INTERVALS)
 }
 """All of them, by name."""
+TIMES = tuple(each.name for each in _HISTORY if each.unit == "s")
+"""Those of a history that are times, which a motion that is stretched stretches."""
 HISTORY = tuple(each.name for each in _HISTORY if not each.name.startswith("twin"))
 """What is known of every history of a study in the plane, in the order of its tables."""

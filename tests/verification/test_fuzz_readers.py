@@ -60,6 +60,11 @@ def contradiction(name: str, content: bytes, record: Record) -> str | None:
     return next(filter(None, map(_at_odds, record.components, stated)), None)
 
 
+def test_every_header_is_read_a_second_time():
+    """A format without a reading of its own here would be damaged and compared with nothing."""
+    assert set(TEXT_FORMATS) - {"columns"} <= set(HEADERS)
+
+
 def _at_odds(part: Component, said: Any) -> str | None:
     peak = float(np.abs(part.acceleration).max())
     if part.acceleration.size != said.samples:

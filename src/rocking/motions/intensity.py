@@ -424,9 +424,8 @@ def measures() -> dict[str, IntensityMeasure]:
 
     Examples
     --------
-    >>> list(measures())
-    ['pga', 'pgv', 'pgd', 'pga/(g tan alpha)', 'p pgv/(g tan alpha)', 'pgv/pga', 'p pgv/pga', 'arias', 'cav', 'd5_95',
-     'd5_75', 'housner']
+    >>> list(measures())[:4]
+    ['pga', 'pgv', 'pgd', 'pga/(g tan alpha)']
     """
     return dict(MEASURES)
 

@@ -7,10 +7,6 @@ from pydantic import BeforeValidator, Field, model_validator
 from rocking.conventions import DEFAULT_FRICTION
 from rocking.spec.fields import JobTable, Names, Numbers, Positive, Seed, Values, Words, in_list, refused
 
-Kind = Literal[
-    "overturning-map", "minimum-acceleration", "rocking-spectrum", "stripes", "incremental", "cloud", "inventory",
-    "histories",
-]  # fmt: skip
 NEEDS: dict[str, str] = {
     "overturning-map": "map",
     "minimum-acceleration": "minimum",
@@ -22,6 +18,8 @@ NEEDS: dict[str, str] = {
     "histories": "histories",
 }
 """The table that a kind of campaign has of its own."""
+
+Kind = Literal[tuple(NEEDS)]  # type: ignore[valid-type]
 
 _OWN_BODIES = {
     "rocking-spectrum": "a spectrum makes its own blocks",

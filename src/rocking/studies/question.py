@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from rocking import quantities
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ImpactLaw
@@ -81,7 +82,7 @@ class Question:
         quick = {n: v * stretch if n in {"p_right", "p_left"} else v for n, v in values.items()}  # Eq. 179
         rows = Rows.of(count, 0, stream, **quick)
         results, work = self.batch.run(count, lambda a, b: part(rows, a, b), progress)
-        for name in ("peak_time", "overturning_time", "first_uplift"):
+        for name in quantities.TIMES:
             results[name] = results[name] * stretch
         results["peak_velocity"] = results["peak_velocity"] / stretch
         results |= {"mode": modes_of(results), **flags(results)}

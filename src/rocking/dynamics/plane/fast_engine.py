@@ -158,8 +158,11 @@ def _jump(parts: list[FloatArray], samples: FloatArray, step: float) -> int:
 
 
 def empty_results(count: int) -> Arrays:
-    """Return arrays for the results of some histories, one for each key of `RESULTS`."""
-    return {name: np.empty(count, dtype) for name, dtype in RESULTS.items()}
+    """Return arrays for the results of some histories, one a key of `RESULTS`: NaN or 0 until the engine writes."""
+    return {
+        name: np.full(count, np.nan if np.issubdtype(dtype, np.floating) else 0, dtype)
+        for name, dtype in RESULTS.items()
+    }
 
 
 def common(settings: Settings, law: ImpactLaw) -> Arrays:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from rocking import quantities
 from rocking.campaigns.jobs.adaptive import AdaptiveResult, Compute, DelegatedQuestion
 from rocking.campaigns.jobs.study import Study, along, labels_along
 from rocking.conventions import FloatArray, IntArray
@@ -29,7 +30,6 @@ from rocking.tables import PIECE, Column, Table, text_array
 MOST_POINTS = 10_000_000
 """Points of a map that is refined: they take less than 2 GiB of memory."""
 
-_TIMES = ("peak_time", "overturning_time", "first_uplift")
 _PROBES = 1024
 # later histories over edges and halvings of a line across a map
 _EDGES = (2.0, 12.0)
@@ -113,7 +113,7 @@ class MapHistories(Histories):
     def rescaled(self, first: int, last: int, results: Arrays) -> Arrays:
         """Return results with the times [s] and velocities [rad/s] of the stretched motions."""
         _, stretch = self._values(np.arange(first, last, dtype=np.int64))
-        times = {name: results[name] * stretch for name in _TIMES}
+        times = {name: results[name] * stretch for name in quantities.TIMES}
         return {**results, **times, "peak_velocity": results["peak_velocity"] / stretch}
 
     def content(self) -> dict[str, Any]:
