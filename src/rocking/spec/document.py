@@ -1,6 +1,6 @@
 """What may stand in the file of a campaign or of a response. Imported only when one is read: it loads pydantic."""
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -19,7 +19,10 @@ NEEDS: dict[str, str] = {
 }
 """The table that a kind of campaign has of its own."""
 
-Kind = Literal[tuple(NEEDS)]  # type: ignore[valid-type]
+if TYPE_CHECKING:
+    Kind = str
+else:
+    Kind = Literal[tuple(NEEDS)]
 
 _OWN_BODIES = {
     "rocking-spectrum": "a spectrum makes its own blocks",
