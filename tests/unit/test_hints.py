@@ -18,8 +18,8 @@ BLOCKED = "import sys; sys.modules[sys.argv[1]] = None; from rocking.cli import 
 @pytest.mark.parametrize(
     ("missing", "command", "extra"),
     [
-        ("xarray", MAP, "data"),
-        ("pandas", MAP, "data"),
+        ("xarray", f"{MAP} --out map.nc", "data"),
+        ("pandas", f"{MAP} --out map.nc", "data"),
         ("matplotlib", f"{MAP} --out map.png", "plots"),
         ("uvicorn", "serve --no-browser", "web"),
     ],
@@ -31,6 +31,13 @@ def test_the_missing_package_is_named(missing, command, extra, tmp_path):
     assert done.returncode == 2
     assert f" needs {missing}: pip install '.[{extra}]' in the folder of rocking's source" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_a_map_prints_without_the_packages_of_files(tmp_path):
+    """Labelled arrays are made only when they are written or returned."""
+    words = [sys.executable, "-c", BLOCKED, "xarray", *MAP.split()]
+    done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=True)
+    assert "Overturning begins at" in done.stdout
 
 
 def test_the_slow_engine_is_said_once(tmp_path):
