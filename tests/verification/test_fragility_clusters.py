@@ -10,7 +10,7 @@ from scipy.stats import chi2, nct, norm, t
 from rocking.statistics import fit_lognormal
 
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
-STUDIES = 5000 if CAMPAIGN else 300
+STUDIES = 5000 if CAMPAIGN else 480
 MEDIAN, DISPERSION, MOTIONS = 0.8, 0.6, 30
 LEVELS = MEDIAN * np.exp(np.linspace(-1.6, 1.6, 8) * DISPERSION)
 COARSE = MEDIAN * np.exp((np.linspace(-2.5, 2.5, 8) + 0.2) * DISPERSION)

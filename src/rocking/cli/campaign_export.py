@@ -33,11 +33,12 @@ def write(
     opened = JobFolder.open(folder, inputs)
     facts: list[dict[str, Any]] = []
     left_out: list[str] = []
-    for text in out:
-        what, equals, rest = text.partition("=")
-        named = bool(equals) and (what in _WHATS or ("/" not in what and "." not in what))
-        target = Path(rest if named else text)
-        made, missing = _written(opened, target, what if named else None, restitution, crossing, quiet=as_json)
+    targets = [_target(text) for text in out]
+    paths = [path.resolve() for path, _ in targets]
+    if twice := next((path for path in paths if paths.count(path) > 1), None):
+        raise InvalidValueError(f"--out names {twice.name} twice: the second would replace the first")
+    for target, what in targets:
+        made, missing = _written(opened, target, what, restitution, crossing, quiet=as_json)
         facts, left_out = [*facts, *made], [*left_out, *missing]
     if as_json:
         print_json(facts[0] if len(facts) == 1 else facts)
@@ -46,6 +47,12 @@ def write(
         print(f"wrote {each['file']} ({each['bytes']} bytes, {_words(each['what'], each)})")
     for sentence in left_out:
         print(f"left out: {sentence}")
+
+
+def _target(text: str) -> tuple[Path, str | None]:
+    what, equals, rest = text.partition("=")
+    named = bool(equals) and (what in _WHATS or ("/" not in what and "." not in what))
+    return Path(rest if named else text), what if named else None
 
 
 def _written(

@@ -85,6 +85,8 @@ def cor(
     exports = Exports.of(out, EXPORTS)
     sizes = {"width": width, "height": height, "depth": depth, "density": density}
     words = Words({"body": body, **sizes, "units": units, "sets": sets}, ("body", "settings"))
+    if odd := sorted(set(words.sets.get("settings", {})) - {"gravity"}):
+        raise InvalidValueError(f"--set settings.{odd[0]}: an impact takes gravity only")
     subject, gravity = _body(words, quiet=as_json)
     if isinstance(subject, Solid):
         from rocking.cli.solids import SolidAnswer

@@ -84,8 +84,10 @@ def motion(
         raise InvalidValueError("scale must not be 0: nothing would move")
     upright = next((word.rpartition("#")[2] for word in record if word.startswith("z=")), "")
     with hinted(None, record[0].removeprefix("x="), upright):
-        subject = motion_of(checked(OneMotionTable, words.one_motion(record)), CommandFiles(Path()))
-    subject = subject if scale is None else subject.scaled(factor)
+        table = checked(OneMotionTable, words.one_motion(record))
+        subject = motion_of(table, CommandFiles(Path()))
+    factor = table.scale if scale is None else factor
+    subject = subject if factor == 1.0 else subject.scaled(factor)
     answer = MotionPage(MotionAnswer.of(subject, _periods(periods), damping), words.acceleration or "m/s2")
     deliver(answer, exports, as_json=as_json)
 

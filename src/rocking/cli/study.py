@@ -12,7 +12,7 @@ from rocking.cli.question import NO_MOTION, Words, hinted, parsed_sets, typed
 from rocking.conventions import FEET, Foot
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
-from rocking.spec.document import CampaignDocument
+from rocking.spec.document import NEEDS, CampaignDocument
 from rocking.spec.reading import CommandFiles, checked, located, tables_in
 from rocking.spec.study import StudyProblem
 
@@ -32,7 +32,7 @@ def document_file(context: "typer.Context", own: str, word: str | None = None) -
     word = context.params.get("body") if word is None else word
     if word is None or not {"campaign", own} & set(tables_in(Path(word)) or ()):
         return None
-    beside = {"body", "motions", "out", "as_json", "threads", "sets"}
+    beside = {"body", "objects", "motions", "out", "as_json", "threads", "sets"}
     if stated := typed(context, [name for name in context.params if name not in beside]):
         raise InvalidValueError(
             f"{word} says everything itself, so it takes no {', '.join(stated)}; --set changes a key"
@@ -49,8 +49,16 @@ def problem_in(file: Path, own: str, sets: Sequence[str] | None = None) -> Study
             tables.setdefault("campaign", {"name": own, "kind": kinds[own]})
         for table, keys in parsed_sets(sets, (*_SETTABLE, own)).items():
             name = "motions" if table == "motion" else table
-            tables[name] = {**tables.get(name, {}), **keys}
-        return StudyProblem.of(checked(CampaignDocument, tables), file.parent)
+            stated = tables.get(name, {})
+            if isinstance(stated, list) and len(stated) == 1:
+                (stated,) = stated
+            if not isinstance(stated, dict):
+                raise InvalidValueError(f"--set {table}.{next(iter(keys))}: it has several [[{name}]]; change the file")
+            tables[name] = {**stated, **keys}
+        document = checked(CampaignDocument, tables)
+        if NEEDS[document.campaign.kind] != own:
+            raise InvalidValueError(f'it is of kind "{document.campaign.kind}": rocking campaign run computes it')
+        return StudyProblem.of(document, file.parent)
 
 
 def motions_tables(words: Words, motions: Sequence[str]) -> list[dict[str, Any]]:

@@ -29,10 +29,15 @@ def chosen_instruction_set(known: list[str]) -> str:
     return wanted or known[0]
 
 
+MOST_THREADS = 4096
+
+
 def check_threads(threads: object) -> None:
     """Refuse what is no number of threads, or None."""
     if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
         raise InvalidValueError(f"threads must be a whole number >= 1, got {threads!r}")
+    if isinstance(threads, int) and threads > MOST_THREADS:
+        raise InvalidValueError(f"threads must be in [1, {MOST_THREADS}], got {threads}")
 
 
 def check_progress(progress: object) -> None:

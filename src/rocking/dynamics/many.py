@@ -113,6 +113,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     >>> (sliding.sliding_distance > 0.0).squeeze().values.tolist()
     [True, False]
     """
+    extra("xarray", "simulate_many")
     given: dict[str, Any] = {
         "gravity": gravity, "linear": linear, "rest_speed": rest_speed, "most_events": most_events,
         "longest_step": longest_step, "order": order, "tolerance": tolerance,
@@ -143,7 +144,11 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     )
     return _dataset(
         body_list, motion_list, {"scale": scales, "restitution": list(map(_label, restitutions)), "friction": mus},
-        results, settings, {"engine": "reference"},
+        results, settings,
+        {
+            "engine": "reference: Taylor series with events and complementarity", "bounce": bounce,
+            "start": repr(start or "at rest"), "duration_s": np.nan if duration is None else duration,
+        },
     )  # fmt: skip
 
 

@@ -388,7 +388,7 @@ class Response(Drawable):
         path : str or Path
             A web page of one file (.html), or a film (.gif).
         **options
-            Of `rocking.plots.animate_gif`: fps, speed, progress.
+            Of a film, as of `rocking.plots.animate_gif`: fps, speed, progress.
 
         Returns
         -------
@@ -405,6 +405,8 @@ class Response(Drawable):
         suffix = Path(path).suffix.lower()
         if suffix not in {".html", ".gif"}:
             raise InvalidValueError(f"an animation is .html or .gif, got {Path(path).name!r}")
+        if suffix == ".html" and options:
+            raise InvalidValueError(f"{', '.join(options)}: these are for films (.gif); the page has its own controls")
         written: Path = presenter(f"animation as {suffix}")(self, path, **options)
         return written
 

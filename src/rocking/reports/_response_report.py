@@ -9,6 +9,7 @@ from rocking import checks
 from rocking.conventions import DEFAULT_FRICTION, Assumed
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
+from rocking.outcome import Outcome
 from rocking.plots.body import body_picture, coefficient_picture
 from rocking.plots.ground_motion import ground_motion_picture
 from rocking.plots.response import response_picture
@@ -18,6 +19,7 @@ from rocking.reports.body_facts import ImpactAnswer
 from rocking.reports.motion_facts import measures_of
 from rocking.reports.render import render_html, response_pdf
 from rocking.reports.response_document import ReportResults, ReportSubject, response_document
+from rocking.tables import target_of
 
 
 def response_report(
@@ -50,16 +52,18 @@ def response_report(
     MissingExtraError
         If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
     """
-    path = Path(path)
+    path = target_of(path)
     if path.suffix.lower() not in {".pdf", ".html"}:
         raise InvalidValueError(f"a report is .pdf or .html, got {path.name!r}")
+    if response.outcome is Outcome.FAILED:
+        raise InvalidValueError(f"a report needs a result: {response.summary}")
     friction = friction if isinstance(friction, Assumed) else checks.positive("friction", friction)
     gravity = response.settings.gravity
     impact = ImpactAnswer.of(response.body, None, onto="both", eta=1.0, gravity=gravity, identities=False)
     motion = (
         response.motion if response.motion is None or response.scale == 1.0 else response.motion.scaled(response.scale)
     )
-    measures = {} if motion is None else measures_of(motion, fine_samples(motion))
+    measures = {} if motion is None or response.scale == 0.0 else measures_of(motion, fine_samples(motion))
     results = ReportResults(impact, motion, measures, {response.parameters.label: response}, {}, friction)
     document = response_document(ReportSubject(name, date), results)
     pictures: dict[str, Callable[[], Any]] = {

@@ -98,10 +98,14 @@ def problem_of(
         )
     with located("settings"):
         settings = Settings(mechanics=mechanics, **tables.settings.stated())
+    restitutions = _restitutions(tables.restitution, mechanics, body, inputs)
+    if mechanics != "rocking" and len(restitutions) > 1:
+        names = ", ".join(restitutions)
+        raise InvalidValueError(f"restitution: {_MECHANICS[mechanics]} is computed with one, got {names}")
     return ResponseProblem(
         body,
         motion,
-        _restitutions(tables.restitution, mechanics, body, inputs),
+        restitutions,
         settings,
         engine=tables.settings.engine,
         friction=start.friction,

@@ -86,6 +86,7 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
     >>> found["mode"].sel(frequency_ratio=1.0, amplitude_ratio=[1.0, 3.0]).values.tolist()
     [-2, 0]
     """
+    extra("xarray", "overturning_map")
     return map_arrays(
         body, motion, x, y, restitution, gravity=gravity, threads=threads, progress=progress, refine=refine, **settings
     ).to_xarray()

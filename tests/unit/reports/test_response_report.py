@@ -1,5 +1,7 @@
 """A response draws, moves and reports itself: `plot`, `animate`, `report`."""
 
+import sys
+
 import pytest
 
 import rocking as rk
@@ -54,3 +56,24 @@ def test_other_endings_are_refused(way, name, tmp_path):
     with pytest.raises(RockingError, match=rf"is \.\w+.* got '{name}'"):
         getattr(ASKED["rocking"](), way)(tmp_path / name)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_history_without_a_result_has_no_report(tmp_path):
+    with pytest.raises(RockingError, match="a report needs a result"):
+        rk.simulate(STATUE, PULSE, 0.9, most_events=1).report(tmp_path / "x.html")
+    with pytest.raises(RockingError, match="nowhere"):
+        ASKED["rocking"]().report(tmp_path / "nowhere" / "x.html")
+    with pytest.raises(RockingError, match="fps: these are for films"):
+        ASKED["rocking"]().animate(tmp_path / "x.html", fps=10)
+
+
+def test_what_needs_a_package_says_so_before_it_computes(monkeypatch):
+    """Without xarray no history is computed in vain."""
+    done: list[int] = []
+    monkeypatch.setitem(sys.modules, "xarray", None)
+    with pytest.raises(rk.errors.MissingExtraError):
+        rk.simulate_many(STATUE, PULSE, "ked", progress=done.append)
+    axes = ("scale", [1.0, 2.0]), ("restitution", [0.8, 0.9])
+    with pytest.raises(rk.errors.MissingExtraError):
+        rk.overturning_map(STATUE, PULSE, *axes, progress=done.append)
+    assert done == []

@@ -159,6 +159,10 @@ def _refuse_files(given: dict[str, Any]) -> None:
             )
     motions = given.get("motions")
     for table in motions if isinstance(motions, list) else [motions]:
+        if isinstance(table, dict) and "vertical_file" in table:
+            raise InvalidValueError(
+                "motions.vertical_file names a file, which a page cannot do; upload one that has both components"
+            )
         names = table.get("records") if isinstance(table, dict) else None
         for name in names if isinstance(names, list) else [names]:
             if name is not None and not (isinstance(name, str) and _RECORD.match(name)):

@@ -232,7 +232,8 @@ def _check(executor: str | Executor, workers: int | None, search: Search, start_
         histories = first_round(search)
         plan = Identity.of(histories).plan
         task = WorkerTask(histories, plan.engine, plan.software, Path(SHARDS))
-        assert not list(who.run(task, iter(()), bool, lambda *_: None))
+        nothing = list(who.run(task, iter(()), bool, lambda *_: None))
+        assert not nothing
 
 
 def _stopped(folder: Path, number: int) -> str:

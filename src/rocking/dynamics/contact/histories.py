@@ -1,6 +1,7 @@
 """One plane body whose feet may slide, hop and bounce."""
 
 import math
+import warnings
 from collections.abc import Callable, Sequence
 from itertools import product
 from typing import Any
@@ -17,7 +18,7 @@ from rocking.dynamics.contact.response import ContactResponse
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.settings import Settings
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
@@ -73,12 +74,18 @@ def many_with_contact(  # noqa: PLR0913, PLR0917 - what the front door hands on
     """Return the results of every combination, the last axis (friction) running fastest; one history at a time."""
     if start is not None and not isinstance(start, Start):
         raise InvalidValueError(f"start must be a Start(...), got {start!r:.60}")
+    if progress is not None and not callable(progress):
+        raise InvalidValueError(f"progress must be a function of the histories done, or None, got {progress!r:.60}")
+    for mu in friction:
+        plausibility.warn(plausibility.of_friction(checks.positive("friction", float(mu))))
     rows = []
     for body, motion, scale, restitution, mu in product(bodies, motions, scales, restitutions, friction):
-        response = response_with_contact(
-            body, motion, float(mu), restitution, settings, bounce=bounce, start=start or Start(), scale=float(scale),
-            duration=duration,
-        )  # fmt: skip
+        with warnings.catch_warnings():  # said once, before
+            warnings.simplefilter("ignore", PlausibilityWarning)
+            response = response_with_contact(
+                body, motion, float(mu), restitution, settings, bounce=bounce, start=start or Start(),
+                scale=float(scale), duration=duration,
+            )  # fmt: skip
         rows.append(_row_of(response))
         if progress is not None:
             progress(1)
@@ -88,8 +95,10 @@ def many_with_contact(  # noqa: PLR0913, PLR0917 - what the front door hands on
 def _row_of(response: ContactResponse) -> dict[str, float]:
     """Results of one history; NaN where it has none."""
     good = response.outcome is not Outcome.FAILED
+    rotation = response.rotation
+    side = np.sign(rotation[np.argmax(np.abs(rotation))]) if rotation.size else 0.0
     measured = {
-        "peak_rotation": response.peak_rotation,
+        "peak_rotation": side * response.peak_rotation,
         "sliding_distance": response.sliding_distance,
         "residual_displacement": response.displacement[-1] if response.time.size else np.nan,
         "friction_usage": response.friction_usage,
@@ -99,6 +108,7 @@ def _row_of(response: ContactResponse) -> dict[str, float]:
     return {
         "outcome": response.outcome.code,
         "status": response.status.code,
+        "side": int(side) if response.outcome is Outcome.OVERTURNED else 0,
         "overturned": float(overturned(np.array(response.outcome.code))),
         "overturning_time": response.overturning_time,
         **{name: float(value) if good else np.nan for name, value in measured.items()},

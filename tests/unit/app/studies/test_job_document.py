@@ -38,6 +38,8 @@ HOSTILE = {
     "a drawing": {"body": {"units": "m", "section": {"region": [{"dxf": "/etc/passwd"}]}}},
     "a map of outlines": {"body": {"units": "m", "section": {"region": [REGION, {"geojson": "http://x/a"}]}}},
     "bodies in a list": {"body": [{"file": "a"}]},
+    "a vertical part in a file": {"motions": {"records": ["0" * 64], "vertical_file": "/etc/passwd"}},
+    "a vertical part that is none": {"motions": {"pulse": "sine:amplitude=3,period=0.6", "vertical_file": None}},
     "a model in a file": {"restitution": {"model": "/etc/mine.py:Mine"}},
     "a model in a file among others": {"restitution": {"models": ["ked", "mine.py"]}},
     "a factor in a file": {"restitution": {"distribution": {"mean": 0.9, "deviation": 0.1, "times": " mine.py:Mine"}}},

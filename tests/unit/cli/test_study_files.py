@@ -1,0 +1,91 @@
+"""Files of studies at the commands: each computes its own kind, what is set beside it holds, the rest is refused."""
+
+from pathlib import Path
+
+import pytest
+
+from rocking.cli import main
+
+JOBS = Path(__file__).parents[3] / "examples" / "jobs"
+KINDS = {
+    "map": ["overturning_map", "refined_map"],
+    "minimum": ["minimum_acceleration"],
+    "spectrum": ["rocking_spectrum"],
+    "fragility": ["stripes", "cloud", "incremental"],
+    "inventory": ["inventory"],
+}
+FILES = sorted(file.stem for file in JOBS.glob("*.toml"))
+OTHERS = [(command, file) for command, own in KINDS.items() for file in FILES if file not in own]
+
+
+def run(capsys, *words):
+    with pytest.raises(SystemExit) as stop:
+        main([str(word) for word in words])
+    printed = capsys.readouterr()
+    return stop.value.code or 0, printed.out, printed.err
+
+
+@pytest.mark.parametrize(("command", "file"), OTHERS)
+def test_a_study_of_another_kind_is_refused_before_it_is_computed(capsys, command, file):
+    code, out, err = run(capsys, command, JOBS / f"{file}.toml")
+    assert (code, out) == (2, "")
+    assert "it is of kind" in err or "says everything itself" in err or "no such" in err or "not" in err
+    assert "Traceback" not in err
+
+
+def test_an_inventory_file_runs(capsys, monkeypatch):
+    monkeypatch.chdir(JOBS)
+    code, out, err = run(capsys, "inventory", "inventory.toml")
+    assert (code, err) == (0, "")
+    assert out
+
+
+def test_what_is_set_beside_a_file(capsys, tmp_path):
+    """A key of the one [[body]] of a list is changed; of several it is refused."""
+    one = 'units = "m"\nheight = 2.0\nwidth = 0.5\n'
+    rest = (
+        '[[motions]]\npulse = "sine:amplitude=3,period=0.6"\n[map]\n'
+        'x = {axis = "frequency_ratio", values = [2.0, 3.0]}\ny = {axis = "amplitude_ratio", values = [1.0, 6.0]}\n'
+    )
+    file = tmp_path / "map.toml"
+    file.write_text(f"[[body]]\n{one}{rest}")
+    code, out, _ = run(capsys, "map", file, "--set", "body.width=0.8")
+    assert code == 0
+    assert "alpha = 0.3805 rad" in out
+    file.write_text(f"[[body]]\n{one}[[body]]\n{one}{rest}")
+    code, _, err = run(capsys, "map", file, "--set", "body.width=0.8")
+    assert (code, "--set body.width: it has several [[body]]" in err) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        ("map --width 1 --height 4 sine:amplitude=3,period=0.8 --threads 20000", "threads must be in [1, 4096]"),
+        ("cor --width 1 --height 4 --set settings.linear=true", "settings.linear: an impact takes gravity only"),
+    ],
+)
+def test_refusals(capsys, words, says):
+    code, _, err = run(capsys, *words.split())
+    assert code == 2
+    assert says in err
+
+
+def test_a_scale_that_is_set_is_that_of_the_option(capsys, tmp_path, monkeypatch):
+    """`--set motion.scale` and `--scale` of a motion are one."""
+    monkeypatch.chdir(tmp_path)
+    Path("record.txt").write_text("".join(f"{0.01 * k:.2f} {(-1) ** k * 0.5}\n" for k in range(200)))
+    ways = (["--set", "motion.scale=2"], ["--scale", "2"])
+    first, second = (run(capsys, "motion", "record.txt", "--units", "m/s2", *way) for way in ways)
+    assert first == second
+    assert first[0] == 0
+
+
+def test_contact_and_space_take_one_restitution(capsys, tmp_path):
+    """A second one is not left out without a word."""
+    file = tmp_path / "r.toml"
+    file.write_text(
+        '[response]\nfriction = 0.4\n[body]\nunits = "m"\nwidth = 0.5\nheight = 2.0\n'
+        '[motion]\npulse = "sine:amplitude=3,period=0.6"\n[restitution]\nmodels = ["ked", "housner"]\n'
+    )
+    code, _, err = run(capsys, "simulate", file)
+    assert (code, "sliding and hopping is computed with one, got ked, housner" in err) == (2, True)
