@@ -20,10 +20,18 @@ export const createViews = (app) => {
   };
 };
 
+// A browser may keep that a module did not come: what is asked for again has an address of its own.
+const asked = new Map();
+const address = (name) => {
+  const before = asked.get(name) ?? 0;
+  asked.set(name, before + 1);
+  return `/views/${name}.js${before ? `?again=${before}` : ""}`;
+};
+
 const load = async (name, app, forget) => {
   const section = document.getElementById(`view-${name}`);
   try {
-    const { mount } = await import(`/views/${name}.js`);
+    const { mount } = await import(address(name));
     fill(section);
     const view = (await mount(section, app)) ?? {};
     section.dataset.ready = "true";
