@@ -38,8 +38,6 @@ HOSTILE = {
     "a drawing": {"body": {"units": "m", "section": {"region": [{"dxf": "/etc/passwd"}]}}},
     "a map of outlines": {"body": {"units": "m", "section": {"region": [REGION, {"geojson": "http://x/a"}]}}},
     "bodies in a list": {"body": [{"file": "a"}]},
-    "a vertical part in a file": {"motions": {"records": ["0" * 64], "vertical_file": "/etc/passwd"}},
-    "a vertical part that is none": {"motions": {"pulse": "sine:amplitude=3,period=0.6", "vertical_file": None}},
     "a model in a file": {"restitution": {"model": "/etc/mine.py:Mine"}},
     "a model in a file among others": {"restitution": {"models": ["ked", "mine.py"]}},
     "a factor in a file": {"restitution": {"distribution": {"mean": 0.9, "deviation": 0.1, "times": " mine.py:Mine"}}},
@@ -73,6 +71,12 @@ def test_hostile_jobs_are_refused(tables, map_job):
     assert "\n" not in str(caught.value)
     assert "/etc/passwd" not in str(caught.value) or len(str(caught.value)) < 300
     JobDocument.of(map_job())
+
+
+@pytest.mark.parametrize("file", ["/etc/passwd", "../x.txt", None])
+def test_a_vertical_part_in_a_file_is_refused_unread(file, map_job):
+    with pytest.raises(InvalidValueError, match=r"motions\.vertical_file names a file, which a page cannot do"):
+        JobDocument.of(map_job(motions=[{"records": [SHA], "vertical_file": file}]))
 
 
 @pytest.mark.parametrize("given", [None, 1, "x", [], [{}]])
