@@ -17,7 +17,7 @@ COMMANDS = (
 
 
 def application(words: Sequence[str] | None = None) -> typer.Typer:
-    """Return the command line application; for the words of one call, no command is imported but the one they name."""
+    """Return the command line application; for the words of one call, the command they name, or a list."""
     app = typer.Typer(
         name="rocking",
         help="Predict what an impact costs a rocking body, with the evidence beside every number.",
@@ -32,7 +32,7 @@ def application(words: Sequence[str] | None = None) -> typer.Typer:
         module = _MODULES.get(name, name)
         if words is None or name == named:
             app.command(name)(getattr(import_module(f"rocking.cli.{module}"), name))
-        else:
+        elif named not in COMMANDS:
             app.command(name)(_listed(module, name))
     if named not in COMMANDS:
         from rocking.cli.campaign import campaign
