@@ -3,16 +3,16 @@
 import numpy as np
 
 import rocking as rk
-from rocking.studies.impact_laboratory import Laboratory, bed_speed_law, points_study, profile_study, velocity_study
+from rocking.studies.impact_laboratory import Laboratory, bed_speed_law, study
 
-by_points = points_study([2, 3, 5, 11, 41])
+by_points = study("points", [2, 3, 5, 11, 41])
 print("r by contact points   ", by_points.coefficient.round(3).values)
 
-by_speed = velocity_study([0.1, 0.3, 0.6], Laboratory(slenderness=3.0))
+by_speed = study("release", [0.1, 0.3, 0.6], Laboratory(slenderness=3.0))
 print("r by landing velocity ", by_speed.coefficient.round(3).values)
 
 # a tenth of a millimetre under a base of 0.2 m
-hollow = profile_study("concave", [0.0, 1e-4, 1e-3])
+hollow = study("amplitude", [0.0, 1e-4, 1e-3], shape="concave")
 print("r by hollow of a base ", hollow.coefficient.round(3).values)
 
 block = rk.Block(width=0.2, height=0.4)

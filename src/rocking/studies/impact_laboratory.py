@@ -1,7 +1,7 @@
 """The bed that a study varies, and the coefficients that emerge from it."""
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -16,7 +16,6 @@ from rocking.quantities import Quantity
 from rocking.restitution import Ked
 from rocking.restitution.bed import (
     BaseFriction,
-    BedImpacts,
     ContactBed,
     Coulomb,
     KelvinVoigt,
@@ -29,13 +28,10 @@ from rocking.restitution.bed.scaled import ScaledImpact, resolved_coefficients
 from rocking.restitution.bed.setup import Setup
 from rocking.restitution.bed_table import HARDNESS, POINTS, STEP, BedTable, nodes
 from rocking.restitution.contact_bed import ContactBedModel
-from rocking.tables import Column, Table, target_of, to_csv, to_dataframe, to_netcdf
+from rocking.tables import Column, Table
 from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    import pandas as pd
     import xarray as xr
 
 
@@ -70,6 +66,11 @@ class Laboratory:
         return replace(self, **changes)
 
     @property
+    def layered(self) -> "Laboratory":
+        """The same on a bed that is a layer, of 1 GPa/m where none is given."""
+        return self if self.modulus_over_thickness is not None else self.but(modulus_over_thickness=1e9)
+
+    @property
     def block(self) -> Block:
         """The block."""
         return Block(width=self.width, height=self.slenderness * self.width, density=self.density)
@@ -98,189 +99,9 @@ def hardness_of(setup: Setup) -> float:
     return setup.start.speed * math.sqrt(setup.law.stiffness / setup.rigid.mass) / setup.rigid.gravity  # Eq. 130
 
 
-def measured(laboratories: Iterable[Laboratory], *, threads: int = 1) -> tuple[Sequence[Setup], BedImpacts]:
-    """Resolve the impacts of laboratories."""
-    setups = [each.setup for each in laboratories]
-    return setups, bed_impacts(setups, threads=threads)
-
-
 def coefficients(laboratories: Iterable[Laboratory], *, threads: int = 1) -> FloatArray:
     """Return the coefficients of restitution of laboratories; NaN where an impact failed."""
-    return measured(laboratories, threads=threads)[1].coefficient
-
-
-# long names of what studies find; a name that is not here says it all
-_WORDS = {
-    "coefficient": "theta_dot after over theta_dot before, by the next peak",
-    "coefficient_by_energy": "the same by the energy at the end, hops counted",
-    "hardness": "landing speed of the new foot times sqrt(k / m) over gravity",
-    "landing_velocity": "theta_dot of rigid rocking as it reaches the base",
-    "peak_force": "greatest force of the bed",
-    "bed_loss": "energy lost in compression",
-    "friction_loss": "energy lost in friction",
-    "contacts": "how often the body came into contact: hops are one less",
-    "audit": "energy at the end plus losses minus energy at the start, over the energy before the impact",
-}
-
-
-_ABOUT = ("units", "long_name")
-
-
-class LaboratoryStudy:
-    """A study of the impact laboratory: an `xarray.Dataset` over what was varied, that also goes into files.
-
-    Every attribute and index of the dataset is one of the study.
-
-    >>> from rocking.studies.impact_laboratory import slenderness_study
-    >>> found = slenderness_study([2.0, 4.0])
-    >>> found.to_dataframe()["coefficient [-]"].round(2).tolist()
-    [0.84, 0.96]
-    """
-
-    def __init__(self, dataset: "xr.Dataset") -> None:
-        self.dataset = dataset
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("__") or name == "dataset":
-            raise AttributeError(name)
-        return getattr(self.dataset, name)
-
-    def __getitem__(self, key: Any) -> Any:
-        return self.dataset[key]
-
-    def __repr__(self) -> str:
-        return repr(self.dataset)
-
-    @property
-    def exported(self) -> Table:
-        """What files hold: the varied quantity first, then every result, with units; and the provenance."""
-        names = [*self.dataset.coords, *self.dataset.data_vars]
-        samples = {
-            str(name): Column(self.dataset[name].values, *(self.dataset[name].attrs.get(a, "") for a in _ABOUT))
-            for name in names
-        }
-        return Table("value", samples, dict(self.dataset.attrs), no_unit="-")
-
-    def to_dataframe(self) -> "pd.DataFrame":
-        """Return a row a value, with columns such as ``peak_force [N]`` and the provenance in `attrs`."""
-        frame = to_dataframe(self.exported)
-        frame.attrs.update(self.dataset.attrs)
-        return frame
-
-    def to_csv(self, path: "str | Path") -> "Path":
-        """Write the study as comma-separated values, all digits kept; headings as in `to_dataframe`."""
-        return to_csv(self.exported, target_of(path), blank=False)
-
-    def to_netcdf(self, path: "str | Path") -> "Path":
-        """Write the study as netCDF 4, with units and provenance, which xarray and MATLAB open."""
-        return to_netcdf(self.dataset, target_of(path))
-
-
-def about(name: str, unit: str) -> dict[str, str]:
-    """Return unit and meaning of a result."""
-    return Quantity(name, unit, _WORDS.get(name, "")).attributes
-
-
-def provenance(study: str, laboratory: object) -> dict[str, str]:
-    """Return what a study was computed from, and with what."""
-    engine = "contact bed, fast" if fast.available() else "contact bed, reference"
-    return {"software": SOFTWARE, "engine": engine, "study": study, "laboratory": repr(laboratory)}
-
-
-Change = Callable[[Laboratory, float], Laboratory]
-
-
-def slenderness_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against slenderness h/b.
-
-    >>> slenderness_study([2.0, 4.0]).coefficient.round(2).values.tolist()
-    [0.84, 0.96]
-    """
-    return study("slenderness", "1", values, lambda lab, x: lab.but(slenderness=x), laboratory)
-
-
-def points_study(values: Sequence[int], laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against the number of contact points."""
-    return study("points", "1", values, lambda lab, x: lab.but(points=whole("points", x, 2)), laboratory)
-
-
-def damping_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against the damping ratio of the bed."""
-    return study("damping", "1", values, lambda lab, x: lab.but(damping=x), laboratory)
-
-
-def modulus_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against the modulus of the layer over its thickness [Pa/m]."""
-    return study("modulus_over_thickness", "Pa/m", values, lambda lab, x: lab.but(modulus_over_thickness=x), laboratory)
-
-
-def friction_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against the coefficient of friction of the base."""
-    return study("friction", "1", values, lambda lab, x: lab.but(friction=Coulomb(x)), laboratory)
-
-
-def mass_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against the density [kg/m3] on a layer of given stiffness: mass alone, the size stays."""
-    return study("density", "kg/m3", values, lambda lab, x: lab.but(density=x), layered(laboratory))
-
-
-def size_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against the width [m] of blocks of one shape and density on one layer."""
-    return study("width", "m", values, lambda lab, x: lab.but(width=x), layered(laboratory))
-
-
-def velocity_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r against the rotation of release over the slenderness angle, and so against the landing velocity."""
-    return study("release", "1", values, lambda lab, x: lab.but(release=x), laboratory)
-
-
-def study(
-    name: str, unit: str, values: Any, change: Change, laboratory: Laboratory | None = None, *, threads: int = 1
-) -> LaboratoryStudy:
-    """Return what emerges as one thing about the bed or the block changes; NaN where an impact failed."""
-    xarray = extra("xarray", "the impact laboratory")
-    row = np.atleast_1d(checks.real_array(name, values))
-    if row.ndim != 1 or row.size == 0 or not bool(np.isfinite(row).all()):
-        raise InvalidValueError(f"{name} must be a row of finite numbers [{unit}], got shape {row.shape}")
-    start = laboratory or Laboratory()
-    setups, impacts = measured((change(start, value) for value in row.tolist()), threads=threads)
-    results: dict[str, tuple[str, FloatArray]] = {
-        "coefficient": ("1", impacts.coefficient),
-        "coefficient_by_energy": ("1", np.array([each.by_energy for each in impacts.emergent])),
-        "hardness": ("1", np.array([hardness_of(setup) for setup in setups])),
-        "landing_velocity": ("rad/s", np.array([setup.start.landing_velocity for setup in setups])),
-        "peak_force": ("N", impacts.result("peak_force")),
-        "bed_loss": ("J", impacts.result("bed_loss")),
-        "friction_loss": ("J", impacts.result("friction_loss")),
-        "contacts": ("1", impacts.contacts.astype(np.float64)),
-        "audit": ("1", impacts.audit),
-    }
-    labelled: xr.Dataset = xarray.Dataset(
-        {key: (name, value, about(key, of)) for key, (of, value) in results.items()},
-        coords={name: (name, row, about(name, unit))},
-        attrs=provenance(name, start),
-    )
-    return LaboratoryStudy(labelled)
-
-
-def whole(name: str, value: Any, least: int) -> int:
-    """Return a number that counts something, and is not below the least.
-
-    >>> whole("points", 41.0, 2)
-    41
-    """
-    result = checks.number(name, value)
-    if result != int(result) or result < least:
-        raise InvalidValueError(
-            f"{name} must be a whole number of at least {least}, got {result:g}; it counts, and is not rounded"
-        )
-    return int(result)
-
-
-def layered(laboratory: Laboratory | None) -> Laboratory:
-    """Return a laboratory whose bed is a layer."""
-    start = laboratory or Laboratory()
-    return start if start.modulus_over_thickness is not None else start.but(modulus_over_thickness=1e9)
+    return bed_impacts([each.setup for each in laboratories], threads=threads).coefficient
 
 
 Shape = Literal["convex", "concave", "tilted", "random"]
@@ -299,62 +120,144 @@ def profile(shape: Shape, amplitude: float, points: int, *, seed: int = 0) -> tu
     amplitude = checks.within("amplitude", amplitude, 0.0, 10.0, unit="m")
     count, start = whole("points", points, 2), whole("seed", seed, 0)
     s = np.linspace(-1.0, 1.0, count)
-    if shape == "concave":
-        heights = amplitude * (1.0 - s**2)
-    elif shape == "convex":
-        heights = amplitude * s**2
-    elif shape == "tilted":
-        heights = 0.5 * amplitude * (1.0 + s)
-    elif shape == "random":
-        heights = np.random.default_rng(start).uniform(0.0, amplitude, count)
-    else:
-        raise InvalidValueError(f"shape must be one of {', '.join(SHAPES)}, got {shape!r}")
+    match shape:
+        case "concave":
+            heights = amplitude * (1.0 - s**2)
+        case "convex":
+            heights = amplitude * s**2
+        case "tilted":
+            heights = 0.5 * amplitude * (1.0 + s)
+        case "random":
+            heights = np.random.default_rng(start).uniform(0.0, amplitude, count)
+        case _:
+            raise InvalidValueError(f"shape must be one of {', '.join(SHAPES)}, got {shape!r}")
     return tuple(heights.tolist())
 
 
-def profile_study(
-    shape: Shape, amplitudes: Any, laboratory: Laboratory | None = None, *, seed: int = 0
-) -> LaboratoryStudy:
-    """Return r against the unevenness of the base [m]."""
+def whole(name: str, value: Any, least: int) -> int:
+    """Return a number that counts something, and is not below the least.
 
-    def uneven(start: Laboratory, amplitude: float) -> Laboratory:
-        """Return the laboratory with a base of that unevenness."""
-        return start.but(profile=profile(shape, amplitude, start.points, seed=seed))
-
-    return study("amplitude", "m", amplitudes, uneven, laboratory)
-
-
-def random_profiles(amplitude: float, seeds: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
-    """Return r of bases with random unevenness up to an amplitude [m], by seed."""
-
-    def rough(start: Laboratory, seed: float) -> Laboratory:
-        """Return the laboratory with the base of a seed."""
-        return start.but(profile=profile("random", amplitude, start.points, seed=whole("seed", seed, 0)))
-
-    return study("seed", "1", seeds, rough, laboratory)
+    >>> whole("points", 41.0, 2)
+    41
+    """
+    result = checks.number(name, value)
+    if result != int(result) or result < least:
+        raise InvalidValueError(
+            f"{name} must be a whole number of at least {least}, got {result:g}; it counts, and is not rounded"
+        )
+    return int(result)
 
 
-def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> LaboratoryStudy:
+# what a study varies: its unit, and the laboratory with a value of it
+STUDIES: dict[str, tuple[str, Callable[..., Laboratory]]] = {
+    "slenderness": ("1", lambda lab, x: lab.but(slenderness=x)),
+    "points": ("1", lambda lab, x: lab.but(points=whole("points", x, 2))),
+    "damping": ("1", lambda lab, x: lab.but(damping=x)),
+    "modulus_over_thickness": ("Pa/m", lambda lab, x: lab.but(modulus_over_thickness=x)),
+    "friction": ("1", lambda lab, x: lab.but(friction=Coulomb(x))),
+    "release": ("1", lambda lab, x: lab.but(release=x)),  # and so the landing velocity
+    "density": ("kg/m3", lambda lab, x: lab.but(density=x)),  # on one layer: mass alone, the size stays
+    "width": ("m", lambda lab, x: lab.but(width=x)),  # blocks of one shape and density on one layer
+    "amplitude": ("m", lambda lab, x, shape, seed=0: lab.but(profile=profile(shape, x, lab.points, seed=seed))),
+    "seed": ("1", lambda lab, x, amplitude: lab.but(profile=profile("random", amplitude, lab.points, seed=x))),
+}
+_ON_A_LAYER = {"density", "width"}
+
+# long names of what studies find; a name that is not here says it all
+_WORDS = {
+    "coefficient": "theta_dot after over theta_dot before, by the next peak",
+    "coefficient_by_energy": "the same by the energy at the end, hops counted",
+    "hardness": "landing speed of the new foot times sqrt(k / m) over gravity",
+    "landing_velocity": "theta_dot of rigid rocking as it reaches the base",
+    "peak_force": "greatest force of the bed",
+    "bed_loss": "energy lost in compression",
+    "friction_loss": "energy lost in friction",
+    "contacts": "how often the body came into contact: hops are one less",
+    "audit": "energy at the end plus losses minus energy at the start, over the energy before the impact",
+}
+
+
+def study(
+    varied: str, values: Any, laboratory: Laboratory | None = None, *, threads: int = 1, **options: Any
+) -> "xr.Dataset":
+    """Return what emerges as one thing of `STUDIES` changes; NaN where an impact failed.
+
+    Options: ``shape`` and ``seed`` of uneven bases by ``"amplitude"``, ``amplitude`` of random ones by ``"seed"``.
+
+    >>> study("slenderness", [2.0, 4.0]).coefficient.round(2).values.tolist()
+    [0.84, 0.96]
+    """
+    unit, change = STUDIES[checks.one_of("varied", varied, tuple(STUDIES))]
+    row = np.atleast_1d(checks.real_array(varied, values))
+    if row.ndim != 1 or row.size == 0 or not bool(np.isfinite(row).all()):
+        raise InvalidValueError(f"{varied} must be a row of finite numbers [{unit}], got shape {row.shape}")
+    start = laboratory or Laboratory()
+    if varied in _ON_A_LAYER:
+        start = start.layered
+    setups = [change(start, value, **options).setup for value in row.tolist()]
+    impacts = bed_impacts(setups, threads=threads)
+    results = {
+        "coefficient": ("1", impacts.coefficient),
+        "coefficient_by_energy": ("1", np.array([each.by_energy for each in impacts.emergent])),
+        "hardness": ("1", np.array([hardness_of(setup) for setup in setups])),
+        "landing_velocity": ("rad/s", np.array([setup.start.landing_velocity for setup in setups])),
+        "peak_force": ("N", impacts.result("peak_force")),
+        "bed_loss": ("J", impacts.result("bed_loss")),
+        "friction_loss": ("J", impacts.result("friction_loss")),
+        "contacts": ("1", impacts.contacts.astype(np.float64)),
+        "audit": ("1", impacts.audit),
+    }
+    return _labelled(varied, row, results, start)
+
+
+def _labelled(
+    varied: str, row: FloatArray, results: Mapping[str, tuple[str, FloatArray]], start: Laboratory
+) -> "xr.Dataset":
+    """Return results over what was varied, and what they were computed from and with."""
+    about = {name: Quantity(name, unit, _WORDS.get(name, "")).attributes for name, (unit, _) in results.items()}
+    labelled: xr.Dataset = extra("xarray", "the impact laboratory").Dataset(
+        {name: (varied, values, about[name]) for name, (_, values) in results.items()},
+        coords={varied: (varied, row, Quantity(varied, STUDIES[varied][0], "").attributes)},
+        attrs={
+            "software": SOFTWARE,
+            "engine": "contact bed, fast" if fast.available() else "contact bed, reference",
+            "study": varied,
+            "laboratory": repr(start),
+        },
+    )
+    return labelled
+
+
+def exported(found: "xr.Dataset") -> Table:
+    """Return a study as the table that files hold: what was varied first, then every result; and the provenance."""
+    columns = {
+        str(name): Column(each.values, each.attrs["units"], each.attrs.get("long_name", ""))
+        for name, each in {**found.coords, **found.data_vars}.items()
+    }
+    return Table("value", columns, dict(found.attrs), no_unit="-")
+
+
+def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> "xr.Dataset":
     """Return what the bed says about blocks of one shape that grow [m], on a flat and on a hollow base, beside KED.
 
-    On a flat base of one layer r does not depend on the size at all (`size_study`): neither does KED. What can change
-    with size is a length that does not grow: here a hollow of fixed height [m] under the base.
+    On a flat base of one layer r does not depend on the size at all (`study` of the width): neither does KED. What can
+    change with size is a length that does not grow: here a hollow of fixed height [m] under the base.
 
-    >>> study = large_bodies_study([0.1, 1.0, 10.0])
-    >>> bool((study.hollow.diff("width") > 0.0).all())
+    >>> found = large_bodies_study([0.1, 1.0, 10.0])
+    >>> bool((found.hollow.diff("width") > 0.0).all())
     True
     """
-    xarray = extra("xarray", "the impact laboratory")
     results = large_bodies(widths, hollow=hollow, laboratory=laboratory)
     results["hollow_minus_ked"] = results["hollow"] - results["ked"]
-    data = {name: ("width", values, {"units": "1"}) for name, values in results.items()}
-    coords = {"width": ("width", np.atleast_1d(np.asarray(widths, dtype=np.float64)), about("width", "m"))}
-    return LaboratoryStudy(xarray.Dataset(data, coords, provenance("width", layered(laboratory))))
+    row = np.atleast_1d(np.asarray(widths, dtype=np.float64))
+    by_name = {name: ("1", values) for name, values in results.items()}
+    return _labelled("width", row, by_name, (laboratory or Laboratory()).layered)
 
 
 def large_bodies(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> dict[str, FloatArray]:
     """Return flat, hollow and ked over widths [m]: `large_bodies_study` without labelled arrays."""
-    start, row = layered(laboratory), np.atleast_1d(checks.positive_array("width", widths, "m"))
+    start = (laboratory or Laboratory()).layered
+    row = np.atleast_1d(checks.positive_array("width", widths, "m"))
     beds = {"flat": start.but(profile=()), "hollow": start.but(profile=profile("concave", hollow, start.points))}
     results = {name: coefficients(bed.but(width=w) for w in row.tolist()) for name, bed in beds.items()}
     return {**results, "ked": np.full(row.shape, Ked().coefficient(start.block))}
@@ -458,19 +361,15 @@ def tabulated(*, threads: int = 1, progress: Callable[[int], None] | None = None
     cases = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=1)
     planes = []
     for points in POINTS:
-        r = np.concatenate(
-            [_told(resolved(piece, points, threads=threads), progress) for piece in np.array_split(cases, 40)]
-        )
-        planes.append(impulse_position(r, cases[:, 0], cases[:, 1]).reshape(shape))
+        r = []
+        for piece in np.array_split(cases, 40):
+            r.append(resolved(piece, points, threads=threads))
+            if progress is not None:
+                progress(len(piece))
+        planes.append(impulse_position(np.concatenate(r), cases[:, 0], cases[:, 1]).reshape(shape))
     return BedTable(*axes, np.array(planes))
 
 
 def stored(table: BedTable) -> np.ndarray[tuple[int, ...], np.dtype[np.int16]]:
     """Return the positions as they are shipped: whole multiples of `bed_table.STEP`."""
     return np.asarray(np.rint(np.clip(table.positions, -3.9, 3.9) / STEP).astype(np.int16))
-
-
-def _told(values: FloatArray, progress: Callable[[int], None] | None) -> FloatArray:
-    if progress is not None:
-        progress(values.size)
-    return values

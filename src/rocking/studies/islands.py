@@ -188,4 +188,3 @@ def _shares(values: FloatArray) -> FloatArray:
     """Return the length that each value stands for."""
     middles = 0.5 * (values[1:] + values[:-1])
     return np.diff(np.concatenate([values[:1], middles, values[-1:]]))
-
