@@ -164,7 +164,7 @@ def test_bouncing_impact_is_the_closed_form(slenderness, bounce):
     response, impact = _knock(block, 5.0, bounce)
     r = 1.0 - 1.5 * (1.0 + bounce) * math.sin(block.slenderness_angle) ** 2
     assert impact["velocity_after"] / impact["velocity_before"] == pytest.approx(r, rel=1e-9)
-    after = response.history.blows[0].after
+    after = response.trajectory.blows[0].after
     leaving = after.w - block.half_width * after.spin
     assert leaving == pytest.approx(
         block.width * bounce * impact["velocity_before"], rel=1e-6
@@ -249,7 +249,7 @@ def test_flight_is_a_parabola():
     """Thrown with a spin the centre flies on a parabola and the body turns evenly until a foot lands."""
     start = Start(rotation=0.1, height=0.5, angular_velocity=0.7, horizontal_velocity=0.3, vertical_velocity=1.0)
     response = rk.free_rocking(SLENDER, restitution=None, friction=0.4, start=start, duration=0.25)
-    state = response.history.samples[0]
+    state = response.trajectory.samples[0]
     t = response.time
     assert response.regimes["regime"][0] == "FLIGHT"
     assert response.regimes["end"][0] > t[-1]

@@ -2,32 +2,30 @@
 
 import math
 import warnings
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import Assumed, FloatArray, given_or_assumed
-from rocking.dynamics.exportable import Drawable
+from rocking.conventions import FEET, Assumed, FloatArray, given_or_assumed
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.trajectory import EventKind, Trajectory
+from rocking.dynamics.response_base import ResponseBase, motion_provenance
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.lazy import presenter
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
-from rocking.outcome import Outcome, Status
+from rocking.outcome import Outcome
 
 if TYPE_CHECKING:
     from rocking.dynamics.contact import ContactResponse
     from rocking.dynamics.plane.dense_output import DenseOutput
     from rocking.dynamics.plane.energy_balance import GroundForces, ResponseEnergy
-    from rocking.tables import Table
 
 Motion = GroundMotion | Pulse
 
@@ -39,8 +37,8 @@ IMPACT = np.dtype(
 """Fields of `Response.impacts`: [s], [rad/s], [rad/s], [-], foot."""
 
 
-@dataclass(frozen=True, eq=False)
-class Response(Drawable):
+@dataclass(frozen=True, eq=False, repr=False)
+class Response(ResponseBase):
     """What `simulate` returns; everything that takes time is computed when first asked for.
 
     Parameters
@@ -67,14 +65,10 @@ class Response(Drawable):
     motion: Motion | None
     parameters: RockingParameters
     settings: Settings
-    segments: Segments = field(repr=False)
+    segments: Segments
     scale: float
     stream: int
-    trajectory: Trajectory = field(repr=False)
-
-    def __repr__(self) -> str:
-        """Outcome in words, and which engine found it."""
-        return f"<Response: {self.summary} [{self.trajectory.engine}]>"
+    trajectory: Trajectory
 
     @cached_property
     def _finite(self) -> int:
@@ -112,29 +106,9 @@ class Response(Drawable):
         return np.array([e.time for e in self.trajectory.events if e.kind is EventKind.UPLIFT])
 
     @property
-    def outcome(self) -> Outcome:
-        """How it ended."""
-        return self.trajectory.outcome
-
-    @property
-    def status(self) -> Status:
-        """Whether it could be computed."""
-        return self.trajectory.status
-
-    @property
-    def engine(self) -> str:
-        """Which engine ran, and how."""
-        return self.trajectory.engine
-
-    @property
     def peak_rotation(self) -> float:
         """Largest |theta|, between the samples too; a quarter turn if it overturned [rad]."""
         return abs(self.trajectory.peak_rotation)
-
-    @property
-    def overturning_time(self) -> float:
-        """When the centre of mass passed over the foot for good; NaN if it did not overturn [s]."""
-        return self.trajectory.overturning_time
 
     @property
     def side(self) -> int:
@@ -187,7 +161,7 @@ class Response(Drawable):
             with warnings.catch_warnings():  # what was asked has been doubted
                 warnings.simplefilter("ignore", PlausibilityWarning)
                 found = response_with_contact(
-                    self.body, self.motion, mu, {f: getattr(parameters, f).coefficient for f in ("left", "right")},
+                    self.body, self.motion, mu, {f: getattr(parameters, f).coefficient for f in FEET},
                     Settings(self.settings.gravity, mechanics="contact"), start=start, scale=self.scale,
                     duration=self.segments.count * self.segments.step,
                 )  # fmt: skip
@@ -218,7 +192,7 @@ class Response(Drawable):
 
         lost = (
             f"the ground would have to pull, with up to {-self.least_force:.2g} of the weight: {LEAVES}; "
-            f"rocking alone: {self._ending}; if it may fly, "
+            f"rocking alone: {self._verdict}; if it may fly, "
         )
         try:
             found = self.with_contact(friction)
@@ -228,41 +202,29 @@ class Response(Drawable):
         return f"{lost}with a coefficient of friction of {found.law.friction:g}, {why}: {found.summary}"
 
     @property
-    def summary(self) -> str:
-        """The outcome in one sentence; also where the motion was cut, if that may have decided, and if it rocks on."""
-        return self._ending + self._cut + (f"; {self.unfinished}" if self.still_rocking else "")
-
-    @property
-    def still_rocking(self) -> bool:
-        """Whether it stands, but does not yet rest at the last sample; later impacts are then not among `impacts`."""
-        return self.trajectory.still_rocking
-
-    @property
-    def unfinished(self) -> str:
-        """A sentence that says when and how it still rocks where the computation ends; empty if it does not."""
-        if not self.still_rocking:
-            return ""
-        angle, rate = np.degrees(self.rotation[-1]), self.angular_velocity[-1]
-        return (
-            f"it is still rocking when the computation ends at {self.time[-1]:.4g} s, "
-            f"at {angle:.3g} degrees and {rate:.3g} rad/s; later impacts are not counted"
-        )
-
-    @property
     def _ending(self) -> str:
+        """The outcome in one sentence; also where the motion was cut, if that may have decided."""
+        return self._verdict + self._cut
+
+    @property
+    def _last_motion(self) -> tuple[str, float, str]:
+        angle, rate = np.degrees(self.rotation[-1]), self.angular_velocity[-1]
+        return "rocking", self.time[-1], f"at {angle:.3g} degrees and {rate:.3g} rad/s"
+
+    @property
+    def _verdict(self) -> str:
         run = self.trajectory
         if run.outcome is Outcome.OVERTURNED:
             side = "right" if run.side > 0 else "left"
             count = {0: "without an impact", 1: "after 1 impact"}.get(run.impacts, f"after {run.impacts} impacts")
             return f"overturned to the {side} {count}, past the point of no return at {run.overturning_time:.4g} s"
-        if run.outcome is Outcome.ROCKED:
-            angle = self.parameters.side(run.peak_rotation).slenderness_angle
-            ratio = self.peak_rotation / angle
-            return (
-                f"rocked and stayed standing: largest rotation {np.degrees(self.peak_rotation):.4g} degrees, "
-                f"{ratio:.3g} of the slenderness angle, {run.impacts} impact{'s' * (run.impacts != 1)}"
-            )
-        return run.outcome.value if run.outcome is Outcome.NO_UPLIFT else f"{run.outcome.value}: {run.status.value}"
+        if run.outcome is Outcome.NO_UPLIFT:
+            return str(run.outcome.value)
+        ratio = self.peak_rotation / self.parameters.side(run.peak_rotation).slenderness_angle
+        return (
+            f"rocked and stayed standing: largest rotation {np.degrees(self.peak_rotation):.4g} degrees, "
+            f"{ratio:.3g} of the slenderness angle, {run.impacts} impact{'s' * (run.impacts != 1)}"
+        )
 
     @property
     def _cut(self) -> str:
@@ -357,28 +319,51 @@ class Response(Drawable):
             If a time is not finite, or before the start or after the end by more than rounding: the last sample, or
             where the body lies.
         """
-        output, end = self.dense_output, float(self.dense_output.end[-1])
-        given = checks.real_array("time", time, "s")
-        bad = given[~((given >= -_ROUNDING * end) & (given <= (1.0 + _ROUNDING) * end))]
-        if bad.size:
-            raise InvalidValueError(f"time must be in [0, {end:g}] s, where the response is known, got {bad[0]:g}")
-        t = np.clip(given, 0.0, end)
+        output = self.dense_output
+        t = self._known(time, float(output.end[-1]))
         k = np.clip(np.searchsorted(output.start, t, side="right") - 1, 0, output.start.size - 1)
         x = (t - output.start[k]) / output.length[k]
         c = output.quintics()[k]
         return np.asarray((c * x[..., None] ** np.arange(6)).sum(axis=-1))
 
-    def exported(self) -> "Table":
-        """Return what the files of this response hold.
+    @property
+    def _samples(self) -> dict[str, FloatArray]:
+        energy, contact, up = self.energy, self.contact, self.vertical_ground_acceleration
+        values = {
+            "time": self.time, "rotation": self.rotation, "angular_velocity": self.angular_velocity,
+            "ground_acceleration": self.ground_acceleration,
+            **({} if up is None else {"vertical_ground_acceleration": up}),
+            "kinetic_energy": energy.kinetic, "potential_energy": energy.potential, "work_of_ground": energy.work,
+            "energy_lost": energy.lost, "horizontal_force": contact.horizontal, "vertical_force": contact.vertical,
+        }  # fmt: skip
+        return {name: each[: self._finite] for name, each in values.items()}  # a fall may come after the last sample
 
-        Returns
-        -------
-        Table
-            Samples, impacts and provenance, with units.
-        """
-        from rocking.dynamics.plane.export import exported
+    @property
+    def _beside(self) -> dict[str, dict[str, Any]]:
+        impacts = {name: self.impacts[name] for name in ("time", "velocity_before", "velocity_after", "coefficient")}
+        return {"impact": impacts | {"onto": np.where(self.impacts["onto"] == "right", 1, -1).astype(np.int8)}}
 
-        return exported(self)
+    @property
+    def _facts(self) -> dict[str, Any]:
+        motion, parameters = self.motion, self.parameters
+        sides = {
+            f"{name}_{foot}": getattr(getattr(parameters, foot), name)
+            for foot in FEET
+            for name in ("slenderness_angle", "frequency_parameter", "semi_diagonal", "coefficient")
+        }
+        return {
+            "side": self.side,
+            "impacts": int(self.trajectory.impacts),
+            **({"overturning_time_s": self.overturning_time} if self.side else {}),
+            "body": type(self.body).__name__,
+            "mass_kg": self.body.mass,
+            "restitution": parameters.label,
+            **sides,
+            "motion": "none: free rocking" if motion is None else motion.name,
+            "motion_provenance": motion_provenance(motion),
+            "scale": self.scale,
+            "random_stream": self.stream,
+        }
 
     def animate(self, path: str | Path, **options: Any) -> Path:
         """Write the response as it moves.

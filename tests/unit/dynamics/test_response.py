@@ -13,7 +13,6 @@ import rocking as rk
 from rocking.conventions import g
 from rocking.dynamics import Outcome, Status
 from rocking.dynamics.plane import fast_engine
-from rocking.dynamics.plane.export import provenance
 
 ENGINES = [
     pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
@@ -247,10 +246,10 @@ def test_the_same_question_to_the_full_equations() -> None:
     full = response.with_contact()
     assert (full.law.friction, full.law.restitution, full.law.bounce) == (10.0, (0.85, 0.8), 0.0)
     assert response.with_contact(0.7).law.friction == 0.7
-    until = min(response.impacts["time"][5], full.history.end)
+    until = min(response.impacts["time"][5], full.trajectory.end)
     t = np.linspace(0.0, until, 200)
     np.testing.assert_allclose(full.at(t)[:, 2], response.at(t), rtol=0.0, atol=1e-7)
-    assert full.history.end == pytest.approx(response.time[-1], rel=1e-9)
+    assert full.trajectory.end == pytest.approx(response.time[-1], rel=1e-9)
 
 
 BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
@@ -287,7 +286,7 @@ def test_no_side_without_a_fall(kind: str) -> None:
     """Negative control: what stays standing, rests or was stopped has the side 0, and no time of overturning."""
     response = STOOD[kind]()
     assert response.side == 0
-    found = provenance(response)
+    found = response.exported().provenance
     assert found["side"] == 0
     assert "overturning_time_s" not in found
     assert found["impacts"] == response.impacts.size

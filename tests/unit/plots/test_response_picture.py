@@ -273,7 +273,7 @@ def test_response_is_drawn_over_its_regimes(tmp_path):
     assert np.array_equal(time, response.time)
     assert np.allclose(rotation, np.degrees(response.rotation))
     spans = [path.vertices[:, 0] for c in figure.axes[1].collections for path in c.get_paths()]
-    assert sum(np.ptp(x) for x in spans) == pytest.approx(response.history.end, rel=1e-9)
+    assert sum(np.ptp(x) for x in spans) == pytest.approx(response.trajectory.end, rel=1e-9)
     files = [write(regimes_picture(response), tmp_path / f"{k}.svg").read_bytes() for k in range(2)]
     assert files[0] == files[1]
 

@@ -21,13 +21,11 @@ from rocking.app.plain_text import LONGEST_CELL, plain_line
 from rocking.app.settings import state_of
 from rocking.app.work import heavy
 from rocking.bodies import Body
-from rocking.dynamics.plane.export import columns
 from rocking.dynamics.response import Motion, Response
 from rocking.errors import InvalidValueError
 from rocking.motions.integrals import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.plots.traces import fine_samples, traces
-from rocking.quantities import QUANTITIES
 from rocking.reports.body_facts import ImpactAnswer, body_facts
 from rocking.reports.motion_facts import measures_of
 from rocking.reports.response_facts import outcome_facts
@@ -201,7 +199,7 @@ def spectrum_table(motion: Motion, about: dict[str, str]) -> Table:
 
 def response_table(response: Response, about: dict[str, str]) -> Table:
     """Return the samples of a response."""
-    return as_table(about, {key: (QUANTITIES[key].unit, values) for key, values in columns(response).items()})
+    return as_table(about, {key: (column.unit, column.values) for key, column in response.exported().columns.items()})
 
 
 def impacts_table(responses: Mapping[str, Response], about: dict[str, str]) -> Table:

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from rocking.dynamics.contact.base import LEFT, RIGHT, ContactState, Mode, Plane
 from rocking.dynamics.contact.impact_resolution import Struck
 from rocking.dynamics.contact.mode_series import GroundSeries, ModeSeries, derivative, integral, value
 from rocking.dynamics.taylor import turning_points
-from rocking.outcome import Status
+from rocking.outcome import Outcome, Regime, Status
 
 SAMPLED = (
     "x", "rise", "rotation", "u", "w", "spin", "tangential", "normal_left", "normal_right", "work", "friction_loss",
@@ -42,6 +42,7 @@ class Blow(NamedTuple):
 class History:
     """The record of a history, per unit of mass."""
 
+    engine: ClassVar[str] = "planar: Taylor series with events and complementarity"
     count: int  # number of stretches of the motion; there is one sample more
     gravity: float  # acceleration of gravity [m/s2]
     work: float = 0.0
@@ -62,6 +63,37 @@ class History:
     def __post_init__(self) -> None:
         """Make room for the samples."""
         self.samples = np.full((self.count + 1, len(SAMPLED)), math.nan)
+
+    @property
+    def intervals(self) -> list[tuple[float, float, Mode]]:
+        """Start and end [s] of each mode, in order; those of no duration are left out."""
+        ends = [*(time for time, _ in self.changes[1:]), self.end]
+        return [(start, end, mode) for (start, mode), end in zip(self.changes, ends, strict=False) if end > start]
+
+    @property
+    def outcome(self) -> Outcome:
+        """How it ended."""
+        if self.status is not Status.GOOD or self.lies:
+            return Outcome.OVERTURNED if self.status is Status.GOOD else Outcome.FAILED
+        seen = {mode.regime for _, _, mode in self.intervals}
+        if Regime.FLIGHT in seen:
+            return Outcome.FLEW
+        slid = bool(seen & {Regime.SLIDE, Regime.SLIDE_ROCK})
+        if seen & {Regime.ROCK, Regime.SLIDE_ROCK}:
+            return Outcome.ROCKED_AND_SLID if slid else Outcome.ROCKED
+        return Outcome.SLID if slid else Outcome.NO_UPLIFT
+
+    @property
+    def overturning_time(self) -> float:
+        """When the centre passed over the foot for good; NaN if it did not overturn [s]."""
+        return self.passed if self.outcome is Outcome.OVERTURNED else math.nan
+
+    @property
+    def still_rocking(self) -> bool:
+        """Whether it stands, but rocks or flies at the end."""
+        if self.status is not Status.GOOD or self.lies:
+            return False
+        return self.intervals[-1][2].regime in {Regime.ROCK, Regime.SLIDE_ROCK, Regime.FLIGHT}
 
     def pass_through(self, start: float, series: ModeSeries, ground: GroundSeries, at: float, friction: float) -> None:
         """Add a piece to the energy balance."""
@@ -129,12 +161,9 @@ IMPACT = np.dtype(
 
 def regimes_of(history: History, base: PlaneBase) -> np.ndarray:
     """Return the regimes of a history in order; of type `REGIME`; intervals of no duration are left out."""
-    changes = history.changes
-    ends = [*(time for time, _ in changes[1:]), history.end][: len(changes)]
     rows = [
         (start, end, mode.regime.name, mode.carrier, mode.slip, _distance(history, base, mode, start, end))
-        for (start, mode), end in zip(changes, ends, strict=True)
-        if end > start
+        for start, end, mode in history.intervals
     ]
     return np.array(rows, dtype=REGIME)
 

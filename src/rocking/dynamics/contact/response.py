@@ -1,29 +1,23 @@
 """The response with contact: positions, regimes, impacts, sliding, forces, energy, outcome."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.contact.base import PlaneBase
 from rocking.dynamics.contact.history import SAMPLED, History, impacts_of, places_of, regimes_of
 from rocking.dynamics.contact.impact_resolution import GroundContact
-from rocking.dynamics.exportable import Drawable, motion_provenance
+from rocking.dynamics.response_base import ResponseBase, motion_provenance
 from rocking.dynamics.settings import Settings
-from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
-from rocking.outcome import Outcome, Regime, Status
-from rocking.tables import Column, Table
-from rocking.version import SOFTWARE
-
-if TYPE_CHECKING:
-    from rocking.tables import Table
+from rocking.outcome import Outcome
+from rocking.tables import Column
 
 
 @dataclass(frozen=True)
@@ -93,11 +87,8 @@ def forces_of(response: "ContactResponse") -> ContactForces:
     return ContactForces(response.time, mass * tangential, mass * left, mass * right, usage)
 
 
-_ROUNDING = 1e-9
-
-
-@dataclass(frozen=True, eq=False)
-class ContactResponse(Drawable):
+@dataclass(frozen=True, eq=False, repr=False)
+class ContactResponse(ResponseBase):
     """What `simulate` returns of a plane body with friction.
 
     Parameters
@@ -116,7 +107,7 @@ class ContactResponse(Drawable):
         The motion as it was integrated [m/s2].
     scale : float
         Factor on the motion [-].
-    history : History
+    trajectory : History
         What the engine returned.
     """
 
@@ -125,28 +116,24 @@ class ContactResponse(Drawable):
     base: PlaneBase
     law: GroundContact
     settings: Settings
-    segments: Segments = field(repr=False)
+    segments: Segments
     scale: float
-    history: History = field(repr=False)
-
-    def __repr__(self) -> str:
-        """Outcome in words."""
-        return f"<ContactResponse: {self.summary}>"
+    trajectory: History
 
     @cached_property
-    def _samples(self) -> FloatArray:
-        rows = self.history.samples
+    def _record(self) -> FloatArray:
+        rows = self.trajectory.samples
         bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
         return rows[: int(bad[0])] if bad.size else rows
 
     def _sampled(self, name: str) -> FloatArray:
         """Return one column of the record, per unit of mass where it is a force or an energy."""
-        return np.asarray(self._samples[:, SAMPLED.index(name)], dtype=np.float64)
+        return np.asarray(self._record[:, SAMPLED.index(name)], dtype=np.float64)
 
     @cached_property
     def time(self) -> FloatArray:
         """Times of the samples, to the end or until the body lies [s]."""
-        return np.asarray(np.arange(len(self._samples)) * self.segments.step, dtype=np.float64)
+        return np.asarray(np.arange(len(self._record)) * self.segments.step, dtype=np.float64)
 
     @property
     def displacement(self) -> FloatArray:
@@ -186,17 +173,17 @@ class ContactResponse(Drawable):
     @cached_property
     def regimes(self) -> np.ndarray:
         """Regimes in order: start, end, regime, feet, slip, and the distance that the feet slid."""
-        return regimes_of(self.history, self.base)
+        return regimes_of(self.trajectory, self.base)
 
     @cached_property
     def impacts(self) -> np.ndarray:
         """Impacts in order: time, feet, velocities, impulses at each foot, energy lost, whether the feet slid."""
-        return impacts_of(self.history, self.base)
+        return impacts_of(self.trajectory, self.base)
 
     @property
     def sliding_distance(self) -> float:
         """Total path of the feet that carried, along the ground [m]."""
-        return self.history.slid
+        return self.trajectory.slid
 
     @cached_property
     def energy(self) -> ContactEnergy:
@@ -211,67 +198,27 @@ class ContactResponse(Drawable):
     @property
     def friction_usage(self) -> float:
         """Largest |horizontal| over mu times the vertical force; 1 where the body slides [-]."""
-        return self.history.usage
+        return self.trajectory.usage
 
     @property
     def peak_rotation(self) -> float:
         """Largest |theta|, between the samples too; a quarter turn if it overturned [rad]."""
-        return self.history.peak
+        return self.trajectory.peak
 
     @property
-    def status(self) -> Status:
-        """Whether it could be computed."""
-        return self.history.status
-
-    @property
-    def overturning_time(self) -> float:
-        """When the centre passed over the foot for good; NaN if it did not overturn [s]."""
-        return self.history.passed if self.outcome is Outcome.OVERTURNED else float("nan")
-
-    @cached_property
-    def outcome(self) -> Outcome:
-        """How it ended."""
-        if self.status is not Status.GOOD:
-            return Outcome.FAILED
-        if self.history.lies:
-            return Outcome.OVERTURNED
-        seen = {Regime[name] for name in self.regimes["regime"]}
-        if Regime.FLIGHT in seen:
-            return Outcome.FLEW
-        slid = bool(seen & {Regime.SLIDE, Regime.SLIDE_ROCK})
-        if seen & {Regime.ROCK, Regime.SLIDE_ROCK}:
-            return Outcome.ROCKED_AND_SLID if slid else Outcome.ROCKED
-        return Outcome.SLID if slid else Outcome.NO_UPLIFT
-
-    @property
-    def still_rocking(self) -> bool:
-        """Whether it stands, but rocks or flies where the response ends; later impacts are not among `impacts`."""
-        moving = {Regime.ROCK.name, Regime.SLIDE_ROCK.name, Regime.FLIGHT.name}
-        stands = self.outcome not in {Outcome.FAILED, Outcome.OVERTURNED}
-        return stands and self.regimes["regime"][-1] in moving
-
-    @property
-    def unfinished(self) -> str:
-        """A sentence that says when and how it still rocks where the response ends; empty if it does not."""
-        if not self.still_rocking:
-            return ""
-        angle, rate = np.degrees(self.rotation[-1]), self.angular_velocity[-1]
-        return (
-            f"it is still {Regime[self.regimes['regime'][-1]].value} when the computation ends at "
-            f"{self.time[-1]:.4g} s, at {angle:.3g} degrees and {rate:.3g} rad/s; later impacts are not counted"
-        )
-
-    @property
-    def summary(self) -> str:
-        """The outcome in one sentence; also whether it still rocks where the response ends."""
-        if self.outcome is Outcome.FAILED:
-            return f"{self.outcome.value}: {self.status.value}"
-        told = [self.outcome.value]
+    def _ending(self) -> str:
+        words = [self.outcome.value]
         if self.peak_rotation > 0.0 and self.outcome is not Outcome.OVERTURNED:
-            told.append(f"largest rotation {np.degrees(self.peak_rotation):.4g} degrees")
+            words.append(f"largest rotation {np.degrees(self.peak_rotation):.4g} degrees")
         if self.sliding_distance > 0.0:
-            told.append(f"slid {self.sliding_distance:.4g} m in all")
-        return ", ".join(told) + (f"; {self.unfinished}" if self.still_rocking else "")
+            words.append(f"slid {self.sliding_distance:.4g} m in all")
+        return ", ".join(words)
+
+    @property
+    def _last_motion(self) -> tuple[str, float, str]:
+        angle, rate = np.degrees(self.rotation[-1]), self.angular_velocity[-1]
+        doing = self.trajectory.intervals[-1][2].regime.value
+        return doing, self.time[-1], f"at {angle:.3g} degrees and {rate:.3g} rad/s"
 
     def at(self, time: Any) -> FloatArray:
         """Return the position at any times within the response.
@@ -291,86 +238,52 @@ class ContactResponse(Drawable):
         InvalidValueError
             If a time is not finite, or before the start or after the end by more than rounding.
         """
-        end = self.history.end
-        given = checks.real_array("time", time, "s")
-        bad = given[~((given >= -_ROUNDING * end) & (given <= (1.0 + _ROUNDING) * end))]
-        if bad.size:
-            raise InvalidValueError(f"time must be in [0, {end:g}] s, where the response is known, got {bad[0]:g}")
-        return places_of(self.history, np.clip(given, 0.0, end))
+        return places_of(self.trajectory, self._known(time, self.trajectory.end))
 
-    def exported(self) -> "Table":
-        """Return what the files of this response hold.
+    @property
+    def _samples(self) -> dict[str, FloatArray]:
+        energy, forces = self.energy, self.forces
+        return {
+            "time": self.time, "displacement": self.displacement, "rise": self.rise, "rotation": self.rotation,
+            "horizontal_velocity": self.horizontal_velocity, "vertical_velocity": self.vertical_velocity,
+            "angular_velocity": self.angular_velocity, "regime": self._sampled("regime"),
+            "sliding_distance": self._sampled("slid"), "horizontal_force": forces.horizontal,
+            "vertical_force_left": forces.left, "vertical_force_right": forces.right, "kinetic_energy": energy.kinetic,
+            "potential_energy": energy.potential, "work_of_ground": energy.work,
+            "energy_lost": energy.lost_in_impacts, "lost_in_friction": energy.lost_in_friction,
+        }  # fmt: skip
 
-        Returns
-        -------
-        Table
-            Samples, impacts, intervals of one regime and provenance, with units.
-        """
-        return exported(self)
+    @property
+    def _beside(self) -> dict[str, dict[str, Any]]:
+        impacts, regimes = self.impacts, self.regimes
+        words = {"regime": "regime", "feet": "feet that carry"}
+        return {
+            "impact": {name: impacts[name] for name in _IMPACTS} | {"slips": impacts["slips"].astype(np.int8)},
+            "interval": {name: regimes[name] for name in ("start", "end", "distance")}
+            | {name: Column(regimes[name], "", meaning) for name, meaning in words.items()},
+        }
+
+    @property
+    def _facts(self) -> dict[str, Any]:
+        motion, law, base = self.motion, self.law, self.base
+        r = law.restitution
+        return {
+            "body": type(self.body).__name__,
+            "mass_kg": base.mass,
+            "inertia_kg_m2": base.mass * base.inertia,
+            "centre_height_m": base.height,
+            "half_width_left_m": base.left,
+            "half_width_right_m": base.right,
+            "friction": law.friction,
+            "bounce": law.bounce,
+            "imposed_restitution": "none: complementarity" if r is None else f"left {r[0]:.9g}, right {r[1]:.9g}",
+            "motion": "none: ground at rest" if motion is None else motion.name,
+            "motion_provenance": motion_provenance(motion),
+            "scale": self.scale,
+        }
 
 
-SAMPLES = (
-    "time", "displacement", "rise", "rotation", "horizontal_velocity", "vertical_velocity", "angular_velocity",
-    "regime", "sliding_distance", "horizontal_force", "vertical_force_left", "vertical_force_right", "kinetic_energy",
-    "potential_energy", "work_of_ground", "energy_lost", "lost_in_friction",
-)  # fmt: skip
-"""What is known at every sample."""
 _IMPACTS = (
     "time", "velocity_before", "velocity_after", "normal_left", "normal_right", "tangential_left", "tangential_right",
-    "lost",
+    "lost", "feet",
 )  # fmt: skip
-
-
-def columns(response: "ContactResponse") -> dict[str, FloatArray]:
-    """Return the samples of a response by name; all of one length, in the order of `SAMPLES`."""
-    energy, forces = response.energy, response.forces
-    values = (
-        response.time, response.displacement, response.rise, response.rotation, response.horizontal_velocity,
-        response.vertical_velocity, response.angular_velocity, response._sampled("regime"), response._sampled("slid"),
-        forces.horizontal, forces.left, forces.right, energy.kinetic, energy.potential, energy.work,
-        energy.lost_in_impacts, energy.lost_in_friction,
-    )  # fmt: skip
-    return dict(zip(SAMPLES, values, strict=True))
-
-
-def provenance(response: "ContactResponse") -> dict[str, Any]:
-    """Return what was computed from what, as plain values."""
-    motion, law, base = response.motion, response.law, response.base
-    imposed = (
-        "none: complementarity" if law.restitution is None else "left {:.9g}, right {:.9g}".format(*law.restitution)
-    )
-    return {
-        "software": SOFTWARE,
-        "engine": "planar: Taylor series with events and complementarity",
-        "outcome": response.outcome.name,
-        "status": response.status.name,
-        "still_rocking": response.still_rocking,
-        "summary": response.summary,
-        "body": type(response.body).__name__,
-        "mass_kg": base.mass,
-        "inertia_kg_m2": base.mass * base.inertia,
-        "centre_height_m": base.height,
-        "half_width_left_m": base.left,
-        "half_width_right_m": base.right,
-        "friction": law.friction,
-        "bounce": law.bounce,
-        "imposed_restitution": imposed,
-        "motion": "none: ground at rest" if motion is None else motion.name,
-        "motion_provenance": motion_provenance(motion),
-        "scale": response.scale,
-        **{f"setting_{k}": v for k, v in response.settings.stated.items()},
-    }
-
-
-def exported(response: "ContactResponse") -> Table:
-    """Return what the files of a response hold; samples, impacts, intervals of one regime, and provenance."""
-    samples = {name: Column.of(name, values) for name, values in columns(response).items()}
-    impacts, regimes = response.impacts, response.regimes
-    blows = {name: Column.of(name, impacts[name]) for name in _IMPACTS}
-    blows["feet"] = Column.of("feet", impacts["feet"])
-    blows["slips"] = Column.of("slips", impacts["slips"].astype(np.int8))
-    intervals = {name: Column.of(name, regimes[name]) for name in ("start", "end", "distance")}
-    intervals["regime"] = Column(regimes["regime"], "", "regime")
-    intervals["feet"] = Column(regimes["feet"], "", "feet that carry")
-    beside = {"impact": Table("impact", blows), "interval": Table("interval", intervals)}
-    return Table("time", samples, provenance(response), beside, no_unit="-")

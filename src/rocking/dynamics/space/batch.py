@@ -12,7 +12,7 @@ import numpy as np
 from rocking import checks, plausibility
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.compiled import check_progress
-from rocking.dynamics.exportable import Exportable, motion_provenance
+from rocking.dynamics.response_base import Exportable, motion_provenance
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude, fast_engine
 from rocking.dynamics.space.attitude import SpatialStart

@@ -10,8 +10,8 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.exportable import Drawable
 from rocking.dynamics.plane.energy_balance import ResponseEnergy
+from rocking.dynamics.response_base import Drawable
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude
 from rocking.dynamics.space.body import SpatialBody

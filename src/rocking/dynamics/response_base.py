@@ -1,0 +1,262 @@
+"""What the responses of every mechanics share: how they end, in words, and what they can be handed over as."""
+
+from abc import ABC, abstractmethod
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError
+from rocking.lazy import presenter
+from rocking.outcome import Outcome, Status
+from rocking.version import SOFTWARE
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from rocking.tables import Table
+
+
+def motion_provenance(motion: Any) -> str:
+    """Return where a motion comes from.
+
+    >>> motion_provenance(None)
+    'ground at rest'
+    """
+    return "ground at rest" if motion is None else "; ".join(getattr(motion, "provenance", ())) or repr(motion)
+
+
+class Exportable(ABC):
+    """A response whose samples, impacts and provenance can leave Python."""
+
+    @abstractmethod
+    def exported(self) -> "Table":
+        """Return what the files of this response hold.
+
+        Returns
+        -------
+        Table
+            Samples, with tables of impacts and the like beside them, units and provenance.
+        """
+
+    def to_xarray(self) -> "xr.Dataset":
+        """Return the response as a labelled dataset with units and provenance.
+
+        Returns
+        -------
+        xarray.Dataset
+            Samples over `time`, impacts over `impact`, and intervals over `interval` where the response has them.
+        """
+        from rocking.tables import to_dataset
+
+        return to_dataset(self.exported())
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Return the samples as a table.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row a sample, units in the column names.
+        """
+        from rocking.tables import to_dataframe
+
+        return to_dataframe(self.exported())
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write the samples as comma-separated values.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        from rocking.tables import target_of, to_csv
+
+        return to_csv(self.exported(), target_of(path), blank=False)
+
+    def to_mat(self, path: str | Path) -> Path:
+        """Write a file that MATLAB loads.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        from rocking.tables import target_of, to_mat
+
+        return to_mat(self.exported(), target_of(path))
+
+    def to_netcdf(self, path: str | Path) -> Path:
+        """Write a netCDF file, which xarray and MATLAB open.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        from rocking.tables import target_of, to_netcdf
+
+        return to_netcdf(self.to_xarray(), target_of(path))
+
+
+class Drawable(Exportable):
+    """A response that can be drawn."""
+
+    def plot(self, path: str | Path | None = None, **options: Any) -> "Figure":
+        """Draw the response.
+
+        Parameters
+        ----------
+        path : str or Path, optional
+            Where to write the picture, too: .png, .svg or .pdf.
+        **options
+            Of the picture of this kind of response in `rocking.plots`: `friction` where it rocks alone.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The picture.
+
+        Raises
+        ------
+        MissingExtraError
+            If matplotlib is not installed.
+        RockingError
+            If the ending of the path is another.
+        """
+        figure: Figure = presenter(f"picture of {type(self).__name__}")(self, **options)
+        if path is not None:
+            presenter("writer of pictures")(figure, Path(path))
+        return figure
+
+
+_ROUNDING = 1e-9
+
+
+class ResponseBase(Drawable):
+    """One history: how it ends, in words, in a picture, and on its way out."""
+
+    settings: Settings
+    trajectory: Any  # what the engine returned: outcome, status, overturning_time, still_rocking, engine
+
+    def __repr__(self) -> str:
+        """Outcome in words, and which engine found it."""
+        return f"<{type(self).__name__}: {self.summary} [{self.engine}]>"
+
+    @property
+    def outcome(self) -> Outcome:
+        """How it ended."""
+        outcome: Outcome = self.trajectory.outcome
+        return outcome
+
+    @property
+    def status(self) -> Status:
+        """Whether it could be computed."""
+        status: Status = self.trajectory.status
+        return status
+
+    @property
+    def engine(self) -> str:
+        """Which engine ran, and how."""
+        engine: str = self.trajectory.engine
+        return engine
+
+    @property
+    def overturning_time(self) -> float:
+        """When the centre of mass passed over the contact for good; NaN if it did not overturn [s]."""
+        return float(self.trajectory.overturning_time)
+
+    @property
+    def still_rocking(self) -> bool:
+        """Whether it stands, but does not yet rest where the response ends; later impacts are not among `impacts`."""
+        return bool(self.trajectory.still_rocking)
+
+    @property
+    def unfinished(self) -> str:
+        """A sentence that says when and how it still rocks where the response ends; empty if it does not."""
+        if not self.still_rocking:
+            return ""
+        doing, end, place = self._last_motion
+        return f"it is still {doing} when the computation ends at {end:.4g} s, {place}; later impacts are not counted"
+
+    @property
+    def summary(self) -> str:
+        """The outcome in one sentence; also whether it still rocks where the response ends."""
+        if self.outcome is Outcome.FAILED:
+            return f"{self.outcome.value}: {self.status.value}"
+        return self._ending + (f"; {self.unfinished}" if self.still_rocking else "")
+
+    @property
+    @abstractmethod
+    def _ending(self) -> str:
+        """The outcome, where there is one, in one sentence."""
+
+    @property
+    @abstractmethod
+    def _last_motion(self) -> tuple[str, float, str]:
+        """What a body that still rocks does where the response ends, when that is [s], and how it stands then."""
+
+    @property
+    @abstractmethod
+    def _samples(self) -> dict[str, FloatArray]:
+        """Values over `time`, by their names in `rocking.quantities`."""
+
+    @property
+    @abstractmethod
+    def _beside(self) -> dict[str, dict[str, Any]]:
+        """Columns beside the samples by what one of their rows is: `Column`, or values of `rocking.quantities`."""
+
+    @property
+    @abstractmethod
+    def _facts(self) -> dict[str, Any]:
+        """What was computed from what, beside software, engine, outcome and settings, as plain values."""
+
+    def exported(self) -> "Table":
+        """Return what the files of this response hold.
+
+        Returns
+        -------
+        Table
+            Samples, impacts, what else there is in intervals, and provenance, with units.
+        """
+        from rocking.tables import Column, Table
+
+        def columns(values: dict[str, Any]) -> dict[str, Column]:
+            return {name: each if isinstance(each, Column) else Column.of(name, each) for name, each in values.items()}
+
+        ended = {
+            "software": SOFTWARE, "engine": self.engine, "outcome": self.outcome.name, "status": self.status.name,
+            "still_rocking": self.still_rocking, "summary": self.summary,
+        }  # fmt: skip
+        settings = {f"setting_{name}": value for name, value in self.settings.stated.items()}
+        beside = {row: Table(row, columns(values)) for row, values in self._beside.items()}
+        return Table("time", columns(self._samples), ended | self._facts | settings, beside, no_unit="-")
+
+    def _known(self, time: Any, end: float) -> FloatArray:
+        """Return times up to an end, to rounding; what lies outside is refused [s]."""
+        times = checks.real_array("time", time, "s")
+        bad = times[~((times >= -_ROUNDING * end) & (times <= (1.0 + _ROUNDING) * end))]
+        if bad.size:
+            raise InvalidValueError(f"time must be in [0, {end:g}] s, where the response is known, got {bad[0]:g}")
+        return np.clip(times, 0.0, end)
