@@ -221,6 +221,13 @@ def _shown(example: dict[str, Any]) -> ConfigDict:
     return ConfigDict(json_schema_extra={"examples": [example]})
 
 
+MOTION_KEYS = frozenset({
+    "pulse", "synthetic", "count", "member", "format", "units", "time_step", "component", "vertical", "scale", "seed",
+    "pga", "pgv",
+})  # fmt: skip
+"""Keys of a motion that a request may use; none of them can name a file of the server. Records are hashes."""
+
+
 class MotionInput(OneMotionTable):
     """One pulse, one uploaded record by its hash, or one motion of a synthetic family."""
 
@@ -231,8 +238,9 @@ class MotionInput(OneMotionTable):
     def _named_record(self) -> "MotionInput":
         if self.file_name is not None and self.record is None:
             raise refused("file_name goes with record only")
-        if self.vertical_file is not None:
-            raise refused("vertical_file: the application reads no file by its name; upload one with both components")
+        other = self.model_fields_set - MOTION_KEYS - {"record", "file_name"}
+        if odd := sorted(key for key in other if getattr(self, key) is not None):
+            raise refused(f"{odd[0]}: the application reads no file by its name; upload one with both components")
         return self
 
 

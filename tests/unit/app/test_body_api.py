@@ -3,11 +3,14 @@
 import json
 import math
 from dataclasses import MISSING, fields
+from importlib.resources import files
 
 import pytest
 
 import rocking as rk
 from rocking.app.api.info import Info
+from rocking.plots.style import model_styles
+from rocking.reports.response_facts import restitution_words
 from rocking.restitution import models
 
 OCTETS = {"Content-Type": "application/octet-stream"}
@@ -223,6 +226,17 @@ def test_every_registered_model_is_listed(told):
     """Names and order are those of the registry, and the answer has the form that the schema states."""
     assert [one["name"] for one in told["models"]] == list(models())
     Info.model_validate(told)
+
+
+def test_a_model_has_one_name_and_one_look_on_paper_and_on_the_page(told):
+    """Short name and colour are those of the pictures, dashes differ, and the page's script has no table of its own."""
+    facts = {one["name"]: one for one in told["models"]}
+    assert {name: one["short_name"] for name, one in facts.items()} == {name: restitution_words(name) for name in facts}
+    drawn = {name: style["color"] for name, style in model_styles().items()}
+    assert {name: one["colour"] for name, one in facts.items() if one["colour"]} == drawn
+    assert len({tuple(facts[name]["dash"]) for name in drawn}) == len(drawn)
+    palette = files("rocking.app").joinpath("static", "app", "palette.js").read_text("utf-8")
+    assert not [colour for colour in drawn.values() if colour in palette]
 
 
 def test_a_default_is_a_number_unlimited_or_missing(told):

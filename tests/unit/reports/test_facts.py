@@ -2,17 +2,13 @@
 
 import json
 import math
-import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import rocking as rk
-from rocking import app
 from rocking.errors import PureRockingWarning
-from rocking.evidence._coefficient_table import CALIBRATED, default_models
-from rocking.plots.style import model_styles
+from rocking.evidence._coefficient_table import default_models
 from rocking.reports.body_facts import (
     ImpactAnswer,
     body_facts,
@@ -24,12 +20,10 @@ from rocking.reports.body_facts import (
 )
 from rocking.reports.motion_facts import MotionAnswer, motion_facts, spectrum_facts
 from rocking.reports.response_facts import ModelAgreement, finite, other_facts, response_facts, restitution_words
-from rocking.restitution import models
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 LEANING = rk.Section.from_trapezoid(1.0, 0.5, 2.5)
 POINTS = rk.MassPoints([(0.2, 1.0), (0.8, 2.0)], [10.0, 20.0], (0.0, 1.0))
-PALETTE = Path(app.__file__).parent / "static" / "app" / "palette.js"
 MOTION = rk.pulses.sine(amplitude=3.2, period=0.8)
 
 
@@ -132,29 +126,6 @@ def test_the_verdict_names_with_whom_the_ground_would_have_to_pull():
     assert "pull" not in ModelAgreement.of({"a": held}).sentence
     both = ModelAgreement.of({"a": held, "b": torn}).sentence
     assert both.endswith("The ground would have to pull, and the verdict assumes contact: with b.")
-
-
-def words_of_the_pages() -> dict[str, str]:
-    """Return the names in the table of the pages."""
-    table = re.search(r"const WORDS = {(.*?)};", PALETTE.read_text("utf-8"), re.DOTALL)
-    assert table
-    rows = re.findall(r'"?([a-z-]+)"?: "([^"]+)",', table[1])
-    return {name: re.sub(r"\\u([0-9a-f]{4})", lambda found: chr(int(found[1], 16)), words) for name, words in rows}
-
-
-def test_paper_and_pages_agree() -> None:
-    """Every model of the registry, and the calibrated one, has the same short name in both places."""
-    pages = words_of_the_pages()
-    assert set(pages) == {*models(), CALIBRATED}
-    assert {name: restitution_words(name) for name in pages} == pages
-
-
-def test_curves_have_the_same_colour_on_paper_and_on_pages() -> None:
-    """The colour of a model stands with the model; the table of the pages repeats it."""
-    rows = re.findall(r'"?([a-z-]+)"?: { colour: "(#[0-9A-F]{6})"', PALETTE.read_text("utf-8"))
-    styles = {name: style["color"] for name, style in model_styles().items()}
-    assert styles
-    assert {name: colour for name, colour in rows if name != CALIBRATED} == styles
 
 
 def test_no_model_is_called_by_its_key() -> None:

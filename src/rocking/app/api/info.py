@@ -27,6 +27,7 @@ PARAMETERS = {
 }
 """Unit and words of the parameters of pulses."""
 
+_DASHES = {"-": [], "--": [6.0, 4.0], "-.": [8.0, 3.0, 2.0, 3.0], ":": [2.0, 3.0]}
 UNLIMITED = "unlimited"
 """What stands for an infinite default, which JSON has no number for."""
 
@@ -46,6 +47,9 @@ ModelFacts: Any = shape(
     "A restitution model.",
     name=str,
     label=str,
+    short_name=(str, "in a sentence or a legend"),
+    colour=(str, "of its curves; empty where it has none of its own"),
+    dash=(list[float], "of its curves: lengths of strokes and gaps [px]; empty for a whole line"),
     title=str,
     citation=str,
     summary=str,
@@ -156,6 +160,9 @@ def _models() -> list[dict[str, Any]]:
         {
             "name": name,
             "label": name,
+            "short_name": kind.short_name or name,
+            "colour": kind.colour,
+            "dash": _dash(kind.linestyle),
             "title": kind.title,
             "citation": kind.reference,
             "summary": " ".join(kind.assumptions),
@@ -166,6 +173,11 @@ def _models() -> list[dict[str, Any]]:
         }
         for name, kind in models().items()
     ]
+
+
+def _dash(linestyle: str | tuple[int, tuple[int, ...]]) -> list[float]:
+    """Return a line of matplotlib as strokes and gaps of a line two pixels wide [px]."""
+    return _DASHES[linestyle] if isinstance(linestyle, str) else [2.0 * length for length in linestyle[1]]
 
 
 def _parameters(kind: Any) -> dict[str, dict[str, Any]]:

@@ -73,7 +73,9 @@ def inputs_from_toml(text: str, find: FindRecord) -> Inputs:
     document = parsed_toml(text)
     unknown = sorted(set(document) - set(_TABLES))
     if unknown and "campaign" in document:
-        raise Refused("this is a job of many histories: set it up in the step Studies, or `rocking run` takes it")
+        raise Refused(
+            "this is a job of many histories: set it up in the step Studies, or `rocking campaign run` takes it"
+        )
     if unknown and "body" not in document and _SHAPES & set(document):
         raise Refused("this is a file of a body alone: drop it in the step Body")
     if unknown:

@@ -4,15 +4,17 @@ import math
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from pydantic import ValidationError
 
 from rocking.app.errors import TooLarge
+from rocking.app.inputs import MOTION_KEYS, BodyInput
 from rocking.app.plain_text import toml_of
+from rocking.bodies.formats.words import sentence, suggestion
 from rocking.errors import InvalidValueError
 from rocking.restitution.from_file import file_of
-
-if TYPE_CHECKING:
-    from rocking.spec.document import CampaignDocument
+from rocking.spec.document import CampaignDocument, MotionTable
 
 KINDS = (
     "overturning-map", "minimum-acceleration", "rocking-spectrum", "stripes", "incremental", "cloud", "histories",
@@ -24,6 +26,13 @@ _MEASURED = {"stripes", "incremental", "cloud", "minimum-acceleration"}
 
 _QUICKLY_MADE = 200
 _RECORD = re.compile(r"[0-9a-f]{64}\Z")
+_BODY_KEYS = (
+    "units", "name", "note", "width", "height", "depth", "density", "slenderness_angle", "semi_diagonal", "feet",
+    "block", "trapezoid", "base", "top", "lean", "ellipse", "regular_polygon", "sides", "radius", "section", "region",
+    "outline", "holes", "wkt", "ground", "mass_points", "points", "masses", "contact",
+)  # fmt: skip
+"""Keys of a body that a request may use; none of them can name a file of the server."""
+
 _FILES = {"file", "dxf", "geojson", "path"}
 _DEEPEST, _MOST_VALUES = 12, 500_000
 
@@ -32,48 +41,42 @@ _DEEPEST, _MOST_VALUES = 12, 500_000
 class JobDocument:
     """A job as it came, and as its tables say it."""
 
-    given: dict[str, Any]  # as it came; records are named by their hashes
-    document: "CampaignDocument"  # the same, checked
+    tables: dict[str, Any]  # as it came; records are named by their hashes
+    document: CampaignDocument  # the same, checked
 
     @classmethod
-    def of(cls, given: object) -> "JobDocument":
+    def of(cls, tables: object) -> "JobDocument":
         """Return a job that names no file, opens nothing, and fits its own kind."""
-        from pydantic import ValidationError
-
-        from rocking.bodies.formats.words import sentence
-        from rocking.spec.document import CampaignDocument
-
-        if not isinstance(given, dict):
-            raise InvalidValueError(f"job must be an object of tables, as a job file has them, got {given!r:.60}")
-        _refuse_what_is_too_much(given)
-        _refuse_files(given)
-        campaign = given.get("campaign")
+        if not isinstance(tables, dict):
+            raise InvalidValueError(f"job must be an object of tables, as a job file has them, got {tables!r:.60}")
+        _check_extent(tables)
+        _refuse_files(tables)
+        campaign = tables.get("campaign")
         kind = campaign.get("kind") if isinstance(campaign, dict) else None
         if isinstance(kind, str) and kind not in KINDS:
             raise InvalidValueError(f"campaign.kind must be one of {', '.join(KINDS)}, got {kind!r:.60}")
         try:
-            made = cls(given, CampaignDocument.model_validate(given))
+            job = cls(tables, CampaignDocument.model_validate(tables))
         except ValidationError as error:
             raise InvalidValueError(f"job: {sentence(error, None)}") from error
-        made._refuse_too_many()
-        return made
+        job._check_counts()
+        return job
 
-    def _refuse_too_many(self) -> None:
+    def _check_counts(self) -> None:
         """Refuse what takes long to be made, however few its histories are."""
         document = self.document
-        regions = sum(_checked_regions(table) for table in document.body or [])
+        bodies, choices, motions = document.body or [], _choices(document), _motion_count(document)
         counts = {
-            "regions of bodies": (regions, 1000),
-            "restitutions": (_choices(document), 64),
-            "bodies": (len(document.body or []), 1000),
+            "regions of bodies": (sum(map(_checked_regions, bodies)), 1000),
+            "restitutions": (choices, 64),
+            "bodies": (len(bodies), 1000),
             "states": (len(document.fragility.states) if document.fragility else 0, 20),
         }
-        if document.spectrum is not None:
-            table = document.spectrum
-            blocks = _count(table.slenderness_angles) * _count(table.periods) * _choices(document)
-            counts["blocks times restitutions"] = (blocks, 100_000)
+        if table := document.spectrum:
+            blocks = _count(table.slenderness_angles) * _count(table.periods)
+            counts["blocks times restitutions"] = (blocks * choices, 100_000)
         if self.kind in _MEASURED:
-            counts["motions"] = (sum(_motions(each) for each in document.motions), 2000)
+            counts["motions"] = (motions, 2000)
         for name, (count, most) in counts.items():
             if count > most:
                 raise TooLarge(f"the job has {count} {name}; a page takes up to {most}, `rocking campaign` any number")
@@ -81,18 +84,12 @@ class JobDocument:
     @property
     def needs_long(self) -> bool:
         """Whether its motions take so long to be made that only its own process checks them."""
-        many = sum(_motions(each) for each in self.document.motions) > _QUICKLY_MADE
-        return self.kind in _MEASURED and many
+        return self.kind in _MEASURED and _motion_count(self.document) > _QUICKLY_MADE
 
     @property
     def kind(self) -> str:
         """What it computes."""
         return str(self.document.campaign.kind)
-
-    @property
-    def name(self) -> str:
-        """What it is called there."""
-        return str(self.document.campaign.name)
 
     @property
     def records(self) -> list[str]:
@@ -115,22 +112,20 @@ class JobDocument:
 
     def toml(self, path_of: Callable[[str], str]) -> str:
         """Return the job as a job file."""
-        told = {name: value for name, value in self.given.items() if value is not None}
-        motions = told["motions"] if isinstance(told["motions"], list) else [told["motions"]]
-        told["motions"] = [_with_paths(table, path_of) for table in motions]
-        return toml_of(told)
+        motions = [dict(table) for table in _listed(self.tables["motions"])]
+        for table in motions:
+            if table.get("records") is not None:
+                table["records"] = [path_of(name) for name in _listed(table["records"])]
+        return toml_of({**self.tables, "motions": motions})
 
 
-def _with_paths(table: dict[str, Any], path_of: Callable[[str], str]) -> dict[str, Any]:
-    names = table.get("records")
-    if names is None:
-        return table
-    return {**table, "records": [path_of(name) for name in ([names] if isinstance(names, str) else names)]}
+def _listed(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [value]
 
 
-def _refuse_what_is_too_much(given: Any) -> None:
+def _check_extent(tables: Any) -> None:
     """Refuse what is nested or long beyond any job, before anything walks through it by recursion."""
-    level, count = [given], 0
+    level, count = [tables], 0
     for _ in range(_DEEPEST):
         level = [item for each in level for item in _inside(each)]
         count += len(level)
@@ -147,75 +142,77 @@ def _inside(value: Any) -> list[Any]:
     return value if isinstance(value, list) else []
 
 
-def _refuse_files(given: dict[str, Any]) -> None:
+def _refuse_files(tables: dict[str, Any]) -> None:
     """Refuse files by name: what is not on this page is uploaded, and then named by its hash."""
-    for key in _keys(given.get("body")):
-        if key in _FILES:
-            raise InvalidValueError(f"body: {key} names a file, which a page cannot do; upload the file instead")
-    for word in _words(given.get("restitution")):
-        if file_of(word.strip()):  # it would be run
+    for each in _within(tables.get("body")):
+        for key in each if isinstance(each, dict) else ():
+            if key in _FILES:
+                raise InvalidValueError(f"body: {key} names a file, which a page cannot do; upload the file instead")
+            if key not in _BODY_KEYS:
+                raise InvalidValueError(f"body: unknown key {key!r:.60}{suggestion(key, _BODY_KEYS)}")
+    for word in _within(tables.get("restitution")):
+        if isinstance(word, str) and file_of(word.strip()):  # it would be run
             raise InvalidValueError(
                 f"restitution: {word!r:.60} names a file, which a page cannot do; see rocking campaign"
             )
-    motions = given.get("motions")
-    for table in motions if isinstance(motions, list) else [motions]:
-        if isinstance(table, dict) and "vertical_file" in table:
+    for table in _listed(tables.get("motions")):
+        if isinstance(table, dict):
+            _refuse_record_files(table)
+
+
+def _refuse_record_files(table: dict[str, Any]) -> None:
+    """Refuse whatever of a motion may name a file; keys that no motion has are refused later on, in other words."""
+    for key in sorted(MotionTable.model_fields.keys() & table.keys() - MOTION_KEYS - {"records"}):
+        raise InvalidValueError(
+            f"motions.{key} names a file, which a page cannot do; upload one that has both components"
+        )
+    for name in _listed(table.get("records")):
+        if name is not None and not (isinstance(name, str) and _RECORD.match(name)):
             raise InvalidValueError(
-                "motions.vertical_file names a file, which a page cannot do; upload one that has both components"
+                f"motions.records must be SHA-256 hashes of uploaded records (64 hexadecimal digits), "
+                f"got {name!r:.60}; upload the file first"
             )
-        names = table.get("records") if isinstance(table, dict) else None
-        for name in names if isinstance(names, list) else [names]:
-            if name is not None and not (isinstance(name, str) and _RECORD.match(name)):
-                raise InvalidValueError(
-                    f"motions.records must be SHA-256 hashes of uploaded records (64 hexadecimal digits), "
-                    f"got {name!r:.60}; upload the file first"
-                )
 
 
-def _words(value: Any) -> list[str]:
-    inside = [value] if isinstance(value, str) else []
-    return inside + [word for each in _inside(value) for word in _words(each)]
+def _within(value: Any) -> Iterator[Any]:
+    """Return a value and all that lies in it, from the outside in."""
+    yield value
+    for each in _inside(value):
+        yield from _within(each)
 
 
-def _keys(value: Any) -> Iterator[str]:
-    if isinstance(value, dict):
-        yield from value
-    for item in _inside(value):
-        yield from _keys(item)
-
-
-def _sizes(document: "CampaignDocument") -> list[int]:
+def _sizes(document: CampaignDocument) -> list[int]:
     """Return the numbers whose product is that of the histories."""
-    choices, motions = _choices(document), sum(_motions(each) for each in document.motions)
-    kind, bodies = document.campaign.kind, len(document.body or [])
-    if kind == "overturning-map" and document.map is not None:
-        return [_count(document.map.x), _count(document.map.y), choices]
-    if kind == "rocking-spectrum" and document.spectrum is not None:
-        return [motions, _count(document.spectrum.slenderness_angles), _count(document.spectrum.periods), choices]
-    if kind == "histories":
-        scales = 1 if document.histories is None else _count(document.histories.scales)
-        return [motions, bodies, scales, choices]
-    if kind == "minimum-acceleration" and document.minimum is not None:
-        return [motions, bodies, document.minimum.points, choices]
-    levels = document.fragility.levels if document.fragility is not None else None
-    return [motions, choices, 1 if levels is None else _count(levels)]
+    choices, motions, bodies = _choices(document), _motion_count(document), len(document.body or [])
+    match document.campaign.kind:
+        case "overturning-map" if document.map:
+            return [_count(document.map.x), _count(document.map.y), choices]
+        case "rocking-spectrum" if table := document.spectrum:
+            return [motions, _count(table.slenderness_angles), _count(table.periods), choices]
+        case "histories":
+            return [motions, bodies, _count(document.histories.scales) if document.histories else 1, choices]
+        case "minimum-acceleration" if document.minimum:
+            return [motions, bodies, document.minimum.points, choices]
+    levels = document.fragility.levels if document.fragility else None
+    return [motions, choices, _count(levels) if levels else 1]
 
 
-def _choices(document: "CampaignDocument") -> int:
+def _choices(document: CampaignDocument) -> int:
     table = document.restitution
     return max(1, len(table.models or []) + len(table.values or []))
 
 
-def _motions(table: Any) -> int:
+def _motion_count(document: CampaignDocument) -> int:
+    return sum(motions_in(table) for table in document.motions)
+
+
+def motions_in(table: MotionTable) -> int:
+    """Return how many motions a table describes."""
     return int(table.count or 0) or len(table.records or []) or len(table.pulse or [])
 
 
 def _checked_regions(table: dict[str, Any]) -> int:
     """Return the regions of a body, unless the body alone is larger than a page takes."""
-    from pydantic import ValidationError
-
-    from rocking.app.inputs import BodyInput
-
     try:
         body = BodyInput.model_validate(table)
     except ValidationError:  # the job is read later on, and refused in its own words

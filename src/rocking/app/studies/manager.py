@@ -67,7 +67,7 @@ class StudyManager:
                 f"the study has {count} histories; this server takes up to {self._limits.histories}: fewer values, "
                 "or `rocking campaign` on the command line, which has no limit"
             )
-        return self.queue.enter(lambda: self._made(name or document.name, document)).folder.id
+        return self.queue.enter(lambda: self._made(name or document.document.campaign.name, document)).folder.id
 
     def overview(self) -> list[dict[str, Any]]:
         """Return name, kind, state and progress of all studies, the newest first; nothing is read for it."""

@@ -55,7 +55,7 @@ def computed(tmp_path: Path, records: RecordStore) -> Callable[[Tables], OpenStu
     def compute(job: Tables) -> OpenStudy:
         document = JobDocument.of(job)
         folder = StudyFolder(tmp_path / "studies" / new_id())
-        meta = Meta(document.name, document.kind, "2026-01-01T00:00:00Z", document.histories)
+        meta = Meta(document.document.campaign.name, document.kind, "2026-01-01T00:00:00Z", document.histories)
         folder.create(meta, document, records)
         JobFolder.create(folder.campaign, Job.read(folder.path / "job.toml")).run(workers=1)
         return OpenStudy.of(folder)

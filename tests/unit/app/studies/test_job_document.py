@@ -14,14 +14,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rocking.app.errors import TooLarge
+from rocking.app.inputs import MOTION_KEYS
 from rocking.app.plain_text import record_file_name, shown
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
+from rocking.app.studies import job_document
 from rocking.app.studies.job_document import KINDS, JobDocument
 from rocking.app.studies.manager import StudyManager
 from rocking.app.studies.study_folder import is_id, new_id
 from rocking.campaigns.jobs import Job
 from rocking.errors import InvalidValueError, RockingError
+from rocking.spec.document import MotionTable
 
 pytestmark = pytest.mark.timed
 
@@ -77,6 +80,18 @@ def test_hostile_jobs_are_refused(tables, map_job):
 def test_a_vertical_part_in_a_file_is_refused_unread(file, map_job):
     with pytest.raises(InvalidValueError, match=r"motions\.vertical_file names a file, which a page cannot do"):
         JobDocument.of(map_job(motions=[{"records": [SHA], "vertical_file": file}]))
+
+
+def test_only_keys_that_are_known_to_name_no_file_are_taken(map_job, monkeypatch):
+    """The keys of motions are a list of what is allowed: one that is not on it, perhaps a new one, is refused."""
+    assert MotionTable.model_fields.keys() - MOTION_KEYS == {"records", "vertical_file"}
+    motion = {"synthetic": "pulse-like", "count": 2, "pga": 4.0}
+    JobDocument.of(map_job(motions=motion))
+    monkeypatch.setattr(job_document, "MOTION_KEYS", MOTION_KEYS - {"pga"})
+    with pytest.raises(InvalidValueError, match=r"motions\.pga names a file"):
+        JobDocument.of(map_job(motions=motion))
+    with pytest.raises(InvalidValueError, match="body: unknown key 'mesh'"):
+        JobDocument.of(map_job(body={"units": "m", "mesh": "/etc/passwd"}))
 
 
 @pytest.mark.parametrize("given", [None, 1, "x", [], [{}]])

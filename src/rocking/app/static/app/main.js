@@ -7,6 +7,7 @@ import { createBodyFacts } from "/app/facts.js";
 import { faults } from "/app/faults.js";
 import { createInputs, decode, encode, kept } from "/app/inputs.js";
 import { followAddress, UNREADABLE } from "/app/navigation.js";
+import { learnModels } from "/app/palette.js";
 import { whenBack } from "/app/offline.js";
 import { mountLent } from "/app/lent.js";
 import { fieldOf, plainWords } from "/app/refusal.js";
@@ -25,6 +26,7 @@ const start = async () => {
     if (error.status !== 401) throw error;
   });
   if (!info) return waitAtTheDoor(refusal);
+  learnModels(info.models);
   if (shared) address.write({ view });
   const fromLink = shared ? decode(shared) : null;
   const app = createApp(kept() ?? fromLink, info);

@@ -1,16 +1,16 @@
-/** Okabe and Ito's colours, each with a dash of its own, so that grey print and any eye keep them apart. */
+/** Names, colours and dashes of the restitution models, as the server states them, and looks of all that is none. */
 
 import { svg } from "/app/dom.js";
 
-const STYLES = {
-  housner: { colour: "#0072B2", dash: [6, 4] },
-  ked: { colour: "#D55E00", dash: [] },
-  "horizontal-momentum": { colour: "#009E73", dash: [8, 3, 2, 3] },
-  "shifted-impulse": { colour: "#CC79A7", dash: [2, 3] },
-  "distributed-impulse": { colour: "#56B4E9", dash: [8, 2, 2, 2, 2, 2] },
-  "plastic-winkler": { colour: "#E69F00", dash: [10, 4] },
-  "contact-bed": { colour: "#8C6BB1", dash: [4, 2] },
-  calibrated: { colour: "#8A8A8A", dash: [] },
+// the calibrated value is no model: it has a row beside them
+const CALIBRATED = { name: "calibrated", short_name: "calibrated", colour: "#8A8A8A", dash: [] };
+
+const models = new Map([[CALIBRATED.name, CALIBRATED]]);
+
+/** Learn the models that the server has; done once, before anything is drawn. */
+export const learnModels = (told) => {
+  models.clear();
+  for (const model of [...told, CALIBRATED]) models.set(model.name, model);
 };
 
 const SPARE = [
@@ -19,31 +19,22 @@ const SPARE = [
   { colour: "#7A5195", dash: [5, 3, 1, 3] },
 ];
 
-const WORDS = {
-  housner: "Housner",
-  ked: "KED",
-  "horizontal-momentum": "horizontal momentum (cos\u00b2\u03b1)",
-  "shifted-impulse": "shifted impulse",
-  "distributed-impulse": "distributed impulse",
-  "plastic-winkler": "plastic Winkler",
-  "contact-bed": "contact bed",
-  calibrated: "calibrated",
-  fixed: "given value",
-};
-
-const given = new Map();
+const spares = new Map();
 
 /** Colour and dash of a restitution model's label, such as "ked" or "0.98*shifted-impulse:k=0.6". */
-export const modelStyle = (label) => STYLES[family(label)] ?? spare(String(label));
+export const modelStyle = (label) => {
+  const model = models.get(family(label));
+  return model?.colour ? model : spare(String(label));
+};
 
 /** The model's name in words, with its parameter if it has one. */
 export const modelWords = (label) => {
   const text = String(label);
-  const name = family(text);
+  const name = models.get(family(text))?.short_name;
   const told = text.includes(":") ? text.split(":")[1].replaceAll(",", ", ") : "";
   const parameter = told ? `, ${told.replaceAll("=", "\u00a0=\u00a0")}` : "";
   const factor = text.includes("*") ? `${text.split("*")[0]}\u00a0\u00d7\u00a0` : "";
-  return WORDS[name] ? `${factor}${WORDS[name]}${parameter}` : text;
+  return name ? `${factor}${name}${parameter}` : text;
 };
 
 /** A short line, or dots where a curve is drawn as such, in a colour and its true dash. */
@@ -71,7 +62,10 @@ export const angleStyle = (model, index, { angles, models }) => {
 };
 
 /** Colour for the n-th of several curves that are no models. */
-export const seriesStyle = (index) => Object.values(STYLES)[index % Object.keys(STYLES).length];
+export const seriesStyle = (index) => {
+  const looks = [...models.values()].filter(({ colour }) => colour);
+  return looks[index % looks.length];
+};
 
 /** Marker and words of the groups of published measurements. */
 export const GROUPS = {
@@ -84,6 +78,6 @@ export const GROUPS = {
 const family = (label) => String(label).split("*").at(-1).split(":")[0].trim();
 
 const spare = (label) => {
-  if (!given.has(label)) given.set(label, SPARE[given.size % SPARE.length]);
-  return given.get(label);
+  if (!spares.has(label)) spares.set(label, SPARE[spares.size % SPARE.length]);
+  return spares.get(label);
 };

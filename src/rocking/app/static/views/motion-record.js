@@ -42,9 +42,9 @@ class RecordEditor {
       },
     });
     const choose = button({ text: "Choose a file", kind: "primary", onClick: () => input.click() });
+    const formats = this.app.info.formats.map(({ name }) => name).join(", ");
     const words =
-      "PEER, ESM, COSMOS, CSMIP, USGS, K-NET, CWA, GeoNet, BHRC, SAC, columns, " +
-      "and miniSEED that holds accelerations (counts need a StationXML, which is not read here)";
+      `Formats: ${formats}. miniSEED must hold accelerations: counts need a StationXML, which is not read here.`;
     this.chooser = choose;
     const zone = el(
       "div",
