@@ -23,10 +23,6 @@ from rocking.evidence._coefficient_table import outside_evidence
 from rocking.reports.body_facts import body_facts, outline_facts
 
 router = APIRouter(prefix="/api", tags=["body"])
-_ABOUT = "The keys of `body` of `rocking cor --json`, the polygons that draw the body, and warnings in plain words."
-_FILE = """\
-The content of a DXF, WKT, GeoJSON or TOML file; `name` says by its ending which of them it is. `units` is needed for
-WKT and GeoJSON, and for a drawing that does not state its unit. `body` of the answer is what stands in the inputs."""
 
 SideFacts: Any = shape(
     "SideFacts",
@@ -81,23 +77,15 @@ BodyInFile: Any = shape(
 )
 
 
-@router.post(
-    "/body",
-    summary="What a body is",
-    description=_ABOUT,
-    response_class=JsonAnswer,
-    responses=answered(DescribedBody, "The body."),
-)
+@router.post("/body", summary="What a body is", responses=answered(DescribedBody, "The body."))
 async def body(request: Request, asked: BodyAsked) -> JsonAnswer:
-    """Answer with the facts of a body."""
+    """Answer with the keys of `body` of `rocking cor --json`, the polygons that draw it, and its warnings."""
     return JsonAnswer(await sized(request, size_of(asked.body), _of_inputs, asked))
 
 
 @router.post(
     "/body/file",
     summary="Read a body file",
-    description=_FILE,
-    response_class=JsonAnswer,
     responses=answered(BodyInFile, "The body, and what stands in the inputs for it."),
     openapi_extra=FILE_SENT,
 )
@@ -107,7 +95,11 @@ async def body_file(
     units: UnitName | None = None,
     density: Annotated[float | None, Query(gt=0.0, le=1e6, allow_inf_nan=False, description="kg/m3")] = None,
 ) -> JsonAnswer:
-    """Answer with the body of a file as it stands in the inputs, and its facts."""
+    """Read a DXF, WKT, GeoJSON or TOML file; `name` says by its ending which of them it is.
+
+    `units` is needed for WKT and GeoJSON, and for a drawing that does not state its unit. `body` of the answer is what
+    stands in the inputs.
+    """
     content = await request.body()
     return JsonAnswer(await heavy(request, _of_file, content, name, units, density))
 

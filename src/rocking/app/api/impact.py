@@ -20,9 +20,6 @@ from rocking.reports.body_facts import (
 )
 
 router = APIRouter(prefix="/api", tags=["impact"])
-_ABOUT = """\
-The keys of `rocking cor --json`; `measured` and `curves` for the picture; `stages` by foot with velocities at points
-of the body for the three stages of KED; `warnings` in plain words, each with the models that it concerns."""
 _HELD: Remembered[JsonAnswer] = Remembered(64)
 
 Shares: Any = shape(
@@ -104,12 +101,14 @@ ImpactAnswered: Any = shape(
 @router.post(
     "/impact",
     summary="What an impact costs",
-    description=_ABOUT,
-    response_class=JsonAnswer,
     responses=answered(ImpactAnswered, "Every model, the measurements, and the three stages."),
 )
 async def impact(request: Request, asked: ImpactAsked) -> JsonAnswer:
-    """Answer with coefficients, evidence and stages."""
+    """Answer with the keys of `rocking cor --json`, and what its pictures are drawn from.
+
+    `measured` and `curves` are for the picture; `stages` by foot has velocities at points of the body for the three
+    stages of KED; `warnings` are in plain words, each with the models that it concerns.
+    """
     return await sized(request, size_of(asked.body), answer, asked)
 
 

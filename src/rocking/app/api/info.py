@@ -15,7 +15,6 @@ from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, g
 from rocking.version import __version__
 
 router = APIRouter(prefix="/api", tags=["info"])
-_ABOUT = "Version, engine, models, pulses, families of motions, formats, units, measures, axes of maps and limits."
 PARAMETERS = {
     "amplitude": ("m/s2", "peak acceleration"),
     "velocity": ("m/s", "velocity amplitude"),
@@ -100,15 +99,9 @@ Info: Any = shape(
 )
 
 
-@router.get(
-    "/info",
-    summary="What there is to choose from",
-    description=_ABOUT,
-    response_class=JsonAnswer,
-    responses=answered(Info, "What there is."),
-)
+@router.get("/info", summary="What there is to choose from", responses=answered(Info, "What there is."))
 def info(request: Request) -> JsonAnswer:
-    """Answer with version, engine, models, pulses, families, formats, units, measures, axes, kinds and limits."""
+    """Answer with version, engine, models, pulses, families of motions, formats, units, measures, axes and limits."""
     limits = {**asdict(state_of(request).settings.limits), **CAPS}
     return JsonAnswer({**_constant(), "limits": limits})
 

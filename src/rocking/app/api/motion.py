@@ -18,10 +18,6 @@ from rocking.plots.traces import fine_samples, traces
 from rocking.reports.motion_facts import measures_of, motion_facts
 
 router = APIRouter(prefix="/api", tags=["motion"])
-_ABOUT = """\
-The keys of `rocking motion --json` but its spectrum; `series` as drawn over `points` dots, each with the extremes of
-every curve, between the two times of `window` if given; `spectrum` at 100 periods for 5 % damping; `measures` as a
-list."""
 _HELD: Remembered[JsonAnswer] = Remembered(32)
 
 DAMPING = 0.05
@@ -84,15 +80,13 @@ MotionAnswered: Any = shape(
 )
 
 
-@router.post(
-    "/motion",
-    summary="What a motion is",
-    description=_ABOUT,
-    response_class=JsonAnswer,
-    responses=answered(MotionAnswered, "The motion."),
-)
+@router.post("/motion", summary="What a motion is", responses=answered(MotionAnswered, "The motion."))
 async def motion(request: Request, asked: MotionAsked) -> JsonAnswer:
-    """Answer with facts, curves, spectrum and measures."""
+    """Answer with the keys of `rocking motion --json` but its spectrum.
+
+    `series` is as drawn over `points` dots, each with the extremes of every curve, between the two times of `window` if
+    given; `spectrum` at 100 periods for 5 % damping; `measures` as a list.
+    """
     return await heavy(request, _answer, asked, state_of(request).records)
 
 

@@ -33,10 +33,6 @@ _FOR_PROGRAMS = "; say "
 
 _ORDER = ("format", "units", "time_step", "component")
 router = APIRouter(prefix="/api/records", tags=["records"])
-_ABOUT = """\
-The content of a record file of any format. `record` of the answer is its SHA-256, by which the inputs name it; `needs`
-says what must still be told (`units`, `time_step`, `component`, `format`), `choices` what may be said. The same file
-can be sent again with what was missing; a file that no format can read is refused and not kept."""
 _STATIONS = b"<FDSNStationXML"
 _WAY = (
     "this page takes no StationXML. Turn counts into m/s2 in Python and send the file that is written: "
@@ -80,12 +76,7 @@ RecordFacts: Any = shape(
 
 
 @router.post(
-    "",
-    summary="Send a record file",
-    description=_ABOUT,
-    response_class=JsonAnswer,
-    responses=answered(RecordFacts, "What the file holds."),
-    openapi_extra=FILE_SENT,
+    "", summary="Send a record file", responses=answered(RecordFacts, "What the file holds."), openapi_extra=FILE_SENT
 )
 async def add_record(
     request: Request,
@@ -94,30 +85,23 @@ async def add_record(
     units: Word = None,
     time_step: Step = None,
 ) -> JsonAnswer:
-    """Answer with what the file holds and what must still be told; time_step where the file states none [s]."""
+    """Keep a record file of any format, and answer with what it holds.
+
+    `record` of the answer is its SHA-256, by which the inputs name it; `needs` says what must still be told (`units`,
+    `time_step`, `component`, `format`), `choices` what may be said. The same file can be sent again with what was
+    missing; a file that no format can read is refused and not kept.
+    """
     content, stated = await request.body(), _stated(format, units, time_step)
     return JsonAnswer(await heavy(request, _added, state_of(request).records, content, name, stated))
 
 
-@router.get(
-    "",
-    summary="All record files",
-    description="What is kept, the latest first.",
-    response_class=JsonAnswer,
-    responses=answered(list[RecordKept], "The files."),
-)
+@router.get("", summary="All record files", responses=answered(list[RecordKept], "The files."))
 def list_records(request: Request) -> JsonAnswer:
     """Answer with what is kept, the latest first."""
     return JsonAnswer([asdict(one) for one in state_of(request).records.stored()])
 
 
-@router.get(
-    "/{record}",
-    summary="What a record file holds",
-    description="As when it was sent.",
-    response_class=JsonAnswer,
-    responses=answered(RecordFacts, "What the file holds."),
-)
+@router.get("/{record}", summary="What a record file holds", responses=answered(RecordFacts, "What the file holds."))
 async def look_at_record(
     request: Request, record: Sha, format: Word = None, units: Word = None, time_step: Step = None
 ) -> JsonAnswer:
@@ -126,13 +110,7 @@ async def look_at_record(
     return JsonAnswer(await heavy(request, _looked, state_of(request).records, record, stated))
 
 
-@router.delete(
-    "/{record}",
-    summary="Remove a record file",
-    description="Gone, from memory too.",
-    response_class=JsonAnswer,
-    responses=answered(Deleted, "What is no longer kept."),
-)
+@router.delete("/{record}", summary="Remove a record file", responses=answered(Deleted, "What is no longer kept."))
 def delete_record(request: Request, record: Sha) -> JsonAnswer:
     """Answer with the hash of what is no longer kept."""
     state_of(request).records.delete(record)

@@ -27,11 +27,6 @@ from rocking.reports.response_facts import ModelAgreement, finite, moved_facts, 
 from rocking.spec.response import ResponseProblem
 
 router = APIRouter(prefix="/api", tags=["response"])
-_ABOUT = """\
-One answer for every restitution, in the order in which they were chosen: the keys of `rocking simulate --json`, and
-`series` as drawn over `points` dots, each with the extremes of every curve, between the two times of `window` if given;
-states just before and just after every impact, and where the body turns round, are among them. `verdict` says
-whether the choice of the model decides. A restitution that has no response for this body has `label` and `error`."""
 MOST_SAMPLES = 500_000
 """Samples of a response whose forces and energy are computed here."""
 
@@ -167,12 +162,16 @@ ResponseAnswered: Any = shape(
 @router.post(
     "/response",
     summary="How the body rocks",
-    description=_ABOUT,
-    response_class=JsonAnswer,
     responses=answered(ResponseAnswered, "One answer for every restitution, and what they say together."),
 )
 async def response(request: Request, inputs: ResponseAsked) -> JsonAnswer:
-    """Answer with responses, verdict, outline and motion."""
+    """Answer for every restitution, in the order in which they were chosen, with the keys of `rocking simulate --json`.
+
+    `series` is as drawn over `points` dots, each with the extremes of every curve, between the two times of `window` if
+    given; states just before and just after every impact, and where the body turns round, are among them. `verdict`
+    says whether the choice of the model decides. A restitution that has no response for this body has `label` and
+    `error`.
+    """
     return JsonAnswer(await heavy(request, _answer, inputs, state_of(request).records))
 
 

@@ -22,18 +22,13 @@ from rocking.reports.motion_facts import measures_of
 from rocking.reports.render import response_pdf
 from rocking.reports.response_document import PICTURES, ReportResults, ReportSubject, response_document
 
-router = APIRouter(prefix="/api", tags=["take away"])
+router = APIRouter(prefix="/api", tags=["take away"], default_response_class=Answer)
 
 Place = Annotated[int | None, Query(ge=0, description="which response, counted from 0; the first if left out")]
 _DATE = "day that is printed on the report, as 2026-11-21; none if left out"
 
 
-@router.post(
-    "/report.pdf",
-    response_class=Answer,
-    summary="The report as PDF",
-    responses=answered_with_file("The report.", "application/pdf"),
-)
+@router.post("/report.pdf", summary="The report as PDF", responses=answered_with_file("The report.", "application/pdf"))
 async def report(
     request: Request, inputs: ResponseInputs, date: Annotated[datetime.date | None, Query(description=_DATE)] = None
 ) -> Answer:
@@ -47,7 +42,6 @@ async def report(
 
 @router.post(
     "/animation.{kind}",
-    response_class=Answer,
     summary="The body in motion",
     responses=answered_with_file("The animation.", *MEDIA_TYPES.values()),
 )
@@ -63,7 +57,6 @@ async def animation(
 
 @router.post(
     "/inputs.toml",
-    response_class=Answer,
     summary="The inputs as a file of the command line",
     responses=answered_with_file("What `rocking simulate` takes.", "application/toml"),
 )
@@ -75,7 +68,6 @@ async def inputs_file(request: Request, inputs: Inputs) -> Answer:
 
 @router.post(
     "/inputs.zip",
-    response_class=Answer,
     summary="The inputs with their record",
     responses=answered_with_file("The file of inputs, the record, and what to type.", "application/zip"),
 )
@@ -89,8 +81,8 @@ async def inputs_bundle(request: Request, inputs: Inputs) -> Answer:
     "/inputs/read",
     openapi_extra=FILE_SENT,
     summary="A file of inputs, read again",
-    response_class=JsonAnswer,
     responses=answered(Inputs, "The inputs."),
+    response_class=JsonAnswer,
 )
 async def inputs_read(request: Request) -> JsonAnswer:
     """Return the inputs that a file of inputs holds, or the archive of it and its record, which is kept."""

@@ -54,14 +54,11 @@ _SMALL = 0.2
 
 _SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
 
-router = APIRouter(prefix="/api", tags=["take away"])
+router = APIRouter(prefix="/api", tags=["take away"], default_response_class=Answer)
 
 
 @router.post(
-    "/picture/{what}.{kind}",
-    response_class=Answer,
-    summary="A picture",
-    responses=answered_with_file("The picture.", *MEDIA_TYPES.values()),
+    "/picture/{what}.{kind}", summary="A picture", responses=answered_with_file("The picture.", *MEDIA_TYPES.values())
 )
 async def picture(
     request: Request,

@@ -48,14 +48,11 @@ MOST_CELLS = 2_000_000
 _UNITS = {"m_s2": "m/s2", "rad_s": "rad/s", "rad": "rad", "kg_m2": "kg m2", "kg": "kg", "m": "m"}
 """Endings of keys; the longer ones come first."""
 
-router = APIRouter(prefix="/api", tags=["take away"])
+router = APIRouter(prefix="/api", tags=["take away"], default_response_class=Answer)
 
 
 @router.post(
-    "/table/{what}.{kind}",
-    response_class=Answer,
-    summary="A table",
-    responses=answered_with_file("The table.", *MEDIA_TYPES.values()),
+    "/table/{what}.{kind}", summary="A table", responses=answered_with_file("The table.", *MEDIA_TYPES.values())
 )
 async def table(
     request: Request,

@@ -65,87 +65,59 @@ class PointAsked(BaseModel):
 
 
 @router.post(
-    "",
-    status_code=202,
-    summary="Launch a study",
-    description=_JOB,
-    name="create_study",
-    response_class=JsonAnswer,
-    responses=answered(Launched, "It is in line.", 202),
+    "", status_code=202, summary="Launch a study", description=_JOB, responses=answered(Launched, "It is in line.", 202)
 )
-async def _create_study(request: Request, asked: StudyAsked) -> JsonAnswer:
+async def create_study(request: Request, asked: StudyAsked) -> JsonAnswer:
     """Put a study in line."""
     made = await heavy(request, _studies(request).create, asked.name, asked.job)
     return JsonAnswer({"id": made}, status_code=202)
 
 
-@router.get(
-    "",
-    summary="All studies",
-    name="list_studies",
-    response_class=JsonAnswer,
-    responses=answered(Studies, "The studies."),
-)
-async def _list_studies(request: Request) -> JsonAnswer:
+@router.get("", summary="All studies", responses=answered(Studies, "The studies."))
+async def list_studies(request: Request) -> JsonAnswer:
     """Return all studies, the newest first."""
     return JsonAnswer({"studies": _studies(request).overview()})
 
 
-@router.websocket("/live", name="live_studies")
-async def _live_studies(socket: WebSocket) -> None:
+@router.websocket("/live")
+async def live_studies(socket: WebSocket) -> None:
     """Push the list of studies whenever it changes."""
     await serve(state_of(socket).studies, socket)
 
 
-@router.get("/{study}", summary="One study", name="get_study", response_class=JsonAnswer, responses=_ONE)
-async def _get_study(request: Request, study: str) -> JsonAnswer:
+@router.get("/{study}", summary="One study", responses=_ONE)
+async def get_study(request: Request, study: str) -> JsonAnswer:
     """Return state and progress of a study."""
     return JsonAnswer(_studies(request).get(study))
 
 
-@router.post(
-    "/{study}/cancel",
-    summary="Stop a study; it can be resumed",
-    name="cancel_study",
-    response_class=JsonAnswer,
-    responses=_ONE,
-)
-async def _cancel_study(request: Request, study: str) -> JsonAnswer:
+@router.post("/{study}/cancel", summary="Stop a study; it can be resumed", responses=_ONE)
+async def cancel_study(request: Request, study: str) -> JsonAnswer:
     """Stop a study within a second."""
     await run_in_threadpool(_studies(request).cancel, study)
     return JsonAnswer(_studies(request).get(study))
 
 
-@router.post(
-    "/{study}/resume", summary="Go on with a study", name="resume_study", response_class=JsonAnswer, responses=_ONE
-)
-async def _resume_study(request: Request, study: str) -> JsonAnswer:
+@router.post("/{study}/resume", summary="Go on with a study", responses=_ONE)
+async def resume_study(request: Request, study: str) -> JsonAnswer:
     """Put a study in line again."""
     await run_in_threadpool(_studies(request).resume, study)
     return JsonAnswer(_studies(request).get(study))
 
 
 @router.delete(
-    "/{study}",
-    summary="Delete a study and its results",
-    name="delete_study",
-    response_class=JsonAnswer,
-    responses=answered(Deleted, "What is no longer there."),
+    "/{study}", summary="Delete a study and its results", responses=answered(Deleted, "What is no longer there.")
 )
-async def _delete_study(request: Request, study: str) -> JsonAnswer:
+async def delete_study(request: Request, study: str) -> JsonAnswer:
     """Forget a study."""
     await run_in_threadpool(_studies(request).delete, study)
     return JsonAnswer({"deleted": study})
 
 
 @router.get(
-    "/{study}/result",
-    summary="What a study found, by its kind",
-    name="study_result",
-    response_class=JsonAnswer,
-    responses=answered(StudyResult, "What it found."),
+    "/{study}/result", summary="What a study found, by its kind", responses=answered(StudyResult, "What it found.")
 )
-async def _study_result(request: Request, study: str) -> Response:
+async def study_result(request: Request, study: str) -> Response:
     """Return what a finished study found."""
     manager = _studies(request)
     manager.finished(study)
@@ -157,11 +129,9 @@ async def _study_result(request: Request, study: str) -> Response:
 @router.get(
     "/{study}/cell",
     summary="The history behind a point of its picture",
-    name="study_cell",
-    response_class=JsonAnswer,
     responses=answered(HistoryAnswer, "The history."),
 )
-async def _study_cell(request: Request, study: str, point: Annotated[PointAsked, Query()]) -> Response:
+async def study_cell(request: Request, study: str, point: Annotated[PointAsked, Query()]) -> Response:
     """Return inputs and response of one history of a finished study."""
     manager = _studies(request)
     manager.finished(study)
@@ -172,10 +142,9 @@ async def _study_cell(request: Request, study: str, point: Annotated[PointAsked,
     "/{study}/export.{kind}",
     summary="A finished study as a file",
     response_class=Response,
-    name="export_study",
     responses=answered_with_file("The study.", *MEDIA_TYPES.values()),
 )
-async def _export_study(
+async def export_study(
     request: Request,
     study: str,
     kind: Kind,
