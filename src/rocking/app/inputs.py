@@ -3,6 +3,7 @@
 import re
 import sys
 import tomllib
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
@@ -81,20 +82,20 @@ class BodyInput(BodyFile):
     @model_validator(mode="after")
     def _one_body(self) -> "BodyInput":
         sized = self.width is not None or self.height is not None
-        found = [key for key in BODIES if getattr(self, key) is not None] + ["width and height"] * sized
-        if len(found) != 1:
+        present = [key for key in BODIES if getattr(self, key) is not None] + ["width and height"] * sized
+        if len(present) != 1:
             choice = ", ".join(("width and height", *BODIES))
-            raise refused(f"a body has exactly one of {choice}, got {' and '.join(found) or 'none'}")
+            raise refused(f"a body has exactly one of {choice}, got {' and '.join(present) or 'none'}")
         if sized and (self.width is None or self.height is None):
             raise refused(f"{'width' if self.width is None else 'height'} is missing")
         if not sized and (self.depth is not None or self.density is not None):
-            raise refused(f"depth and density of a {found[0]} stand in its own table")
+            raise refused(f"depth and density of a {present[0]} stand in its own table")
         for k, region in enumerate(self.section.region if self.section else ()):
             for key in ("geojson", "dxf"):
                 if getattr(region, key) is not None:
                     raise refused(f"section.region[{k}].{key}: {_UPLOAD}")
         check_size(self)
-        _refuse_subnormal(self.table(), "")
+        _refuse_subnormal(self.table())
         return self
 
     def table(self) -> dict[str, Any]:
@@ -102,17 +103,18 @@ class BodyInput(BodyFile):
         return self.model_dump(exclude_none=True, exclude_unset=True)
 
 
-def _refuse_subnormal(table: Any, key: str) -> None:
+def _refuse_subnormal(value: Any, key: str = "") -> None:
     """Refuse numbers that have lost digits already: what is computed from them would have none that are right."""
-    if isinstance(table, float) and 0.0 < abs(table) < sys.float_info.min:
-        least = f"{sys.float_info.min:.3g}"
-        raise refused(f"{key} is {table!r}, too small for a number with all its digits ({least}); a wrong unit?")
-    if isinstance(table, dict):
-        for name, value in table.items():
-            _refuse_subnormal(value, f"{key}.{name}" if key else name)
-    if isinstance(table, (list, tuple)):
-        for place, value in enumerate(table):
-            _refuse_subnormal(value, f"{key}[{place}]")
+    match value:
+        case float() if 0.0 < abs(value) < sys.float_info.min:
+            least = f"{sys.float_info.min:.3g}"
+            raise refused(f"{key} is {value!r}, too small for a number with all its digits ({least}); a wrong unit?")
+        case dict():
+            for name, each in value.items():
+                _refuse_subnormal(each, f"{key}.{name}" if key else name)
+        case list() | tuple():
+            for place, each in enumerate(value):
+                _refuse_subnormal(each, f"{key}[{place}]")
 
 
 def refuse_more(count: int, most: int, what: str, way_out: str = "") -> None:
@@ -147,7 +149,10 @@ def check_file(content: bytes, name: str) -> None:
 def check_record(content: bytes) -> None:
     """Refuse a record file of far more numbers than a record has, before any of them is read."""
     if _MINISEED.match(content):
-        check_samples(_packed_samples(content))
+        # what the headers announce, and not one sample fewer than are decoded
+        check_samples(
+            sum(_announced(content[head.start() : head.start() + 48]) for head in _MINISEED.finditer(content))
+        )
         return
     if len(content) <= MOST_RECORD_SAMPLES or b"\0" in content:
         return
@@ -156,27 +161,16 @@ def check_record(content: bytes) -> None:
     check_samples(int(np.count_nonzero(between[:-1] & ~between[1:])) + int(not between[0]))
 
 
-def _packed_samples(content: bytes) -> int:
-    """Return how many samples the headers of a miniSEED file announce, and not one fewer than are decoded."""
-    found = 0
-    for head in _MINISEED.finditer(content):
-        years = content[head.start() + 20 : head.start() + 22]
-        order: Literal["big", "little"] = "big" if 1900 <= int.from_bytes(years, "big") <= 2200 else "little"
-        found += int.from_bytes(content[head.start() + 30 : head.start() + 32], order)
-    return found
+def _announced(record: bytes) -> int:
+    """Return how many samples the header of a miniSEED record announces."""
+    order: Literal["big", "little"] = "big" if 1900 <= int.from_bytes(record[20:22], "big") <= 2200 else "little"
+    return int.from_bytes(record[30:32], order)
 
 
 def check_samples(count: int) -> None:
     """Refuse a record of too many samples."""
     what = "a record holds up to {most} numbers"
     refuse_more(count, MOST_RECORD_SAMPLES, what, "cut it, or leave out columns; Python reads longer ones")
-
-
-def check_contact(body: Body) -> Body:
-    """Return a body, unless its base touches the ground in too many places."""
-    what = "a base touches the ground in up to {most} separate stretches"
-    refuse_more(len(body.local_contact), MOST_STRETCHES, what, "leave out those that are no feet")
-    return body
 
 
 def size_of(table: BodyFile) -> int:
@@ -319,27 +313,23 @@ def parsed_toml(text: str) -> dict[str, Any]:
         raise Refused(f"this is not TOML that can be read: {' '.join(str(error).split())[:200]}") from error
     except (ValueError, RecursionError) as error:
         raise Refused("this is not TOML that can be read: nested too deeply, or a number is too long") from error
-    _check_values(tables)
+    for depth, level in enumerate(levels(tables)):
+        if depth >= _DEEPEST:
+            raise Refused(f"the TOML is nested deeper than {_DEEPEST}")
+        for value in level:
+            if type(value) is int and not -_LARGEST <= value < _LARGEST:  # not written out: that may be refused itself
+                raise Refused(f"a whole number of {value.bit_length()} bits in the TOML does not fit into 64 bits")
+            if any("\0" in text for text in (value if isinstance(value, dict) else [value]) if isinstance(text, str)):
+                raise Refused("a text in the TOML holds a NUL")
     return tables
 
 
-def _check_values(tables: dict[str, Any]) -> None:
-    level: list[Any] = [tables]
-    for _ in range(_DEEPEST):
-        for each in level:
-            _check_value(each)
+def levels(value: Any) -> Iterator[list[Any]]:
+    """Return what lies in tables and lists, level by level from the outside in: no recursion, however deep it is."""
+    level = [value]
+    while level:
+        yield level
         level = [item for each in level for item in _inside(each)]
-        if not level:
-            return
-    raise Refused(f"the TOML is nested deeper than {_DEEPEST}")
-
-
-def _check_value(value: Any) -> None:
-    if type(value) is int and not -_LARGEST <= value < _LARGEST:  # not written out: that itself may be refused
-        raise Refused(f"a whole number of {value.bit_length()} bits in the TOML does not fit into 64 bits")
-    words = value if isinstance(value, dict) else (value,) if isinstance(value, str) else ()
-    if any("\0" in word for word in words):
-        raise Refused("a text in the TOML holds a NUL")
 
 
 def _inside(value: Any) -> list[Any]:
@@ -378,17 +368,16 @@ def motion_from(table: MotionInput, records: "RecordStore") -> Motion:
 def _body(table: BodyInput) -> Body:
     with blamed("body"):
         try:
-            return _check_inertia(check_contact(body_of(table.table(), None)))
+            body = body_of(table.table(), None)
+            what = "a base touches the ground in up to {most} separate stretches"
+            refuse_more(len(body.local_contact), MOST_STRETCHES, what, "leave out those that are no feet")
+            mass, inertia = body.mass, body.moment_of_inertia
+            if min(mass, inertia or mass) < _LIGHTEST:
+                raise InvalidValueError(
+                    f"mass {mass:.3g} kg and moment of inertia {inertia:.3g} kg m2 must be > {_LIGHTEST:g}, below "
+                    "which digits are lost; is a density or a mass in a wrong unit?"
+                )
         except InvalidValueError as error:
             kind = type(error.__cause__) if isinstance(error.__cause__, RockingError) else InvalidValueError
             raise kind(str(error)) from error
-
-
-def _check_inertia(body: Body) -> Body:
-    mass, inertia = body.mass, body.moment_of_inertia
-    if min(mass, inertia or mass) < _LIGHTEST:
-        raise InvalidValueError(
-            f"mass {mass:.3g} kg and moment of inertia {inertia:.3g} kg m2 must be > {_LIGHTEST:g}, below which digits "
-            "are lost; is a density or a mass in a wrong unit?"
-        )
-    return body
+        return body

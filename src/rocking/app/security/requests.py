@@ -4,7 +4,7 @@ import asyncio
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import AsyncIterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
@@ -191,61 +191,47 @@ class BodyLimits:
             self._held -= len(body)
 
     async def _read(self, head: RequestHead, receive: Receive, body: bytearray) -> None:
-        is_file = content_type(head) == BYTES
+        is_file, depth = content_type(head) == BYTES, self._limits.json_depth
         most = self._limits.upload_bytes if is_file else self._limits.json_bytes
         try:
             async with asyncio.timeout(self._limits.body_seconds):
                 await self._fill(head, receive, body, most)
         except TimeoutError as error:
             raise Refused(f"the body did not arrive within {self._limits.body_seconds:g} s", status=408) from error
-        if is_file:
-            return
-        if len(body) > _LONG_JSON:
-            await asyncio.to_thread(check_json, bytes(body), self._limits.json_depth)
-        else:
-            check_json(bytes(body), self._limits.json_depth)
+        if len(body) > _LONG_JSON and not is_file:
+            await asyncio.to_thread(check_json, bytes(body), depth)
+        elif not is_file:
+            check_json(bytes(body), depth)
 
     async def _fill(self, head: RequestHead, receive: Receive, body: bytearray, most: int) -> None:
-        declared, pieces = head.headers.get("content-length", "0"), _Pieces(receive)
+        declared, pieces = head.headers.get("content-length", "0"), _pieces(receive)
         length = float(declared) if declared.isdecimal() else math.inf
+        too_large = TooLarge(f"the body is larger than {most / MEBIBYTE:g} MiB")
         if length > most:
             if length <= _DRAINED:
                 await _drain(pieces)
-            raise TooLarge(_too_large(most))
+            raise too_large
         async for piece in pieces:
             if len(body) + len(piece) > most:
                 await _drain(pieces)
-                raise TooLarge(_too_large(most))
+                raise too_large
             if self._held + len(piece) > self._limits.bytes_in_flight:
                 raise Busy("too many files arrive at once; try again in a moment", seconds=2)
             self._held += len(piece)
             body += piece
 
 
-def _too_large(most: int) -> str:
-    return f"the body is larger than {most / MEBIBYTE:g} MiB"
-
-
-class _Pieces:
-    def __init__(self, receive: Receive) -> None:
-        self._receive = receive
-        self._more = True
-
-    def __aiter__(self) -> "_Pieces":
-        return self
-
-    async def __anext__(self) -> bytes:
-        if not self._more:
-            raise StopAsyncIteration
-        message = await self._receive()
+async def _pieces(receive: Receive) -> AsyncIterator[bytes]:
+    more = True
+    while more:
+        message = await receive()
         if message["type"] == "http.disconnect":
             raise Gone
-        self._more = message.get("more_body", False)
-        piece: bytes = message.get("body", b"")
-        return piece
+        more = message.get("more_body", False)
+        yield message.get("body", b"")
 
 
-async def _drain(pieces: _Pieces) -> None:
+async def _drain(pieces: AsyncIterator[bytes]) -> None:
     """Read on for a while: a browser shows the refusal only once it has sent what it wanted."""
     drained = 0
     async for piece in pieces:
@@ -255,51 +241,38 @@ async def _drain(pieces: _Pieces) -> None:
 
 
 def _again(body: bytes, receive: Receive) -> Receive:
-    sent = False
+    whole: list[Message] = [{"type": "http.request", "body": body, "more_body": False}]
 
-    async def whole() -> Message:
-        nonlocal sent
-        if sent:
-            return await receive()
-        sent = True
-        return {"type": "http.request", "body": body, "more_body": False}
+    async def again() -> Message:
+        return whole.pop() if whole else await receive()
 
-    return whole
+    return again
 
 
 def check_json(data: bytes, depth: int) -> None:
     """Refuse a text that is not plain JSON."""
     if not data.strip():
         return
-    _check_depth(data, depth)
+    level = 0
+    for match in _BRACKETS.finditer(data):
+        level += (match[0] in b"[{") - (match[0] in b"]}")
+        if level > depth:
+            raise Refused(f"the JSON is nested deeper than {depth}")
     try:
         text = data.decode("utf-8")
-        json.loads(text, parse_constant=_constant, parse_float=_float, parse_int=_int, object_pairs_hook=_object)
+        value = json.loads(
+            text, parse_constant=_constant, parse_float=_float, parse_int=_int, object_pairs_hook=_object
+        )
+        if "\\ud" in text.lower():
+            json.dumps(value, ensure_ascii=False).encode("utf-8")
     except UnicodeDecodeError as error:
         raise Refused("the JSON is not in UTF-8") from error
-    except json.JSONDecodeError as error:
-        raise Refused(f"this is not JSON: {error.msg} at line {error.lineno}, column {error.colno}") from error
-    lower = text.lower()
-    if "\\u0000" in lower or "\0" in text:
-        raise Refused("a text in the JSON holds a NUL")
-    if "\\ud" in lower:
-        _check_characters(text)
-
-
-def _check_depth(data: bytes, most: int) -> None:
-    depth = 0
-    for match in _BRACKETS.finditer(data):
-        mark = match[0]
-        depth += (mark in b"[{") - (mark in b"]}")
-        if depth > most:
-            raise Refused(f"the JSON is nested deeper than {most}")
-
-
-def _check_characters(text: str) -> None:
-    try:
-        json.dumps(json.loads(text), ensure_ascii=False).encode("utf-8")
     except UnicodeEncodeError as error:
         raise Refused("a text in the JSON holds half a character (a lone surrogate)") from error
+    except json.JSONDecodeError as error:
+        raise Refused(f"this is not JSON: {error.msg} at line {error.lineno}, column {error.colno}") from error
+    if "\\u0000" in text.lower() or "\0" in text:
+        raise Refused("a text in the JSON holds a NUL")
 
 
 def _constant(word: str) -> NoReturn:

@@ -2,14 +2,15 @@
 
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 from pydantic import ValidationError
 
 from rocking.app.errors import TooLarge
-from rocking.app.inputs import MOTION_KEYS, BodyInput
+from rocking.app.inputs import MOTION_KEYS, BodyInput, levels
 from rocking.app.plain_text import toml_of
 from rocking.bodies.formats.words import sentence, suggestion
 from rocking.errors import InvalidValueError
@@ -125,32 +126,24 @@ def _listed(value: Any) -> list[Any]:
 
 def _check_extent(tables: Any) -> None:
     """Refuse what is nested or long beyond any job, before anything walks through it by recursion."""
-    level, count = [tables], 0
-    for _ in range(_DEEPEST):
-        level = [item for each in level for item in _inside(each)]
+    count = -1  # the job itself is none of its values
+    for depth, level in enumerate(levels(tables)):
         count += len(level)
         if count > _MOST_VALUES:
             raise InvalidValueError(f"job must have at most {_MOST_VALUES} values, got more; write ranges for lists")
-        if not level:
-            return
-    raise InvalidValueError(f"job must be nested at most {_DEEPEST} deep, got more; as job files are")
-
-
-def _inside(value: Any) -> list[Any]:
-    if isinstance(value, dict):
-        return list(value.values())
-    return value if isinstance(value, list) else []
+        if depth >= _DEEPEST:
+            raise InvalidValueError(f"job must be nested at most {_DEEPEST} deep, got more; as job files are")
 
 
 def _refuse_files(tables: dict[str, Any]) -> None:
     """Refuse files by name: what is not on this page is uploaded, and then named by its hash."""
-    for each in _within(tables.get("body")):
+    for each in chain.from_iterable(levels(tables.get("body"))):
         for key in each if isinstance(each, dict) else ():
             if key in _FILES:
                 raise InvalidValueError(f"body: {key} names a file, which a page cannot do; upload the file instead")
             if key not in _BODY_KEYS:
                 raise InvalidValueError(f"body: unknown key {key!r:.60}{suggestion(key, _BODY_KEYS)}")
-    for word in _within(tables.get("restitution")):
+    for word in chain.from_iterable(levels(tables.get("restitution"))):
         if isinstance(word, str) and file_of(word.strip()):  # it would be run
             raise InvalidValueError(
                 f"restitution: {word!r:.60} names a file, which a page cannot do; see rocking campaign"
@@ -172,13 +165,6 @@ def _refuse_record_files(table: dict[str, Any]) -> None:
                 f"motions.records must be SHA-256 hashes of uploaded records (64 hexadecimal digits), "
                 f"got {name!r:.60}; upload the file first"
             )
-
-
-def _within(value: Any) -> Iterator[Any]:
-    """Return a value and all that lies in it, from the outside in."""
-    yield value
-    for each in _inside(value):
-        yield from _within(each)
 
 
 def _sizes(document: CampaignDocument) -> list[int]:
