@@ -55,6 +55,7 @@ class DistributedImpulse(InertiaModel):
     domain = "every body and q >= 0 for which the base leaves the ground behind it; otherwise the body stops: r = 0"
     known_defects = ("q is an interface property that has to be chosen or fitted",)
     inertia_only = True
+    trials = ("", "q=0", "q=0.5", "q=4")
 
     def __post_init__(self) -> None:
         """Refuse an exponent that is no pressure law."""

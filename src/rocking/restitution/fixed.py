@@ -41,10 +41,13 @@ class Fixed(RestitutionModel):
     domain = "0 <= r <= 1"
     known_defects = ("does not know the body: it may break the energy bound of an asymmetric one",)
     inertia_only = True
+    keeps_energy = sees_old_foot = False
+    trials = ("r=0.7",)
 
     def __post_init__(self) -> None:
         """Refuse what is no coefficient."""
         checks.within("r", self.r, 0.0, 1.0, hint="a velocity ratio; is it an energy ratio or a percentage?")
+        object.__setattr__(self, "slender_limit", self.r)
         plausibility.warn(plausibility.of_coefficient(self.r))
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:

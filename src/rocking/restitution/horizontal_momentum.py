@@ -21,7 +21,7 @@ class HorizontalMomentum(InertiaModel):
     """
 
     name = "horizontal-momentum"
-    can_stop = False
+    can_stop = sees_old_foot = False
     short_name = "horizontal momentum (cos\N{SUPERSCRIPT TWO}\N{GREEK SMALL LETTER ALPHA})"
     colour, linestyle = "#009E73", "-."
     legend = r"cos$^2\,\alpha$"

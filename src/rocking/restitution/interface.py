@@ -42,6 +42,7 @@ class Interface(RestitutionModel):
     name: ClassVar[str] = "interface"
     title: ClassVar[str] = "a geometric model times an interface factor"
     reference: ClassVar[str] = "this project"
+    sees_old_foot: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         """Refuse a factor that would create energy, and wrap once only."""
@@ -49,8 +50,9 @@ class Interface(RestitutionModel):
         if not isinstance(wrapped, RestitutionModel):
             raise UnknownModelError(f"an interface factor wraps a model object, got {wrapped!r:.60}")
         checks.within("eta", self.eta, 0.0, 1.0, open_low=True, hint="the interface factor can only lose energy")
-        for words in ("assumptions", "domain", "known_defects", "inertia_only"):
-            object.__setattr__(self, words, getattr(self.model, words))
+        for name in ("assumptions", "domain", "known_defects", "inertia_only", "keeps_energy"):
+            object.__setattr__(self, name, getattr(self.model, name))
+        object.__setattr__(self, "slender_limit", self.eta * self.model.slender_limit)
 
     @property
     def parameters(self) -> dict[str, float]:

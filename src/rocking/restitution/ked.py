@@ -120,7 +120,7 @@ class Ked(RestitutionModel):
     """
 
     name = "ked"
-    can_stop = False
+    can_stop = sees_old_foot = False
     short_name = "KED"
     colour, linestyle = "#D55E00", "-"
     title = "kinetic energy distribution over the mass points (the paper)"

@@ -73,6 +73,14 @@ class RestitutionModel(ABC):
         Whether it claims to depend on mass, centre, polar inertia and feet alone.
     can_stop : bool
         Whether its equation can give r <= 0, where the body stops instead of stepping on.
+    keeps_energy : bool
+        Whether no impact creates energy, onto the longer lever either.
+    sees_old_foot : bool
+        Whether an impact onto the foot that the body stands on, which is none, costs nothing.
+    slender_limit : float
+        Coefficient that slender rectangles tend to [-].
+    trials : tuple of str
+        Parameters, as in a label, with which the tests that every model shares try it.
 
     Examples
     --------
@@ -98,6 +106,10 @@ class RestitutionModel(ABC):
     known_defects: ClassVar[tuple[str, ...]] = ()
     inertia_only: ClassVar[bool] = False
     can_stop: ClassVar[bool] = True
+    keeps_energy: ClassVar[bool] = True
+    sees_old_foot: ClassVar[bool] = True
+    slender_limit: ClassVar[float] = 1.0
+    trials: ClassVar[tuple[str, ...]] = ("",)
 
     @abstractmethod
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
