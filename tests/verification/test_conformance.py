@@ -1,8 +1,8 @@
 """What every restitution model promises, tried on every registered one over random asymmetric bodies.
 
 A new model is picked up by its registration, with the parameters that its class has for trials. Where its class says
-that it breaks an identity (sections 1.4, 1.5 and 1.7 of the physics specification), the breach itself is asserted: it is
-the negative control.
+that it breaks an identity (sections 1.4, 1.5 and 1.7 of the physics specification), the breach itself is asserted: it
+is the negative control.
 """
 
 import math

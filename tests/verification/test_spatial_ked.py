@@ -12,12 +12,19 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rocking as rk
-from rocking.bodies.solid import Part, Solid, box, cylinder, frustum
+from rocking.bodies.solid import Corner, Part, Solid, box, cylinder, frustum
 from rocking.dynamics import SpatialStart
 from rocking.dynamics.space import SpatialBody, attitude
 from rocking.dynamics.space.impact_laws import law_of
 from rocking.errors import InvalidValueError
-from rocking.restitution.space import SpatialKed, SpatialKedPoint, edge_coefficient, impact_in_space, spatial_models
+from rocking.restitution.space import (
+    SpatialImpact,
+    SpatialKed,
+    SpatialKedPoint,
+    edge_coefficient,
+    impact_in_space,
+    spatial_models,
+)
 
 UP = np.array([0.0, 0.0, 1.0])
 TOWER = SpatialBody.box(1.0, 1.3, 4.0)
@@ -203,6 +210,12 @@ def test_a_solid_far_from_the_origin_is_the_same_body():
         np.testing.assert_allclose(second.impacts[name][:count], first.impacts[name][:count], rtol=1e-9)
 
 
+def between_corners(body, velocity=(0.3, 1.0, 0.1), **more):
+    """An impact from a corner onto the next one."""
+    first, second = body.vertices[:2]
+    return SpatialImpact(body.moments, np.array(velocity), first, Corner(second), **more)
+
+
 @pytest.mark.parametrize("law", ["ked-3d", "ked", SpatialKed(), "ked-3d-point", SpatialKedPoint()])
 def test_a_body_of_moments_alone_is_refused_by_ked(law):
     """Mass, centre and inertia do not say where the mass is: refused at the door with what is needed."""
@@ -210,7 +223,7 @@ def test_a_body_of_moments_alone_is_refused_by_ked(law):
     with pytest.raises(InvalidValueError, match=r"distribution of mass.*SpatialBody.of\(solid\)"):
         rk.free_rocking(bare, restitution=law, start=SpatialStart(0.1))
     with pytest.raises(InvalidValueError, match="distribution of mass"):
-        law_of(law).velocity_after(bare, bare.vertices[0], bare.vertices[1], None, UP, np.array([0.3, 1.0, 0.1]))
+        law_of(law).velocity_after(bare, between_corners(bare))
     for other in ("housner-3d", "horizontal-momentum-3d", 0.9):
         rk.free_rocking(bare, restitution=other, start=SpatialStart(0.1), duration=0.5)
 
@@ -230,6 +243,6 @@ def test_what_is_no_vertical_is_refused():
     """An up that is no unit vector, or not finite, is an error and no number."""
     for up in (np.array([0.0, 0.0, 2.0]), np.array([0.0, math.nan, 1.0])):
         with pytest.raises(InvalidValueError, match="unit vector"):
-            law_of("housner-3d").velocity_after(SQUARE, *SQUARE.vertices[:2], None, up, np.array([0.3, 1.0, 0.1]))
+            between_corners(SQUARE, up=up)
     with pytest.raises(InvalidValueError, match="rad/s"):
-        law_of("housner-3d").velocity_after(SQUARE, *SQUARE.vertices[:2], None, UP, np.array([0.3, math.nan, 0.1]))
+        law_of("housner-3d").velocity_after(SQUARE, between_corners(SQUARE, (0.3, math.nan, 0.1)))

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rocking.bodies.solid import Corner, Edge, Part, Solid, box, cylinder, ellipsoid, frustum, rotation_about
-from rocking.restitution.space import LeaningImpact, SpatialKedPoint, energy_left, impact_in_space, spatial_models
+from rocking.restitution.space import SpatialImpact, SpatialKedPoint, energy_left, impact_in_space, spatial_models
 from rocking.restitution.space.integrals import edge_frame, kept_moments
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -24,7 +24,7 @@ LANDINGS = {"corner": Corner(np.array([0.5, 0.65, 0.0])), "edge": Edge(np.array(
 
 
 def leaning(solid, onto, velocity, up, pivot=(-0.5, -0.65, 0.0)):
-    return LeaningImpact(
+    return SpatialImpact(
         solid.local_moments, np.array(velocity), np.array(pivot), onto, np.array(up), lambda: (solid, np.zeros(3))
     )
 
@@ -210,7 +210,7 @@ def test_an_upright_leaning_impact_is_the_impact_in_space():
     prism = Solid(Part(box(1.0, 1.0, 4.0)).moved(0.5, 0.5, 0.0))
     result = impact_in_space(prism, [0.3, 1.0, 0.1], pivot=(0, 0), onto=(1, 0), model="ked-3d-point")
     moments = prism.local_moments
-    impact = LeaningImpact(
+    impact = SpatialImpact(
         type(moments)(moments.mass, prism.centre, moments.second),
         np.array([0.3, 1.0, 0.1]),
         np.zeros(3),

@@ -10,8 +10,8 @@ import rocking as rk
 from rocking.bodies.solid import Corner, Edge, Part, Solid, box, cylinder
 from rocking.dynamics import SpatialStart
 from rocking.restitution.space import (
-    LeaningImpact,
     SpatialFlag,
+    SpatialImpact,
     SpatialKed,
     impact_in_space,
 )
@@ -95,7 +95,7 @@ def test_a_landing_in_steps(steps, lost):
     places, kept, along = np.linspace(-0.5, 0.5, steps + 1), 1.0, np.array([0.0, 1.0, 0.0])
     for old, new in pairwise(places):
         onto = Edge(np.array([new, 0.0, 0.0]), along)
-        impact = LeaningImpact(
+        impact = SpatialImpact(
             solid.local_moments, along, np.array([old, 0.0, 0.0]), onto, matter=lambda: (solid, np.zeros(3))
         )
         made = SpatialKed().turned(impact)
@@ -131,7 +131,7 @@ def states(solid, count, seed):
 
 
 def impact_of(solid, old, new, velocity):
-    return LeaningImpact(solid.local_moments, velocity, old, Corner(new), matter=lambda: (solid, np.zeros(3)))
+    return SpatialImpact(solid.local_moments, velocity, old, Corner(new), matter=lambda: (solid, np.zeros(3)))
 
 
 @pytest.mark.parametrize("name", BODIES)

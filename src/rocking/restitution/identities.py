@@ -2,7 +2,6 @@
 
 import math
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from rocking.bodies import Body, MassPoints
@@ -14,6 +13,16 @@ from rocking.restitution.model import RestitutionModel
 _EXACT = 1e-9
 # Feet this far apart, relative to the base, stand for coincident ones; sound models are then within its square root.
 _NEARLY_COINCIDENT = 1e-6
+_STATEMENTS = {
+    "scale": "the coefficient does not depend on size",
+    "density": "the coefficient does not depend on density",
+    "mirror": "the mirror image has the same coefficient",
+    "coincident pivots": "with both feet in one place there is no impact and nothing is lost",
+    "inertia alone": "bodies with the same mass, centre, inertia and base have the same coefficient",
+    "energy bound": "the impact creates no energy, r^2 I_O' <= I_O",
+    "round trip": "an impact onto each foot gains nothing, r r' <= 1",
+    "impulse on the base": "the implied impulse acts on the base, k <= 1",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,88 +83,37 @@ def identity_report(body: Body, model: RestitutionModel, *, onto: Foot = "right"
     >>> [check.name for check in report if not check.holds]
     ['coincident pivots', 'inertia alone']
     """
+    (left, right), x = body.feet, body.centre[0]
+    gap = 0.5 * _NEARLY_COINCIDENT * (right - left)
     with warnings.catch_warnings():
         # bodies that are only tried: grown, lighter, with both feet almost at one place
         warnings.simplefilter("ignore", PlausibilityWarning)
-        return tuple(check(body, model, onto) for check in _CHECKS)
-
-
-def _scale(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
-    here = model.coefficient(body, onto)
-    found = model.coefficient(body.scaled(size=3.7), onto)
-    return _equal("scale", "the coefficient does not depend on size", here, found)
-
-
-def _density(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
-    here = model.coefficient(body, onto)
-    found = model.coefficient(body.scaled(density=3.7), onto)
-    return _equal("density", "the coefficient does not depend on density", here, found)
-
-
-def _mirror(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
-    here = model.coefficient(body, onto)
-    found = model.coefficient(body.mirrored(), opposite(onto))
-    return _equal("mirror", "the mirror image has the same coefficient", here, found)
-
-
-def _coincident(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
-    (left, right), x = body.feet, body.centre[0]
-    gap = 0.5 * _NEARLY_COINCIDENT * (right - left)
-    found = model.coefficient(body.with_feet(x - gap, x + gap), onto)
-    statement = "with both feet in one place there is no impact and nothing is lost"
-    return _equal("coincident pivots", statement, 1.0, found, math.sqrt(_NEARLY_COINCIDENT))
-
-
-def _inertia_alone(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
-    here = model.coefficient(body, onto)
-    others = [model.coefficient(twin, onto) for twin in _dumbbells(body)]
-    found = max(others, key=lambda value: abs(value - here))
-    statement = "bodies with the same mass, centre, inertia and base have the same coefficient"
-    return _equal("inertia alone", statement, here, found)
-
-
-def _energy(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
-    result = implied(body, model.coefficient(body, onto), onto=onto)
-    return IdentityCheck(
-        "energy bound",
-        "the impact creates no energy, r^2 I_O' <= I_O",
-        result.largest_coefficient,
-        result.coefficient,
-        result.within_energy,
-    )
-
-
-def _round_trip(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
-    there, back = model.coefficient(body, onto), model.coefficient(body, opposite(onto))
-    holds = there * back <= 1.0 + _EXACT  # Eq. 113
-    return IdentityCheck("round trip", "an impact onto each foot gains nothing, r r' <= 1", 1.0, there * back, holds)
-
-
-def _on_base(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
-    result = implied(body, model.coefficient(body, onto), onto=onto)
-    return IdentityCheck(
-        "impulse on the base",
-        "the implied impulse acts on the base, k <= 1",
-        1.0,
-        result.impulse_ratio,
-        result.within_base,
-    )
-
-
-_CHECKS: tuple[Callable[[Body, RestitutionModel, Foot], IdentityCheck], ...] = (
-    _scale,
-    _density,
-    _mirror,
-    _coincident,
-    _inertia_alone,
-    _energy,
-    _round_trip,
-    _on_base,
-)
-
-
-def _equal(name: str, statement: str, expected: float, found: float, tolerance: float = _EXACT) -> IdentityCheck:
-    return IdentityCheck(name, statement, expected, found, abs(found - expected) <= tolerance)
+        here, back = model.coefficient(body, onto), model.coefficient(body, opposite(onto))
+        others = {
+            "scale": model.coefficient(body.scaled(size=3.7), onto),
+            "density": model.coefficient(body.scaled(density=3.7), onto),
+            "mirror": model.coefficient(body.mirrored(), opposite(onto)),
+            "coincident pivots": model.coefficient(body.with_feet(x - gap, x + gap), onto),
+            "inertia alone": max(
+                (model.coefficient(twin, onto) for twin in _dumbbells(body)), key=lambda value: abs(value - here)
+            ),
+        }
+    means = implied(body, here, onto=onto)
+    bounds = {
+        "energy bound": (means.largest_coefficient, here, means.within_energy),
+        "round trip": (1.0, here * back, here * back <= 1.0 + _EXACT),  # Eq. 113
+        "impulse on the base": (1.0, means.impulse_ratio, means.within_base),
+    }
+    checks = []
+    for name, statement in _STATEMENTS.items():
+        if name in bounds:
+            expected, found, holds = bounds[name]
+        else:
+            pivots = name == "coincident pivots"
+            expected, found = 1.0 if pivots else here, others[name]
+            holds = abs(found - expected) <= (math.sqrt(_NEARLY_COINCIDENT) if pivots else _EXACT)
+        checks.append(IdentityCheck(name, statement, expected, found, holds))
+    return tuple(checks)
 
 
 def _dumbbells(body: Body) -> list[MassPoints]:

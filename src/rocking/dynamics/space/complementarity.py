@@ -13,14 +13,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rocking.bodies.solid import Corner, Edge
 from rocking.conventions import FloatArray
 from rocking.dynamics.space import contact_mode
 from rocking.dynamics.space.attitude import cross
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.contact_mode import ContactSet
-from rocking.dynamics.space.impact_laws import SpatialImpactLaw, projected
+from rocking.dynamics.space.impact_laws import PLASTIC, SpatialImpactLaw
 from rocking.outcome import ContactMode
 from rocking.portable import applied, dot, norm, solution
+from rocking.restitution.space import SpatialImpact
 
 _ROUNDING = 1e-9
 
@@ -36,18 +38,22 @@ class SpatialState:
     # of a body on an edge, from the pivot to the other end of the edge; zero on a vertex [m]; shape (3,)
     along: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(3))
 
-    def nearest(self, contact: ContactSet) -> FloatArray:
-        """Return the point at rest that is nearest to a new contact: from there laws measure the step.
+    def impact(self, body: SpatialBody, contact: ContactSet) -> SpatialImpact:
+        """Return the impact onto a contact; laws measure the step from the point at rest that is nearest to it."""
+        onto = Corner(contact.pivot) if contact.axis is None else Edge(contact.pivot, contact.axis)
+        length, pivot = float((self.along * self.along).sum()), self.pivot
+        if length > 0.0:
+            middle = contact.pivot if contact.axis is None else contact.pivot + 0.5 * contact.length * contact.axis
+            share = float(((middle - pivot) * self.along).sum()) / length
+            pivot = pivot + min(max(share, 0.0), 1.0) * self.along
+        return SpatialImpact(body.moments, self.velocity, pivot, onto, self.up, body.matter)
 
-        Returns the pivot, or a point of the edge, in body axes [m].
-        """
-        length = float((self.along * self.along).sum())
-        if length == 0.0:
-            return self.pivot
-        middle = contact.pivot if contact.axis is None else contact.pivot + 0.5 * contact.length * contact.axis
-        share = float(((middle - self.pivot) * self.along).sum()) / length
-        nearest: FloatArray = self.pivot + min(max(share, 0.0), 1.0) * self.along
-        return nearest
+    def plastic(self, body: SpatialBody, contact: ContactSet) -> FloatArray:
+        """Return the angular velocity that the plastic impact without slip leaves on a contact [rad/s]."""
+        if contact.mode is ContactMode.REST:
+            return np.zeros(3)
+        onto = Corner(contact.pivot) if contact.axis is None else Edge(contact.pivot, contact.axis)
+        return PLASTIC.turned(SpatialImpact(body.moments, self.velocity, self.pivot, onto))
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,16 +84,15 @@ def of_impact(
     found = []
     scale = float(np.abs(state.velocity).max()) * body.size
     for contact in candidates(body, touching):
-        plastic = _after(body, state, contact)
-        push = impulses(body, state, contact, plastic)
+        velocity = state.plastic(body, contact)
+        push = impulses(body, state, contact, velocity)
         if push.min() < -_ROUNDING * body.mass * scale:
             continue
-        velocity = plastic
         if contact.mode is not ContactMode.REST:
-            velocity = law.velocity_after(
-                body, state.nearest(contact), contact.pivot, contact.axis, state.up, state.velocity
-            )
-        if _opening(body, contact, velocity, state.up, touching) >= -_ROUNDING * scale:
+            velocity = law.velocity_after(body, state.impact(body, contact))
+        others = [i for i in touching if i not in contact.points]
+        opening = applied(cross(velocity, body.vertices[others] - contact.pivot), state.up)
+        if not others or opening.min() >= -_ROUNDING * scale:
             found.append(Continuation(contact, velocity, push))
     return found
 
@@ -100,32 +105,20 @@ def of_forces(
     Returns empty if the ground would have to pull.
     """
     found: list[Continuation] = []
-    scale = norm(state.field)
-    for contact in [] if first is None else [first]:
-        _try_forces(body, state, contact, touching, scale, found)
-    for contact in candidates(body, touching):
-        if first is None or contact.points != first.points:
-            _try_forces(body, state, contact, touching, scale, found)
+    scale, every = norm(state.field), list(candidates(body, touching))
+    if first is not None:
+        every = [first, *(contact for contact in every if contact.points != first.points)]
+    for contact in every:
+        velocity = state.plastic(body, contact)
+        rate, push = forces(body, contact, velocity, state.up, state.field)
+        if push.min() < -_ROUNDING * body.mass * scale:
+            continue
+        arms = body.vertices - contact.pivot
+        opening = applied(cross(rate, arms) + cross(velocity, cross(velocity, arms)), state.up)
+        others = [i for i in touching if i not in contact.points]
+        if not others or opening[others].min() >= -_ROUNDING * scale:
+            found.append(Continuation(contact, velocity, push))
     return found
-
-
-def _try_forces(
-    body: SpatialBody,
-    state: SpatialState,
-    contact: ContactSet,
-    touching: tuple[int, ...],
-    scale: float,
-    found: list[Continuation],
-) -> None:
-    velocity = _after(body, state, contact)
-    rate, push = forces(body, contact, velocity, state.up, state.field)
-    if push.min() < -_ROUNDING * body.mass * scale:
-        return
-    spin = cross(velocity, cross(velocity, body.vertices - contact.pivot))
-    opening = applied(cross(rate, body.vertices - contact.pivot) + spin, state.up)
-    others = [i for i in touching if i not in contact.points]
-    if not others or opening[others].min() >= -_ROUNDING * scale:
-        found.append(Continuation(contact, velocity, push))
 
 
 def impulses(body: SpatialBody, state: SpatialState, contact: ContactSet, velocity: FloatArray) -> FloatArray:
@@ -161,19 +154,3 @@ def forces(
     moment = applied(inertia, rate) + gyroscopic - weight  # Eq. 91
     force = body.mass * (cross(rate, arm) + cross(velocity, cross(velocity, arm)) - field)  # Eq. 91
     return rate, contact_mode.supports(body, contact, force, moment, up)
-
-
-def _after(body: SpatialBody, state: SpatialState, contact: ContactSet) -> FloatArray:
-    if contact.mode is ContactMode.REST:
-        return np.zeros(3)
-    return projected(body, state.pivot, contact.pivot, contact.axis, state.velocity)
-
-
-def _opening(
-    body: SpatialBody, contact: ContactSet, velocity: FloatArray, up: FloatArray, touching: tuple[int, ...]
-) -> float:
-    """Least speed with which a touching point that does not stay leaves the ground."""
-    others = [i for i in touching if i not in contact.points]
-    if not others:
-        return 0.0
-    return float(applied(cross(velocity, body.vertices[others] - contact.pivot), up).min())

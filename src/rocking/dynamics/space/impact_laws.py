@@ -7,13 +7,12 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 
 from rocking import checks
-from rocking.bodies.solid import Corner, Edge
 from rocking.conventions import FloatArray
 from rocking.dynamics.space.body import SpatialBody
 from rocking.errors import InvalidValueError
 from rocking.portable import dot
-from rocking.restitution.space import SpatialHousner, SpatialModel, spatial_model
-from rocking.restitution.space.impact import NO_MATTER, UP, LeaningImpact
+from rocking.restitution.space import SpatialHousner, SpatialImpact, SpatialModel, spatial_model
+from rocking.restitution.space.impact import NO_MATTER
 
 
 @runtime_checkable
@@ -28,34 +27,20 @@ class SpatialImpactLaw(Protocol):
         """What to call it in titles and tables."""
         ...
 
-    def velocity_after(
-        self,
-        body: SpatialBody,
-        before: FloatArray,
-        after: FloatArray,
-        axis: FloatArray | None,
-        up: FloatArray,
-        velocity: FloatArray,
-    ) -> FloatArray:
+    def velocity_after(self, body: SpatialBody, impact: SpatialImpact) -> FloatArray:
         """Return the angular velocity after an impact.
 
         Parameters
         ----------
         body : SpatialBody
             The body.
-        before, after : ndarray, shape (3,)
-            Pivots before and after, in body axes [m].
-        axis : ndarray, shape (3,), optional
-            Unit vector of the edge about which the body turns afterwards; None for a vertex [-].
-        up : ndarray, shape (3,)
-            Vertical in body axes [-].
-        velocity : ndarray, shape (3,)
-            Angular velocity before, in body axes [rad/s].
+        impact : SpatialImpact
+            Angular velocity and pivot before, the corner or edge that stays, and the vertical, in axes of the body.
 
         Returns
         -------
         ndarray, shape (3,)
-            Angular velocity after, in body axes; along `axis` if there is one [rad/s].
+            Angular velocity after, in axes of the body; along the edge if there is one [rad/s].
         """
         ...
 
@@ -71,42 +56,13 @@ class ModelLaw:
         """Name of the model."""
         return self.model.name
 
-    def velocity_after(
-        self,
-        body: SpatialBody,
-        before: FloatArray,
-        after: FloatArray,
-        axis: FloatArray | None,
-        up: FloatArray,
-        velocity: FloatArray,
-    ) -> FloatArray:
-        """Return the angular velocity after that the model gives, in body axes [rad/s]."""
-        onto = Corner(after) if axis is None else Edge(after, axis)
-        return self.model.turned(LeaningImpact(body.moments, velocity, before, onto, up, body.matter))
+    def velocity_after(self, body: SpatialBody, impact: SpatialImpact) -> FloatArray:
+        """Return the angular velocity that the model gives."""
+        return self.model.turned(impact)
 
 
-PLASTIC = ModelLaw(SpatialHousner())
-"""The plastic impact without slip on the points that stay; it does not ask where up is."""
-
-
-def projected(
-    body: SpatialBody, before: FloatArray, after: FloatArray, axis: FloatArray | None, velocity: FloatArray
-) -> FloatArray:
-    """Return the plastic impact without slip: the orthogonal projection of the velocities in the kinetic metric.
-
-    The impulse acts at the new pivot B, so angular momentum about B stays: ``I_B w+ = I_C w- + m rho_B x (w- x
-    rho_A)``; about an edge its component along the edge.
-
-    before, after: pivots before and after, in body axes [m]; axis: unit vector of the new edge; None for a vertex [-];
-    velocity: angular velocity before, in body axes [rad/s]. Returns angular velocity after, in body axes [rad/s].
-
-    >>> box = SpatialBody.box(1.0, 1.0, 4.0)  # corner to opposite corner: 59 / 71
-    >>> diagonal = np.array([1.0, -1.0, 0.0])
-    >>> ratio = projected(box, box.vertices[0], box.vertices[2], None, diagonal) / 59.0 * 71.0
-    >>> bool(np.abs(ratio - diagonal).max() < 1e-14)
-    True
-    """
-    return PLASTIC.velocity_after(body, before, after, axis, UP, velocity)  # Eq. 1
+PLASTIC = SpatialHousner()
+"""The plastic impact without slip: the orthogonal projection of the velocities in the kinetic metric."""
 
 
 class FixedSpatial:
@@ -129,22 +85,14 @@ class FixedSpatial:
         """The coefficient."""
         return f"{self.coefficient:.6g}"
 
-    def velocity_after(
-        self,
-        body: SpatialBody,
-        before: FloatArray,
-        after: FloatArray,
-        axis: FloatArray | None,
-        up: FloatArray,
-        velocity: FloatArray,
-    ) -> FloatArray:
-        """Return the scaled projection; angular velocity after, in body axes [rad/s]."""
-        made = projected(body, before, after, axis, velocity)
-        left = body.kinetic(after, made)
+    def velocity_after(self, body: SpatialBody, impact: SpatialImpact) -> FloatArray:
+        """Return the scaled projection."""
+        made = PLASTIC.turned(impact)  # Eq. 1
+        left = body.kinetic(impact.onto.point, made)
         if not left > 0.0:
             return made
-        bound = body.kinetic(before, velocity) / left
-        wanted = self.coefficient**2 * dot(velocity, velocity) / dot(made, made)
+        bound = body.kinetic(impact.pivot, impact.velocity) / left
+        wanted = self.coefficient**2 * dot(impact.velocity, impact.velocity) / dot(made, made)
         return np.asarray(math.sqrt(min(wanted, bound)) * made)  # Eq. 101
 
 

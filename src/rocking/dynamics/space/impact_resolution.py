@@ -17,7 +17,7 @@ from rocking.dynamics.space.complementarity import (
 )
 from rocking.dynamics.space.contact_mode import ContactSet
 from rocking.dynamics.space.event_functions import START_ROLLING, STOP_ROLLING
-from rocking.dynamics.space.impact_laws import SpatialImpactLaw, projected
+from rocking.dynamics.space.impact_laws import SpatialImpactLaw
 from rocking.outcome import ContactMode
 from rocking.portable import applied, dot, norm
 
@@ -40,9 +40,7 @@ def landed(body: SpatialBody, state: SpatialState, touching: tuple[int, ...], la
 def _least_pull(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> Continuation:
     best: Continuation | None = None
     for contact in candidates(body, touching):
-        velocity = np.zeros(3)
-        if contact.mode is not ContactMode.REST:
-            velocity = projected(body, state.pivot, contact.pivot, contact.axis, state.velocity)
+        velocity = state.plastic(body, contact)
         opening = applied(cross(velocity, body.vertices[list(touching)] - contact.pivot), state.up)
         if opening.min() < -1e-9 * float(np.abs(velocity).max()) * body.size:
             continue
@@ -62,9 +60,7 @@ def stuck(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> 
     Returns edge or face, after a plastic impact.
     """
     contact = next(candidates(body, touching))
-    velocity = np.zeros(3)
-    if contact.mode is not ContactMode.REST:
-        velocity = projected(body, state.pivot, contact.pivot, contact.axis, state.velocity)
+    velocity = state.plastic(body, contact)
     return Continuation(contact, velocity, impulses(body, state, contact, velocity))
 
 
@@ -84,9 +80,8 @@ def rim_landed(body: SpatialBody, state: SpatialState, law: SpatialImpactLaw) ->
     Returns what stays, and the angular velocity after.
     """
     far = contact_mode.rim(body, -state.pivot[:2])
-    plastic = projected(body, state.pivot, far.pivot, None, state.velocity)
-    push = impulses(body, state, far, plastic)
-    velocity = law.velocity_after(body, state.pivot, far.pivot, None, state.up, state.velocity)
+    push = impulses(body, state, far, state.plastic(body, far))
+    velocity = law.velocity_after(body, state.impact(body, far))
     opens = dot(cross(velocity, state.pivot - far.pivot), state.up) > 0.0
     if opens and push.min() >= 0.0:
         return Continuation(far, velocity, push)

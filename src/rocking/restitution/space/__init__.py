@@ -3,15 +3,13 @@
 from rocking.restitution.space.energies import UnitEnergies, lost_density, unit_energies
 from rocking.restitution.space.horizontal_momentum import SpatialHorizontalMomentum
 from rocking.restitution.space.housner import SpatialHousner
-from rocking.restitution.space.impact import LeaningImpact, RigidImpact, SpatialImpact
+from rocking.restitution.space.impact import SpatialImpact
 from rocking.restitution.space.interface import edge_coefficient, impact_in_space, spatial_model, spatial_models
 from rocking.restitution.space.ked import SpatialKedPoint, energy_left
 from rocking.restitution.space.ked_impulse import SpatialKed
 from rocking.restitution.space.model import SpatialFlag, SpatialModel, SpatialRestitution
 
 __all__ = [
-    "LeaningImpact",
-    "RigidImpact",
     "SpatialFlag",
     "SpatialHorizontalMomentum",
     "SpatialHousner",

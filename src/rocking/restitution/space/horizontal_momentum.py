@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 
 from rocking.conventions import FloatArray
-from rocking.portable import applied, dot
-from rocking.restitution.space.impact import RigidImpact, solved
+from rocking.restitution.space.impact import SpatialImpact
 from rocking.restitution.space.model import SpatialModel
 
 
@@ -29,10 +28,5 @@ class SpatialHorizontalMomentum(SpatialModel):
         "no force model stands behind it",
     )
 
-    def on_corner(self, impact: RigidImpact) -> FloatArray:
-        """Solve for the angular velocity with the angular momentum of the horizontal velocities."""
-        return solved(impact.inertia, impact.level_momentum)  # Eq. 102
-
-    def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
-        """Divide the angular momentum of the horizontal velocities by the moment of inertia about the edge."""
-        return dot(direction, impact.level_momentum) / dot(direction, applied(impact.inertia, direction))  # Eq. 89
+    def angular_velocity(self, impact: SpatialImpact) -> FloatArray:
+        return impact.with_momentum(impact.level_momentum)  # Eqs. 89, 102

@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 
 from rocking.conventions import FloatArray
-from rocking.portable import applied, dot
-from rocking.restitution.space.impact import RigidImpact, solved
+from rocking.restitution.space.impact import SpatialImpact
 from rocking.restitution.space.model import SpatialModel
 
 
@@ -30,10 +29,5 @@ class SpatialHousner(SpatialModel):
         "loses more than most measurements for bodies of slenderness below about 4",
     )
 
-    def on_corner(self, impact: RigidImpact) -> FloatArray:
-        """Solve for the angular velocity that keeps the angular momentum about the corner."""
-        return solved(impact.inertia, impact.angular_momentum)  # Eq. 88
-
-    def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
-        """Divide the angular momentum along the edge by the moment of inertia about it."""
-        return dot(direction, impact.angular_momentum) / dot(direction, applied(impact.inertia, direction))  # Eq. 89
+    def angular_velocity(self, impact: SpatialImpact) -> FloatArray:
+        return impact.with_momentum(impact.angular_momentum)  # Eqs. 88, 89

@@ -1,5 +1,6 @@
 """Models in space by name, and the two questions that are asked of them."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,10 +13,10 @@ from rocking.errors import GeometryError, InvalidValueError, UnknownModelError
 from rocking.portable import norm
 from rocking.restitution.space.horizontal_momentum import SpatialHorizontalMomentum
 from rocking.restitution.space.housner import SpatialHousner
-from rocking.restitution.space.impact import SpatialImpact
+from rocking.restitution.space.impact import Placed, SpatialImpact
 from rocking.restitution.space.ked import SpatialKedPoint
 from rocking.restitution.space.ked_impulse import SpatialKed
-from rocking.restitution.space.model import SpatialModel, SpatialRestitution
+from rocking.restitution.space.model import SpatialModel, SpatialRestitution, middle_of_base
 
 _MODELS: dict[str, type[SpatialModel]] = {
     kind.name: kind for kind in (SpatialHousner, SpatialHorizontalMomentum, SpatialKed, SpatialKedPoint)
@@ -110,7 +111,21 @@ def impact_in_space(solid: Solid, velocity: Any, *, pivot: Any, onto: Any, model
     before = vector("velocity", velocity, "rad/s")
     if isinstance(start, Edge) and np.abs(np.cross(before, start.direction)).max() > 1e-9 * np.abs(before).max():
         raise InvalidValueError("a body that turns about an edge has its angular velocity along that edge")
-    return spatial_model(model).after(SpatialImpact(solid, before, _nearest(solid, start, landing), landing))
+    pivot, speed = _nearest(solid, start, landing), norm(before)
+    if not speed > 0.0:
+        raise InvalidValueError("velocity must not be zero: a body at rest has no impact")
+    down = float(np.cross(before, middle_of_base(solid) - pivot)[2])
+    if not down < 1e-12 * speed * solid.size:
+        raise InvalidValueError(
+            f"velocity must turn the base onto the ground about the pivot; its middle rises at {down:.3g} m/s: "
+            "is the sign of the angular velocity wrong? The vector points along the axis, right-handed"
+        )
+    impact = SpatialImpact(solid.local_moments, before, pivot, landing, matter=partial(_placed, solid))
+    return spatial_model(model).after(impact)
+
+
+def _placed(solid: Solid) -> Placed:
+    return solid, np.zeros(3)
 
 
 def edge_coefficient(solid: Solid, model: Any = "ked-3d", *, start: float = 0, onto: float | None = None) -> float:

@@ -9,7 +9,7 @@ from rocking.bodies.solid import Edge
 from rocking.conventions import FloatArray
 from rocking.portable import applied, dot, times
 from rocking.restitution.space.horizontal_momentum import SpatialHorizontalMomentum
-from rocking.restitution.space.impact import RigidImpact
+from rocking.restitution.space.impact import SpatialImpact
 from rocking.restitution.space.integrals import kept_moments, line_moment
 from rocking.restitution.space.model import SpatialModel
 
@@ -48,26 +48,21 @@ class SpatialKedPoint(SpatialModel):
         "over its diagonal)",
     )
 
-    def on_corner(self, impact: RigidImpact) -> FloatArray:
+    def angular_velocity(self, impact: SpatialImpact) -> FloatArray:
         """Return the direction of the momentum left, times what gives it the energy left."""
-        direction = SpatialHorizontalMomentum().on_corner(impact)
+        direction = SpatialHorizontalMomentum().angular_velocity(impact)
+        if impact.edge is not None:
+            direction = np.sign(dot(impact.edge, direction)) * impact.edge
         twice = dot(direction, applied(impact.inertia, direction))
-        if twice == 0.0:
-            return direction
-        return direction * math.sqrt(2.0 * energy_left(impact) / twice)  # Eq. 21
-
-    def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
-        """Return the angular velocity that the energy left gives, with the sign of the momentum left."""
-        sign = float(np.sign(SpatialHorizontalMomentum().on_edge(impact, direction)))
-        return sign * math.sqrt(2.0 * energy_left(impact) / dot(direction, applied(impact.inertia, direction)))
+        return direction * math.sqrt(2.0 * energy_left(impact) / twice) if twice else direction  # Eq. 21
 
 
-def energy_left(impact: RigidImpact) -> float:
+def energy_left(impact: SpatialImpact) -> float:
     """Return the kinetic energy after stage 2, T'' [J].
 
     Parameters
     ----------
-    impact : RigidImpact
+    impact : SpatialImpact
         The impact, of a body in any attitude.
 
     Returns
@@ -87,7 +82,7 @@ def energy_left(impact: RigidImpact) -> float:
     return kept_moments(solid, onto).energy_left(drift, gradient)
 
 
-def _is_plane(impact: RigidImpact, edge: Edge, size: float) -> bool:
+def _is_plane(impact: SpatialImpact, edge: Edge, size: float) -> bool:
     """Whether the velocities across an edge are those of the plane: Eq. 17's one integral, exact for extrusions."""
     slow, across = _PLANE * impact.speed, np.cross(impact.up, edge.direction)
     upright = abs(impact.up[0]) + abs(impact.up[1]) <= _PLANE
@@ -95,13 +90,13 @@ def _is_plane(impact: RigidImpact, edge: Edge, size: float) -> bool:
     return bool(upright and still and abs(dot(impact.velocity, impact.up)) <= slow)
 
 
-def stage_velocities(impact: RigidImpact, points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def stage_velocities(impact: SpatialImpact, points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the velocities of mass points before the impact, after stage 1 and after stage 2."""
     arms = points - impact.onto.point
     before = times(arms, impact.spin.T) + impact.landing_velocity
     level = times(before, impact.level)
-    if isinstance(impact.onto, Edge):
-        allowed = _unit(np.cross(impact.onto.direction, arms))
+    if impact.edge is not None:
+        allowed = _unit(np.cross(impact.edge, arms))
         return before, level, allowed * (allowed * level).sum(axis=1)[:, None]  # Eq. 105
     outward = _unit(arms)
     return before, level, level - outward * (outward * level).sum(axis=1)[:, None]  # Eq. 105

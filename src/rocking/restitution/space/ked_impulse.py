@@ -8,7 +8,7 @@ import numpy as np
 from rocking.bodies.solid import Solid
 from rocking.conventions import FloatArray
 from rocking.portable import applied, dot
-from rocking.restitution.space.impact import RigidImpact
+from rocking.restitution.space.impact import SpatialImpact
 from rocking.restitution.space.impulse_position import impulse_position
 from rocking.restitution.space.model import SpatialFlag, SpatialModel
 
@@ -53,21 +53,23 @@ class SpatialKed(SpatialModel):
         "onto an edge through the old pivot, and onto the whole base, it is Housner's impact",
     )
 
-    def on_corner(self, impact: RigidImpact) -> FloatArray:
-        """Solve for the angular velocity that keeps the angular momentum about the impulse's point."""
-        return _stepped(impact, impact.onto.point - impact.pivot, None)
+    def angular_velocity(self, impact: SpatialImpact) -> FloatArray:
+        """Keep the angular momentum about the impulse's point; about an edge, its component along a parallel line."""
+        step, axis = _step(impact), impact.edge
+        k = min(_position(impact.solid, step), 1.0)
+        made = _kept(impact, step, k)
+        if k < 1.0 and _push(impact, made) < 0.0:
+            made = _kept(impact, step, 1.0)
+        after = 0.5 * dot(made, applied(impact.inertia, made))
+        if after > impact.energy:
+            made = made * math.sqrt(impact.energy / after)
+        return made if axis is None else dot(made, axis) * axis
 
-    def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
-        """Keep the component along the edge of the angular momentum about a parallel line."""
-        return dot(_stepped(impact, _across(impact, direction), direction), direction)
-
-    def flags(self, impact: RigidImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:
+    def flags(self, impact: SpatialImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:
         """Return whether k was cut, and whether the ground would have to pull."""
-        along = getattr(impact.onto, "direction", None)
-        step = impact.onto.point - impact.pivot if along is None else _across(impact, along)
-        found = [SpatialFlag.CUT] if self.cut(impact.placed_solid[0], step) else []
         scale = impact.moments.mass * impact.speed * float(np.abs(impact.moments.centre).max())
-        return (*found, SpatialFlag.PULLS) if _push(impact, velocity) < -_ROUNDING * scale else tuple(found)
+        pulls = _push(impact, velocity) < -_ROUNDING * scale
+        return (SpatialFlag.CUT,) * self.cut(impact.solid, _step(impact)) + (SpatialFlag.PULLS,) * pulls
 
     def cut(self, solid: Solid, step: FloatArray) -> bool:
         """Return whether k of a step was cut: the base is too narrow in this direction for the paper's loss.
@@ -87,10 +89,10 @@ class SpatialKed(SpatialModel):
         return _position(solid, step) > 1.0 + _ROUNDING
 
 
-def _across(impact: RigidImpact, direction: FloatArray) -> FloatArray:
+def _step(impact: SpatialImpact) -> FloatArray:
+    """From the old pivot to the landing point, or across the edge."""
     step = impact.onto.point - impact.pivot
-    across: FloatArray = step - dot(step, direction) * direction
-    return across
+    return step if impact.edge is None else step - dot(step, impact.edge) * impact.edge
 
 
 def _position(solid: Solid, step: FloatArray) -> float:
@@ -100,42 +102,27 @@ def _position(solid: Solid, step: FloatArray) -> float:
     return impulse_position(solid).at(step)
 
 
-def _stepped(impact: RigidImpact, step: FloatArray, axis: FloatArray | None) -> FloatArray:
-    k = min(_position(impact.placed_solid[0], step), 1.0)
-    made = _kept(impact, step, k, axis)
-    if k < 1.0 and _push(impact, made) < 0.0:
-        made = _kept(impact, step, 1.0, axis)
-    after = 0.5 * dot(made, applied(impact.inertia, made))
-    if after > impact.energy:
-        made = made * math.sqrt(impact.energy / after)
-    return made
-
-
-def _kept(impact: RigidImpact, step: FloatArray, k: float, axis: FloatArray | None) -> FloatArray:
+def _kept(impact: SpatialImpact, step: FloatArray, k: float) -> FloatArray:
     """Velocity with the angular momentum about X, which lies behind the landing point by (1 - k)/2 of the step."""
     arm, back = impact.moments.centre, 0.5 * (1.0 - k) * impact.moments.mass * step
     momentum = impact.angular_momentum + _cross(back, _centre_velocity(impact))
     inertia = impact.inertia + dot(back, arm) * np.eye(3) - arm[:, None] * back  # Eq. 103
-    if axis is not None:
-        return axis * (dot(axis, momentum) / dot(axis, applied(inertia, axis)))
-    return _solved(inertia, momentum)  # Eq. 103
+    if impact.edge is not None:
+        return impact.edge * (dot(impact.edge, momentum) / dot(impact.edge, applied(inertia, impact.edge)))
+    # Cramer's rule, since this matrix is not symmetric: the same on every processor
+    a, b, c = inertia.T
+    volume = dot(a, _cross(b, c))
+    return np.array([dot(momentum, _cross(*pair)) for pair in ((b, c), (c, a), (a, b))]) / volume  # Eq. 103
 
 
-def _centre_velocity(impact: RigidImpact) -> FloatArray:
+def _centre_velocity(impact: SpatialImpact) -> FloatArray:
     return _cross(impact.velocity, impact.moments.centre + impact.onto.point - impact.pivot)
 
 
-def _push(impact: RigidImpact, velocity: FloatArray) -> float:
+def _push(impact: SpatialImpact, velocity: FloatArray) -> float:
     """Vertical impulse of the ground [N s]."""
     change = _cross(velocity, impact.moments.centre) - _centre_velocity(impact)
     return impact.moments.mass * dot(impact.up, change)
-
-
-def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """Cramer's rule: the same on every processor."""
-    a, b, c = matrix.T
-    volume = dot(a, _cross(b, c))
-    return np.array([dot(right, _cross(b, c)), dot(right, _cross(c, a)), dot(right, _cross(a, b))]) / volume
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:

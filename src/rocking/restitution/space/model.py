@@ -7,11 +7,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from rocking.bodies.solid import Edge
+from rocking.bodies.solid import RoundBase, Solid, SupportPolygon
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.portable import applied, dot, norm
-from rocking.restitution.space.impact import RigidImpact, SpatialImpact
+from rocking.restitution.space.impact import SpatialImpact
 
 _TOUCH = 1e-12
 
@@ -104,43 +104,26 @@ class SpatialModel(ABC):
     needs_solid: ClassVar[bool] = False
 
     @abstractmethod
-    def on_corner(self, impact: RigidImpact) -> FloatArray:
-        """Return the angular velocity about the corner that the body lands on.
+    def angular_velocity(self, impact: SpatialImpact) -> FloatArray:
+        """Return what the model's equation gives about the corner or edge that the body lands on, in any attitude.
 
         Parameters
         ----------
-        impact : RigidImpact
-            The impact, onto a `Corner`.
+        impact : SpatialImpact
+            The impact.
 
         Returns
         -------
         ndarray, shape (3,)
-            Angular velocity [rad/s].
+            Angular velocity, along the edge if the body lands on one [rad/s].
         """
 
-    @abstractmethod
-    def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
-        """Return the angular velocity about the edge that the body lands on.
-
-        Parameters
-        ----------
-        impact : RigidImpact
-            The impact, onto an `Edge`.
-        direction : ndarray, shape (3,)
-            Unit vector along the edge [-].
-
-        Returns
-        -------
-        float
-            Angular velocity along the direction [rad/s].
-        """
-
-    def flags(self, impact: RigidImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:
+    def flags(self, impact: SpatialImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:
         """Return what a user must know of this model's answer.
 
         Parameters
         ----------
-        impact : RigidImpact
+        impact : SpatialImpact
             The impact.
         velocity : ndarray, shape (3,)
             Angular velocity after it [rad/s].
@@ -152,28 +135,25 @@ class SpatialModel(ABC):
         """
         return ()
 
-    def turned(self, impact: RigidImpact) -> FloatArray:
-        """Return the angular velocity that the model's equation gives, in any attitude of the body.
+    def turned(self, impact: SpatialImpact) -> FloatArray:
+        """Return `angular_velocity`, checked.
 
         Parameters
         ----------
-        impact : RigidImpact
+        impact : SpatialImpact
             The impact.
 
         Returns
         -------
         ndarray, shape (3,)
-            Angular velocity, along the edge if the body lands on one [rad/s].
+            Angular velocity [rad/s].
 
         Raises
         ------
         InvalidValueError
             If the model does not give finite numbers.
         """
-        if isinstance(impact.onto, Edge):
-            raw = self.on_edge(impact, impact.onto.direction) * impact.onto.direction
-        else:
-            raw = self.on_corner(impact)
+        raw = self.angular_velocity(impact)
         if not np.isfinite(raw).all():
             raise InvalidValueError(f"model {self.name} gives {raw.tolist()} rad/s for this impact")
         return raw
@@ -197,8 +177,28 @@ class SpatialModel(ABC):
             If the model does not give finite numbers.
         """
         raw = self.turned(impact)
-        said = self.flags(impact, raw)
-        sinks = impact.rise(raw) < -_TOUCH * impact.speed * impact.solid.size
-        if sinks and isinstance(impact.onto, Edge):
-            return SpatialRestitution(self, impact, raw, np.zeros(3), (*said, SpatialFlag.STOPS))
-        return SpatialRestitution(self, impact, raw, raw, (*said, SpatialFlag.PENETRATES) if sinks else said)
+        flags = self.flags(impact, raw)
+        if least_rise(impact, raw) >= -_TOUCH * impact.speed * impact.solid.size:
+            return SpatialRestitution(self, impact, raw, raw, flags)
+        if impact.edge is not None:
+            return SpatialRestitution(self, impact, raw, np.zeros(3), (*flags, SpatialFlag.STOPS))
+        return SpatialRestitution(self, impact, raw, raw, (*flags, SpatialFlag.PENETRATES))
+
+
+def least_rise(impact: SpatialImpact, velocity: FloatArray) -> float:
+    """Return the least vertical velocity of the base of an upright body that turns about its landing point [m/s]."""
+    base = impact.solid.local_base
+    points = base.vertices if isinstance(base, SupportPolygon) else middle_of_base(impact.solid)[None, :2]
+    arms = points - impact.onto.point[:2]
+    least = float((velocity[0] * arms[:, 1] - velocity[1] * arms[:, 0]).min())
+    return least - base.radius * norm(velocity[:2]) if isinstance(base, RoundBase) else least
+
+
+def middle_of_base(solid: Solid) -> FloatArray:
+    """Return the middle of the base in the solid's own frame [m]."""
+    base = solid.local_base
+    if isinstance(base, RoundBase):
+        flat = base.centre
+    else:
+        flat = base.vertices.mean(axis=0) if isinstance(base, SupportPolygon) else solid.local_moments.centre
+    return np.array([flat[0], flat[1], 0.0])

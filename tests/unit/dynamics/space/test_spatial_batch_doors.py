@@ -193,8 +193,8 @@ def test_laws_by_name_number_and_object():
     class Bouncy:
         label = "bouncy"
 
-        def velocity_after(self, body, before, after, axis, up, velocity):
-            return velocity
+        def velocity_after(self, body, impact):
+            return impact.velocity
 
     with pytest.raises(InvalidValueError, match="bouncy"):
         batch_law(Bouncy())

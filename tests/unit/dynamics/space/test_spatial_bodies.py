@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.bodies.solid import Corner, Edge
 from rocking.dynamics import Settings
 from rocking.dynamics.space import ContactMode, SpatialBody, attitude
 from rocking.dynamics.space.complementarity import SpatialState, forces, impulses, of_impact
@@ -14,7 +15,7 @@ from rocking.dynamics.space.ground import ground_of
 from rocking.dynamics.space.impact_laws import FixedSpatial, law_of
 from rocking.dynamics.space.impact_resolution import landed, started
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
-from rocking.restitution.space import SpatialHousner
+from rocking.restitution.space import SpatialHousner, SpatialImpact
 
 UP = np.array([0.0, 0.0, 1.0])
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -159,8 +160,9 @@ def test_where_nothing_stays_without_a_pull_the_least_pull_is_taken():
 def test_a_coefficient_of_nothing_is_nothing():
     """A body without velocity has none after an impact by a coefficient."""
     body, none = SpatialBody.box(0.8, 1.1, 3.0), np.zeros(3)
-    for axis in (None, body.edges[1]):
-        found = FixedSpatial(0.9).velocity_after(body, body.vertices[0], body.vertices[1], axis, UP, none)
+    for onto in (Corner(body.vertices[1]), Edge(body.vertices[1], body.edges[1])):
+        impact = SpatialImpact(body.moments, none, body.vertices[0], onto)
+        found = FixedSpatial(0.9).velocity_after(body, impact)
         np.testing.assert_array_equal(found, none)
 
 
@@ -247,7 +249,7 @@ def test_the_point_at_rest_that_is_nearest_to_a_new_stance():
             for new in (edge(body, other), vertex(body, other)):
                 target = new.pivot if new.axis is None else new.pivot + 0.5 * new.length * new.axis
                 least = np.linalg.norm(old.pivot + share * state.along - target, axis=1).min()
-                found = state.nearest(new)
+                found = state.impact(body, new).pivot
                 assert np.linalg.norm(found - target) == pytest.approx(least, abs=1e-7)
                 part = (found - old.pivot) @ old.axis / old.length
                 assert found == pytest.approx(old.pivot + min(max(part, 0.0), 1.0) * state.along, abs=1e-14)

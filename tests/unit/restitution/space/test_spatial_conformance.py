@@ -9,7 +9,7 @@ from rocking.dynamics import SpatialStart
 from rocking.dynamics.space import SpatialBody
 from rocking.dynamics.space.impact_laws import ModelLaw, law_of
 from rocking.errors import InvalidValueError
-from rocking.restitution.space import LeaningImpact, SpatialModel, spatial_model, spatial_models
+from rocking.restitution.space import SpatialImpact, SpatialModel, spatial_model, spatial_models
 
 MODELS = sorted(spatial_models())
 UP = np.array([0.0, 0.0, 1.0])
@@ -27,7 +27,7 @@ def leaning(solid, onto, *, up=LEAN, matter=True, speed=1.0):
         return solid, np.zeros(3)
 
     velocity = speed * np.array([0.3, 1.0, 0.1])
-    return LeaningImpact(solid.local_moments, velocity, np.array([-0.5, 0.1, 0.0]), onto, up, found if matter else None)
+    return SpatialImpact(solid.local_moments, velocity, np.array([-0.5, 0.1, 0.0]), onto, up, found if matter else None)
 
 
 class Bouncing(SpatialModel):
@@ -35,11 +35,8 @@ class Bouncing(SpatialModel):
 
     name = "bouncing-3d"
 
-    def on_corner(self, impact):
+    def angular_velocity(self, impact):
         return 1.5 * impact.velocity
-
-    def on_edge(self, impact, direction):
-        return 1.5 * float(np.linalg.norm(impact.velocity))
 
 
 def loses(model, impact):
@@ -99,16 +96,13 @@ def test_every_model_is_a_law_of_histories(name):
 
 
 def test_a_model_of_ones_own_rocks():
-    """A subclass with two methods serves as restitution without registration."""
+    """A subclass with one method serves as restitution without registration."""
 
     class Dead(SpatialModel):
         name = "dead-3d"
 
-        def on_corner(self, impact):
+        def angular_velocity(self, impact):
             return np.zeros(3)
-
-        def on_edge(self, impact, direction):
-            return 0.0
 
     run = rk.free_rocking(SpatialBody.box(1.0, 1.0, 4.0), restitution=Dead(), start=SpatialStart(0.1), duration=3.0)
     assert run.impacts["energy_after"][0] == 0.0
