@@ -38,7 +38,9 @@ def exported() -> dict[str, object]:
         for name in package.__all__:
             value = getattr(package, name)
             home = value.__name__ if isinstance(value, ModuleType) else "rocking"
-            for one in vars(value).values() if isinstance(value, ModuleType) else [value]:
+            # of a module what it exports itself, or all of one that does not say
+            names_of = getattr(value, "__all__", vars(value)) if isinstance(value, ModuleType) else ()
+            for one in [getattr(value, each) for each in names_of] or [value]:
                 if not callable(one) or not str(one.__module__).startswith(home) or one.__name__.startswith("_"):
                     continue
                 where = f"{one.__module__}.{one.__qualname__}"

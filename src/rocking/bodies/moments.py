@@ -58,94 +58,40 @@ def combined_plane(parts: Iterable[PlaneMoments]) -> PlaneMoments:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SolidMoments:
-    """Zeroth, first and central second moments of a mass distribution in space.
+    """Zeroth, first and central second moments of a mass distribution in space."""
 
-    Parameters
-    ----------
-    mass : float
-        Integral of dm [kg], or of dV [m3] for a bare shape.
-    centre : ndarray, shape (3,)
-        Centre of mass [m].
-    second : ndarray, shape (3, 3)
-        Integral of ``(S - centre)(S - centre)^T dm`` [kg m2].
-    """
-
-    mass: float
-    centre: FloatArray
-    second: FloatArray
+    mass: float  # integral of dm [kg], or of dV [m3] for a bare shape
+    centre: FloatArray  # centre of mass [m]; shape (3,)
+    second: FloatArray  # integral of (S - centre)(S - centre)^T dm [kg m2]; shape (3, 3)
 
     @property
     def inertia(self) -> FloatArray:
         """Inertia tensor about the centre, ``tr(J) 1 - J`` with J the second moments [kg m2]."""
-        tensor: FloatArray = float(np.trace(self.second)) * np.eye(3) - self.second
-        return tensor
+        return _inertia(self.second)
 
     def times(self, weight: float) -> "SolidMoments":
-        """Return the same shape with `weight` times the mass.
-
-        Parameters
-        ----------
-        weight : float
-            Factor, for instance a density.
-
-        Returns
-        -------
-        SolidMoments
-            Scaled mass and second moments, same centre.
-        """
+        """Return the same shape with `weight` times the mass."""
         return SolidMoments(self.mass * weight, self.centre, self.second * weight)
 
     def placed(self, rotation: FloatArray, translation: FloatArray) -> "SolidMoments":
-        """Return the moments of the rotated, then translated, distribution.
-
-        Parameters
-        ----------
-        rotation : ndarray, shape (3, 3)
-            Rotation matrix [-].
-        translation : ndarray, shape (3,)
-            Displacement [m].
-
-        Returns
-        -------
-        SolidMoments
-            Of the distribution in its new place.
-        """
+        """Return the moments of the distribution rotated [-], then translated [m]."""
         return SolidMoments(
             self.mass, applied(rotation, self.centre) + translation, times(times(rotation, self.second), rotation.T)
         )
 
     def second_about(self, point: FloatArray) -> FloatArray:
-        """Return the integral of ``(S - point)(S - point)^T dm`` (parallel axes).
-
-        Parameters
-        ----------
-        point : ndarray, shape (3,)
-            The point, in the same frame as the centre [m].
-
-        Returns
-        -------
-        ndarray, shape (3, 3)
-            Second moments [kg m2].
-        """
+        """Return the integral of ``(S - point)(S - point)^T dm`` (parallel axes) [kg m2]."""
         arm = self.centre - point
         return self.second + self.mass * np.outer(arm, arm)
 
     def inertia_about(self, point: FloatArray) -> FloatArray:
-        """Return the inertia tensor about a point.
+        """Return the inertia tensor about a point [kg m2]."""
+        return _inertia(self.second_about(point))
 
-        Parameters
-        ----------
-        point : ndarray, shape (3,)
-            The point, in the same frame as the centre [m].
 
-        Returns
-        -------
-        ndarray, shape (3, 3)
-            Inertia tensor [kg m2].
-        """
-        second = self.second_about(point)
-        tensor: FloatArray = float(np.trace(second)) * np.eye(3) - second
-        return tensor
+def _inertia(second: FloatArray) -> FloatArray:
+    tensor: FloatArray = float(np.trace(second)) * np.eye(3) - second
+    return tensor
 
 
 def combined(parts: Iterable[SolidMoments]) -> SolidMoments:

@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from textwrap import wrap
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.plots.style import broken
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,23 +52,15 @@ def place_in(region: BoolArray, words: str, panel: tuple[float, float], size: fl
         return None
     away = ndimage.distance_transform_edt(np.pad(region, 1))[1:-1, 1:-1]
     for lines in (1, 2, 3):
-        broken = _broken(words, lines)
-        rows, columns = _box(broken, panel, size)
+        lettering = broken(words, lines)
+        rows, columns = _box(lettering, panel, size)
         if rows >= FINE[0] or columns >= FINE[1]:
             continue
         inside = ndimage.minimum_filter(region, size=(rows, columns), mode="constant", cval=0)
         if inside.any():
             row, column = np.unravel_index(np.argmax(np.where(inside, away, -1.0)), FINE)
-            return LabelPlace((float(column) + 0.5) / FINE[1], (float(row) + 0.5) / FINE[0], broken)
+            return LabelPlace((float(column) + 0.5) / FINE[1], (float(row) + 0.5) / FINE[0], lettering)
     return None
-
-
-def _broken(words: str, lines: int) -> str:
-    """Return words in some lines of nearly equal length."""
-    width = len(words) // lines
-    while len(broken := wrap(words, max(width, 1), break_long_words=False)) > lines:
-        width += 1
-    return "\n".join(broken)
 
 
 def _box(words: str, panel: tuple[float, float], size: float) -> tuple[int, int]:

@@ -108,7 +108,8 @@ def _flips(axes: "Axes", found: Sensitivity, label: str) -> None:
     y, x = (base[name].values for name in verdict.dims)
     axes.pcolormesh(x, y, verdict.values, **_flip_colors(SAME))
     flips = found.flips_between(found.baseline, label)
-    words = f"{flips.count:,} of {flips.compared:,} flip ({percent(flips.share)})"
+    apart = "\n" if len(found.labels) > 4 else " "
+    words = f"{flips.count:,} of {flips.compared:,} flip{apart}({percent(flips.share)})"
     axes.set_title(words, loc="left", fontsize=7)
 
 

@@ -1,5 +1,6 @@
 """One journal style for every picture: sizes, colours, and files that come out the same every time."""
 
+import re
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from functools import wraps
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
+    from matplotlib.text import Text
+    from matplotlib.transforms import BboxBase
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -28,6 +31,9 @@ COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (6, 2)))
 MARKS = "osv^D<"
 """Okabe and Ito's colours, with a line and a mark for each so that grey print keeps them apart."""
+
+_OVERHANG = 12.0
+"""Dots by which a label may be longer than its axis."""
 
 DASHED = (0, (4, 2))
 """How limits are drawn."""
@@ -71,9 +77,49 @@ def in_journal_style(draw: Callable[P, T]) -> Callable[P, T]:
     def styled(*args: P.args, **options: P.kwargs) -> T:
         """Draw in the style."""
         with _style():
-            return draw(*args, **options)
+            from matplotlib.figure import Figure
+
+            drawn = draw(*args, **options)
+            if isinstance(drawn, Figure):
+                _fit_labels(drawn)
+            return drawn
 
     return styled
+
+
+def _fit_labels(figure: "Figure") -> None:
+    """Break labels that are longer than their axis, so that none is cut off or runs into its neighbour's."""
+    shown = [axes for axes in figure.axes if axes.get_visible()]
+    both = [(axes.bbox, axes.xaxis.label, "width") for axes in shown]
+    both += [(axes.bbox, axes.yaxis.label, "height") for axes in shown]
+    # what was broken by hand stays so
+    labels = [(box, label, side) for box, label, side in both if "\n" not in label.get_text()]
+    # panels are laid out, which takes its time, only where a label may be too long
+    if any(_excess(*one) > -0.15 * getattr(one[0], one[2]) for one in labels):
+        figure.draw_without_rendering()
+    for box, label, side in labels:
+        words, lines = label.get_text(), 1
+        while _excess(box, label, side) > _OVERHANG and lines < len(words.split()):
+            lines += 1
+            label.set_text(broken(words, lines))
+
+
+def _excess(box: "BboxBase", label: "Text", side: str) -> float:
+    """Return by how much a label is longer than its axis, in dots."""
+    return float(getattr(label.get_window_extent(), side) - getattr(box, side))
+
+
+def broken(words: str, lines: int) -> str:
+    r"""Return words in some lines of nearly equal length, formulas whole.
+
+    >>> broken("peak ground velocity [m/s]", 2)
+    'peak ground\nvelocity [m/s]'
+    """
+    whole = re.sub(r"\$[^$]*\$", lambda formula: formula[0].replace(" ", "\0"), words)
+    width = max(len(whole) // lines, 1)
+    while len(rows := wrap(whole, width, break_long_words=False, break_on_hyphens=False)) > lines:
+        width += 1
+    return "\n".join(rows).replace("\0", " ")
 
 
 def _style() -> AbstractContextManager[None]:

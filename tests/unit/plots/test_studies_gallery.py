@@ -15,8 +15,10 @@ from rocking.plots import (
     cloud_picture,
     difference_map_picture,
     inventory_picture,
+    labels,
     record_set_picture,
     refined_map_picture,
+    sensitivity_picture,
     transitions_of_many_picture,
 )
 from rocking.studies import (
@@ -215,3 +217,19 @@ def test_record_sets():
     for given, words in (({}, "sets must be 1 to 6"), ({"pulse": [PULSE, PULSE]}, "must have two ground motions")):
         with pytest.raises(InvalidValueError, match=words):
             record_set_picture(given)
+
+
+@pytest.mark.parametrize("count", [2, 6])
+def test_no_axis_label_is_longer_than_its_axis(count, monkeypatch):
+    """Long words are broken, however narrow the panel: no label is cut off or meets another; short ones stay."""
+    name, words = "period", "period of the strongest pulse within the record of the ground [s]"
+    axes = (name, [0.5, 1.0, 1.5, 2.0]), ("slenderness_ratio", [2.0, 3.0, 4.0, 5.0])
+    found = map_sensitivity(BLOCK, PULSE, *axes, np.linspace(0.7, 0.95, count).tolist())
+    monkeypatch.setitem(labels.SYMBOLS, name, words)
+    figure = drawn(sensitivity_picture(found))
+    panels = [panel for panel in figure.axes if panel.get_xlabel()]
+    assert len(panels) == count
+    for panel in panels:
+        assert panel.xaxis.label.get_window_extent().width <= panel.bbox.width + 12.0
+        assert panel.get_xlabel().split() == words.split()
+    assert figure.axes[0].get_ylabel() == "slenderness h/b [-]"

@@ -1,29 +1,25 @@
 """Bodies in space: parts of any shape and density on a base."""
 
-from rocking.bodies.moments import SolidMoments
-from rocking.bodies.solid.base import Base, Corner, Edge, RoundBase, SupportPolygon, hull
+from rocking.bodies.moments import SolidMoments as SolidMoments
+from rocking.bodies.solid.base import Base as Base
+from rocking.bodies.solid.base import Corner as Corner
+from rocking.bodies.solid.base import Edge as Edge
+from rocking.bodies.solid.base import RoundBase as RoundBase
+from rocking.bodies.solid.base import SupportPolygon as SupportPolygon
+from rocking.bodies.solid.base import hull as hull
 from rocking.bodies.solid.part import Part, rotation_about
-from rocking.bodies.solid.polyhedron import Polyhedron
-from rocking.bodies.solid.prism import Box, Prism, box, extrusion
-from rocking.bodies.solid.shape import Shape
+from rocking.bodies.solid.polyhedron import Polyhedron as Polyhedron
+from rocking.bodies.solid.prism import Prism as Prism
+from rocking.bodies.solid.prism import box, extrusion
+from rocking.bodies.solid.shape import Shape as Shape
 from rocking.bodies.solid.solid import Solid
-from rocking.bodies.solid.turned import Turned, cone, cylinder, ellipsoid, frustum, revolution, sphere_cap
+from rocking.bodies.solid.turned import Turned as Turned
+from rocking.bodies.solid.turned import cone, cylinder, ellipsoid, frustum, revolution, sphere_cap
 from rocking.bodies.solid.units import Units, divided, voxels
 
 __all__ = [
-    "Base",
-    "Box",
-    "Corner",
-    "Edge",
     "Part",
-    "Polyhedron",
-    "Prism",
-    "RoundBase",
-    "Shape",
     "Solid",
-    "SolidMoments",
-    "SupportPolygon",
-    "Turned",
     "Units",
     "box",
     "cone",
@@ -32,7 +28,6 @@ __all__ = [
     "ellipsoid",
     "extrusion",
     "frustum",
-    "hull",
     "revolution",
     "rotation_about",
     "sphere_cap",

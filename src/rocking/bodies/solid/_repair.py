@@ -12,9 +12,10 @@ import numpy as np
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.solid._self_crossing import check_crossings, in_metres
-from rocking.bodies.solid._shells import oriented_shells, turned_consistently
+from rocking.bodies.solid._shells import connected, oriented_shells, turned_consistently
 from rocking.bodies.solid.part import Part
-from rocking.bodies.solid.polyhedron import Polyhedron, open_edges
+from rocking.bodies.solid.polyhedron import Polyhedron, directed_edges, open_edges
+from rocking.bodies.solid.surfaces import area_vectors
 from rocking.conventions import FloatArray, IntArray, percent
 from rocking.errors import GeometryError
 
@@ -57,9 +58,14 @@ def repaired(
         raise GeometryError(holes_sentence(loops, points + middle))
     points, faces = filled(points, faces, loops, said)
     faces = turned_consistently(faces, said) if loops else faces
-    _check_orientable(faces)
+    if count := len(open_edges(faces)):
+        raise GeometryError(
+            f"no side of the surface is the outside: {count} edges cannot be matched however the faces are turned; "
+            "do more than two faces meet along them, or is the surface one-sided?"
+        )
     faces = oriented_shells(points, faces, said)
-    points, faces = _used(points, faces)
+    used, numbers = np.unique(faces, return_inverse=True)
+    points, faces = points[used], numbers.reshape(faces.shape)
     if not check_crossings(points[faces], lambda where: place(where + middle)):
         said.append("too many faces lie side by side to try whether all of them keep clear of each other")
     shape = Polyhedron(points, faces, simple=True)
@@ -75,7 +81,12 @@ def _triangles(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntAr
         raise GeometryError(
             f"faces must be triangles, each of three vertex numbers, got {numbers.dtype} of shape {numbers.shape}"
         )
-    _check_finite(points)
+    finite = np.isfinite(points).all(axis=1)
+    if not finite.all():
+        bad = int(np.argmin(finite))
+        raise GeometryError(f"vertex {bad} must be finite, got {tuple(points[bad].tolist())}; is the file damaged?")
+    if len(points) < 4:
+        raise GeometryError(f"a closed surface has at least 4 vertices, got {len(points)}")
     if numbers.min() < 0 or numbers.max() >= len(points):
         raise GeometryError(
             f"faces must name vertices 0 to {len(points) - 1}, got {numbers.min()} to {numbers.max()}; "
@@ -84,25 +95,18 @@ def _triangles(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntAr
     return points, numbers.astype(np.int64)
 
 
-def _check_finite(vertices: FloatArray) -> None:
-    finite = np.isfinite(vertices).all(axis=1)
-    if not finite.all():
-        bad = int(np.argmin(finite))
-        raise GeometryError(f"vertex {bad} must be finite, got {tuple(vertices[bad].tolist())}; is the file damaged?")
-    if len(vertices) < 4:
-        raise GeometryError(f"a closed surface has at least 4 vertices, got {len(vertices)}")
-
-
 def _welded(
     points: FloatArray, faces: IntArray, tolerance: float | None, size: float, said: list[str]
 ) -> tuple[FloatArray, IntArray]:
+    from scipy.spatial import cKDTree
+
     same, inverse = np.unique(points, axis=0, return_inverse=True)
     merged, joined = len(points) - len(same), inverse.ravel()[faces]
     reach = checks.within("weld_tolerance", tolerance, 0.0, 0.01 * size, unit="m") if tolerance is not None else 0.0
-    if tolerance is None and _boundary_count(joined):
+    if tolerance is None and len(_boundary(joined)):
         reach = WELD * size
     if reach > 0.0:
-        near = _clusters(same, reach)
+        near = connected(len(same), *cKDTree(same).query_pairs(reach, output_type="ndarray").T)
         count = int(near.max()) + 1
         merged += len(same) - count
         first = np.unique(near, return_index=True)[1]
@@ -113,20 +117,12 @@ def _welded(
     return same, joined
 
 
-def _boundary_count(faces: IntArray) -> int:
-    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    return int((np.unique(edges, axis=0, return_counts=True)[1] == 1).sum())
-
-
-def _clusters(points: FloatArray, reach: float) -> IntArray:
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
-
-    pairs = cKDTree(points).query_pairs(reach, output_type="ndarray")
-    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points), len(points)))
-    labels: IntArray = connected_components(graph, directed=False)[1].astype(np.int64)
-    return labels
+def _boundary(faces: IntArray) -> IntArray:
+    """Return the directed edges that one face has for itself."""
+    edges = directed_edges(faces)
+    _, inverse, counts = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
+    alone: IntArray = edges[counts[inverse.ravel()] == 1]
+    return alone
 
 
 def _cleaned(faces: IntArray, said: list[str]) -> IntArray:
@@ -156,20 +152,6 @@ def _parity(faces: IntArray) -> FloatArray:
     return np.where(((a < b) & (b < c)) | ((b < c) & (c < a)) | ((c < a) & (a < b)), 1.0, -1.0)
 
 
-def _check_orientable(faces: IntArray) -> None:
-    count = len(open_edges(faces))
-    if count:
-        raise GeometryError(
-            f"no side of the surface is the outside: {count} edges cannot be matched however the faces are turned; "
-            "do more than two faces meet along them, or is the surface one-sided?"
-        )
-
-
-def _used(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
-    numbers, inverse = np.unique(faces, return_inverse=True)
-    return points[numbers], inverse.reshape(faces.shape)
-
-
 def _check_hull(shape: Polyhedron) -> None:
     from scipy.spatial import ConvexHull
 
@@ -189,9 +171,7 @@ _LISTED = 3
 
 def boundary_loops(faces: IntArray, points: FloatArray) -> list[IntArray]:
     """Return the rings of edges that have a face on one side only."""
-    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    _, inverse, counts = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
-    open_ = edges[counts[inverse.ravel()] == 1][:, ::-1]
+    open_ = _boundary(faces)[:, ::-1]
     following = dict(open_.tolist())
     if len(following) < len(open_):
         where = points[open_[:, 0]].mean(axis=0)
@@ -251,8 +231,7 @@ def filled(points: FloatArray, faces: IntArray, loops: list[IntArray], said: lis
 
 
 def _area(triangles: FloatArray) -> float:
-    a, b, c = np.moveaxis(triangles, 1, 0)
-    return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    return float(np.linalg.norm(area_vectors(triangles), axis=1).sum())
 
 
 def _width(ring: FloatArray) -> float:

@@ -4,6 +4,7 @@ import numpy as np
 
 from rocking.bodies.moments import polyhedron_moments
 from rocking.bodies.solid._self_crossing import inside
+from rocking.bodies.solid.polyhedron import directed_edges
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import GeometryError
 
@@ -19,7 +20,7 @@ def turned_consistently(faces: IntArray, said: list[str]) -> IntArray:
     In each connected piece the smaller number of faces is turned.
     """
     first, second, disagree = _neighbours(faces)
-    labels = _labels(len(faces), first, second)
+    labels = connected(len(faces), first, second)
     flip = _parities(len(faces), first, second, disagree)
     minority = np.bincount(labels, weights=flip) > 0.5 * np.bincount(labels)
     turn = flip != minority[labels]
@@ -32,7 +33,7 @@ def turned_consistently(faces: IntArray, said: list[str]) -> IntArray:
 
 def oriented_shells(points: FloatArray, faces: IntArray, said: list[str]) -> IntArray:
     """Return the faces with outer shells looking outward and shells inside others looking inward."""
-    labels = _labels(len(faces), *_neighbours(faces)[:2])
+    labels = connected(len(faces), *_neighbours(faces)[:2])
     count = int(labels.max()) + 1
     if count > MOST_SHELLS:
         raise GeometryError(
@@ -55,7 +56,7 @@ def oriented_shells(points: FloatArray, faces: IntArray, said: list[str]) -> Int
 
 def _neighbours(faces: IntArray) -> tuple[IntArray, IntArray, BoolArray]:
     """Pairs of faces across edges that exactly two share, and whether they run along it the same way."""
-    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    edges = directed_edges(faces)
     owner = np.tile(np.arange(len(faces)), 3)
     forward = edges[:, 0] < edges[:, 1]
     _, inverse, counts = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
@@ -65,7 +66,8 @@ def _neighbours(faces: IntArray) -> tuple[IntArray, IntArray, BoolArray]:
     return owner[one], owner[two], forward[one] == forward[two]
 
 
-def _labels(count: int, first: IntArray, second: IntArray) -> IntArray:
+def connected(count: int, first: IntArray, second: IntArray) -> IntArray:
+    """Return the number of the connected piece that each of `count` things belongs to, joined pair by pair."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
@@ -75,27 +77,20 @@ def _labels(count: int, first: IntArray, second: IntArray) -> IntArray:
 
 
 def _parities(count: int, first: IntArray, second: IntArray, disagree: BoolArray) -> BoolArray:
-    """Whether each face disagrees with the first of its piece, along a tree of neighbours."""
+    """Whether each face disagrees with the first of its piece, along a tree of neighbours.
+
+    Every face stands twice, as it is and turned; along the tree the one that agrees with the first is connected to it.
+    """
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import minimum_spanning_tree
 
     weights = np.where(disagree, 2.0, 1.0)
     tree = minimum_spanning_tree(coo_matrix((weights, (first, second)), shape=(count, count))).tocoo()
-    beside: list[list[tuple[int, bool]]] = [[] for _ in range(count)]
-    for i, j, weight in zip(tree.row.tolist(), tree.col.tolist(), tree.data.tolist(), strict=True):
-        beside[i].append((j, weight > 1.5))
-        beside[j].append((i, weight > 1.5))
-    flip, seen = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
-    for root in range(count):
-        stack = [] if seen[root] else [root]
-        seen[root] = True
-        while stack:
-            here = stack.pop()
-            for other, differs in beside[here]:
-                if not seen[other]:
-                    seen[other], flip[other] = True, flip[here] != differs
-                    stack.append(other)
-    return flip
+    one, two, swapped = tree.row.astype(np.int64), tree.col.astype(np.int64), count * (tree.data > 1.5)
+    sides = connected(2 * count, np.append(one, one + count), np.append(two + swapped, two + count - swapped))
+    _, roots, piece = np.unique(connected(count, one, two), return_index=True, return_inverse=True)
+    differs: BoolArray = sides[:count] != sides[roots][piece]
+    return differs
 
 
 def _depths(points: FloatArray, shells: list[IntArray]) -> list[int]:

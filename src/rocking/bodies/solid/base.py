@@ -15,53 +15,27 @@ from rocking.portable import applied, dot, norm, times
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Corner:
-    """A point on the ground that a body turns about.
+    """A point on the ground that a body turns about."""
 
-    Parameters
-    ----------
-    point : ndarray, shape (3,)
-        Its place [m].
-    """
-
-    point: FloatArray
+    point: FloatArray  # its place [m]; shape (3,)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Edge:
-    """A line on the ground that a body turns about.
+    """A line on the ground that a body turns about; its angular velocity is along it where it turns outward."""
 
-    Parameters
-    ----------
-    point : ndarray, shape (3,)
-        A point on it [m].
-    direction : ndarray, shape (3,)
-        Unit vector along it, counter-clockwise around the base seen from above [-]; a body that turns outward over
-        this edge has an angular velocity along it.
-    """
-
-    point: FloatArray
-    direction: FloatArray
+    point: FloatArray  # a point on it [m]; shape (3,)
+    direction: FloatArray  # unit vector along it, counter-clockwise around the base seen from above [-]; shape (3,)
 
 
 class Base(ABC):
     """Where a solid stands."""
 
-    height: float
+    height: float  # of the ground [m]
 
     @abstractmethod
     def margin(self, point: FloatArray) -> float:
-        """Return how far inside the base a point of the ground lies.
-
-        Parameters
-        ----------
-        point : ndarray, shape (2,)
-            Its place (x, y) [m].
-
-        Returns
-        -------
-        float
-            Distance to the nearest edge, negative outside [m].
-        """
+        """Return how far inside the base a point (x, y) of the ground lies, negative outside [m]."""
 
     @property
     @abstractmethod
@@ -70,62 +44,26 @@ class Base(ABC):
 
     @abstractmethod
     def edge(self, which: float) -> Edge:
-        """Return one edge.
-
-        Parameters
-        ----------
-        which : float
-            Number of the edge of a polygon; for a circle the direction of the tangent point from the centre [rad].
-
-        Returns
-        -------
-        Edge
-            The edge.
-        """
+        """Return edge number `which` of a polygon; the tangent of a circle in that direction from the centre [rad]."""
 
     @abstractmethod
     def changed(self, matrix: FloatArray, shift: FloatArray) -> "Base":
-        """Return the base under a similarity of the plane.
-
-        Parameters
-        ----------
-        matrix : ndarray, shape (2, 2)
-            Rotation, mirror or scale [-].
-        shift : ndarray, shape (3,)
-            Displacement [m].
-
-        Returns
-        -------
-        Base
-            The base in its new place.
-        """
+        """Return the base under a similarity of the plane: (2, 2) matrix [-], then (3,) shift [m]."""
 
 
 @dataclass(frozen=True, eq=False)
 class RoundBase(Base):
-    """A circle that a solid stands on.
+    """A circle that a solid stands on."""
 
-    Parameters
-    ----------
-    centre : ndarray, shape (2,)
-        Centre (x, y) [m].
-    radius : float
-        Radius [m].
-    height : float
-        Height of the ground [m].
-    """
-
-    centre: FloatArray
-    radius: float
-    height: float = 0.0
+    centre: FloatArray  # (x, y) [m]
+    radius: float  # [m]
+    height: float = 0.0  # of the ground [m]
 
     @property
     def size(self) -> float:
-        """Diameter [m]."""
         return 2.0 * self.radius
 
     def edge(self, which: float) -> Edge:
-        """Return the tangent of the circle."""
         angle = checks.number("edge", which, "rad")
         outward = np.array([math.cos(angle), math.sin(angle)])
         point = np.array([*(self.centre + self.radius * outward), self.height])
@@ -135,8 +73,12 @@ class RoundBase(Base):
         return self.radius - norm(point - self.centre)
 
     def changed(self, matrix: FloatArray, shift: FloatArray) -> "RoundBase":
-        scale = math.sqrt(abs(float(matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0])))
+        scale = math.sqrt(abs(_area_factor(matrix)))
         return RoundBase(applied(matrix, self.centre) + shift[:2], self.radius * scale, self.height * scale + shift[2])
+
+
+def _area_factor(matrix: FloatArray) -> float:
+    return float(matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0])
 
 
 _INSIDE = 1e-12
@@ -144,18 +86,10 @@ _INSIDE = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class SupportPolygon(Base):
-    """The convex hull of the points that a solid stands on.
+    """The convex hull of the points that a solid stands on."""
 
-    Parameters
-    ----------
-    vertices : ndarray, shape (n, 2)
-        Corners of the hull, counter-clockwise seen from above [m].
-    height : float
-        Height of the ground [m].
-    """
-
-    vertices: FloatArray
-    height: float = 0.0
+    vertices: FloatArray  # corners of the hull, counter-clockwise seen from above [m]; shape (n, 2)
+    height: float = 0.0  # of the ground [m]
 
     @property
     def size(self) -> float:
@@ -172,7 +106,6 @@ class SupportPolygon(Base):
         return [self.edge(i) for i in range(len(self.vertices))]
 
     def edge(self, which: float) -> Edge:
-        """Return edge number `which`."""
         number = checks.number("edge", which)
         if number != int(number) or not 0 <= number < len(self.vertices):
             raise GeometryError(f"edge must be a whole number from 0 to {len(self.vertices) - 1}, got {which!r}")
@@ -181,26 +114,9 @@ class SupportPolygon(Base):
         return Edge(np.array([*start, self.height]), np.array([*along, 0.0]))
 
     def opposite(self, which: int) -> Edge:
-        """Return the edge parallel to another.
-
-        Parameters
-        ----------
-        which : int
-            Number of the other edge [-].
-
-        Returns
-        -------
-        Edge
-            The parallel edge on the far side.
-
-        Raises
-        ------
-        GeometryError
-            If no edge is parallel to it: the body then lands on a corner.
-        """
-        edges = self.edges
+        """Return the edge on the far side that is parallel to another; without one the body lands on a corner."""
         along = self.edge(which).direction
-        for edge in edges:
+        for edge in self.edges:
             if dot(edge.direction, along) < -1.0 + 1e-12:
                 return edge
         raise GeometryError(f"no edge of the base is parallel to edge {which}: the body lands on a corner there")
@@ -211,35 +127,14 @@ class SupportPolygon(Base):
         return float(((along[:, 0] * arm[:, 1] - along[:, 1] * arm[:, 0]) / np.linalg.norm(along, axis=1)).min())
 
     def changed(self, matrix: FloatArray, shift: FloatArray) -> "SupportPolygon":
-        """Return the polygon under a similarity of the plane."""
-        moved = times(self.vertices, matrix.T) + shift[:2]
-        area = float(matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0])
+        moved, area = times(self.vertices, matrix.T) + shift[:2], _area_factor(matrix)
         scale = math.sqrt(abs(area))
         return SupportPolygon(moved if area > 0.0 else moved[::-1], self.height * scale + shift[2])
 
 
 def hull(points: ArrayLike, height: float = 0.0) -> SupportPolygon:
-    """Return the support polygon of points on the ground.
+    """Return the convex hull of points (x, y) on a ground of some height [m], without points on its straight edges.
 
-    Parameters
-    ----------
-    points : array_like, shape (n, 2)
-        Points (x, y) [m].
-    height : float
-        Height of the ground [m].
-
-    Returns
-    -------
-    SupportPolygon
-        Their convex hull, without points on its straight edges.
-
-    Raises
-    ------
-    GeometryError
-        If there are fewer than three, or all lie on one line.
-
-    Examples
-    --------
     >>> len(hull([(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0.0), (0.5, 0.5)]).vertices)
     4
     """
@@ -260,12 +155,11 @@ def hull(points: ArrayLike, height: float = 0.0) -> SupportPolygon:
 
 def _chain(points: FloatArray, slack: float) -> list[FloatArray]:
     chain: list[FloatArray] = []
-    for point in points:
-        while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= slack:
+    for c in points:
+        while len(chain) > 1:
+            a, b = chain[-2:]
+            if float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) > slack:
+                break
             chain.pop()
-        chain.append(point)
+        chain.append(c)
     return chain
-
-
-def _turn(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
-    return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))

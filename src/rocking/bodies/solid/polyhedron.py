@@ -18,22 +18,9 @@ from rocking.portable import times
 class Polyhedron(Shape):
     """The volume inside a closed surface of triangles.
 
-    Parameters
-    ----------
-    vertices : array_like, shape (n, 3)
-        Vertices [m].
-    faces : array_like of int, shape (m, 3)
-        Corners of each triangle, counter-clockwise seen from outside; cavities are lined by faces that look inward.
-    simple : bool
-        Whether the surface is known not to pass through itself, and is not tried for it.
+    Faces name the corners of each triangle, counter-clockwise seen from outside; cavities are lined by faces that look
+    inward. A `simple` surface is known not to pass through itself, and is not tried for it.
 
-    Raises
-    ------
-    GeometryError
-        If the surface is not closed and oriented, is inside out, encloses no volume, or passes through itself.
-
-    Examples
-    --------
     >>> corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
     >>> round(Polyhedron(corners, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]).moments().mass, 12)
     0.166666666667
@@ -42,14 +29,20 @@ class Polyhedron(Shape):
     def __init__(self, vertices: ArrayLike, faces: ArrayLike, *, simple: bool = False) -> None:
         self.vertices = _vertices(vertices)
         self.faces = _faces(faces, len(self.vertices))
-        _check_closed(self.faces)
+        if count := len(open_edges(self.faces)):
+            raise GeometryError(
+                f"the surface is not closed and oriented: {count} edges lack a neighbour that runs the other way; "
+                "are there holes, flipped faces, or vertices that were not merged?"
+            )
         if not simple:
             check_crossings(self.corners)
         self._check_volume()
 
     def __repr__(self) -> str:
         """Vertices, faces and volume."""
-        return f"{type(self).__name__}({len(self.vertices)} vertices, {len(self.faces)} faces, {self._volume:g} m3)"
+        return (
+            f"{type(self).__name__}({len(self.vertices)} vertices, {len(self.faces)} faces, {self._moments.mass:g} m3)"
+        )
 
     @property
     def corners(self) -> FloatArray:
@@ -57,16 +50,11 @@ class Polyhedron(Shape):
         corners: FloatArray = self.vertices[self.faces]
         return corners
 
-    @property
-    def _volume(self) -> float:
-        return self._moments.mass
-
     @cached_property
     def _moments(self) -> SolidMoments:
         return polyhedron_moments(self.corners)
 
     def moments(self) -> SolidMoments:
-        """Return volume, centre and second moments by the divergence theorem."""
         return self._moments
 
     def surfaces(self, rotation: FloatArray | None = None, translation: FloatArray | None = None) -> list[Surface]:
@@ -80,14 +68,12 @@ class Polyhedron(Shape):
         return Footprint(self.vertices)
 
     def contains(self, points: FloatArray) -> BoolArray:
-        """Return which points lie inside, by counting the faces above each."""
         return inside(points, self.corners)
 
     def scaled(self, size: float) -> "Polyhedron":
         return Polyhedron(self.vertices * checks.positive("size", size), self.faces, simple=True)
 
     def mirrored(self) -> "Polyhedron":
-        """Return the mirror image x -> -x."""
         return Polyhedron(self.vertices * np.array([-1.0, 1.0, 1.0]), self.faces[:, ::-1], simple=True)
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray] | None:
@@ -106,20 +92,26 @@ class Polyhedron(Shape):
         return volumes, centres + apex
 
     def _check_volume(self) -> None:
-        box = np.ptp(self.vertices, axis=0)
+        box, volume = np.ptp(self.vertices, axis=0), self._moments.mass
         checks.length("largest dimension of the polyhedron", float(box.max()))
-        if abs(self._volume) <= 1e-9 * float(box.max()) * float(np.sort(box)[-2:].prod()):
+        if abs(volume) <= 1e-9 * float(box.max()) * float(np.sort(box)[-2:].prod()):
             raise GeometryError(
                 f"the surface encloses no volume (box {box[0]:g} x {box[1]:g} x {box[2]:g} m); "
                 "is it a sheet, or does half of it look the other way?"
             )
-        if self._volume < 0.0:
+        if volume < 0.0:
             raise GeometryError("the surface is inside out (negative volume); turn the faces round")
+
+
+def directed_edges(faces: IntArray) -> IntArray:
+    """Return the edges of faces in the sense that each runs along them: all first ones, all second, all third."""
+    edges: IntArray = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    return edges
 
 
 def open_edges(faces: IntArray) -> IntArray:
     """Return the directed edges that no face runs along the other way."""
-    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
+    edges = directed_edges(faces).astype(np.int64)
     base = int(edges.max(initial=0)) + 1
     forward, back = edges[:, 0] * base + edges[:, 1], edges[:, 1] * base + edges[:, 0]
     keys, inverse = np.unique(np.concatenate([forward, back]), return_inverse=True)
@@ -127,15 +119,6 @@ def open_edges(faces: IntArray) -> IntArray:
     reverse = np.bincount(inverse[len(edges) :], minlength=len(keys))
     left = np.repeat(keys, np.maximum(there - reverse, 0))
     return np.stack([left // base, left % base], axis=1)
-
-
-def _check_closed(faces: IntArray) -> None:
-    count = len(open_edges(faces))
-    if count:
-        raise GeometryError(
-            f"the surface is not closed and oriented: {count} edges lack a neighbour that runs the other way; "
-            "are there holes, flipped faces, or vertices that were not merged?"
-        )
 
 
 def _vertices(values: ArrayLike) -> FloatArray:

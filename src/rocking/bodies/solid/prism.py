@@ -8,24 +8,14 @@ from rocking.bodies._rings import triangulated
 from rocking.bodies.moments import SolidMoments, combined_plane, ring_moments
 from rocking.bodies.region import Region
 from rocking.bodies.solid.polyhedron import Polyhedron
-from rocking.bodies.solid.surfaces import TriangleSurface
+from rocking.bodies.solid.surfaces import TriangleSurface, area_vectors
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import GeometryError
 
 
 class Prism(Polyhedron):
-    """A polygon with holes, extruded along z from 0 to its length.
+    """A polygon with holes in the plane (x, y) [m], extruded along z from 0 to its length [m]; density does not count.
 
-    Parameters
-    ----------
-    region : Region
-        Outline and holes in the plane (x, y) [m]; its density is not used.
-    length : float
-        Extent along z [m].
-
-    Examples
-    --------
-    >>> from rocking import Region
     >>> round(Prism(Region([(0, 0), (1, 0), (0, 1)]), 2.0).moments().mass, 12)
     1.0
     """
@@ -37,8 +27,7 @@ class Prism(Polyhedron):
         self.length = checks.length("length", length)
         flat, self._caps, sides = _net(region)
         count = len(flat)
-        bottom = np.column_stack([flat, np.zeros(count)])
-        top = np.column_stack([flat, np.full(count, self.length)])
+        bottom, top = (np.column_stack([flat, np.full(count, height)]) for height in (0.0, self.length))
         a, b = sides.T
         around = np.concatenate([np.stack([a, b, b + count], axis=1), np.stack([a, b + count, a + count], axis=1)])
         super().__init__(
@@ -50,8 +39,7 @@ class Prism(Polyhedron):
     def moments(self) -> SolidMoments:
         """Return volume, centre and second moments; the height's own share in closed form, ``L^2/12``."""
         plane = combined_plane(ring_moments(ring) for ring in self.region.rings)
-        found = super().moments()
-        second = found.second * np.array([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 0.0]])
+        second = super().moments().second * np.array([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 0.0]])
         second[[0, 1, 2], [0, 1, 2]] = np.array([plane.xx, plane.yy, plane.mass * self.length**2 / 12.0])
         second[[0, 1], [0, 1]] *= self.length
         second[2, 2] *= self.length
@@ -67,9 +55,7 @@ class Prism(Polyhedron):
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray]:
         """Return wedges: triangles of the polygon times layers of the length."""
         pieces = TriangleSurface(self.vertices[self._caps]).triangles(divisions)
-        a, b, c = np.moveaxis(pieces, 1, 0)
-        areas = 0.5 * np.cross(b - a, c - a)[:, 2]
-        step = self.length / divisions
+        areas, step = area_vectors(pieces)[:, 2], self.length / divisions
         heights = step * (np.arange(divisions) + 0.5)
         centres = np.repeat(pieces.mean(axis=1), divisions, axis=0)
         centres[:, 2] = np.tile(heights, len(pieces))
@@ -77,18 +63,7 @@ class Prism(Polyhedron):
 
 
 class Box(Polyhedron):
-    """A box, centred on the z axis, its base on z = 0.
-
-    Parameters
-    ----------
-    width, depth, height : float
-        Full sizes along x, y and z [m].
-
-    Examples
-    --------
-    >>> Box(1.0, 2.0, 3.0).moments().mass
-    6.0
-    """
+    """A box, centred on the z axis, its base on z = 0, with its full sizes along x, y and z [m]."""
 
     def __init__(self, width: float, depth: float, height: float) -> None:
         names = ("width", "depth", "height")
@@ -115,8 +90,25 @@ class Box(Polyhedron):
         return np.full(divisions**3, float(self.size.prod()) / divisions**3), grid * self.size
 
 
-box = Box
-"""Return a box, as the other functions of shapes do."""
+def box(width: float, depth: float, height: float) -> Box:
+    """Return a box, centred on the z axis, its base on z = 0.
+
+    Parameters
+    ----------
+    width, depth, height : float
+        Full sizes along x, y and z [m].
+
+    Returns
+    -------
+    Box
+        The shape.
+
+    Examples
+    --------
+    >>> box(1.0, 2.0, 3.0).moments().mass
+    6.0
+    """
+    return Box(width, depth, height)
 
 
 def extrusion(outline: ArrayLike, length: float, holes: tuple[ArrayLike, ...] = ()) -> Prism:

@@ -24,112 +24,40 @@ class Footprint:
 
 
 class Shape(ABC):
-    """A closed volume in a frame of its own, z up where the shape has an axis."""
+    """A closed volume in a frame of its own, z up where the shape has an axis; the methods speak of that frame."""
 
     @abstractmethod
     def moments(self) -> SolidMoments:
-        """Return volume, centre and second moments, at unit density.
-
-        Returns
-        -------
-        SolidMoments
-            Exact up to rounding.
-        """
+        """Return volume, centre and second moments at unit density, exact up to rounding."""
 
     @abstractmethod
     def surfaces(self, rotation: FloatArray | None = None, translation: FloatArray | None = None) -> list[Surface]:
-        """Return the placed surface, normals outward.
-
-        Parameters
-        ----------
-        rotation : ndarray, shape (3, 3), optional
-            Rotation matrix [-].
-        translation : ndarray, shape (3,), optional
-            Displacement [m].
-
-        Returns
-        -------
-        list of Surface
-            Its pieces.
-        """
+        """Return the pieces of the surface, normals outward, rotated [-], then translated [m]."""
 
     @abstractmethod
     def extent(self, rotation: FloatArray) -> FloatArray:
-        """Return the box of the rotated shape.
-
-        Parameters
-        ----------
-        rotation : ndarray, shape (3, 3)
-            Rotation matrix [-].
-
-        Returns
-        -------
-        ndarray, shape (2, 3)
-            Lowest and highest coordinates [m].
-        """
+        """Return lowest and highest coordinates of the rotated shape [m]; shape (2, 3)."""
 
     @abstractmethod
     def footprint(self) -> Footprint:
-        """Return the corners and round faces that may stand on the ground.
-
-        Returns
-        -------
-        Footprint
-            In the shape's own frame.
-        """
+        """Return the corners and round faces that may stand on the ground."""
 
     @abstractmethod
     def contains(self, points: FloatArray) -> BoolArray:
-        """Return which points lie inside.
-
-        Parameters
-        ----------
-        points : ndarray, shape (n, 3)
-            Points in the shape's own frame [m].
-
-        Returns
-        -------
-        ndarray of bool, shape (n,)
-            True inside; either on the surface.
-        """
+        """Return which points (n, 3) lie inside [m]; on the surface either."""
 
     @abstractmethod
     def scaled(self, size: float) -> "Shape":
-        """Return the shape with all lengths times `size`.
-
-        Parameters
-        ----------
-        size : float
-            Factor [-].
-
-        Returns
-        -------
-        Shape
-            The larger or smaller shape.
-        """
+        """Return the shape with all lengths times `size` [-]."""
 
     @abstractmethod
     def mirrored(self) -> "Shape":
-        """Return the shape seen in the mirror x -> -x of its own frame.
-
-        Returns
-        -------
-        Shape
-            The mirror image.
-        """
+        """Return the shape seen in the mirror x -> -x."""
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray] | None:
-        """Return units that fill the shape without gaps, if it can be divided so.
+        """Return volumes [m3] and centres [m] of units that fill the shape without gaps, so many a direction or about.
 
-        Parameters
-        ----------
-        divisions : int
-            Units a direction, more or less.
-
-        Returns
-        -------
-        (ndarray, ndarray) or None
-            Volumes (n,) [m3] and centres (n, 3) [m]; None where only voxels serve.
+        None where only voxels serve.
         """
         return None
 
