@@ -255,7 +255,7 @@ def test_the_point_at_rest_that_is_nearest_to_a_new_stance():
                 assert found == pytest.approx(old.pivot + min(max(part, 0.0), 1.0) * state.along, abs=1e-14)
                 inside += 0.01 < part < 0.99
         alone = SpatialState(old.pivot, np.zeros(3), UP, -9.81 * UP)
-        assert alone.nearest(edge(body, (number + 2) % 5)) == pytest.approx(old.pivot, abs=0.0)
+        assert alone.impact(body, edge(body, (number + 2) % 5)).pivot == pytest.approx(old.pivot, abs=0.0)
     assert inside > 10
 
 
