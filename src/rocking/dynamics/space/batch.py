@@ -14,7 +14,7 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.compiled import check_progress
 from rocking.dynamics.response_base import Exportable, motion_provenance
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.space import attitude, fast_engine
+from rocking.dynamics.space import fast_engine
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.fast_engine import Bodies, Progress, Results, RowTable, batch_law
@@ -248,14 +248,13 @@ def _one(
 def results_of(history: SpatialTrajectory) -> tuple[FloatArray, list[int]]:
     """Return a history of the reference engine as a row of a batch: floats, NaN without result, and whole numbers."""
     last, events = history.pieces[-1], history.events
-    failed, over = history.outcome is Outcome.FAILED, history.outcome is Outcome.OVERTURNED
+    failed = history.outcome is Outcome.FAILED
     first = events[0].time if events else math.nan
     ends = [np.linalg.norm(piece.at(np.array([0.0, piece.until]))[1], axis=1).max() for piece in history.pieces]
-    direction = float(attitude.azimuth(last.at(np.array([last.until]))[0][0])) if over else math.nan
     lost = sum(event.before - event.after for event in history.impacts)
     results = np.array([
         history.peak_tilt, history.peak_time, math.nan if failed else float(max(ends)), history.overturning_time,
-        direction, first, last.end, history.held, lost,
+        history.direction, first, last.end, history.held, lost,
     ])  # fmt: skip
     contact = history.fell_over
     number = -1 if contact is None or not contact.points else contact.points[0]
@@ -274,7 +273,7 @@ def _provenance(
     >>> facts["duration_s"], len(json.loads(facts["bodies"]))
     ('to the end of the motion', 1)
     """
-    spelled = json.dumps([None if body is None else _numbers(body) for body in bodies])
+    spelled = json.dumps([None if body is None else body.facts for body in bodies])
     leaning = [[s.tilt, s.azimuth, s.yaw, *np.ravel(s.angular_velocity).tolist()] for s in starts if s.valid]
     return {
         "duration_s": "to the end of the motion" if duration is None else float(duration),
@@ -283,13 +282,4 @@ def _provenance(
         "starts": json.dumps(leaning),
         **({"bodies": spelled} if len(bodies) <= _FEW else {}),
         "bodies_sha256": hashlib.sha256(spelled.encode()).hexdigest(),
-    }
-
-
-def _numbers(body: SpatialBody) -> dict[str, Any]:
-    return {
-        "mass_kg": body.mass,
-        "centre_m": body.centre.tolist(),
-        "inertia_kg_m2": np.ravel(body.inertia).tolist(),
-        "base_m": np.ravel(body.base).tolist(),
     }

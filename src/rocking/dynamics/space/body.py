@@ -199,6 +199,16 @@ class SpatialBody:
         return self
 
     @property
+    def facts(self) -> dict[str, Any]:
+        """Mass, centre, inertia and base as plain values."""
+        return {
+            "mass_kg": self.mass,
+            "centre_m": self.centre.tolist(),
+            "inertia_kg_m2": np.ravel(self.inertia).tolist(),
+            "base_m": np.ravel(self.base).tolist(),
+        }
+
+    @property
     def round(self) -> bool:
         """Whether the base is a circle."""
         return np.ndim(self.base) == 0

@@ -1,103 +1,40 @@
 """The response of a body in space: attitude, contact, impacts, energy, outcome and its direction."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from rocking import checks
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.plane.energy_balance import ResponseEnergy
-from rocking.dynamics.response_base import Drawable
+from rocking.dynamics.response_base import ResponseBase
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.event_functions import NEARLY_FLAT
 from rocking.dynamics.space.ground import SpatialGround
 from rocking.dynamics.space.impact_laws import SpatialImpactLaw
-from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajectory, States, StepPiece, pivots
-from rocking.errors import InvalidValueError
-from rocking.outcome import ContactMode, Outcome, Status
+from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajectory, States, pivots, states_of
+from rocking.outcome import ContactMode, Outcome
 from rocking.portable import applied, dot, gauss_legendre, norm
-from rocking.tables import Column, Table
-from rocking.version import SOFTWARE
-
-if TYPE_CHECKING:
-    from rocking.dynamics.plane.energy_balance import ResponseEnergy
-    from rocking.dynamics.space.trajectory import States
-    from rocking.tables import Table
-
+from rocking.tables import Column
 
 _NODES, _WEIGHTS = gauss_legendre(20)
+_AXES = ("x", "y", "z")
 
-
-def energy_of(response: "SpatialResponse") -> ResponseEnergy:
-    """Return the energy of a response in space.
-
-    The work of the ground is integrated along the history, -m a_g . v_C by Gauss's rule on every step of the engine;
-    the losses are those of the impacts. Nothing is computed from the balance, so that the balance can be checked.
-    """
-    body, time = response.body, response.time
-    states, impacts = response.states, response.trajectory.impacts
-    lost = np.concatenate([[0.0], np.cumsum([event.before - event.after for event in impacts])])
-    when = np.array([event.time for event in impacts])
-    found = lost[np.searchsorted(when, time, side="right")]
-    return ResponseEnergy(
-        time=time,
-        kinetic=states.kinetic,
-        potential=body.mass * response.settings.gravity * states.rise,
-        work=_work(response),
-        lost=found - found[0],  # an impact at the start comes before the first sample
-    )
-
-
-def _work(response: "SpatialResponse") -> FloatArray:
-    """Work of the ground up to each sample."""
-    made, total = np.zeros(response.time.size), 0.0
-    for piece in response.trajectory.pieces:
-        first, last = np.searchsorted(response.time, [piece.start, piece.end], side="left")
-        stops = np.concatenate([[piece.start], response.time[first:last], [piece.end]])
-        if piece.end > piece.start and len(piece.quaternions) > 1 and piece.start < response.ground.end:
-            parts = _of_piece(response, piece, stops)
-            made[first:last] = total + np.cumsum(parts)[:-1]
-            total += float(parts.sum())
-        else:
-            made[first:last] = total
-    made[response.time >= response.trajectory.pieces[-1].end] = total
-    return made
-
-
-def _of_piece(response: "SpatialResponse", piece: StepPiece, stops: FloatArray) -> FloatArray:
-    """Work between the stops of a step."""
-    half = 0.5 * np.diff(stops)
-    times = (0.5 * (stops[1:] + stops[:-1]))[:, None] + half[:, None] * _NODES
-    q, w, place = piece.at(np.clip((times.ravel() - piece.start) / piece.length, 0.0, piece.until))
-    body = response.body
-    states = States(body, q, w, pivots(body, piece, q), place, np.zeros(len(q), dtype=np.int64))
-    power = -body.mass * (response.ground.at(times.ravel()) * states.centre_velocity).sum(axis=1)  # Eq. 46
-    return applied(power.reshape(times.shape), _WEIGHTS) * half
-
-
-SPATIAL_IMPACT = np.dtype(
-    [
-        ("time", "f8"),
-        ("energy_before", "f8"),
-        ("energy_after", "f8"),
-        ("impulse", "f8"),
-        ("pull", "f8"),
-        ("contact", "U8"),
-        ("vertices", "U64"),
-    ]
-)
+SPATIAL_IMPACT = np.dtype([
+    ("time", "f8"), ("energy_before", "f8"), ("energy_after", "f8"), ("impulse", "f8"), ("pull", "f8"),
+    ("contact", "U8"), ("vertices", "U64"),
+])  # fmt: skip
 """Fields of `SpatialResponse.impacts`: [s], [J], [J], vertical [N s], of that the part the ground would have to pull
 for the points to stick [N s], what stays, and its vertices."""
 
 
-@dataclass(frozen=True, eq=False)
-class SpatialResponse(Drawable):
+@dataclass(frozen=True, eq=False, repr=False)
+class SpatialResponse(ResponseBase):
     """What `simulate` returns of a body in space; everything that takes time is computed when first asked for.
 
     Parameters
@@ -121,20 +58,16 @@ class SpatialResponse(Drawable):
     """
 
     body: SpatialBody
-    ground: SpatialGround = field(repr=False)
+    ground: SpatialGround
     law: SpatialImpactLaw
     settings: Settings
-    time: FloatArray = field(repr=False)
-    trajectory: SpatialTrajectory = field(repr=False)
+    time: FloatArray
+    trajectory: SpatialTrajectory
     end: float
     names: tuple[str, str, str] = ("none", "none", "none")
 
-    def __repr__(self) -> str:
-        """Outcome in words, and which engine found it."""
-        return f"<SpatialResponse: {self.summary} [{self.trajectory.engine}]>"
-
     @cached_property
-    def states(self) -> "States":
+    def states(self) -> States:
         """Attitude, velocity and contact at the samples."""
         return self.at(self.time)
 
@@ -202,86 +135,59 @@ class SpatialResponse(Drawable):
         return np.array(rows, dtype=SPATIAL_IMPACT)
 
     @property
-    def outcome(self) -> Outcome:
-        """How it ended."""
-        return self.trajectory.outcome
-
-    @property
-    def status(self) -> Status:
-        """Whether it could be computed."""
-        return self.trajectory.status
-
-    @property
     def peak_tilt(self) -> float:
         """Largest tilt, between the samples too; a quarter turn if it overturned [rad]."""
         return self.trajectory.peak_tilt
 
-    @property
-    def overturning_time(self) -> float:
-        """When the centre of mass passed over the contact for good; NaN if it did not overturn [s]."""
-        return self.trajectory.overturning_time
-
     @cached_property
     def overturning_direction(self) -> float:
         """Direction in which it lies, from x towards y; NaN if it did not overturn [rad]."""
-        if self.outcome is not Outcome.OVERTURNED:
-            return math.nan
-        last = self.trajectory.pieces[-1]
-        return float(attitude.azimuth(last.at(np.array([last.until]))[0][0]))
+        return self.trajectory.direction
 
     @property
     def overturned_over(self) -> str:
         """Edge, vertex or rim over which it overturned, in words; empty if it did not."""
         over = self.trajectory.fell_over
-        if over is None:
-            return ""
-        if not over.points:
-            return "its rim"
+        if over is None or not over.points:
+            return "" if over is None else "its rim"
         return f"{over.mode.name.lower()} {'-'.join(map(str, over.points))}"
 
     @cached_property
     def still_rocking(self) -> bool:
         """Whether it stands, but does not yet rest where the response ends; later impacts are not among `impacts`."""
-        return self.outcome is Outcome.ROCKED and int(self._last.contact[0]) != ContactMode.REST.code
+        return self.outcome is Outcome.ROCKED and int(self.at(self.end).contact[0]) != ContactMode.REST.code
 
     @property
-    def unfinished(self) -> str:
-        """A sentence that says when and how it still rocks where the response ends; empty if it does not."""
-        if not self.still_rocking:
-            return ""
-        angle = np.degrees(attitude.tilt(self._last.quaternion)[0])
-        rate = math.hypot(*self._last.angular_velocity[0])
-        return (
-            f"it is still rocking when the computation ends at {self.end:.4g} s, leaning by {angle:.3g} degrees and "
-            f"turning at {rate:.3g} rad/s; later impacts are not counted"
-        )
-
-    @cached_property
-    def _last(self) -> "States":
-        return self.at(self.end)
+    def _last_motion(self) -> tuple[str, float, str]:
+        last = self.at(self.end)
+        angle, rate = np.degrees(attitude.tilt(last.quaternion)[0]), math.hypot(*last.angular_velocity[0])
+        return "rocking", self.end, f"leaning by {angle:.3g} degrees and turning at {rate:.3g} rad/s"
 
     @property
-    def summary(self) -> str:
-        """The outcome in one sentence; also whether it still rocks where the response ends."""
-        run = self.trajectory
+    def _ending(self) -> str:
+        if self.outcome is Outcome.NO_UPLIFT:
+            return str(self.outcome.value)
         count = self.impacts.size
-        if run.outcome is Outcome.OVERTURNED:
+        impacts = f"{count} impact{'s' * (count != 1)}"
+        if self.outcome is Outcome.OVERTURNED:
             where = f" over {self.overturned_over}" if self.overturned_over else ""
             return (
-                f"overturned towards {math.degrees(self.overturning_direction):.4g} degrees{where} after {count} "
-                f"impact{'s' * (count != 1)}, past the point of no return at {run.overturning_time:.4g} s"
+                f"overturned towards {math.degrees(self.overturning_direction):.4g} degrees{where} after {impacts}, "
+                f"past the point of no return at {self.overturning_time:.4g} s"
             )
-        if run.outcome is Outcome.ROCKED:
-            return (
-                f"rocked and stayed standing: largest tilt {math.degrees(run.peak_tilt):.4g} degrees, {count} "
-                f"impact{'s' * (count != 1)}{self._pulled}{self._cut}{self._nearly_flat}"
-            ) + (f"; {self.unfinished}" if self.still_rocking else "")
-        return run.outcome.value if run.outcome is Outcome.NO_UPLIFT else f"{run.outcome.value}: {run.status.value}"
-
-    @property
-    def _pulled(self) -> str:
-        count = int((self.impacts["pull"] > 1e-9 * np.abs(self.impacts["impulse"])).sum())
-        return f"; at {count} of them a corner would have slipped or bounced rather than stuck" if count else ""
+        sentence = f"rocked and stayed standing: largest tilt {math.degrees(self.peak_tilt):.4g} degrees, {impacts}"
+        if pulled := int((self.impacts["pull"] > 1e-9 * np.abs(self.impacts["impulse"])).sum()):
+            sentence += f"; at {pulled} of them a corner would have slipped or bounced rather than stuck"
+        if self.cut_impacts:
+            sentence += f"; at {self.cut_impacts} of them the base is so narrow that the loss is Housner's"
+        if passed := self.near_flat_passages:
+            sentence += (
+                f"; it rolled {passed} time{'s' * (passed != 1)} through lying nearly flat, after which small causes "
+                "have large effects: take many motions, not one"
+            )
+            if held := self.trajectory.held:
+                sentence += f"; there its rim would have hopped or slipped for {held:.2g} s"
+        return sentence
 
     @cached_property
     def cut_impacts(self) -> int:
@@ -305,11 +211,6 @@ class SpatialResponse(Drawable):
             found += cut(solid, step)
         return found
 
-    @property
-    def _cut(self) -> str:
-        count = self.cut_impacts
-        return f"; at {count} of them the base is so narrow that the loss is Housner's" if count else ""
-
     @cached_property
     def near_flat_passages(self) -> int:
         """How often a round base rolled through lying nearly flat, below 1 % of its slenderness angle."""
@@ -320,23 +221,42 @@ class SpatialResponse(Drawable):
         low = (tilts[1:-1] <= tilts[:-2]) & (tilts[1:-1] < tilts[2:])
         return int((low & (tilts[1:-1] < NEARLY_FLAT * self.body.radius / self.body.centre[2])).sum())
 
-    @property
-    def _nearly_flat(self) -> str:
-        count, held = self.near_flat_passages, self.trajectory.held
-        if not count:
-            return ""
-        pulled = f"; there its rim would have hopped or slipped for {held:.2g} s" if held else ""
-        return (
-            f"; it rolled {count} time{'s' * (count != 1)} through lying nearly flat, after which small causes have "
-            f"large effects: take many motions, not one{pulled}"
-        )
-
     @cached_property
-    def energy(self) -> "ResponseEnergy":
-        """Kinetic and potential energy, work of the ground and losses at the samples [J]."""
-        return energy_of(self)
+    def energy(self) -> ResponseEnergy:
+        """Kinetic and potential energy, work of the ground and losses at the samples [J].
 
-    def at(self, time: Any) -> "States":
+        The work of the ground is integrated along the history, -m a_g . v_C by Gauss on every step of the engine; the
+        losses are those of the impacts. Nothing is computed from the balance, so that the balance can be checked.
+        """
+        impacts = self.trajectory.impacts
+        lost = np.concatenate([[0.0], np.cumsum([event.before - event.after for event in impacts])])
+        lost = lost[np.searchsorted([event.time for event in impacts], self.time, side="right")]
+        potential = self.body.mass * self.settings.gravity * self.states.rise
+        # an impact at the start comes before the first sample
+        return ResponseEnergy(self.time, self.states.kinetic, potential, self._work, lost - lost[0])
+
+    @property
+    def _work(self) -> FloatArray:
+        """Work of the ground up to each sample [J]."""
+        made, total, body = np.zeros(self.time.size), 0.0, self.body
+        for piece in self.trajectory.pieces:
+            first, last = np.searchsorted(self.time, [piece.start, piece.end], side="left")
+            if not (piece.end > piece.start and len(piece.quaternions) > 1 and piece.start < self.ground.end):
+                made[first:last] = total
+                continue
+            stops = np.concatenate([[piece.start], self.time[first:last], [piece.end]])
+            half = 0.5 * np.diff(stops)
+            times = (0.5 * (stops[1:] + stops[:-1]))[:, None] + half[:, None] * _NODES
+            q, w, place = piece.at(np.clip((times.ravel() - piece.start) / piece.length, 0.0, piece.until))
+            states = States(body, q, w, pivots(body, piece, q), place, np.zeros(len(q), dtype=np.int64))
+            power = -body.mass * (self.ground.at(times.ravel()) * states.centre_velocity).sum(axis=1)  # Eq. 46
+            done = applied(power.reshape(times.shape), _WEIGHTS) * half
+            made[first:last] = total + np.cumsum(done)[:-1]
+            total += float(done.sum())
+        made[self.time >= self.trajectory.pieces[-1].end] = total
+        return made
+
+    def at(self, time: Any) -> States:
         """Return the state of the body at any times within the response.
 
         Parameters
@@ -354,85 +274,47 @@ class SpatialResponse(Drawable):
         InvalidValueError
             If a time is not finite, or before the start or after the end by more than rounding.
         """
-        from rocking.dynamics.space.trajectory import states_of
+        times = np.atleast_1d(self._known(time, self.trajectory.pieces[-1].end))
+        return states_of(self.body, self.trajectory, times)
 
-        end = self.trajectory.pieces[-1].end
-        given = np.atleast_1d(checks.real_array("time", time, "s"))
-        bad = given[~((given >= -1e-9 * end) & (given <= (1.0 + 1e-9) * end))]
-        if bad.size:
-            raise InvalidValueError(f"time must be in [0, {end:g}] s, where the response is known, got {bad[0]:g}")
-        return states_of(self.body, self.trajectory, np.clip(given, 0.0, end))
+    @property
+    def _samples(self) -> dict[str, FloatArray]:
+        def axes(name: str, rows: FloatArray) -> dict[str, FloatArray]:
+            return {f"{name}_{axis}": rows[:, k] for k, axis in enumerate(_AXES)}
 
-    def exported(self) -> "Table":
-        """Return what the files of this response hold.
+        energy, quaternion = self.energy, self.quaternion
+        return {
+            "time": self.time,
+            **{f"quaternion_{axis}": quaternion[:, k] for k, axis in enumerate(("s", *_AXES))},
+            **axes("angular_velocity", self.angular_velocity),
+            "tilt": self.tilt, "azimuth": self.azimuth, "contact": self.contact.astype(np.float64),
+            **axes("centre", self.centre), **axes("ground_acceleration", self.ground.at(self.time)),
+            "kinetic_energy": energy.kinetic, "potential_energy": energy.potential,
+            "work_of_ground": energy.work, "energy_lost": energy.lost,
+        }  # fmt: skip
 
-        Returns
-        -------
-        Table
-            Samples, impacts, intervals of one contact and provenance, with units.
-        """
-        return exported(self)
+    @property
+    def _beside(self) -> dict[str, dict[str, Any]]:
+        impacts = self.impacts
+        words = {"contact": "contact that stays", "vertices": "vertices that stay on the ground"}
+        starts, ends, modes, points = zip(*self.intervals, strict=True) if self.intervals else ((),) * 4
+        return {
+            "impact": {name: impacts[name] for name in SPATIAL_IMPACT.names or () if name not in words}
+            | {name: Column(impacts[name], "", meaning) for name, meaning in words.items()},
+            "interval": {
+                "start": np.array(starts, dtype=np.float64),
+                "end": np.array(ends, dtype=np.float64),
+                "contact": Column(np.array([mode.name.lower() for mode in modes], dtype="U8"), "", "contact"),
+                "vertices": np.array(["-".join(map(str, each)) for each in points], dtype="U64"),
+            },
+        }
 
-
-_AXES = ("x", "y", "z")
-
-
-def columns(response: "SpatialResponse") -> dict[str, Column]:
-    """Return the samples of a response in space by name."""
-    energy, states = response.energy, response.states
-    ground = response.ground.at(response.time)
-    values = {"time": response.time}
-    values |= {f"quaternion_{axis}": states.quaternion[:, k] for k, axis in enumerate(("s", *_AXES))}
-    values |= _vector("angular_velocity", states.angular_velocity)
-    values |= {"tilt": response.tilt, "azimuth": response.azimuth, "contact": response.contact.astype(np.float64)}
-    values |= _vector("centre", response.centre) | _vector("ground_acceleration", ground)
-    values |= {"kinetic_energy": energy.kinetic, "potential_energy": energy.potential}
-    values |= {"work_of_ground": energy.work, "energy_lost": energy.lost}
-    return {name: Column.of(name, each) for name, each in values.items()}
-
-
-def provenance(response: "SpatialResponse") -> dict[str, Any]:
-    """Return what was computed from what, as plain values.
-
-    Returns Numbers, words and lists of numbers; ``overturning_direction_rad`` only where it overturned.
-    """
-    body, direction = response.body, response.overturning_direction
-    return {
-        "software": SOFTWARE,
-        "engine": response.trajectory.engine,
-        "outcome": response.outcome.name,
-        "status": response.status.name,
-        "still_rocking": response.still_rocking,
-        "summary": response.summary,
-        **({} if math.isnan(direction) else {"overturning_direction_rad": direction}),
-        "mass_kg": body.mass,
-        "centre_m": body.centre.tolist(),
-        "inertia_kg_m2": body.inertia.ravel().tolist(),
-        "base_m": np.ravel(body.base).tolist(),
-        "restitution": response.law.label,
-        **{f"motion_{axis}": name for axis, name in zip(("x", "y", "vertical"), response.names, strict=True)},
-        **{f"setting_{k}": v for k, v in response.settings.stated.items()},
-    }
-
-
-def exported(response: "SpatialResponse") -> Table:
-    """Return what the files of a response in space hold; samples, impacts, intervals of one contact, and provenance."""
-    known = ("time", "energy_before", "energy_after", "impulse", "pull")
-    impacts = {name: Column.of(name, response.impacts[name]) for name in known}
-    impacts["contact"] = Column(response.impacts["contact"], "", "contact that stays")
-    impacts["vertices"] = Column(response.impacts["vertices"], "", "vertices that stay on the ground")
-    rows = response.intervals
-    intervals = {
-        "start": Column.of("start", np.array([start for start, _, _, _ in rows], dtype=np.float64)),
-        "end": Column.of("end", np.array([end for _, end, _, _ in rows], dtype=np.float64)),
-        "contact": Column(np.array([contact.name.lower() for _, _, contact, _ in rows], dtype="U8"), "", "contact"),
-        "vertices": Column.of(
-            "vertices", np.array(["-".join(map(str, points)) for _, _, _, points in rows], dtype="U64")
-        ),
-    }
-    beside = {"impact": Table("impact", impacts), "interval": Table("interval", intervals)}
-    return Table("time", columns(response), provenance(response), beside, no_unit="-")
-
-
-def _vector(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
-    return {f"{name}_{axis}": values[:, k] for k, axis in enumerate(_AXES)}
+    @property
+    def _facts(self) -> dict[str, Any]:
+        direction = self.overturning_direction
+        return {
+            **({} if math.isnan(direction) else {"overturning_direction_rad": direction}),
+            **self.body.facts,
+            "restitution": self.law.label,
+            **{f"motion_{axis}": name for axis, name in zip(("x", "y", "vertical"), self.names, strict=True)},
+        }

@@ -1,5 +1,6 @@
 """What the engine in space hands back for one history: polynomials between events, events, and states at any times."""
 
+import math
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
@@ -88,9 +89,12 @@ class SpatialTrajectory:
         return [event for event in self.events if event.kind is SpatialEventKind.IMPACT]
 
     @property
-    def contact(self) -> ContactMode:
-        """On what the body stands at the end."""
-        return self.pieces[-1].contact.mode
+    def direction(self) -> float:
+        """Direction in which it lies, from x towards y; NaN if it did not overturn [rad]."""
+        if self.outcome is not Outcome.OVERTURNED:
+            return math.nan
+        last = self.pieces[-1]
+        return float(attitude.azimuth(last.at(np.array([last.until]))[0][0]))
 
 
 @dataclass(frozen=True, eq=False)
