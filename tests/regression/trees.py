@@ -27,7 +27,7 @@ _PASSING = (
     (r"\(\d+ bytes", "(BYTES"),
     (r"\bprocess \d+", "PROCESS"),
     (r"^[0-9a-f]{32}$", "CHECK"),
-    (r"(?<=fast \()(avx512|avx2|plain)|(?<=order 8, )(avx512|avx2|plain)|^(avx512|avx2|plain)$", "KERNELS"),
+    (r"(?<=fast \()(avx512|avx2|plain)|(?<=order [68], )(avx512|avx2|plain)|^(avx512|avx2|plain)$", "KERNELS"),
 )
 _NUMBER = re.compile(r"[-+]?\d+\.\d+(?:e[-+]?\d+)?")
 _SMALL = 1e-3  # what is smaller is compared as if it were this: sums that leave nothing but rounding

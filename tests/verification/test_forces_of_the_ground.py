@@ -13,10 +13,10 @@ import pytest
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics.loss_of_contact import contact_words
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.reference import Reference
 from rocking.errors import PureRockingWarning
+from rocking.outcome import contact_words
 
 LEANING = rk.Section([rk.Region([(0.0, 0.0), (0.5, 0.0), (0.3, 2.0), (0.1, 2.0)], 2400.0)])
 STEP = 0.005

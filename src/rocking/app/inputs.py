@@ -14,8 +14,8 @@ from rocking.app.work import Remembered
 from rocking.bodies import Body
 from rocking.bodies.formats.schema import BODIES, BodyFile, Positive
 from rocking.bodies.formats.source import blamed
-from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError, RockingError
+from rocking.motions.pulse import Motion
 from rocking.spec.construction import body_of, motion_of
 from rocking.spec.document import OneMotionTable, ResponseTables, SettingsTable, check_start
 from rocking.spec.fields import JobTable, Words, refused

@@ -10,8 +10,8 @@ from rocking.bodies import Body
 from rocking.cli.numbers import in_unit, values_table
 from rocking.cli.question import NO_MOTION, Words, hinted, parsed_sets, typed
 from rocking.conventions import FEET, Foot
-from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
+from rocking.motions.pulse import Motion
 from rocking.spec.document import NEEDS, CampaignDocument
 from rocking.spec.reading import CommandFiles, checked, located, tables_in
 from rocking.spec.study import StudyProblem

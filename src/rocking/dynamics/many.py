@@ -9,16 +9,14 @@ import numpy as np
 from rocking import checks, conventions, plausibility, quantities
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
-from rocking.dynamics.components import components_of, in_plane, in_space
+from rocking.dynamics._simulate import components_of, in_plane, in_space
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
-from rocking.dynamics.loss_of_contact import contact_words, flags
 from rocking.dynamics.parameters import SIDES, RockingParameters
-from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.motion import GroundMotion
-from rocking.motions.pulse import Pulse
-from rocking.outcome import overturned
+from rocking.motions.pulse import Motion, Pulse
+from rocking.outcome import contact_words, flags, overturned
 from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:

@@ -17,8 +17,7 @@ from rocking.dynamics.response_base import ResponseBase, motion_provenance
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.lazy import presenter
-from rocking.motions.motion import GroundMotion
-from rocking.motions.pulse import Pulse
+from rocking.motions.pulse import Motion
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome
 
@@ -26,8 +25,6 @@ if TYPE_CHECKING:
     from rocking.dynamics.contact import ContactResponse
     from rocking.dynamics.plane.dense_output import DenseOutput
     from rocking.dynamics.plane.energy_balance import GroundForces, ResponseEnergy
-
-Motion = GroundMotion | Pulse
 
 _ROUNDING = 1e-9
 

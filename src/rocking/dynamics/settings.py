@@ -1,13 +1,16 @@
-"""How to integrate: what every engine is told beside the body and the motion."""
+"""How to integrate: settings, and which engine runs on how many threads with which instructions."""
 
 import math
+import os
 from dataclasses import dataclass, fields
+from importlib import import_module
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from rocking import checks, conventions, plausibility
-from rocking.errors import InvalidValueError
+from rocking import checks, conventions, errors, plausibility
+from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
 
 ORDERS = (4, 6, 8)
 """Orders that the fast engine has been compiled for."""
@@ -159,3 +162,79 @@ def _whole(name: str, value: object, least: int = 1, most: float = math.inf, amo
         )
         raise InvalidValueError(f"{name} must be {limits}, got {value!r:.60}")
     return int(value)  # type: ignore[call-overload,no-any-return]
+
+
+ENGINES = ("auto", "fast", "reference")
+
+
+@dataclass(frozen=True)
+class CompiledEngine:
+    """An engine in C++, which an installation may lack."""
+
+    name: str  # of its module
+    not_built: str  # what is said where it was not built
+    instead: str = "the reference engine runs instead"
+
+    def built(self) -> ModuleType | None:
+        """Return the compiled module, or None."""
+        try:
+            return import_module(self.name)
+        except ImportError:
+            return None
+
+    def available(self) -> bool:
+        """Return whether the engine was built with this installation; otherwise the reference engine serves."""
+        return self.built() is not None
+
+    def module(self) -> ModuleType:
+        """Return the compiled module, or say what it takes."""
+        found = self.built()
+        if found is None:
+            raise MissingExtraError(f'{self.not_built}; engine="reference" gives the same results, slowly')
+        return found
+
+    def chosen(self, asked: str) -> str:
+        """Return which engine will run, and say so if it is not the one that users expect."""
+        asked = checks.one_of("engine", asked, ENGINES)
+        if asked == "auto" and not self.available():
+            errors.warn(f"{self.not_built}; {self.instead}", SlowEngineWarning)
+            return "reference"
+        if asked != "reference":
+            self.module()
+        return "reference" if asked == "reference" else "fast"
+
+    def instruction_sets(self) -> list[str]:
+        """Return what the engine can use on this processor, the fastest first."""
+        return list(self.module().instruction_sets())
+
+    def instruction_set(self) -> str:
+        """Return what it will use: what the environment variable ROCKING_ISA names, or the fastest there is."""
+        known, wanted = self.instruction_sets(), os.environ.get("ROCKING_ISA", "")
+        if wanted and wanted not in known:
+            raise InvalidValueError(f"ROCKING_ISA must be one of {', '.join(known)}, got {wanted!r}")
+        return wanted or known[0]
+
+
+MOST_THREADS = 4096
+
+
+def check_threads(threads: object) -> None:
+    """Refuse what is no number of threads, or None."""
+    if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
+        raise InvalidValueError(f"threads must be a whole number >= 1, got {threads!r}")
+    if isinstance(threads, int) and threads > MOST_THREADS:
+        raise InvalidValueError(f"threads must be in [1, {MOST_THREADS}], got {threads}")
+
+
+def check_progress(progress: object) -> None:
+    """Refuse what cannot be told how far the work is."""
+    if progress is not None and not callable(progress):
+        raise InvalidValueError(f"progress must be a function of the histories done, or None, got {progress!r:.60}")
+
+
+def processors() -> int:
+    """Return the number of processors that this process may use."""
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:
+        return os.cpu_count() or 1

@@ -302,3 +302,6 @@ def _times(time: Any) -> FloatArray:
     if not np.isfinite(given).all():
         raise InvalidValueError(f"time must be finite [s], got {given[~np.isfinite(given)][0]:g}")
     return given
+
+
+Motion = GroundMotion | Pulse

@@ -9,9 +9,9 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray, g
-from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError
+from rocking.motions.pulse import Motion
 from rocking.plots.labels import PEAK, note, plain, plain_log
 from rocking.plots.overturning_map import CLASSES, FIRST, LATER, SECOND
 from rocking.plots.style import (

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 from rocking.bodies import Body
 from rocking.conventions import FEET, Foot, g, given_or_assumed
-from rocking.dynamics.response import Motion, Response
+from rocking.dynamics.response import Response
 from rocking.evidence._coefficient_table import CALIBRATED, CoefficientRow
 from rocking.motions.intensity import Measure
+from rocking.motions.pulse import Motion
 from rocking.outcome import Outcome
 from rocking.reports.body_facts import ImpactAnswer, side_facts
 from rocking.reports.document import (

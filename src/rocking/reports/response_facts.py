@@ -28,8 +28,9 @@ from rocking import plausibility
 from rocking.conventions import FEET, Assumed
 from rocking.dynamics.contact import ContactResponse
 from rocking.dynamics.parameters import RockingParameters
-from rocking.dynamics.response import Motion, Response
+from rocking.dynamics.response import Response
 from rocking.motions.motion import GroundMotion
+from rocking.motions.pulse import Motion
 from rocking.outcome import Outcome
 from rocking.restitution import models
 

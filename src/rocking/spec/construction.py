@@ -24,7 +24,7 @@ from rocking.spec.reading import InputFiles, located
 from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
 
 if TYPE_CHECKING:
-    from rocking.dynamics.response import Motion
+    from rocking.motions.pulse import Motion
     from rocking.spec.document import MotionKeys, MotionTable, OneMotionTable, RandomTable, RestitutionTable
 
 MOST_IN_MEMORY = 100_000

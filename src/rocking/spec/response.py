@@ -11,9 +11,9 @@ from rocking.bodies import Body
 from rocking.bodies.solid import Solid
 from rocking.conventions import DEFAULT_FRICTION
 from rocking.dynamics import free_rocking, simulate
-from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, PureRockingWarning
+from rocking.motions.pulse import Motion
 from rocking.spec.construction import any_body_of, motion_of, restitutions_of
 from rocking.spec.reading import InputFiles, located, read_text, validated
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from rocking import conventions
 from rocking.bodies import Body
-from rocking.dynamics.loss_of_contact import contact_words
-from rocking.dynamics.response import Motion
 from rocking.errors import extra
+from rocking.motions.pulse import Motion
+from rocking.outcome import contact_words
 from rocking.quantities import HISTORY, attributes
 from rocking.studies.adaptive_grid import Plane, refined
 from rocking.studies.axis import Axis

@@ -9,10 +9,10 @@ from rocking import checks, conventions
 from rocking.bodies import Block
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution
-from rocking.dynamics.loss_of_contact import contact_words, flags
-from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError, extra
+from rocking.motions.pulse import Motion
+from rocking.outcome import contact_words, flags
 from rocking.quantities import HISTORY, attributes
 from rocking.studies.histories import Product, results_of
 from rocking.studies.motion_sets import MotionList

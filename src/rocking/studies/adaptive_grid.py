@@ -10,9 +10,9 @@ from rocking import conventions
 from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.dynamics.plane.fast_engine import Arrays
-from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError
+from rocking.motions.pulse import Motion
 from rocking.studies.axis import Axis, axis_of
 from rocking.studies.question import Question
 from rocking.studies.variations import Case

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray, IntArray
-from rocking.dynamics.loss_of_contact import lost_contact
 from rocking.dynamics.plane.fast_engine import Arrays
+from rocking.outcome import lost_contact
 from rocking.studies.question import FAILED
 
 Run = Callable[[dict[str, FloatArray], IntArray], Arrays]

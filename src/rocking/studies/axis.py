@@ -12,11 +12,10 @@ from rocking import checks, plausibility
 from rocking.bodies import Block
 from rocking.conventions import FEET, FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution
-from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
 from rocking.motions import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
-from rocking.motions.pulse import Pulse, Ricker, Sinusoids
+from rocking.motions.pulse import Motion, Pulse, Ricker, Sinusoids
 from rocking.studies.question import Question
 from rocking.studies.variations import Case
 

@@ -10,8 +10,8 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
-from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
+from rocking.motions.pulse import Motion
 from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, absent, merged, verdicts
 from rocking.studies.axis import Axis
 from rocking.studies.question import FAILED

@@ -16,7 +16,7 @@ from rocking.dynamics.content import full_name, hash_of
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
 from rocking.dynamics.plane.batch import PIECE, ROWS, SIDES_UNTOLD, Batch, Rows
 from rocking.dynamics.plane.fast_engine import Arrays, empty_results
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.settings import Settings, check_progress
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 from rocking.studies.motion_sets import MotionSet
@@ -230,12 +230,6 @@ def results_of(
         if progress is not None:
             progress(last - first)
     return results
-
-
-def check_progress(progress: Any) -> None:
-    """Refuse what cannot be told how far the work is."""
-    if progress is not None and not callable(progress):
-        raise InvalidValueError(f"progress must be a function of the histories done, or None, got {progress!r:.60}")
 
 
 def part(rows: Rows, first: int, last: int) -> Rows:

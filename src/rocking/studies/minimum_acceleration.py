@@ -11,12 +11,12 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.loss_of_contact import contact_words
 from rocking.dynamics.plane.fast_engine import Arrays
-from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
+from rocking.motions.pulse import Motion
+from rocking.outcome import contact_words
 from rocking.studies.amplitude_search import AmplitudeSearch, Run, below_minimum, search_below
 from rocking.studies.question import FAILED, Question, sides_of
 

@@ -7,12 +7,11 @@ from typing import Any
 
 from rocking import checks
 from rocking.dynamics.content import full_name
-from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import measure
 from rocking.motions.motion import GroundMotion
 from rocking.motions.processing import scaled_to
-from rocking.motions.pulse import Pulse
+from rocking.motions.pulse import Motion, Pulse
 from rocking.motions.synthetic.distributions import Distribution
 from rocking.motions.synthetic.families import Family, family
 

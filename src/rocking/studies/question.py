@@ -11,16 +11,14 @@ from rocking import quantities
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ImpactLaw
-from rocking.dynamics.loss_of_contact import flags
 from rocking.dynamics.parameters import SIDES, RockingParameters
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import Arrays, instruction_set
-from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
-from rocking.motions.pulse import Pulse
-from rocking.outcome import Outcome
+from rocking.motions.pulse import Motion, Pulse
+from rocking.outcome import Outcome, flags
 from rocking.studies.histories import part
 from rocking.version import SOFTWARE
 

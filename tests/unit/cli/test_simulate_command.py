@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,6 @@ import rocking as rk
 from rocking.cli import main
 from rocking.cli.page import Page, plain
 from rocking.cli.responses import RockingAnswer
-from rocking.dynamics.plane import fast_engine
 from rocking.evidence._coefficient_table import default_models
 from rocking.spec.response import ResponseProblem
 
@@ -280,7 +280,7 @@ def test_netcdf(capsys, tmp_path):
 
 def test_a_missing_engine_is_said_once(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """One plain sentence on standard error, no Python warning, however many histories run."""
-    monkeypatch.setattr(fast_engine, "_module", lambda: None)
+    monkeypatch.setitem(sys.modules, "rocking.dynamics._engine", None)
     with pytest.raises(SystemExit) as left:
         main(["simulate", "--width", "0.5", "--height", "2", "--motion", "sine:amplitude=3,period=0.8"])
     said = capsys.readouterr().err.strip().splitlines()

@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rocking.dynamics import Outcome, Settings, Status, compiled
+from rocking.dynamics import Outcome, Settings, Status
 from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import ROWS, Batch, Rows, valid_row
 from rocking.dynamics.plane.fast_engine import RESULTS, Library
+from rocking.dynamics.settings import processors
 from rocking.errors import InvalidValueError
 from rocking.motions import Segments, pulses
 
@@ -216,7 +217,7 @@ def test_processors(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr("os.sched_getaffinity", raising=False)
     for told, expected in ((6, 6), (None, 1)):
         monkeypatch.setattr("os.cpu_count", lambda told=told: told)
-        assert compiled.processors() == expected
+        assert processors() == expected
 
 
 @built

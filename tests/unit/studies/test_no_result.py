@@ -6,11 +6,10 @@ import pytest
 import rocking as rk
 from rocking.app.studies.results import contours_of
 from rocking.conventions import DEFAULT_FRICTION, percent
-from rocking.dynamics.loss_of_contact import contact_words
 from rocking.dynamics.parameters import cut_words
 from rocking.dynamics.space.batch import SpatialBatch
 from rocking.motions.pulses import sine
-from rocking.outcome import Outcome, Status, overturned
+from rocking.outcome import Outcome, Status, contact_words, overturned
 from rocking.plots import falling_picture, rocking_spectrum_picture
 from rocking.reports.response_facts import response_facts
 from rocking.studies import cloud, multiple_stripe_analysis

@@ -11,9 +11,10 @@ from rocking.app.plain_text import plain_line
 from rocking.app.records import RecordStore
 from rocking.bodies import Body
 from rocking.conventions import Foot, g
-from rocking.dynamics.response import Motion, Response
+from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
+from rocking.motions.pulse import Motion
 from rocking.reports.body_facts import ImpactAnswer
 from rocking.spec.response import ResponseProblem
 from rocking.version import SOFTWARE

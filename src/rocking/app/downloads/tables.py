@@ -21,10 +21,11 @@ from rocking.app.plain_text import LONGEST_CELL, plain_line
 from rocking.app.settings import state_of
 from rocking.app.work import heavy
 from rocking.bodies import Body
-from rocking.dynamics.response import Motion, Response
+from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
 from rocking.motions.integrals import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
+from rocking.motions.pulse import Motion
 from rocking.plots.traces import fine_samples, traces
 from rocking.reports.body_facts import ImpactAnswer, body_facts
 from rocking.reports.motion_facts import measures_of

@@ -15,10 +15,10 @@ from rocking.app.studies.results import meaning, plain
 from rocking.bodies import Block, Body
 from rocking.bodies.formats.body_writer import body_to_toml
 from rocking.dynamics import simulate
-from rocking.dynamics.response import Motion, Response
+from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.motions.motion import GroundMotion
-from rocking.motions.pulse import Pulse
+from rocking.motions.pulse import Motion, Pulse
 from rocking.motions.pulses import pulse
 from rocking.outcome import Outcome
 from rocking.spec.construction import motions_of

@@ -10,8 +10,8 @@ from rocking.app.studies.finished import OpenStudy
 from rocking.app.studies.study_folder import StudyFolder
 from rocking.campaigns import disk
 from rocking.conventions import FloatArray
-from rocking.dynamics.loss_of_contact import contact_words, lost_contact
 from rocking.errors import InvalidValueError
+from rocking.outcome import contact_words, lost_contact
 from rocking.studies.boundaries import chains, edge_numbers, segments
 from rocking.version import __version__
 

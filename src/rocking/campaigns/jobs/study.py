@@ -8,9 +8,9 @@ import numpy as np
 
 from rocking.campaigns.jobs.adaptive import Search
 from rocking.campaigns.reading import HistoryRange
-from rocking.dynamics.loss_of_contact import flags
 from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.errors import InvalidValueError
+from rocking.outcome import flags
 from rocking.quantities import HISTORY
 from rocking.studies.histories import Histories
 from rocking.studies.motion_sets import MotionList, MotionSet

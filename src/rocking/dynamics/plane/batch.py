@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FEET, FloatArray
-from rocking.dynamics import compiled
 from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, RockingSide
 from rocking.dynamics.plane import fast_engine
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.settings import Settings, check_progress, check_threads, processors
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, Status
@@ -72,7 +71,7 @@ class Batch:
 
     def __post_init__(self) -> None:
         """Check the threads."""
-        compiled.check_threads(self.threads)
+        check_threads(self.threads)
 
     def run(
         self,
@@ -86,8 +85,8 @@ class Batch:
         Returns results: one array for each key of `fast_engine.RESULTS`; work: steps that were taken; empty
         for the reference engine.
         """
-        compiled.check_progress(progress)
-        compiled.check_threads(threads)
+        check_progress(progress)
+        check_threads(threads)
         if self.law.per_history:
             return self._constant.run(count, lambda a, b: drawn_rows(rows(a, b), self.law), progress, threads)
         quick = fast_engine.chosen(self.engine, self.law) == "fast"
@@ -104,7 +103,7 @@ class Batch:
             else:
                 done = fast_engine.module().run_batch(
                     library.handle, {**piece.values, "motion": piece.motion, "key": piece.stream}, out,
-                    order=self.settings.order, threads=threads or self.threads or compiled.processors(), chunk=_CHUNK,
+                    order=self.settings.order, threads=threads or self.threads or processors(), chunk=_CHUNK,
                     **fast_engine.common(self.settings, self.law),
                 )  # fmt: skip
                 total = {name: total.get(name, 0) + value for name, value in done.items()}

@@ -1,20 +1,17 @@
 """The fast engine of pure rocking: whether it is there, arrays in and out, and one history with all its samples."""
 
 import math
-from functools import cache
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from rocking import checks
 from rocking.conventions import FEET, FloatArray
-from rocking.dynamics import compiled
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import SIDES, RockingParameters
 from rocking.dynamics.plane.trajectory import Event, EventKind, Trajectory
-from rocking.dynamics.settings import Settings
-from rocking.errors import InvalidValueError, MissingExtraError
+from rocking.dynamics.settings import ENGINES, CompiledEngine, Settings
+from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, Status
 
@@ -30,54 +27,22 @@ RESULTS: dict[str, Any] = {
 """What the fast engine reports for every history."""
 
 
-_NOT_BUILT = (
-    "the fast engine was not built: it takes a C++17 compiler when rocking is installed (in a checkout, `make engine`)"
-)
 _NOT_FINITE = "ground accelerations must be finite [m/s2], got NaN or infinity in a motion; a gap in a record?"
-
-
-@cache
-def _module() -> ModuleType | None:
-    try:
-        from rocking.dynamics import _engine
-    except ImportError:
-        return None
-    return _engine
-
-
-def available() -> bool:
-    """Return whether the fast engine was built with this installation; otherwise the reference engine serves."""
-    return _module() is not None
+_COMPILED = CompiledEngine(
+    "rocking.dynamics._engine",
+    "the fast engine was not built: it takes a C++17 compiler when rocking is installed (in a checkout, `make engine`)",
+)
+available, module = _COMPILED.available, _COMPILED.module
+instruction_sets, instruction_set = _COMPILED.instruction_sets, _COMPILED.instruction_set
 
 
 def chosen(asked: str, law: ImpactLaw | None = None) -> str:
-    """Return which engine will run, and say so once if it is not the one that users expect."""
-    if law is not None and not law.tabulated and asked != "reference":
-        if checks.one_of("engine", asked, compiled.ENGINES) == "fast":
-            raise InvalidValueError(f"the fast engine knows tables, not {type(law).__name__}; engine must be reference")
-        return "reference"
-    engine = compiled.chosen_engine(asked, _module(), f"{_NOT_BUILT}; the reference engine runs instead")
-    if engine == "fast":
-        module()
-    return engine
-
-
-def module() -> ModuleType:
-    """Return the compiled module."""
-    found = _module()
-    if found is None:
-        raise MissingExtraError(f'{_NOT_BUILT}; engine="reference" gives the same results, slowly')
-    return found
-
-
-def instruction_sets() -> list[str]:
-    """Return what the fast engine can use on this processor, the fastest first."""
-    return list(module().instruction_sets())
-
-
-def instruction_set() -> str:
-    """Return what the fast engine will use."""
-    return compiled.chosen_instruction_set(instruction_sets())
+    """Return which engine will run, and say so if it is not the one that users expect."""
+    if law is None or law.tabulated or asked == "reference":
+        return _COMPILED.chosen(asked)
+    if checks.one_of("engine", asked, ENGINES) == "fast":
+        raise InvalidValueError(f"the fast engine knows tables, not {type(law).__name__}; engine must be reference")
+    return "reference"
 
 
 class Library:
@@ -224,6 +189,9 @@ def _run_fast(  # noqa: PLR0917 - as `run` has them
     out = empty_results(1)
     rotations, velocities = np.zeros(segments.count + 1), np.zeros(segments.count + 1)
     arguments = common(settings, parameters.law)
+    order = 6 if _takes_order_six(parameters, segments, settings, scale) else _ORDER
+    # a wider register brings a single history nothing: the kernels of AVX2 serve it
+    kernels = "avx2" if arguments["isa"] == "avx512" and order == _ORDER else arguments["isa"]
     noted = module().run_single(
         library.handle, rows, out, to_the_ground=True, rotation=rotations, velocity=velocities, **arguments
     )
@@ -248,10 +216,21 @@ def _run_fast(  # noqa: PLR0917 - as `run` has them
         truncation=float(out["truncation"][0]),
         least_force=float(out["least_force"][0]),
         friction_demand=float(out["friction_demand"][0]),
-        engine=f"fast (Taylor, order 8, {arguments['isa']})",
+        engine=f"fast (Taylor, order {order}, {kernels})",
     )
 
 
 def _last_written(rotations: np.ndarray, velocities: np.ndarray) -> int:
     moving = np.flatnonzero((rotations != 0.0) | (velocities != 0.0))
     return int(moving[-1]) + 1 if moving.size else 1
+
+
+def _takes_order_six(parameters: RockingParameters, segments: Segments, settings: Settings, scale: float) -> bool:
+    """Whether the samples of a record are so close that the engine follows it with order 6."""
+    if segments.degree != 1 or settings.linear:
+        return False
+    parts = [part for part in (segments.horizontal, segments.vertical) if part is not None]
+    strength = sum(float(np.abs([part[:, 0], part.sum(axis=1)]).max()) for part in parts)
+    p = max(parameters.right.frequency_parameter, parameters.left.frequency_parameter)
+    reach = (settings.longest_step**9 / 7200.0) ** (1.0 / 7.0)  # Eq. 54
+    return bool(p * segments.step * max(1.0, abs(scale / settings.gravity) * strength) ** 0.6 < reach)

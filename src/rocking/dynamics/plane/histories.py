@@ -8,10 +8,10 @@ from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.fast_engine import run
-from rocking.dynamics.response import Motion, Response
+from rocking.dynamics.response import Response
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
-from rocking.motions.pulse import Pulse
+from rocking.motions.pulse import Motion, Pulse
 from rocking.motions.segments import Segments
 
 # p times: the step between samples of a pulse's response, what is followed after a motion, and on ground at rest

@@ -11,9 +11,8 @@ import numpy as np
 
 from rocking import checks, plausibility
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.compiled import check_progress
 from rocking.dynamics.response_base import Exportable, motion_provenance
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.settings import Settings, check_progress
 from rocking.dynamics.space import fast_engine
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.body import SpatialBody

@@ -2,21 +2,18 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
 from itertools import pairwise
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics import compiled
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.settings import CompiledEngine, Settings, check_threads, processors
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.ground import SpatialGround
 from rocking.dynamics.space.impact_laws import FixedSpatial, ModelLaw, SpatialImpactLaw, law_of
-from rocking.errors import InvalidValueError, MissingExtraError
+from rocking.errors import InvalidValueError
 from rocking.restitution.space.impulse_position import HIGHEST, impulse_position
 
 PIECE = 1 << 15
@@ -47,45 +44,14 @@ Progress = Callable[[int], None] | None
 _FIXED = 2
 _MOMENTS = 117  # of a vertex or an edge for what ked-3d-point needs: 9, 27 and 81
 _ROUNDING = 1e-9
-_NOT_BUILT = (
+_COMPILED = CompiledEngine(
+    "rocking.dynamics._spatial",
     "the batch engine in space was not built: it takes a C++17 compiler when rocking is installed (in a checkout, "
-    "`make engine`)"
+    "`make engine`)",
+    "the reference engine runs instead, row by row",
 )
-
-
-@cache
-def _module() -> ModuleType | None:
-    try:
-        from rocking.dynamics import _spatial
-    except ImportError:
-        return None
-    return _spatial
-
-
-def available() -> bool:
-    """Return whether the compiled engine is there; if not, the reference engine serves row by row."""
-    return _module() is not None
-
-
-def module() -> ModuleType:
-    """Return the compiled module."""
-    found = _module()
-    if found is None:
-        raise MissingExtraError(f'{_NOT_BUILT}; engine="reference" gives the same results, slowly')
-    return found
-
-
-def chosen(asked: str) -> str:
-    """Return which engine will run, and say so if it is not the one that users expect."""
-    engine = compiled.chosen_engine(asked, _module(), f"{_NOT_BUILT}; the reference engine runs instead, row by row")
-    if engine == "fast":
-        module()
-    return engine
-
-
-def instruction_set() -> str:
-    """Return what the compiled engine will use."""
-    return compiled.chosen_instruction_set(list(module().instruction_sets()))
+available, module, chosen = _COMPILED.available, _COMPILED.module, _COMPILED.chosen
+instruction_set = _COMPILED.instruction_set
 
 
 @dataclass(frozen=True)
@@ -154,10 +120,10 @@ def run_compiled(
     progress: Progress,
 ) -> tuple[Results, str]:
     """Return the results of all rows, and which engine gave them."""
-    compiled.check_threads(threads)
+    check_threads(threads)
     stock = _stock(bodies, grounds, table, settings.gravity)
     results, counts = empty_results(len(table))
-    limits = {"threads": threads or compiled.processors(), **_limits(settings)}
+    limits = {"threads": threads or processors(), **_limits(settings)}
     for first in range(0, len(table), PIECE):
         last = min(first + PIECE, len(table))
         stock.run(*table.piece(first, last), results[first:last], counts[first:last], **limits)

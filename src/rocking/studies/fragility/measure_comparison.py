@@ -9,13 +9,13 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import BoolArray, FloatArray
+from rocking.dynamics.settings import check_progress
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.intensity import measure
 from rocking.statistics.least_squares import Regression, regression
 from rocking.studies.fragility.cloud_analysis import LEAST, CloudAnalysis, checked_least, clearly_lifted
 from rocking.studies.fragility.curves import curve_of
 from rocking.studies.fragility.subject import Progress, fits_of
-from rocking.studies.histories import check_progress
 
 if TYPE_CHECKING:
     import pandas as pd

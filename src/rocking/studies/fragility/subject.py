@@ -16,14 +16,13 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
-from rocking.dynamics.loss_of_contact import contact_words, lost_contact
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.fast_engine import Arrays
-from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.intensity import IntensityMeasure, RockingScale, measure
-from rocking.outcome import Outcome, of_results, overturned
+from rocking.motions.pulse import Motion
+from rocking.outcome import Outcome, contact_words, lost_contact, of_results, overturned
 from rocking.quantities import attributes
 from rocking.statistics.counts import pooled
 from rocking.statistics.lognormal import LognormalFit, fit_counts

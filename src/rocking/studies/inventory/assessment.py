@@ -10,12 +10,11 @@ from rocking import checks
 from rocking.bodies import Block
 from rocking.conventions import FloatArray, g
 from rocking.dynamics.impact_laws import ImpactLaw
-from rocking.dynamics.loss_of_contact import lost_contact
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, RockingError
-from rocking.outcome import Outcome
+from rocking.outcome import Outcome, lost_contact
 from rocking.statistics.counts import share_interval
 from rocking.studies.histories import Product, results_of
 from rocking.studies.inventory.hazard import Hazard

@@ -11,10 +11,9 @@ import numpy as np
 from rocking.bodies import Body
 from rocking.conventions import percent
 from rocking.dynamics.impact_laws import ImpactLaw, RandomRestitution
-from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.motion import GroundMotion
-from rocking.motions.pulse import Pulse
+from rocking.motions.pulse import Motion, Pulse
 from rocking.outcome import Outcome
 from rocking.studies.axis import RestitutionAxis, axis_of
 from rocking.studies.fragility._multiple_stripe_analysis import MultipleStripeAnalysis, multiple_stripe_plan

@@ -4,6 +4,7 @@ import csv
 import itertools
 import json
 import math
+import sys
 
 import numpy as np
 import pytest
@@ -236,7 +237,7 @@ def test_arguments_out_of_range_are_named(change, words):
 
 def test_without_the_compiled_engine_the_reference_serves(monkeypatch):
     """Asked for by name it is an error that says what to do; otherwise a warning, and the reference engine."""
-    monkeypatch.setattr(fast_engine, "_module", lambda: None)
+    monkeypatch.setitem(sys.modules, "rocking.dynamics._spatial", None)
     with pytest.raises(MissingExtraError, match="make engine"):
         batch_in_space(BOX, PULSE, engine="fast")
     with pytest.warns(SlowEngineWarning, match="row by row"):
