@@ -10,25 +10,16 @@ import typer
 
 from rocking.bodies import Solid
 from rocking.cli import options
+from rocking.cli.arguments import Arguments, document_file, hinted
 from rocking.cli.exports import PICTURES, Export, Exports, picture, write_records
 from rocking.cli.numbers import in_unit
 from rocking.cli.page import Page, deliver
-from rocking.cli.question import Words, hinted
 from rocking.conventions import FEET, Foot, g
 from rocking.errors import InvalidValueError
 from rocking.spec.construction import any_body_of
 from rocking.spec.document import SettingsTable
 from rocking.spec.fields import JobTable
-from rocking.spec.reading import (
-    CommandFiles,
-    InputFiles,
-    checked,
-    is_response,
-    located,
-    read_text,
-    tables_in,
-    validated,
-)
+from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
 
 if TYPE_CHECKING:
     from rocking.reports.body_facts import ImpactAnswer
@@ -62,6 +53,7 @@ EXPORTS = {
 
 
 def cor(
+    context: typer.Context,
     body: options.BodyFile = None,
     width: options.Width = None,
     height: options.Height = None,
@@ -83,11 +75,11 @@ def cor(
 ) -> None:
     """Print the coefficient of restitution of a body under every model, with its interval and what it implies."""
     exports = Exports.of(out, EXPORTS)
-    sizes = {"width": width, "height": height, "depth": depth, "density": density}
-    words = Words({"body": body, **sizes, "units": units, "sets": sets}, ("body", "settings"))
-    if odd := sorted(set(words.sets.get("settings", {})) - {"gravity"}):
+    arguments = Arguments(context, "body", "settings")
+    if odd := sorted(set(arguments.sets.get("settings", {})) - {"gravity"}):
         raise InvalidValueError(f"--set settings.{odd[0]}: an impact takes gravity only")
-    subject, gravity = _body(words, quiet=as_json)
+    subject, gravity = _body(arguments, quiet=as_json)
+    length = arguments.length or "m"
     if isinstance(subject, Solid):
         from rocking.cli.solids import SolidAnswer
 
@@ -97,13 +89,13 @@ def cor(
             raise InvalidValueError(
                 f"a body in space rocks about every edge of its base, so it takes no {', '.join(stated)}"
             )
-        answer: Any = SolidAnswer.of(subject, restitution, gravity, words.length or "m")
+        answer: Any = SolidAnswer.of(subject, restitution, gravity, length)
     else:
         from rocking.reports.body_facts import ImpactAnswer
 
         models = None if restitution is None else [_model(text) for text in restitution]
         impact = ImpactAnswer.of(subject, models, onto=onto, eta=eta, gravity=gravity, identities=identities)
-        answer = PlaneAnswer(impact, words.length or "m")
+        answer = PlaneAnswer(impact, length)
     deliver(answer, exports, as_json=as_json)
 
 
@@ -114,33 +106,27 @@ def _model(text: str) -> Any:
     return model_in_file(text) if file_of(text) else model(text)
 
 
-def _body(words: Words, *, quiet: bool) -> tuple[Any, float]:
+def _body(arguments: Arguments, *, quiet: bool) -> tuple[Any, float]:
     """Return the body and the gravity [m/s2], of a file of a response too; JSON stays alone on its stream."""
-    file = words.options["body"]
-    if file is not None and is_response(Path(file)):
-        sizes = [
-            f"--{name}" for name in ("width", "height", "depth", "density", "units") if words.options[name] is not None
-        ]
-        if stated := sizes or words.sized:
-            raise InvalidValueError(f"{file} has a table [body] and says everything itself, so it takes no {stated[0]}")
-        path = Path(file)
+    word, sets = arguments.options["body"], arguments.sets
+    beside = ("onto", "restitution", "eta", "identities")
+    if file := document_file(arguments.context, word, ("response",), beside, "has a table [body] and "):
         note = "body and gravity are taken from it; everything else it says is for `rocking simulate`."
-        print(f"{path.name}: {note}", file=sys.stderr if quiet else sys.stdout)
-        with located(file):
-            tables = tables_in(path)
-            document = validated(BodyDocument, read_text(path)) if tables is None else checked(BodyDocument, tables)
-            with located("body"):
-                body = any_body_of(document.body, InputFiles(path.parent))
-        settings = document.settings
-        if "settings" in words.sets:
-            settings = checked(SettingsTable, {**settings.model_dump(exclude_none=True), **words.sets["settings"]})
-        return body, settings.gravity or g
-    with hinted(file, None):
-        tables = {"body": words.body_table(file), "settings": words.sets.get("settings", {})}
-        document = checked(BodyDocument, tables)
-        with located("body"):
-            body = any_body_of(document.body, CommandFiles(Path()))
-    return body, document.settings.gravity or g
+        print(f"{file.name}: {note}", file=sys.stderr if quiet else sys.stdout)
+        with located(word):
+            tables = dict(tables_in(file) or {})
+            for name, keys in sets.items():
+                tables[name] = {**tables.get(name, {}), **keys}
+            return _made(tables, InputFiles(file.parent))
+    with hinted(word, None):
+        tables = {"body": arguments.body_table(word), "settings": sets.get("settings", {})}
+        return _made(tables, CommandFiles(Path()))
+
+
+def _made(tables: dict[str, Any], files: InputFiles) -> tuple[Any, float]:
+    document = checked(BodyDocument, tables)
+    with located("body"):
+        return any_body_of(document.body, files), document.settings.gravity or g
 
 
 @dataclass(frozen=True)
@@ -180,9 +166,9 @@ class PlaneAnswer:
             page.line()
             where = f" (landing on the {foot} foot)" if len(impact.tables) > 1 else ""
             page.line(f"Coefficient of restitution, velocity after / velocity before{where}", "bold")
-            chosen = next((k for k, row in enumerate(rows) if row.name == "calibrated"), None)
+            bold = {k for k, row in enumerate(rows) if row.name == "calibrated"}
             head = ("model", "r", "+-", "k", "loss", "friction", "")
-            page.table(head, [_row(row) for row in rows], ("model", ""), bold=chosen)
+            page.table(head, [_row(row) for row in rows], ("model", ""), bold=bold)
             page.warn(dict.fromkeys(f"{row.name}: {warning}" for row in rows for warning in row.warnings))
         page.line(
             "+- is the 95 % interval of one measured body, from each model's misfit to 39 published measurements;"

@@ -13,8 +13,8 @@ from rocking.errors import InvalidValueError
 from rocking.spec.document import FragilityTable
 
 if TYPE_CHECKING:
+    from rocking.cli.arguments import Arguments
     from rocking.cli.fragility_answer import FragilityAnswer
-    from rocking.cli.question import Words
     from rocking.spec.study import StudyProblem
 
 _SHAKING = "What shakes it"
@@ -131,30 +131,25 @@ def fragility(
 ) -> None:  # fmt: skip
     """Print how likely a body is to rock or to overturn at a level of shaking, and how well that is known."""
     from rocking import checks
+    from rocking.cli.arguments import Arguments, as_typed, document_file, typed
     from rocking.cli.fragility_answer import FragilityAnswer
-    from rocking.cli.question import as_typed
-    from rocking.cli.study import document_file, problem_in, words_of
+    from rocking.cli.study import TABLES, problem_in
 
     exports = Exports.of(out, EXPORTS)
     checks.one_of("--crossing", crossing, ("refuse", "common-dispersion"))
-    file = document_file(context, "fragility")
-    if file is not None:
-        problem, written, length = problem_in(file, "fragility", sets), "", "m"
+    length, written = None, ""
+    if file := document_file(context, body, ("campaign", "fragility"), ["threads", "name", "crossing"]):
+        problem = problem_in(file, "fragility", sets)
+        if problem.document.export is not None and not typed(context, "crossing"):
+            crossing = problem.document.export.crossing
     else:
-        words = words_of(context.params, "fragility")
-        own, written = _table(analysis, measure, levels, states, factor, several=len(restitution or ()) > 1)
-        problem = _problem(words, analysis, own, restitution)
-        length = words.length or "m"
+        arguments = Arguments(context, *TABLES, "fragility")
+        length = arguments.length
+        own, written = _table(arguments)
+        problem = _problem(arguments, own)
     _check(problem, exports)
-    table = problem.document.fragility or FragilityTable()
-    total = len(problem.motions) * (1 if table.levels is None else table.levels.numbers().size)
-    total *= len(problem.restitutions)
-    if total > MOST_HISTORIES:
-        raise InvalidValueError(
-            f"there must be at most {MOST_HISTORIES} histories, got {total}; rocking campaign computes more"
-        )
-    with bar("histories", total, quiet=as_json) as tell, as_typed():
-        answer = FragilityAnswer.of(problem, tell, threads, written=written, length=length)
+    with bar("histories", _histories(problem), quiet=as_json) as progress, as_typed():
+        answer = FragilityAnswer.of(problem, progress, threads, written=written, length=length or "m")
     answer.name, answer.crossing = name, crossing
     # the numbers are shown even if a file cannot be made of them
     deliver(answer, as_json=as_json)
@@ -165,54 +160,70 @@ def fragility(
             print(f"wrote {path}")
 
 
-def _table(
-    kind: str, measure: str, levels: str | None, states: str, factor: float | None, *, several: bool
-) -> tuple[dict[str, Any], str]:
+def _histories(problem: "StudyProblem") -> int:
+    """Return how many histories there are at least, refusing too many."""
+    levels = (problem.document.fragility or FragilityTable()).levels
+    total = len(problem.motions) * (1 if levels is None else levels.numbers().size) * len(problem.restitutions)
+    if total > MOST_HISTORIES:
+        raise InvalidValueError(
+            f"there must be at most {MOST_HISTORIES} histories, got {total}; rocking campaign computes more"
+        )
+    return total
+
+
+def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
     """Return the table [fragility], and the unit that levels were written in, in which medians are printed."""
     from rocking import checks
     from rocking.motions.intensity import measure as measure_of
+    from rocking.studies.fragility.subject import checked_levels, limit_states
 
+    kind, levels, states, factor = (arguments.options[name] for name in ("analysis", "levels", "states", "factor"))
     checks.one_of("--analysis", kind, ANALYSES)
-    wanted = measure_of(measure)
-    if several and kind != "stripes":
+    sets = arguments.sets.get("fragility", {})
+    measure = arguments.table("fragility", {"measure": arguments.options["measure"]}, keys={"measure"})
+    wanted = measure_of(str(measure["measure"]))
+    if len(arguments.options["restitution"] or ()) > 1 and kind != "stripes":
         raise InvalidValueError(f"several --restitution are compared by --analysis stripes, not by {kind}")
-    own: dict[str, Any] = {"measure": measure, "states": row("--states", states, "1")[0].tolist()}
+    own: dict[str, Any] = {**measure, "states": row("--states", states, "1")[0].tolist()}
+    limit_states(tuple(own["states"]))
     if factor is not None:
         if kind != "cloud":
             raise InvalidValueError(f"--factor is for --analysis cloud: {kind} brings every motion to the levels")
         own["factor"] = checks.positive("--factor", factor)
-    in_g = "g" if wanted.name == "pga" else ""
+    written = "g" if wanted.name == "pga" else ""
     if kind == "cloud":
         if levels is not None:
             raise InvalidValueError("--levels is not for --analysis cloud, which takes the motions as they are")
-        return own, in_g
-    if wanted.power == 0:
+    elif wanted.power == 0:
         raise InvalidValueError(f"no factor on a motion changes {wanted.name}: take it with --analysis cloud")
-    if levels is None:
-        if wanted.uplift is None:
-            raise InvalidValueError(f"which levels of {wanted.name}? Give --levels FIRST:LAST:COUNT in {wanted.unit}")
-        return own, in_g
-    from rocking.studies.fragility.subject import checked_levels
-
-    unit = "1" if wanted.unit == "-" else wanted.unit
-    own["levels"], written = values_table("--levels", levels, unit)
-    checked_levels("--levels", row("--levels", levels, unit)[0], wanted.unit)
-    return own, written
+    elif levels is not None:
+        unit = "1" if wanted.unit == "-" else wanted.unit
+        own["levels"], written = values_table("--levels", levels, unit)
+        checked_levels("--levels", row("--levels", levels, unit)[0], wanted.unit)
+    elif wanted.uplift is None and "levels" not in sets:
+        raise InvalidValueError(f"which levels of {wanted.name}? Give --levels FIRST:LAST:COUNT in {wanted.unit}")
+    return arguments.table("fragility", own), written
 
 
-def _problem(words: "Words", kind: str, own: dict[str, Any], restitution: list[str] | None) -> "StudyProblem":
-    from rocking.cli.question import as_typed
-    from rocking.cli.study import problem_of
-    from rocking.studies.fragility.subject import limit_states
+def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":
+    from rocking.cli.arguments import as_typed
+    from rocking.cli.study import family, in_lists, of_body
 
-    limit_states(tuple(own["states"]))
-    motions = _motions(words)
+    kind, restitution = arguments.options["analysis"], arguments.options["restitution"] or ["ked"]
+    synthetic = family(arguments, {"count": COUNT, "seed": SEED})
+    if synthetic is None:
+        motions = [in_lists(arguments.motion_table(word)) for word in arguments.body_and_motions()[1]]
+    elif "synthetic" not in synthetic:
+        raise InvalidValueError("what shakes it? Give --motion FILE, or --synthetic firm-ground")
+    else:
+        count, motions = synthetic["count"], [synthetic]
+        if isinstance(count, int) and not 1 <= count <= MOST_MOTIONS:
+            raise InvalidValueError(f"--count must be in [1, {MOST_MOTIONS}], got {count}; rocking campaign takes more")
     with as_typed():
-        if kind == "cloud" or "levels" in own:
-            return problem_of(kind, words, restitution, own, motions)
-        # what lifts the body decides on the levels that serve where none are given
-        subject = problem_of("cloud", words, restitution, own, motions)
-        return problem_of(kind, words, restitution, {**own, "levels": _usual_levels(subject)}, motions)
+        if kind != "cloud" and "levels" not in own:  # what lifts the body decides on them
+            bare = {key: own[key] for key in ("measure", "states")}
+            own = {**own, "levels": _usual_levels(of_body(arguments, "cloud", bare, restitution, motions))}
+        return of_body(arguments, kind, own, restitution, motions)
 
 
 def _usual_levels(problem: "StudyProblem") -> list[float]:
@@ -227,34 +238,12 @@ def _usual_levels(problem: "StudyProblem") -> list[float]:
     return [float(level) for level in np.geomspace(low * lifts, high * lifts, count)]
 
 
-def _motions(words: "Words") -> list[dict[str, Any]]:
-    """Return the tables [[motions]]: record files and pulses, or one synthetic family."""
-    from rocking.cli.study import motions_tables
-
-    asked, stated = words.options, words.sets.get("motion", {})
-    _, named = words.body_and_motions()
-    family = {name: asked[name] for name in ("synthetic", "count", "seed")}
-    if named:
-        if odd := [f"--{name}" for name, value in family.items() if value is not None]:
-            raise InvalidValueError(f"{', '.join(odd)} is for synthetic motions: leave it out beside --motion")
-        return motions_tables(words, named)
-    if words.acceleration is not None or stated:
-        odd = [*(["--units"] if words.acceleration is not None else []), *(f"motion.{key}" for key in stated)]
-        raise InvalidValueError(f"{', '.join(odd)} is for record files: leave it out, or give --motion")
-    if asked["synthetic"] is None:
-        raise InvalidValueError("what shakes it? Give --motion FILE, or --synthetic firm-ground")
-    number = COUNT if asked["count"] is None else asked["count"]
-    if not 1 <= number <= MOST_MOTIONS:
-        raise InvalidValueError(f"--count must be in [1, {MOST_MOTIONS}], got {number}; rocking campaign takes more")
-    return [{**family, "count": number, "seed": SEED if asked["seed"] is None else asked["seed"]}]
-
-
 def _check(problem: "StudyProblem", exports: Exports) -> None:
     """Refuse, before anything is computed, what could not be written."""
     several = len(problem.restitutions)
-    if (asked := [f"{name}=FILE" for name in CURVES if name in exports.names]) and several > 1:
+    if (curves := [f"{name}=FILE" for name in CURVES if name in exports.names]) and several > 1:
         raise InvalidValueError(
-            f"--out {', '.join(asked)} holds the curves of one --restitution; csv=FILE holds several"
+            f"--out {', '.join(curves)} holds the curves of one --restitution; csv=FILE holds several"
         )
     if "picture" in exports.names and several > MOST_IN_PICTURE:
         raise InvalidValueError(f"a picture holds {MOST_IN_PICTURE} --restitution at most, got {several}")

@@ -56,14 +56,15 @@ def inventory(
     as_json: options.AsJson = False,
 ) -> None:
     """Print which objects of a list stay standing at a level of shaking, the worst first, in plain words."""
-    from rocking.cli.study import document_file, problem_in
+    from rocking.cli.arguments import document_file
+    from rocking.cli.study import problem_in
 
     targets = [Path(text) for text in out or ()]
     _check(targets)
-    file = document_file(context, "inventory", str(objects))
-    problem = problem_in(file, "inventory", sets) if file is not None else _problem(context.params)
-    with bar("motions", quiet=as_json) as tell:
-        assessment = problem.answer(tell)
+    file = document_file(context, str(objects), ("campaign", "inventory"))
+    problem = problem_in(file, "inventory", sets) if file is not None else _problem(context)
+    with bar("motions", quiet=as_json) as progress:
+        assessment = problem.answer(progress)
     written, left_out = _write(assessment, targets)
     deliver(InventoryAnswer(assessment), as_json=as_json)
     if not as_json:
@@ -98,47 +99,28 @@ def _write(assessment: "Assessment", targets: list[Path]) -> tuple[list[Path], l
     return written, left_out
 
 
-def _problem(asked: dict[str, Any]) -> "StudyProblem":
-    from rocking.cli.question import Words, as_typed
-    from rocking.spec.document import CampaignDocument
-    from rocking.spec.reading import CommandFiles, checked
-    from rocking.spec.study import StudyProblem
-
-    if asked["pga"] is not None and asked["pgv"] is not None:
-        raise InvalidValueError("give --pga or --pgv, not both: motions are scaled to one of them")
-    words = Words({"units": asked["units"], "sets": asked["sets"]}, ("motion", "settings", "inventory"))
-    levels = {name: asked[name] for name in ("pga", "pgv") if asked[name] is not None}
-    with as_typed():
-        tables = {
-            "campaign": {"name": "inventory", "kind": "inventory"},
-            "inventory": {"objects": str(asked["objects"]), **levels, **words.sets.get("inventory", {})},
-            "motions": _motions(asked, words, leveled=bool(levels)),
-            "restitution": {"model": asked["restitution"]},
-            "settings": words.sets.get("settings", {}),
-        }
-        return StudyProblem.of(checked(CampaignDocument, tables), CommandFiles(Path()))
-
-
-def _motions(asked: dict[str, Any], words: Any, *, leveled: bool) -> list[dict[str, Any]]:
-    from rocking.cli.study import motions_tables
+def _problem(context: typer.Context) -> "StudyProblem":
+    from rocking.cli.arguments import Arguments, as_typed
+    from rocking.cli.study import family, in_lists, problem_of
     from rocking.studies.inventory.hazard import COUNT, FAMILY, SEED
 
-    family = {name: asked[name] for name in ("synthetic", "count", "seed")}
-    if asked["motion"]:
-        if odd := [f"--{name}" for name, value in family.items() if value is not None]:
-            raise InvalidValueError(f"{', '.join(odd)} is for synthetic motions: leave it out beside --motion")
-        tables = motions_tables(words, asked["motion"])
-        for word, table in zip(asked["motion"], tables, strict=True):
-            if "pulse" in table:
-                raise InvalidValueError(f"--motion takes record files here, got the pulse {word[:80]!r}")
-        return tables
-    stated = [*(["--units"] if words.acceleration else []), *(f"motion.{key}" for key in words.sets.get("motion", {}))]
-    if stated:
-        raise InvalidValueError(f"{', '.join(stated)} is for record files: leave it out, or give --motion")
-    if not leveled:
-        raise InvalidValueError("how strong is the shaking? Give --pga 0.3g or --pgv 25cm/s, or --motion FILE")
-    usual = {"synthetic": FAMILY, "count": COUNT, "seed": SEED}
-    return [{name: usual[name] if value is None else value for name, value in family.items()}]
+    arguments = Arguments(context, "motion", "settings", "inventory")
+    options, named = arguments.options, arguments.options["motion"] or ()
+    levels = {name: options[name] for name in ("pga", "pgv")}
+    if None not in levels.values():
+        raise InvalidValueError("give --pga or --pgv, not both: motions are scaled to one of them")
+    with as_typed():
+        table = arguments.table(
+            "inventory", {"objects": str(options["objects"]), **levels}, {"objects": str(options["objects"])}
+        )
+        synthetic = family(arguments, {"synthetic": FAMILY, "count": COUNT, "seed": SEED})
+        if synthetic is not None and not {"pga", "pgv"} & set(table):
+            raise InvalidValueError("how strong is the shaking? Give --pga 0.3g or --pgv 25cm/s, or --motion FILE")
+        motions = [arguments.motion_table(word) for word in named] if synthetic is None else [synthetic]
+        if pulse := next((motion["pulse"] for motion in motions if "pulse" in motion), None):
+            raise InvalidValueError(f"--motion takes record files here, got the pulse {pulse[:80]!r}")
+        tables = {"restitution": {"model": options["restitution"]}, "inventory": table}
+        return problem_of("inventory", arguments, [in_lists(motion) for motion in motions], **tables)
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from rocking.spec.document import MapTable
 if TYPE_CHECKING:
     import xarray as xr
 
+    from rocking.cli.arguments import Arguments
     from rocking.spec.study import StudyProblem
     from rocking.studies._overturning_map import MapArrays
     from rocking.studies.axis import Axis
@@ -100,22 +101,64 @@ def map(
     as_json: options.AsJson = False,
 ) -> None:
     """Print how a body ends over two parameters: shares of each way to overturn, safe islands, and where it begins."""
-    from rocking.cli.question import as_typed
-    from rocking.cli.study import document_file, map_tables, problem_in, problem_of, words_of
+    from rocking.cli.arguments import Arguments, as_typed, document_file
+    from rocking.cli.study import TABLES, body_and_motion, problem_in
 
     exports = Exports.of(out, EXPORTS)
-    file = document_file(context, "map")
-    if file is not None:
-        written: dict[str, str] = {}
-        problem, length = problem_in(file, "map", sets), "m"
+    written: dict[str, str] = {}
+    length = None
+    if file := document_file(context, body, ("campaign", "map"), ["threads"]):
+        problem = problem_in(file, "map", sets)
     else:
-        words = words_of(context.params, "map")
-        table, written = map_tables(x, y, refine, typed=restitution)
-        problem = problem_of("overturning-map", words, restitution, table)
-        length = words.length or "m"
-    with bar("histories", quiet=as_json) as tell, as_typed():
-        answer = MapAnswer.of(problem, written, length, exports, tell, threads)
+        arguments = Arguments(context, *TABLES, "map")
+        length = arguments.length
+        table, written = _table(arguments, x, y, refine)
+        problem = body_and_motion(arguments, "overturning-map", table, restitution or ["ked"])
+    with bar("histories", quiet=as_json) as progress, as_typed():
+        answer = MapAnswer.of(problem, written, length or "m", exports, progress, threads)
     deliver(answer, exports, as_json=as_json)
+
+
+def _table(arguments: "Arguments", x: str, y: str, refine: int | None) -> tuple[dict[str, Any], dict[str, str]]:
+    """Return the table [map], and the units that axes were written in, by their name."""
+    from rocking.errors import InvalidValueError
+
+    typed = arguments.options["restitution"] or ()
+    axes, written = {}, {}
+    for option, text in (("x", x), ("y", y)):
+        axes[option], unit = _axis(f"--{option}", text)
+        if unit:
+            written[axes[option]["axis"]] = unit
+    if typed and "restitution" in {axes["x"]["axis"], axes["y"]["axis"]}:
+        raise InvalidValueError("--restitution is an axis of this map: leave the option out")
+    if refine is not None and not 1 <= refine <= 12:
+        raise InvalidValueError(f"--refine must be in [1, 12], got {refine}")
+    if refine is not None and len(typed) > 1:
+        raise InvalidValueError("--refine is for one --restitution: several are compared cell by cell")
+    return arguments.table("map", {**axes, "refine": refine}), written
+
+
+def _axis(option: str, text: str) -> tuple[dict[str, Any], str]:
+    """Return an axis as its table, and the unit that its values were written in.
+
+    >>> _axis("--x", "semi_diagonal=40cm,80cm")
+    ({'axis': 'semi_diagonal', 'values': [0.4, 0.8]}, 'cm')
+    """
+    from rocking import checks
+    from rocking.cli.numbers import values_table
+    from rocking.errors import InvalidValueError
+    from rocking.studies.axis import axes
+
+    name, equals, values = text.partition("=")
+    known = axes()
+    name = checks.spelling(name.strip(), known)
+    if name not in known:
+        near = checks.nearest(name, known)
+        raise InvalidValueError(f"{option}: no axis named {name!r:.60}; there are {', '.join(sorted(known))}{near}")
+    if not equals or not values.strip():
+        raise InvalidValueError(f"{option} must be {name}=FIRST:LAST:COUNT or {name}=A,B,C, got no values")
+    table, written = values_table(name, values, known[name].unit)
+    return {"axis": name, **table}, written
 
 
 @dataclass(frozen=True, eq=False)

@@ -65,20 +65,21 @@ def minimum(
     as_json: options.AsJson = False,
 ) -> None:
     """Print all peak ground accelerations at which a body begins or ceases to overturn, not the first alone."""
-    from rocking.cli.question import as_typed
-    from rocking.cli.study import document_file, problem_in, problem_of, words_of
+    from rocking.cli.arguments import Arguments, as_typed, document_file
+    from rocking.cli.study import TABLES, body_and_motion, problem_in
 
     exports = Exports.of(out, EXPORTS)
-    file = document_file(context, "minimum")
-    if file is not None:
-        answer_in = problem_in(file, "minimum", sets), "m", "m/s2"
+    length: str | None = None
+    acceleration: str | None = None
+    if file := document_file(context, body, ("campaign", "minimum"), ["threads"]):
+        problem = problem_in(file, "minimum", sets)
     else:
-        words = words_of(context.params, "minimum")
-        table = {**_range(lowest, highest), "points": points, "levels": levels}
-        problem = problem_of("minimum-acceleration", words, [restitution], table)
-        answer_in = problem, words.length or "m", words.acceleration or "m/s2"
-    with bar("histories", quiet=as_json) as tell, as_typed():
-        answer = MinimumAnswer(answer_in[0], answer_in[0].answer(tell, threads), *answer_in[1:])
+        arguments = Arguments(context, *TABLES, "minimum")
+        length, acceleration = arguments.length, arguments.acceleration
+        table = arguments.table("minimum", {**_range(lowest, highest), "points": points, "levels": levels})
+        problem = body_and_motion(arguments, "minimum-acceleration", table, [restitution])
+    with bar("histories", quiet=as_json) as progress, as_typed():
+        answer = MinimumAnswer(problem, problem.answer(progress, threads), length or "m", acceleration or "m/s2")
     deliver(answer, exports, as_json=as_json)
 
 

@@ -53,6 +53,7 @@ EXPORTS = {"picture": picture(_draw), "csv": Export((".csv",), _write_csv)}
 
 
 def motion(
+    context: typer.Context,
     record: Annotated[
         list[str],
         typer.Argument(
@@ -71,24 +72,23 @@ def motion(
     as_json: options.AsJson = False,
 ) -> None:
     """Print what a record or a pulse is, its intensity measures and its response spectrum."""
-    from rocking.cli.question import Words, hinted
+    from rocking.cli.arguments import Arguments, hinted
     from rocking.reports.motion_facts import MotionAnswer
     from rocking.spec.construction import motion_of
     from rocking.spec.document import OneMotionTable
     from rocking.spec.reading import CommandFiles, checked
 
     exports = Exports.of(out, EXPORTS)
-    words = Words({"units": units, "sets": sets}, ("motion",))
-    factor = 1.0 if scale is None else checks.number("scale", scale)
-    if factor == 0.0:
-        raise InvalidValueError("scale must not be 0: nothing would move")
+    arguments = Arguments(context, "motion")
+    if scale is not None:
+        checks.number("scale", scale)
     upright = next((word.rpartition("#")[2] for word in record if word.startswith("z=")), "")
     with hinted(None, record[0].removeprefix("x="), upright):
-        table = checked(OneMotionTable, words.one_motion(record))
+        scaled = arguments.table("motion", {"scale": scale}, keys={"scale"})
+        table = checked(OneMotionTable, {**arguments.one_motion(record), **scaled})
         subject = motion_of(table, CommandFiles(Path()))
-    factor = table.scale if scale is None else factor
-    subject = subject if factor == 1.0 else subject.scaled(factor)
-    answer = MotionPage(MotionAnswer.of(subject, _periods(periods), damping), words.acceleration or "m/s2")
+    subject = subject if table.scale == 1.0 else subject.scaled(table.scale)
+    answer = MotionPage(MotionAnswer.of(subject, _periods(periods), damping), arguments.acceleration or "m/s2")
     deliver(answer, exports, as_json=as_json)
 
 
@@ -135,13 +135,13 @@ class MotionPage:
         page.line()
         head = ("intensity measure", "value", "unit", "")
         rows: Sequence[Sequence[str]] = [_measure_row(one, unit) for one in self.motion.measures.values()]
-        page.table(head, rows, ("intensity measure", "unit", ""), whole=0)
+        page.table(head, rows, ("intensity measure", "unit", ""), whole={0, 1, 2})
         page.line()
         page.line(f"Response spectrum, {100.0 * spectrum.damping:.4g} % damping", "bold")
         accelerations = spectrum.pseudo_acceleration / ACCELERATION_UNITS[unit], spectrum.pseudo_acceleration / g
         columns = (spectrum.periods, *accelerations, spectrum.pseudo_velocity, spectrum.displacement)
         rows = [tuple(f"{value:.4g}" for value in row) for row in zip(*columns, strict=True)]
-        page.table(("T [s]", f"PSA [{unit}]", "PSA [g]", "PSV [m/s]", "Sd [m]"), rows, whole=0)
+        page.table(("T [s]", f"PSA [{unit}]", "PSA [g]", "PSV [m/s]", "Sd [m]"), rows, whole={0})
 
     def _head(self, unit: str) -> list[tuple[str, str]]:
         motion: Any = self.motion.motion

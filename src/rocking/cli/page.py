@@ -55,25 +55,24 @@ class Page:
         rows: Iterable[Sequence[str]],
         left: Sequence[str] = (),
         *,
-        bold: int | Container[int] | None = None,
+        bold: Container[int] = (),
         dense: bool = False,
-        whole: int | None = None,
+        whole: Container[int] = (),
     ) -> None:
         """Write a table without lines.
 
-        left: columns of text, the others being numbers; bold: numbers of rows that stand out; whole: column that is
-        never folded.
+        left: columns of text, the others being numbers; bold: numbers of rows that stand out; whole: numbers of
+        columns that are never folded.
         """
         from rich.table import Table
         from rich.text import Text
 
         table = Table(box=None, pad_edge=False, collapse_padding=dense, header_style="bold")
         for k, name in enumerate(head):
-            how = {"no_wrap": True} if k == whole else {"overflow": "fold"}
+            how = {"no_wrap": True} if k in whole else {"overflow": "fold"}
             table.add_column(Text(name), justify="left" if name in left else "right", **how)
-        chosen = bold if isinstance(bold, Container) else (bold,)
         for k, row in enumerate(rows):
-            table.add_row(*map(Text, row), style="bold" if k in chosen else None)
+            table.add_row(*map(Text, row), style="bold" if k in bold else None)
         self._console.print(table)
 
 

@@ -112,7 +112,7 @@ class RockingAnswer:
         page.line("With other restitution models", "bold")
         names = ("model", "r", "outcome", "peak deg", "/ alpha", "impacts")
         rows = [_model_row(name, one) for name, one in {response.parameters.label: response, **self.others}.items()]
-        page.table(names, rows, ("model", "outcome"), bold=0, dense=True)
+        page.table(names, rows, ("model", "outcome"), bold={0}, dense=True)
         page.warn(f"{name}: {other}" for name, other in self.others.items() if isinstance(other, str))
         answers = {name: other for name, other in self.others.items() if not isinstance(other, str)}
         page.line(ModelAgreement.of({response.parameters.label: response, **answers}).sentence)

@@ -10,12 +10,12 @@ import typer
 from rocking import plausibility
 from rocking.bodies import Body
 from rocking.cli import options
+from rocking.cli.arguments import Arguments, document_file, hinted, parsed_sets
 from rocking.cli.exports import Export, Exports, picture
 from rocking.cli.page import deliver
-from rocking.cli.question import Words, hinted, parsed_sets, typed
 from rocking.errors import InvalidValueError
 from rocking.spec.document import ResponseDocument, ResponseTable
-from rocking.spec.reading import CommandFiles, checked, is_response, located, tables_in
+from rocking.spec.reading import CommandFiles, checked, located, tables_in
 from rocking.spec.response import ResponseJob
 
 if TYPE_CHECKING:
@@ -79,87 +79,74 @@ def simulate(
     from rocking.cli.responses import answer_of
 
     exports = Exports.of(out, EXPORTS)
-    file = _document(context)
-    if file is not None:
-        units_typed = ("m", "m/s2")
+    length: str | None = None
+    acceleration: str | None = None
+    if file := document_file(context, body, ("response",), has="has a table [response] and "):
         with located(str(file)):
-            tables = {name: dict(table) for name, table in (tables_in(file) or {}).items() if isinstance(table, dict)}
+            tables = dict(tables_in(file) or {})
             for name, keys in parsed_sets(sets, _TABLES).items():
                 tables[name] = {**tables.get(name, {}), **keys}
-            problem = ResponseJob.of(
-                checked(ResponseDocument, {**(tables_in(file) or {}), **tables}), file.parent
-            ).problem
+            problem = ResponseJob.of(checked(ResponseDocument, tables), file.parent).problem
     else:
-        words = Words(context.params, _TABLES)
-        units_typed = words.length or "m", words.acceleration or "m/s2"
-        problem = _problem(words, context)
+        arguments = Arguments(context, *_TABLES)
+        length, acceleration = arguments.length, arguments.acceleration
+        problem = _problem(arguments)
+    if problem.free is not None and isinstance(problem.body, Body):
+        _check_share(problem.body, problem.free, "response.free" if file else "--free")
     if problem.mechanics != "rocking" and "animation" in exports.names:
         raise InvalidValueError(f"an animation is of pure rocking only, and this is {problem.mechanics}")
-    deliver(answer_of(problem, *units_typed, listed=file is not None), exports, as_json=as_json)
+    answer = answer_of(problem, length or "m", acceleration or "m/s2", listed=file is not None)
+    deliver(answer, exports, as_json=as_json)
 
 
-def _document(context: typer.Context) -> Path | None:
-    """Return the file that says everything, if the first word is one: TOML with a table [response]."""
-    word = context.params.get("body")
-    if word is None or not is_response(Path(word)):
-        return None
-    beside = {"body", "out", "as_json", "sets"}
-    if stated := typed(context, [name for name in context.params if name not in beside]):
-        raise InvalidValueError(
-            f"{word} has a table [response] and says everything itself, so it takes no {', '.join(stated)}; "
-            "--set changes a key"
-        )
-    return Path(word)
-
-
-def _problem(words: Words, context: typer.Context) -> "ResponseProblem":
-    asked, sets = words.options, words.sets
-    body, motions = words.body_and_motions()
-    free, scale = asked["free"], asked["scale"]
-    if free is not None and motions:
+def _problem(arguments: Arguments) -> "ResponseProblem":
+    body, motions = arguments.body_and_motions()
+    names = ("free", "friction", "bounce")
+    response = arguments.table("response", {name: arguments.options[name] for name in names})
+    free = "free" in response
+    if free and motions:
         raise InvalidValueError(f"give a motion or --free, not both; got {motions[0][:100]!r}")
-    stated = [*typed(context, ["scale"]), *(["--units"] if words.acceleration else [])]
-    stated += [f"motion.{key}" for key in sets.get("motion", {})]
-    if free is not None and stated:
+    stated = [arguments.spelt("scale"), "--units" if arguments.acceleration else ""]
+    stated = [*filter(None, stated), *(f"motion.{key}" for key in arguments.sets.get("motion", {}))]
+    if free and stated:
         raise InvalidValueError(f"--free has no motion, so it takes no {', '.join(stated)}")
-    if free is None and not motions and not words.solid:
+    if not free and not motions and not arguments.solid:
         raise InvalidValueError(
             "what moves the ground? Give a record file, a pulse such as sine:amplitude=3,period=0.8, or --free 0.5"
         )
-    start = {name: asked[name] for name in ("free", "friction", "bounce") if asked[name] is not None}
-    with hinted(body, _file_of(motions)):
+    axis, _, rest = motions[0].partition("=") if motions else ("", "", "")
+    with hinted(body, rest if axis in {"x", "y", "z"} else next(iter(motions), None)):
         tables: dict[str, Any] = {
-            "body": words.body_table(body),
-            "response": {**start, **sets.get("response", {})},
-            "restitution": {"model": asked["restitution"], **sets.get("restitution", {})},
-            "settings": sets.get("settings", {}),
+            "body": arguments.body_table(body),
+            "response": response,
+            "restitution": _restitution(arguments),
+            "settings": arguments.sets.get("settings", {}),
         }
-        if free is None:
-            motion = words.components(motions) if words.solid else words.one_motion(motions)
-            tables["motion"] = motion if scale == 1.0 else {**motion, "scale": scale}
-        problem = ResponseJob.of(checked(ResponseDocument, tables), CommandFiles(Path())).problem
-    if free is not None and isinstance(problem.body, Body):
-        _check_share(problem.body, free)
-    return problem
+        if not free:
+            motion = arguments.components(motions) if arguments.solid else arguments.one_motion(motions)
+            scale = arguments.options["scale"] if arguments.spelt("scale") else None
+            tables["motion"] = {**motion, **arguments.table("motion", {"scale": scale}, keys={"scale"})}
+        return ResponseJob.of(checked(ResponseDocument, tables), CommandFiles(Path())).problem
 
 
-def _file_of(motions: list[str]) -> str | None:
-    if not motions:
-        return None
-    axis, equals, rest = motions[0].partition("=")
-    return rest if equals and axis in {"x", "y", "z"} else motions[0]
+def _restitution(arguments: Arguments) -> dict[str, Any]:
+    """Return the table [restitution]: what `--set` says takes the place of the usual model."""
+    keys: dict[str, Any] = arguments.sets.get("restitution", {})
+    if keys and (option := arguments.spelt("restitution")):
+        raise InvalidValueError(f"{option} and --set restitution.{next(iter(keys))} say the same: leave one out")
+    return keys or {"model": arguments.options["restitution"]}
 
 
-def _check_share(body: Body, free: float) -> None:
+def _check_share(body: Body, free: float, option: str) -> None:
     """Refuse, or doubt, what looks like an angle in degrees in place of a share of the slenderness angle."""
     alpha = body.side("right" if free > 0.0 else "left").slenderness_angle
     if abs(free) * alpha >= 0.5 * math.pi:
         raise InvalidValueError(
-            f"--free is a share of the slenderness angle, here {math.degrees(alpha):.3g} degrees, and 1 is where the "
-            f"body balances; got {free:g}. An angle of {free:g} degrees is --free {math.radians(free) / alpha:.3g}"
+            f"{option} is a share of the slenderness angle, here {math.degrees(alpha):.3g} degrees, and 1 is where the "
+            f"body balances; got {free:g}. An angle of {free:g} degrees is {option} {math.radians(free) / alpha:.3g}"
         )
     if abs(free) > 1.0:
         plausibility.warn([
             f"let go at {free:g} slenderness angles, beyond where the body balances: it can only fall. An angle of "
-            f"{free:g} degrees is --free {math.radians(free) / alpha:.3g}"
+            f"{free:g} degrees is {option} {math.radians(free) / alpha:.3g}"
         ])  # fmt: skip

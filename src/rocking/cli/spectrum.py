@@ -69,47 +69,40 @@ def spectrum(
     as_json: options.AsJson = False,
 ) -> None:
     """Print the peak rotation of blocks of many sizes and slendernesses under motions, and which sizes overturn."""
-    from rocking.cli.question import NO_MOTION, Words, as_typed, hinted, is_body
-    from rocking.cli.study import document_file, motions_tables, problem_in
-    from rocking.spec.document import CampaignDocument
-    from rocking.spec.reading import CommandFiles, checked
-    from rocking.spec.study import StudyProblem
+    from rocking.cli.arguments import NO_MOTION, Arguments, as_typed, document_file, hinted, is_body
+    from rocking.cli.study import in_lists, problem_in, problem_of
 
     exports = Exports.of(out, EXPORTS)
     named = [*(motions or ()), *(motion or ())]
-    file = document_file(context, "spectrum", named[0] if len(named) == 1 else None)
-    if file is not None:
+    marks = ("campaign", "spectrum")
+    if file := document_file(context, named[0] if len(named) == 1 else None, marks, ["threads"]):
         problem = problem_in(file, "spectrum", sets)
     else:
-        words = Words({"units": units, "sets": sets}, ("motion", "settings", "spectrum"))
+        arguments = Arguments(context, "motion", "settings", "spectrum")
         if not named:
             raise InvalidValueError(NO_MOTION.replace("a record file", "record files"))
-        angles, times = _angles(slenderness), _periods(periods)
-        total = len(named) * angles["count"] * times.pop("count")
-        if total > _MOST:
-            raise InvalidValueError(
-                f"spectra must take at most {_MOST} histories, got {total}; rocking campaign does more"
-            )
-        own = {"slenderness_angles": angles["values"], "periods": times["table"], "scale": scale}
+        own = {"slenderness_angles": _angles(slenderness), "periods": _periods(periods), "scale": scale}
+        table = arguments.table("spectrum", own, {"slenderness_angles": arguments.spelt("slenderness")})
         with hinted(None, next(filter(is_body, named), named[0])):
-            tables = {
-                "campaign": {"name": "spectrum", "kind": "rocking-spectrum"},
-                "motions": motions_tables(words, named),
-                "restitution": {"model": restitution},
-                "spectrum": {**own, **words.sets.get("spectrum", {})},
-                "settings": words.sets.get("settings", {}),
-            }
-            problem = StudyProblem.of(checked(CampaignDocument, tables), CommandFiles(Path()))
-    with bar("histories", quiet=as_json) as tell, as_typed():
-        answer = SpectrumAnswer(problem.answer(tell, threads))
+            each = [in_lists(arguments.motion_table(word)) for word in named]
+            problem = problem_of(
+                "rocking-spectrum", arguments, each, restitution={"model": restitution}, spectrum=table
+            )
+    blocks = problem.document.spectrum
+    assert blocks is not None  # the document refuses to be without
+    total = len(problem.motions) * blocks.slenderness_angles.numbers().size * blocks.periods.numbers().size
+    if total > _MOST:
+        raise InvalidValueError(f"spectra must take at most {_MOST} histories, got {total}; rocking campaign does more")
+    with bar("histories", quiet=as_json) as progress, as_typed():
+        answer = SpectrumAnswer(problem.answer(progress, threads))
     deliver(answer, exports, as_json=as_json)
 
 
-def _angles(text: str) -> dict[str, Any]:
-    """Return slenderness angles [rad] and their count.
+def _angles(text: str) -> list[float]:
+    """Return slenderness angles [rad].
 
-    >>> _angles("1,2")["values"], _angles("45deg")["count"]
-    ([0.7853981633974483, 0.4636476090008061], 1)
+    >>> _angles("1,2")
+    [0.7853981633974483, 0.4636476090008061]
     """
     import numpy as np
 
@@ -118,18 +111,18 @@ def _angles(text: str) -> dict[str, Any]:
     bad = values[~((values > 0.0) & (values < highest))]
     if bad.size:
         raise InvalidValueError(f"--slenderness must be {allowed}, got {bad[0]:g}{' rad' if unit else ''}; wrong unit?")
-    angles = values if unit else np.arctan(1.0 / values)
-    return {"values": angles.tolist(), "count": angles.size}
+    angles: list[float] = (values if unit else np.arctan(1.0 / values)).tolist()
+    return angles
 
 
 def _periods(text: str) -> dict[str, Any]:
-    """Return the periods 2 pi / p [s] as a table, and their count."""
+    """Return the periods 2 pi / p [s] as a table."""
     import numpy as np
 
     values, _ = row("--periods", text, "s", "log")
     if np.any(values <= 0.0) or np.any(np.diff(values) <= 0.0):
         raise InvalidValueError(f"--periods must be above 0 s and increase, got {text!r:.60}")
-    return {"table": values_table("--periods", text, "s", "log")[0], "count": values.size}
+    return values_table("--periods", text, "s", "log")[0]
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,51 +3,30 @@
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from rocking import checks
 from rocking.bodies import Body
-from rocking.cli.numbers import in_unit, values_table
-from rocking.cli.question import NO_MOTION, Words, hinted, parsed_sets, typed
+from rocking.cli.arguments import NO_MOTION, Arguments, hinted, parsed_sets
+from rocking.cli.numbers import in_unit
 from rocking.conventions import FEET, Foot
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Motion
-from rocking.spec.document import NEEDS, CampaignDocument
-from rocking.spec.reading import CommandFiles, checked, located, tables_in
+from rocking.spec.document import NEEDS, OF_FILES, CampaignDocument
+from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
 from rocking.spec.study import StudyProblem
 
-if TYPE_CHECKING:
-    import typer
-
-_SETTABLE = ("body", "motion", "settings")
-
-
-def words_of(parameters: Mapping[str, Any], own: str) -> Words:
-    """Return the words and options of a study that has a table of its own."""
-    return Words(parameters, (*_SETTABLE, own))
-
-
-def document_file(context: "typer.Context", own: str, word: str | None = None) -> Path | None:
-    """Return the file that says everything, if the first word is one: TOML with [campaign] or the study's own table."""
-    word = context.params.get("body") if word is None else word
-    if word is None or not {"campaign", own} & set(tables_in(Path(word)) or ()):
-        return None
-    beside = {"body", "objects", "motions", "out", "as_json", "threads", "sets"}
-    if stated := typed(context, [name for name in context.params if name not in beside]):
-        raise InvalidValueError(
-            f"{word} says everything itself, so it takes no {', '.join(stated)}; --set changes a key"
-        )
-    return Path(word)
+TABLES = ("body", "motion", "settings")
+"""Tables of which `--set` changes a key, beside the one that a study has of its own."""
 
 
 def problem_in(file: Path, own: str, sets: Sequence[str] | None = None) -> StudyProblem:
     """Return what a file describes, with the keys that were set beside it."""
-    kinds = {"map": "overturning-map", "minimum": "minimum-acceleration", "spectrum": "rocking-spectrum"}
+    kinds = [kind for kind, table in NEEDS.items() if table == own]
     with located(str(file)):
         tables = dict(tables_in(file) or {})
-        if own in kinds:
-            tables.setdefault("campaign", {"name": own, "kind": kinds[own]})
-        for table, keys in parsed_sets(sets, (*_SETTABLE, own)).items():
+        if len(kinds) == 1:
+            tables.setdefault("campaign", {"name": own, "kind": kinds[0]})
+        for table, keys in parsed_sets(sets, (*TABLES, own)).items():
             name = "motions" if table == "motion" else table
             stated = tables.get(name, {})
             if isinstance(stated, list) and len(stated) == 1:
@@ -58,94 +37,67 @@ def problem_in(file: Path, own: str, sets: Sequence[str] | None = None) -> Study
         document = checked(CampaignDocument, tables)
         if NEEDS[document.campaign.kind] != own:
             raise InvalidValueError(f'it is of kind "{document.campaign.kind}": rocking campaign run computes it')
-        return StudyProblem.of(document, file.parent)
+        return _in_memory(document, InputFiles(file.parent))
 
 
-def motions_tables(words: Words, motions: Sequence[str]) -> list[dict[str, Any]]:
-    """Return the tables [[motions]] of records and pulses."""
-    tables = []
-    for word in motions:
-        table = words.motion_table(word)
-        names = {"record": "records", "pulse": "pulse"}
-        tables.append({names.get(key, key): [value] if key in names else value for key, value in table.items()})
-    return tables
+def problem_of(kind: str, arguments: Arguments, motions: list[dict[str, Any]], **tables: Any) -> StudyProblem:
+    """Return the problem of the document that was typed, which has some tables beside the settings."""
+    own = NEEDS[kind]
+    settings = {"settings": arguments.sets.get("settings", {})}
+    document = {"campaign": {"name": own, "kind": kind}, "motions": motions, **settings, **tables}
+    return _in_memory(checked(CampaignDocument, document), CommandFiles(Path()))
 
 
-def problem_of(
-    kind: str,
-    words: Words,
-    restitution: Sequence[str] | None,
-    own: dict[str, Any],
-    motions: list[dict[str, Any]] | None = None,
+def _in_memory(document: CampaignDocument, files: InputFiles) -> StudyProblem:
+    """Return the problem of a document, after refusing what only the files of a campaign show."""
+    of_files = {"map": {"boundary", "tolerance"}, "export": {"bootstrap", "measures", "columns"}}
+    for name, keys in of_files.items():
+        table = getattr(document, name)
+        if table is not None and (odd := sorted(keys & table.model_fields_set)):
+            raise InvalidValueError(
+                f"{name}.{odd[0]} is for files of rocking campaign: leave it out, or compute this with it"
+            )
+    return StudyProblem.of(document, files)
+
+
+def body_and_motion(arguments: Arguments, kind: str, own: dict[str, Any], restitution: Sequence[str]) -> StudyProblem:
+    """Return the problem of a study of one body and one motion; own: the study's own table."""
+    _, named = arguments.body_and_motions()
+    if not named:
+        raise InvalidValueError(NO_MOTION)
+    return of_body(arguments, kind, own, restitution, [in_lists(arguments.one_motion(named))])
+
+
+def of_body(
+    arguments: Arguments, kind: str, own: dict[str, Any], restitution: Sequence[str], motions: list[dict[str, Any]]
 ) -> StudyProblem:
-    """Return the problem of a study of one body, made of the document that its options say.
-
-    own: the study's own table; motions: tables of its motions, if they are not the one that the words name.
-    """
-    body, named = words.body_and_motions()
-    if motions is None:
-        if not named:
-            raise InvalidValueError(NO_MOTION)
-        table = words.one_motion(named)
-        names = {"record": "records"}
-        motions = [{names.get(key, key): [v] if key in {"record", "pulse"} else v for key, v in table.items()}]
-    name = {"overturning-map": "map", "minimum-acceleration": "minimum"}.get(kind, "fragility")
-    with hinted(body, named[0].partition("=")[2] or named[0] if named else None):
-        tables = {
-            "campaign": {"name": name, "kind": kind},
-            "body": words.body_table(body),
-            "motions": motions,
-            "restitution": {"models": different(restitution)},
-            name: {**own, **words.sets.get(name, {})},
-            "settings": words.sets.get("settings", {}),
-        }
-        return StudyProblem.of(checked(CampaignDocument, tables), CommandFiles(Path()))
-
-
-def different(restitution: Sequence[str] | None) -> list[str]:
-    """Return the restitutions that were typed, ked if none was."""
-    texts = list(restitution or ["ked"])
-    if twice := next((text for text in texts if texts.count(text) > 1), None):
+    """Return the problem of a study of one body under motions; own: the study's own table."""
+    body, named = arguments.body_and_motions()
+    if twice := next((text for text in restitution if restitution.count(text) > 1), None):
         raise InvalidValueError(f"--restitution {twice[:60]} is given twice")
-    return texts
+    with hinted(body, named[0].partition("=")[2] or named[0] if named else None):
+        tables = {"body": arguments.body_table(body), "restitution": {"models": list(restitution)}, NEEDS[kind]: own}
+        return problem_of(kind, arguments, motions, **tables)
 
 
-def map_tables(
-    x: str, y: str, refine: int | None, *, typed: Sequence[str] | None
-) -> tuple[dict[str, Any], dict[str, str]]:
-    """Return the table [map], and the units that axes were written in, by their name."""
-    axes, written = {}, {}
-    for option, text in (("x", x), ("y", y)):
-        axes[option], unit = _axis(f"--{option}", text)
-        if unit:
-            written[axes[option]["axis"]] = unit
-    if typed and "restitution" in {axes["x"]["axis"], axes["y"]["axis"]}:
-        raise InvalidValueError("--restitution is an axis of this map: leave the option out")
-    if refine is not None and not 1 <= refine <= 12:
-        raise InvalidValueError(f"--refine must be in [1, 12], got {refine}")
-    if refine is not None and len(typed or ()) > 1:
-        raise InvalidValueError("--refine is for one --restitution: several are compared cell by cell")
-    return {**axes, **({} if refine is None else {"refine": refine})}, written
+def in_lists(motion: dict[str, Any]) -> dict[str, Any]:
+    """Return the table of one motion as one of [[motions]]."""
+    names = {"record": "records", "pulse": "pulse"}
+    return {names.get(key, key): [value] if key in names else value for key, value in motion.items()}
 
 
-def _axis(option: str, text: str) -> tuple[dict[str, Any], str]:
-    """Return an axis as its table, and the unit that its values were written in.
-
-    >>> _axis("--x", "semi_diagonal=40cm,80cm")
-    ({'axis': 'semi_diagonal', 'values': [0.4, 0.8]}, 'cm')
-    """
-    from rocking.studies.axis import axes
-
-    name, equals, values = text.partition("=")
-    known = axes()
-    name = checks.spelling(name.strip(), known)
-    if name not in known:
-        near = checks.nearest(name, known)
-        raise InvalidValueError(f"{option}: no axis named {name!r:.60}; there are {', '.join(sorted(known))}{near}")
-    if not equals or not values.strip():
-        raise InvalidValueError(f"{option} must be {name}=FIRST:LAST:COUNT or {name}=A,B,C, got no values")
-    table, written = values_table(name, values, known[name].unit)
-    return {"axis": name, **table}, written
+def family(arguments: Arguments, usual: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Return the table of synthetic motions, none where motions are named; usual: what serves where nobody says."""
+    options = {name: arguments.options[name] for name in ("synthetic", "count", "seed")}
+    if arguments.body_and_motions()[1]:
+        if odd := [f"--{name}" for name, value in options.items() if value is not None]:
+            raise InvalidValueError(f"{', '.join(odd)} is for synthetic motions: leave it out beside --motion")
+        return None
+    odd = ["--units"] if arguments.acceleration is not None else []
+    of_files = OF_FILES - {"time_step"}
+    if odd := [*odd, *(f"motion.{key}" for key in arguments.sets.get("motion", {}) if key in of_files)]:
+        raise InvalidValueError(f"{', '.join(odd)} is for record files: leave it out, or give --motion")
+    return {**usual, **arguments.table("motion", options)}
 
 
 def body_line(body: Body, gravity: float, length: str = "m") -> str:

@@ -30,7 +30,8 @@ _OWN_BODIES = {
 }
 _MANY_BODIES = {"histories", "minimum-acceleration", *_OWN_BODIES}
 _ANALYSES = [kind for kind, table in NEEDS.items() if table == "fragility"]
-_OF_FILES = {"format", "units", "time_step", "component", "vertical", "vertical_file", "scale"}
+OF_FILES = {"format", "units", "time_step", "component", "vertical", "vertical_file"}
+"""Keys of a motion that are for record files only."""
 
 
 def _key(description: str, usual: Any = None, **limits: Any) -> Any:
@@ -136,7 +137,7 @@ class MotionTable(MotionKeys):
     @model_validator(mode="after")
     def _whole(self) -> "MotionTable":
         own = {"count", "seed", "pga", "pgv", "time_step"}
-        source = self._one_source({"records": _OF_FILES, "pulse": {"scale"}, "synthetic": own})
+        source = self._one_source({"records": {*OF_FILES, "scale"}, "pulse": {"scale"}, "synthetic": own})
         if source == "synthetic" and self.count is None:
             raise refused("count is missing: how many synthetic motions?")
         return self
@@ -359,7 +360,7 @@ class OneMotionTable(MotionKeys):
 
     def _check_sources(self) -> None:
         own = {"seed", "member", "pga", "pgv", "time_step", "scale"}
-        self._one_source({"pulse": {"scale"}, "record": _OF_FILES, "synthetic": own})
+        self._one_source({"pulse": {"scale"}, "record": {*OF_FILES, "scale"}, "synthetic": own})
         if self.pga is not None and self.pgv is not None:
             raise refused("motions can be scaled to pga or to pgv, not to both")
 

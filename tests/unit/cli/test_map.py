@@ -11,10 +11,10 @@ import pytest
 
 import rocking as rk
 from rocking.cli import main
+from rocking.cli.numbers import row
 from rocking.cli.page import bar
-from rocking.cli.study import map_tables
-from rocking.spec.document import AxisTable
 from rocking.studies._overturning_map import overturning_map
+from rocking.studies.axis import axes
 from rocking.studies.islands import safe_islands
 from rocking.studies.sensitivity import map_sensitivity
 
@@ -65,10 +65,10 @@ def test_overturning_begins_at_the_closed_form(capsys):
         "--set",
         "settings.linear=true",
     )
-    axes = ("--x", "restitution=0.5,0.9", "--y", "amplitude_ratio=1:3:41")
+    over = ("--x", "restitution=0.5,0.9", "--y", "amplitude_ratio=1:3:41")
     found = {}
     for levels in ((), ("--refine", 6)):
-        code, out, _ = run(capsys, *words, *axes, *levels, "--json")
+        code, out, _ = run(capsys, *words, *over, *levels, "--json")
         assert code == 0
         found[bool(levels)] = json.loads(out)["overturning"]["first"]["y"]
     # the first point above it on a grid of 0.05, and of 0.05 / 64
@@ -93,10 +93,10 @@ def test_page(capsys):
 def test_late_modes_are_one_line(capsys, tmp_path):
     """Under a long record all that overturns after more than 3 impacts is one line; JSON parts it."""
     time = np.arange(1500) * 0.01
-    row = 2.0 * np.sin(6.0 * time) * np.exp(-(((time - 6.0) / 3.0) ** 2))
-    np.savetxt(tmp_path / "record.txt", np.stack([time, row], axis=1))
-    axes = ("--x", "pga=0.3g:1g:15", "--y", "semi_diagonal=0.5:2:10")
-    words = (*SIZE, tmp_path / "record.txt", "--units", "m/s2", *axes)
+    shaking = 2.0 * np.sin(6.0 * time) * np.exp(-(((time - 6.0) / 3.0) ** 2))
+    np.savetxt(tmp_path / "record.txt", np.stack([time, shaking], axis=1))
+    over = ("--x", "pga=0.3g:1g:15", "--y", "semi_diagonal=0.5:2:10")
+    words = (*SIZE, tmp_path / "record.txt", "--units", "m/s2", *over)
     told = json.loads(run(capsys, *words, "--json")[1])
     late = [one["count"] for one in told["modes"] if one["mode"] > 3]
     assert len(late) > 1
@@ -106,10 +106,10 @@ def test_late_modes_are_one_line(capsys, tmp_path):
 
 def test_nothing_overturns(capsys):
     """At or below g tan alpha nothing is lifted: the page says so, and JSON has no overturning."""
-    axes = ("--x", "frequency_ratio=1,2,3", "--y", "amplitude_ratio=0.2:1:5")
-    _, out, _ = run(capsys, *SIZE, PULSE, *axes)
+    over = ("--x", "frequency_ratio=1,2,3", "--y", "amplitude_ratio=0.2:1:5")
+    _, out, _ = run(capsys, *SIZE, PULSE, *over)
     assert "Nothing on this map overturns." in out
-    told = json.loads(run(capsys, *SIZE, PULSE, *axes, "--json")[1])
+    told = json.loads(run(capsys, *SIZE, PULSE, *over, "--json")[1])
     assert told["overturning"] is None
     assert [(one["mode"], one["share"]) for one in told["modes"]] == [(-2, 1.0)]
 
@@ -174,8 +174,8 @@ def test_files(capsys, tmp_path):
 )
 def test_axis_words(word, values):
     """Ranges, lists, equal ratios and units give the values that they say."""
-    table = AxisTable.model_validate(map_tables(word, word, None, typed=None)[0]["x"])
-    assert table.numbers() == pytest.approx(values, rel=1e-14)
+    name, _, text = word.partition("=")
+    assert row("--x", text, axes()[name].unit)[0] == pytest.approx(values, rel=1e-14)
 
 
 REFUSALS = [

@@ -3,14 +3,12 @@
 import csv
 import json
 import math
-from pathlib import Path
 
 import pytest
 
 from rocking.cli import main
-from rocking.cli.question import Words
+from rocking.cli.application import application
 from rocking.errors import InvalidValueError, RecordError, UnknownModelError
-from rocking.spec import construction, document, reading
 
 G = 9.80665
 # 0, 1, 0 m/s2 at 0.5 s: a triangle, whose integrals are 0.5 m/s, 0.25 m and 1/3 m2/s3
@@ -167,20 +165,13 @@ def test_components(capsys, tmp_path):
     assert "upwards" in run(capsys, "motion", *words)[1]
 
 
-def motion_from(word, **options):
-    """Return the motion of a word."""
-    words = Words(options, ["motion"])
-    table = reading.checked(document.OneMotionTable, words.one_motion([word]))
-    return construction.motion_of(table, reading.InputFiles(Path()))
-
-
-def test_a_file_wins_over_a_pulse(tmp_path, monkeypatch):
+def test_a_file_wins_over_a_pulse(capsys, tmp_path, monkeypatch):
     """A file that is called like a pulse is read as a file; without it the word is the pulse."""
     monkeypatch.chdir(tmp_path)
     word = "sine:amplitude=3,period=0.8"
-    assert motion_from(word).peak == 3.0
+    assert measured(capsys, word)["intensity"]["pga_m_s2"] == pytest.approx(3.0, rel=1e-12)
     (tmp_path / word).write_text(TRIANGLE, encoding="utf-8")
-    assert motion_from(word, units="m/s2").peak == 1.0
+    assert measured(capsys, word, "--units", "m/s2")["intensity"]["pga_m_s2"] == 1.0
 
 
 REFUSED = {
@@ -237,12 +228,12 @@ def test_errors_keep_their_kind(tmp_path):
     """Files raise RecordError, values InvalidValueError, pulses UnknownModelError: callers can tell them apart."""
     path = tmp_path / "triangle.txt"
     path.write_text(TRIANGLE, encoding="utf-8")
-    for word, options, kind in (
-        (str(path), {}, RecordError),
-        (str(path), {"units": "x"}, InvalidValueError),
-        ("nothing", {}, RecordError),
-        ("nothing:a=1", {}, UnknownModelError),
-        ("sine:amplitude=1,period=1", {"sets": ["motion.component=x"]}, InvalidValueError),
+    for words, kind in (
+        ([str(path)], RecordError),
+        ([str(path), "--units", "x"], InvalidValueError),
+        (["nothing"], RecordError),
+        (["nothing:a=1"], UnknownModelError),
+        (["sine:amplitude=1,period=1", "--set", "motion.component=x"], InvalidValueError),
     ):
         with pytest.raises(kind):
-            motion_from(word, **options)
+            application(["motion"])(args=["motion", *words], standalone_mode=False)

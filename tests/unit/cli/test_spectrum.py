@@ -91,13 +91,13 @@ def test_page_and_files(capsys, tmp_path):
 )
 def test_slenderness_words(word, degrees):
     """Without a unit it is h/b = 1 / tan alpha, with one the angle."""
-    assert np.degrees(_angles(word)["values"]) == pytest.approx(degrees, rel=1e-8)
+    assert np.degrees(_angles(word)) == pytest.approx(degrees, rel=1e-8)
 
 
 def test_period_words():
     """A range goes by equal ratios unless it says otherwise."""
     for text, values in (("1:16:5", [1, 2, 4, 8, 16]), ("1:5:5:linear", [1, 2, 3, 4, 5]), ("1,3,4", [1, 3, 4])):
-        assert Values.model_validate(_periods(text)["table"]).numbers() == pytest.approx(values, rel=1e-13)
+        assert Values.model_validate(_periods(text)).numbers() == pytest.approx(values, rel=1e-13)
 
 
 REFUSALS = [

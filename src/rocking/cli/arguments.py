@@ -1,0 +1,296 @@
+"""From what was typed to the document that a file would hold: one way into every question."""
+
+import re
+import shlex
+import tomllib
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rocking import checks
+from rocking.bodies.formats import FORMATS, describes_solid
+from rocking.cli.numbers import units_of
+from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
+from rocking.errors import BodyFileError, InvalidValueError, RecordError, RockingError
+from rocking.motions.pulses import catalogue
+from rocking.spec.document import OF_FILES
+from rocking.spec.reading import tables_in
+
+if TYPE_CHECKING:
+    import typer
+
+Tables = dict[str, Any]
+
+_AS_TYPED = (
+    (re.compile(r"\bunits="), "--units"),
+    (re.compile(r"\b(format|time_step)="), r"--set motion.\1="),
+    (re.compile(r"\bfill_holes=True"), "--set body.fill_holes=true"),
+    (re.compile(r"\bbase_tolerance="), "--set body.base_tolerance="),
+    (re.compile(r"\b(up|base_tolerance) must be"), r"body.\1 must be"),
+    (re.compile(r"^threads must be"), "--threads must be"),
+    (re.compile(r"(?<!--set )\b(response|motion)\.(friction|free|bounce|scale)\b"), r"--\2"),
+    (re.compile(r"(?<!--set )\brestitution\.model\b"), "--restitution"),
+    (re.compile(r"\bblock\.(width|height|depth|density)\b"), r"--\1"),
+)
+_PLACE = re.compile(
+    r"(body|motion(\.[xyz])?|motions(\[\d+\])?|records: .*|restitution|settings|map|map\.[xy]|fragility)"
+)
+_SIZES = ("width", "height"), ("slenderness_angle", "semi_diagonal")
+_OF_EVERY_FILE = {"format", "units", "time_step"}
+NO_MOTION = "what moves the ground? Give a record file, or a pulse such as sine:amplitude=3,period=0.8"
+
+
+@contextmanager
+def as_typed() -> Iterator[None]:
+    """Say what is refused as the command line calls things, without where it would stand in a file."""
+    try:
+        yield
+    except RockingError as error:
+        inner: RockingError = error
+        while isinstance(cause := inner.__cause__, RockingError) and _is_located(inner, cause):
+            inner = cause
+        text = str(inner)
+        for pattern, option in _AS_TYPED:
+            text = pattern.sub(option, text)
+        raise type(inner)(text) from error
+
+
+def _is_located(error: RockingError, cause: RockingError) -> bool:
+    """Return whether an error is another one with its place in a document before it."""
+    place, text = str(error), f": {cause}"
+    return place.endswith(text) and _PLACE.fullmatch(place.removesuffix(text)) is not None
+
+
+def is_body(text: str) -> bool:
+    """Return whether a name is that of a body file, by how it ends."""
+    return Path(text).suffix.lower() in FORMATS
+
+
+def is_file(text: str) -> bool:
+    """Return whether there is a file of a name."""
+    try:
+        return bool(text) and Path(text).exists()
+    except (OSError, ValueError):  # no file can have such a name
+        return False
+
+
+def parsed_sets(texts: Sequence[str] | None, known: Iterable[str]) -> Tables:
+    """Return the tables of ``--set table.key=value``.
+
+    >>> parsed_sets(["settings.gravity=9.81", "body.up=y"], ["settings", "body"])
+    {'settings': {'gravity': 9.81}, 'body': {'up': 'y'}}
+    """
+    tables: Tables = {}
+    for text in texts or ():
+        path, equals, value = text.partition("=")
+        table, dot, key = path.strip().partition(".")
+        if not (equals and dot and key):
+            raise InvalidValueError(f"--set must be table.key=value, such as settings.gravity=9.81, got {text!r:.60}")
+        if table not in known:
+            near = checks.nearest(table, list(known))
+            raise InvalidValueError(f"--set: no table named {table!r:.60} here; there are {', '.join(known)}{near}")
+        if key in tables.setdefault(table, {}):
+            raise InvalidValueError(f"--set {table}.{key} is given twice")
+        try:
+            tables[table][key] = tomllib.loads(f"value = {value.strip()}")["value"]
+        except (tomllib.TOMLDecodeError, ValueError, RecursionError):
+            tables[table][key] = value.strip()  # what TOML does not know is text
+    return tables
+
+
+def typed(context: "typer.Context", *names: str) -> list[str]:
+    """Return which of some parameters were typed, as they are spelt."""
+    spelt = {"record": "second word", "motions": "second word", "sets": "--set"}
+    sources = {name: context.get_parameter_source(name) for name in names}
+    return [
+        spelt.get(name, f"--{name.replace('_', '-')}")
+        for name, source in sources.items()
+        if source is not None and source.name == "COMMANDLINE"
+    ]
+
+
+def document_file(
+    context: "typer.Context", word: str | None, tables: Collection[str], beside: Collection[str] = (), has: str = ""
+) -> Path | None:
+    """Return the file that says everything, if a word is one: TOML with one of some tables.
+
+    beside: options that go with it, besides `--set`, `--out` and `--json`; has: what it has, for the sentence that
+    refuses the others.
+    """
+    if word is None or not set(tables) & set(tables_in(Path(word)) or ()):
+        return None
+    taken = {"body", "objects", "motions", "out", "as_json", "sets", *beside}
+    if stated := typed(context, *(name for name in context.params if name not in taken)):
+        raise InvalidValueError(
+            f"{word} {has}says everything itself, so it takes no {', '.join(stated)}; --set changes a key"
+        )
+    return Path(word)
+
+
+class Arguments:
+    """What was typed after a command, and the tables of a document that it makes; tables: those that --set changes."""
+
+    def __init__(self, context: "typer.Context", *tables: str) -> None:
+        self.context, self.options = context, context.params
+        self.sets = parsed_sets(self.options.get("sets"), tables)
+        kinds = [LENGTH_UNITS if "body" in tables else {}, ACCELERATION_UNITS if "motion" in tables else {}]
+        self.length, self.acceleration = units_of(self.options.get("units"), *kinds)
+
+    @property
+    def solid(self) -> bool:
+        """Whether the body is one in space."""
+        body = self.options.get("body")
+        return body is not None and describes_solid(body)
+
+    def spelt(self, option: str) -> str:
+        """Return how an option was typed; empty if it was not."""
+        return next(iter(typed(self.context, option)), "")
+
+    def table(
+        self,
+        name: str,
+        values: Mapping[str, Any],
+        spelt: Mapping[str, str] | None = None,
+        keys: Collection[str] | None = None,
+    ) -> Tables:
+        """Return a table of what options say, and `--set`, which wins over what was not typed.
+
+        spelt: how values were typed that are no option of that name, empty if they were not; keys: those of `--set`
+        that are meant, all if not given.
+        """
+        sets = {key: value for key, value in self.sets.get(name, {}).items() if keys is None or key in keys}
+        for key in sets:
+            option = (spelt or {}).get(key, self.spelt(key))
+            if option and values.get(key) is not None:
+                raise InvalidValueError(f"{option[:100]} and --set {name}.{key} say the same: leave one out")
+        return {**{key: value for key, value in values.items() if value is not None}, **sets}
+
+    @property
+    def sizes(self) -> dict[str, str]:
+        """The sizes of a block that were typed, as they are spelt, by their key."""
+        ways = {key: f"--set body.{key}" for pair in _SIZES for key in pair if key in self.sets.get("body", {})}
+        return {name: f"--{name}" for name in _SIZES[0] if self.options.get(name) is not None} | ways
+
+    def body_and_motions(self) -> tuple[str | None, list[str]]:
+        """Return the file of the body, none if it is given by its size, and the words of motions."""
+        body, record, motions = (self.options.get(name) for name in ("body", "record", "motion"))
+        positional = [] if record is None else [record] if isinstance(record, str) else list(record)
+        if self.sizes and body is not None and not (positional and is_body(body)):
+            body, positional = None, [body, *positional]
+        for word in positional:
+            if body is not None and is_body(word) and not is_body(body):
+                raise InvalidValueError(
+                    f"the body comes first, then the motion: {word[:100]} {body[:100]}, not the reverse"
+                )
+        return body, [*positional, *(motions or ())]
+
+    def body_table(self, file: str | None) -> Tables:
+        """Return the table [body]."""
+        values = {name: self.options.get(name) for name in ("width", "height", "depth", "density")}
+        if file is not None:
+            in_toml = Path(file).suffix.lower() == ".toml"
+            if self.sizes or values["depth"] is not None or (values["density"] is not None and in_toml):
+                raise InvalidValueError("give a body file or dimensions, not both")
+            return self.table("body", {"file": file, "units": self.length, **values}, {"file": file})
+        if set(self.sizes) not in map(set, _SIZES):
+            raise InvalidValueError(
+                "a body is a file, or --width and --height, or --set body.slenderness_angle and body.semi_diagonal; "
+                f"got {' '.join(self.sizes.values()) or 'none of them'}"
+            )
+        return {"units": "m", **self.table("body", {"units": self.length, **values})}
+
+    def motion_table(self, word: str, keys: Collection[str] | None = None) -> Tables:
+        """Return the table of one motion; keys: those of `--set motion` that are meant, all if not given."""
+        place = _place(word)
+        units = self.acceleration if keys is None or "units" in keys else None
+        table = self.table("motion", {**place, "units": units}, dict.fromkeys(place, word), keys)
+        spelt = ["--units" if key == "units" and units is not None else f"motion.{key}" for key in table]
+        if "pulse" in place and (odd := [how for key, how in zip(table, spelt, strict=True) if key in OF_FILES]):
+            raise InvalidValueError(f"a pulse takes no {', '.join(odd)}: these are for files; got {word[:200]!r}")
+        return table
+
+    def one_motion(self, words: Sequence[str]) -> Tables:
+        """Return the table [motion] of a plane body: one motion, and its vertical part where z= names it."""
+        along = _along(words)
+        if "y" in along:
+            raise InvalidValueError("a plane body has one horizontal motion, along x, and a vertical one, along z")
+        if "x" not in along:
+            raise InvalidValueError("give the motion along x too: --motion x=FILE --motion z=FILE")
+        table = self.motion_table(along["x"])
+        if "z" not in along:
+            return table
+        upright = _place(along["z"])
+        if "record" not in table or "record" not in upright:
+            raise InvalidValueError("the vertical motion of a plane body stands in a record file, as the one along x")
+        if odd := sorted({"vertical", "vertical_file"} & set(table)):
+            raise InvalidValueError(f"z={along['z'][:100]} and --set motion.{odd[0]} say the same: leave one out")
+        component = {"vertical": upright["component"]} if "component" in upright else {}
+        same = Path(upright["record"]) == Path(table["record"]) and component
+        return {**table, **component, **({} if same else {"vertical_file": upright["record"]})}
+
+    def components(self, words: Sequence[str]) -> Tables:
+        """Return the table [motion] of a body in space: a motion along each axis that was named.
+
+        What `--set` says of format, unit and step is for every file, the rest for the one along x, or the first.
+        """
+        along = _along(words)
+        if not along:
+            raise InvalidValueError(f"{NO_MOTION}, along y and z with --motion y=FILE and --motion z=FILE")
+        records = [axis for axis, word in along.items() if "record" in _place(word)]
+        if len(records) > 1 and "component" in self.sets.get("motion", {}):
+            raise InvalidValueError("motion.component is of one file, and there are several: say FILE#COMPONENT")
+        first = next((axis for axis in ("x", *records, *along) if axis in (records or along)), "x")
+        stated = {*self.sets.get("motion", {}), "units"} - {"scale"}  # which is of all of them
+        keys = {axis: _OF_EVERY_FILE if axis in records else set() for axis in along} | {first: stated}
+        return {axis: self.motion_table(word, keys[axis]) for axis, word in along.items()}
+
+
+def _place(word: str) -> Tables:
+    """Return where a motion is: a file that is there, with the component behind #, or a pulse."""
+    path, mark, component = word.rpartition("#")
+    if is_file(word):
+        return {"record": word}
+    if mark and is_file(path):
+        return {"record": path, **({"component": component} if component else {})}
+    name, colon, _ = word.partition(":")
+    if (not colon and name not in catalogue()) or "/" in name or "\\" in word:
+        raise RecordError(
+            f"{word[:200]}: no such file; a pulse is written as sine:amplitude=3,period=0.8, "
+            f"with one of {', '.join(sorted(catalogue()))}"
+        )
+    return {"pulse": word}
+
+
+def _along(words: Sequence[str]) -> dict[str, str]:
+    along: dict[str, str] = {}
+    for word in words:
+        axis, equals, rest = word.partition("=")
+        axis, rest = (axis, rest) if equals and axis in {"x", "y", "z"} else ("x", word)
+        if axis in along:
+            raise InvalidValueError(f"one motion along {axis}, please: got {along[axis][:100]!r} and {rest[:100]!r}")
+        along[axis] = rest
+    return along
+
+
+@contextmanager
+def hinted(body: str | None, word: str | None, upright: str = "") -> Iterator[None]:
+    """Say what to type, or what a file may be, where a file was refused; upright: its vertical component."""
+    try:
+        with as_typed():
+            yield
+    except BodyFileError as error:
+        if body is None or is_body(body) or not is_file(body):
+            raise
+        raise BodyFileError(f"{error}; perhaps a record: see rocking motion {body}") from error
+    except RecordError as error:
+        if word is None or not is_file(word) or not is_body(word):
+            raise
+        raise RecordError(f"{error}; perhaps a body: see rocking cor {word}") from error
+    except InvalidValueError as error:
+        match = re.search(r"the file has the components (.*); say (component|vertical)= one of these", str(error))
+        if match is None or word is None:
+            raise
+        file = word.rpartition("#")[0] or word
+        names = " or ".join(shlex.quote(f"{file}#{name}") for name in match[1].split(", ") if name != upright)
+        raise InvalidValueError(f"the file has the components {match[1]}; say which one: {names}") from error
