@@ -74,7 +74,7 @@ def batch(count: int, kind: str) -> list[Row]:
     setups, found = random_setups(count, kind), list[BedImpacts]()
     spent = cpu_seconds(lambda: found.append(bed_impacts(setups)))
     impacts, goal = found[0], SECONDS * count / COUNT
-    audit, steps = np.abs(impacts.audit), float(np.mean(impacts.counts[:, 1]))
+    audit, steps = np.abs(impacts.audit), float(np.mean(impacts.results["steps"]))
     failed = int(np.isnan(impacts.coefficient).sum())
     what = f"{count:,} impacts, {kind}, {POINTS} points"
     told = f"{spent:.1f} s ({1e3 * spent / count:.2f} ms each, {steps:.0f} steps)"

@@ -96,7 +96,7 @@ class Laboratory:
 
 def hardness_of(setup: Setup) -> float:
     """Return the dimensionless landing speed of the new foot, v sqrt(k / m) / g."""
-    return setup.start.speed * math.sqrt(setup.law.stiffness / setup.rigid.mass) / setup.rigid.gravity  # Eq. 130
+    return setup.speed * math.sqrt(setup.law.stiffness / setup.rigid.mass) / setup.rigid.gravity  # Eq. 130
 
 
 def coefficients(laboratories: Iterable[Laboratory], *, threads: int = 1) -> FloatArray:
@@ -200,11 +200,11 @@ def study(
         "coefficient": ("1", impacts.coefficient),
         "coefficient_by_energy": ("1", np.array([each.by_energy for each in impacts.emergent])),
         "hardness": ("1", np.array([hardness_of(setup) for setup in setups])),
-        "landing_velocity": ("rad/s", np.array([setup.start.landing_velocity for setup in setups])),
-        "peak_force": ("N", impacts.result("peak_force")),
-        "bed_loss": ("J", impacts.result("bed_loss")),
-        "friction_loss": ("J", impacts.result("friction_loss")),
-        "contacts": ("1", impacts.contacts.astype(np.float64)),
+        "landing_velocity": ("rad/s", np.array([setup.landing_velocity for setup in setups])),
+        "peak_force": ("N", impacts.results["peak_force"]),
+        "bed_loss": ("J", impacts.results["bed_loss"]),
+        "friction_loss": ("J", impacts.results["friction_loss"]),
+        "contacts": ("1", impacts.results["contacts"].astype(np.float64)),
         "audit": ("1", impacts.audit),
     }
     return _labelled(varied, row, results, start)

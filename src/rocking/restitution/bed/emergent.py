@@ -16,10 +16,9 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
-from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.restitution.bed.rigid import settlement
-from rocking.restitution.bed.setup import COUNTS, RESULTS, Setup
+from rocking.restitution.bed.setup import Results, Setup
 
 
 class BedStatus(Enum):
@@ -57,38 +56,34 @@ class Emergent:
         return next((value for value in values if not math.isnan(value)), math.nan)
 
 
-def emergent_of(setup: Setup, results: FloatArray, counts: IntArray) -> Emergent:
+def emergent_of(setup: Setup, row: Results) -> Emergent:
     """Return the coefficients of restitution of an impact."""
-    status = status_of(counts)
+    status = status_of(row["status"])
     if status in {BedStatus.FAILED, BedStatus.TOO_MANY_STEPS}:
         raise InvalidValueError(
             f"no coefficient of restitution of this impact: {status.value}; stiffness or damping far off?"
         )
-    row = dict(zip(RESULTS, results.tolist(), strict=True))
-    start, rigid = setup.start, setup.rigid
+    rigid = setup.rigid
     rotation, velocity = row["rotation"], row["angular_velocity"]
-    if start.impulsive:
-        value = velocity / start.landing_velocity
+    if setup.impulsive:
+        value = velocity / setup.landing_velocity
         return Emergent(math.nan, math.nan, value, stopped=value <= 1e-9)
     inertia = rigid.inertia_about(rigid.pivot(abs(rotation)))
     reached = rigid.potential(rotation) if rotation > 0.0 else 0.0
-    by_peak = _ratio(reached, inertia, setup) if status is BedStatus.PEAK else math.nan
-    by_energy = _ratio(_mechanical(setup, row), inertia, setup) if rotation > 0.0 else 0.0
-    return Emergent(by_peak, by_energy, math.nan, stopped=rotation <= 0.0)
+
+    def ratio(energy: float) -> float:
+        return math.sqrt(2.0 * max(energy, 0.0) / inertia) / setup.landing_velocity  # Eq. 128
+
+    by_peak = ratio(reached) if status is BedStatus.PEAK else math.nan
+    if not rotation > 0.0:
+        return Emergent(by_peak, 0.0, math.nan, stopped=True)
+    weight = rigid.mass * setup.gravity
+    depth, elastic = settlement(rigid, setup.law, rotation, weight)
+    # above rigid standing, the static energy of the foot added back
+    energy = row["energy_end"] - weight * rigid.lift(0.0) + (weight * depth - elastic)
+    return Emergent(by_peak, ratio(energy), math.nan, stopped=False)
 
 
-def status_of(counts: IntArray) -> BedStatus:
+def status_of(code: float) -> BedStatus:
     """Return how a computation ended."""
-    return tuple(BedStatus)[int(counts[COUNTS.index("status")])]
-
-
-def _ratio(energy: float, inertia: float, setup: Setup) -> float:
-    return math.sqrt(2.0 * max(energy, 0.0) / inertia) / setup.start.landing_velocity  # Eq. 128
-
-
-def _mechanical(setup: Setup, row: dict[str, float]) -> float:
-    """Energy at the end above rigid standing, with the foot's static energy added back."""
-    rigid, weight = setup.rigid, setup.rigid.mass * setup.gravity
-    depth, elastic = settlement(rigid, setup.law, row["rotation"], weight)
-    static = weight * depth - elastic
-    return row["energy_end"] - weight * rigid.lift(0.0) + static
+    return tuple(BedStatus)[int(code)]

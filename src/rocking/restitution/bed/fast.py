@@ -7,7 +7,7 @@ from types import ModuleType
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.restitution.bed.setup import COUNTS, RESULTS, Setup
+from rocking.restitution.bed.setup import COUNTS, RESULTS, SAMPLES, Results, Run, Setup, named
 
 MOST_STEPS = 500_000
 
@@ -29,7 +29,7 @@ def available() -> bool:
     return _module() is not None
 
 
-def one(setup: Setup, most_steps: int = MOST_STEPS) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
+def one(setup: Setup, most_steps: int = MOST_STEPS) -> Run:
     """Compute one impact with its history."""
     module = _module()
     assert module is not None
@@ -44,10 +44,10 @@ def one(setup: Setup, most_steps: int = MOST_STEPS) -> tuple[FloatArray, IntArra
         results,
         counts,
     )
-    return results[0], counts[0], samples, forces, intervals
+    return named(results[0], counts[0]), dict(zip(SAMPLES, samples.T, strict=True)), forces, intervals
 
 
-def many(setups: Sequence[Setup], threads: int) -> tuple[FloatArray, IntArray]:
+def many(setups: Sequence[Setup], threads: int) -> Results:
     """Compute many impacts; no row sees another, so that threads do not change a bit."""
     module = _module()
     assert module is not None
@@ -68,25 +68,25 @@ def many(setups: Sequence[Setup], threads: int) -> tuple[FloatArray, IntArray]:
         counts,
         threads,
     )
-    return results, counts
+    return named(results, counts)
 
 
 def _numbers(setup: Setup) -> FloatArray:
     """Return the row of numbers of an impact."""
-    r, law, start = setup.rigid, setup.law, setup.start
+    r, law = setup.rigid, setup.law
     _, coefficient, creep = r.bed.friction.numbers
     return np.array([
         r.mass, r.inertia, r.height, setup.gravity, setup.push,
         law.stiffness, law.damping, law.exponent, law.viscosity, law.rebound, coefficient, creep,
-        *start.state, setup.tolerance, start.depth, start.speed, start.half_base, setup.longest, setup.farthest,
+        *setup.state, setup.tolerance, setup.depth, setup.speed, setup.half_base, setup.longest, setup.farthest,
     ])  # fmt: skip
 
 
 def _choices(setup: Setup, first: int, most_steps: int) -> IntArray:
     """Return the row of whole numbers of an impact."""
-    bed, start = setup.rigid.bed, setup.start
+    bed = setup.rigid.bed
     numbers = [
         int(setup.law.kind), int(bed.friction.numbers[0]), int(bed.kinematics == "exact"), setup.end,
-        start.new_foot, start.old_foot, first, len(bed.positions), most_steps,
+        setup.new_foot, setup.old_foot, first, len(bed.positions), most_steps,
     ]  # fmt: skip
     return np.array(numbers, dtype=np.int64)

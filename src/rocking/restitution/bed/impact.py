@@ -1,20 +1,21 @@
 """Impacts on a bed, resolved in time."""
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.conventions import BoolArray, FloatArray
 from rocking.errors import InvalidValueError, MissingExtraError
 from rocking.restitution.bed import fast, reference
 from rocking.restitution.bed.contact_bed import ContactBed
 from rocking.restitution.bed.emergent import BedStatus, Emergent, emergent_of, status_of
-from rocking.restitution.bed.setup import COUNTS, RESULTS, SAMPLES, Setup, setup_of
+from rocking.restitution.bed.setup import Results, Setup, setup_of
 
 BedEngine = Literal["auto", "fast", "reference"]
 ENGINES: tuple[BedEngine, ...] = ("auto", "fast", "reference")
@@ -28,10 +29,11 @@ class BedImpact:
     ----------
     setup : Setup
         Body, bed, start.
-    results, counts : ndarray
-        Rows of results, columns `setup.RESULTS` and `setup.COUNTS`.
-    samples : ndarray
-        History, columns `setup.SAMPLES`.
+    results : dict of str to float
+        Of the names in `setup.RESULTS` and `setup.COUNTS`, such as "bed_loss" [J] or "contacts": how often the body as
+        a whole came into contact with the bed; hops are one less.
+    samples : dict of str to ndarray
+        History, of the names in `setup.SAMPLES`.
     forces : ndarray, shape (samples, points)
         Normal force of each point [N].
     intervals : ndarray, shape (contacts, 3)
@@ -39,21 +41,15 @@ class BedImpact:
     """
 
     setup: Setup
-    results: FloatArray
-    counts: IntArray
-    samples: FloatArray
+    results: Results
+    samples: dict[str, FloatArray]
     forces: FloatArray
     intervals: FloatArray
-
-    @property
-    def time(self) -> FloatArray:
-        """Times of the samples [s]."""
-        return self.sample("time")
 
     @cached_property
     def emergent(self) -> Emergent:
         """The coefficient of restitution, by three measures."""
-        return emergent_of(self.setup, self.results, self.counts)
+        return emergent_of(self.setup, self.results)
 
     @property
     def coefficient(self) -> float:
@@ -63,71 +59,37 @@ class BedImpact:
     @property
     def status(self) -> BedStatus:
         """How the computation ended."""
-        return status_of(self.counts)
+        return status_of(self.results["status"])
 
     @property
     def impulse_position(self) -> FloatArray:
         """Position k(t) of the resultant over the half base, from its middle to the new foot; NaN in flight [-]."""
-        ends = self.setup.rigid.bed.ends
+        normal = self.samples["normal"]
         with np.errstate(invalid="ignore", divide="ignore"):
-            at = self.sample("moment") / self.sample("normal")
-        at[self.sample("normal") <= 0.0] = np.nan
-        return np.asarray((at - 0.5 * (ends[0] + ends[1])) / (0.5 * (ends[1] - ends[0])))
+            at = self.samples["moment"] / normal
+        at[normal <= 0.0] = np.nan
+        return np.asarray(self._over_half_base(at))
 
     @property
     def mean_impulse_position(self) -> float:
         """Position k of the whole impulse between first touch and parting, the weight's share of it included [-]."""
-        ends = self.setup.rigid.bed.ends
-        if self.result("impulse") <= 0.0:
-            return float("nan")
-        at = self.result("impulse_moment") / self.result("impulse")
-        return (at - 0.5 * (ends[0] + ends[1])) / (0.5 * (ends[1] - ends[0]))
+        impulse = self.results["impulse"]
+        return float(self._over_half_base(self.results["impulse_moment"] / impulse)) if impulse > 0.0 else math.nan
+
+    def _over_half_base(self, at: Any) -> Any:
+        first, last = self.setup.rigid.bed.ends
+        return (at - 0.5 * (first + last)) / (0.5 * (last - first))
 
     @property
     def duration(self) -> float:
         """From the first touch beyond the old foot until only the new foot presses and is arrested [s]."""
-        touch, parting = self.result("touch"), self.result("parting")
-        return parting - touch if 0.0 <= touch <= parting else float("nan")
-
-    @property
-    def contacts(self) -> int:
-        """How often the body as a whole came into contact with the bed: hops are one less."""
-        return int(self.counts[COUNTS.index("contacts")])
+        touch, parting = self.results["touch"], self.results["parting"]
+        return float(parting - touch) if 0.0 <= touch <= parting else math.nan
 
     @property
     def audit(self) -> float:
         """Energy at the end plus losses minus energy at the start, over the energy before the impact [-]."""
-        return self.result("residual") / self.setup.start.energy
-
-    def result(self, name: str) -> float:
-        """Return one of the results.
-
-        Parameters
-        ----------
-        name : str
-            One of `setup.RESULTS`, "bed_loss" or "friction_loss" [J] for instance.
-
-        Returns
-        -------
-        float
-            Its value in SI.
-        """
-        return float(self.results[RESULTS.index(name)])
-
-    def sample(self, name: str) -> FloatArray:
-        """Return one column of the history.
-
-        Parameters
-        ----------
-        name : str
-            One of `setup.SAMPLES`.
-
-        Returns
-        -------
-        ndarray
-            Its values in SI.
-        """
-        return np.array(self.samples[:, SAMPLES.index(name)])
+        return float(self.results["residual"] / self.setup.energy)
 
 
 def bed_impact(
@@ -195,12 +157,7 @@ def bed_impact(
         raise MissingExtraError(
             "the bed's fast engine was not built: it takes a C++17 compiler when rocking is installed"
         )
-    if engine == "reference" or not fast.available():
-        return BedImpact(setup, *reference.one(setup))
-    return BedImpact(setup, *fast.one(setup))
-
-
-_NONE = Emergent(float("nan"), float("nan"), float("nan"), stopped=False)
+    return BedImpact(setup, *(reference if engine == "reference" or not fast.available() else fast).one(setup))
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,15 +168,14 @@ class BedImpacts:
     ----------
     setups : sequence of Setup
         The impacts.
-    results, counts : ndarray
-        Columns `setup.RESULTS` and `setup.COUNTS`.
+    results : dict of str to ndarray
+        Columns by name, as of `BedImpact`.
     emergent : tuple of Emergent
         Coefficients of restitution by three measures; NaN for an impact that failed.
     """
 
     setups: Sequence[Setup]
-    results: FloatArray
-    counts: IntArray
+    results: Results
     emergent: tuple[Emergent, ...]
 
     @property
@@ -235,33 +191,12 @@ class BedImpacts:
     @property
     def status(self) -> list[BedStatus]:
         """How each computation ended."""
-        return [status_of(row) for row in self.counts]
-
-    @property
-    def contacts(self) -> IntArray:
-        """How often each body came into contact with its bed as a whole."""
-        return np.array(self.counts[:, COUNTS.index("contacts")])
+        return [status_of(code) for code in self.results["status"]]
 
     @property
     def audit(self) -> FloatArray:
         """Energy at the end plus losses minus energy at the start, over the energy before each impact [-]."""
-        energy = np.array([setup.start.energy for setup in self.setups], dtype=np.float64)
-        return np.asarray(self.result("residual") / energy)
-
-    def result(self, name: str) -> FloatArray:
-        """Return one column of the results.
-
-        Parameters
-        ----------
-        name : str
-            One of `setup.RESULTS`.
-
-        Returns
-        -------
-        ndarray
-            Its values in SI.
-        """
-        return np.array(self.results[:, RESULTS.index(name)])
+        return np.asarray(self.results["residual"] / np.array([setup.energy for setup in self.setups]))
 
 
 def bed_impacts(setups: Iterable[Setup], *, threads: int = 1) -> BedImpacts:
@@ -301,15 +236,14 @@ def bed_impacts(setups: Iterable[Setup], *, threads: int = 1) -> BedImpacts:
     if number != int(number):
         raise InvalidValueError(f"threads must be a whole number, got {threads}")
     if fast.available():
-        results, counts = fast.many(rows, int(number))
+        results = fast.many(rows, int(number))
     else:
-        computed = [reference.one(row)[:2] for row in rows]
-        results, counts = np.array([c[0] for c in computed]), np.array([c[1] for c in computed])
-    return BedImpacts(rows, results, counts, tuple(_emergent(*row) for row in zip(rows, results, counts, strict=True)))
-
-
-def _emergent(setup: Setup, results: FloatArray, counts: IntArray) -> Emergent:
-    try:
-        return emergent_of(setup, results, counts)
-    except InvalidValueError:
-        return _NONE
+        computed = [reference.one(row)[0] for row in rows]
+        results = {name: np.array([each[name] for each in computed]) for name in computed[0]}
+    emergent = []
+    for setup, *row in zip(rows, *(column.tolist() for column in results.values()), strict=True):
+        try:
+            emergent.append(emergent_of(setup, dict(zip(results, row, strict=True))))
+        except InvalidValueError:
+            emergent.append(Emergent(math.nan, math.nan, math.nan, stopped=False))
+    return BedImpacts(rows, results, tuple(emergent))

@@ -10,11 +10,11 @@ from typing import Any, Literal
 
 import numpy as np
 
-from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.conventions import BoolArray, FloatArray
 from rocking.portable import dot
 from rocking.restitution.bed.contact_bed import FrictionKind
 from rocking.restitution.bed.laws import LawKind, force, stored
-from rocking.restitution.bed.setup import END_AT_PEAK, Setup
+from rocking.restitution.bed.setup import END_AT_PEAK, SAMPLES, Run, Setup, named
 
 Method = Literal["DOP853", "LSODA"]
 Event = Callable[[float, FloatArray], float]
@@ -112,15 +112,13 @@ class Field:
             self.slip = -1 if shear > 0.0 else 1
 
 
-def one(
-    setup: Setup, method: Method = "DOP853", tolerance: float | None = None
-) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
+def one(setup: Setup, method: Method = "DOP853", tolerance: float | None = None) -> Run:
     """Compute one impact with its history."""
     from scipy.integrate import solve_ivp
 
     integrate: Any = solve_ivp  # its stubs know no callable objects
     field = Field(setup)
-    x = np.concatenate([setup.start.state, np.zeros(7 + len(setup.rigid.bed.positions))])
+    x = np.concatenate([setup.state, np.zeros(7 + len(setup.rigid.bed.positions))])
     x[PAST:] = np.maximum(field.points(x)[0], 0.0)
     before = field.energy(x)[0]
     field.slip = int(np.sign(x[U]))
@@ -132,7 +130,7 @@ def one(
         events = _events(field)
         run = integrate(
             field, (now, setup.longest), x, method=method, rtol=precision, atol=precision * scales,
-            events=[event for event, _ in events], first_step=1e-3 * setup.start.depth / setup.start.speed,
+            events=[event for event, _ in events], first_step=1e-3 * setup.depth / setup.speed,
         )  # fmt: skip
         steps += len(run.t) - 1
         times += run.t[1:].tolist()
@@ -165,7 +163,7 @@ def _events(field: Field) -> list[tuple[Event, int]]:
         rate, value = field.points(x)[1:]
         pressing = value > 0.0
         slow = float(rate[pressing].max()) if pressing.any() else 0.0
-        return slow - 1e-10 * setup.start.speed if setup.law.stiffness == 0.0 or not pressing.any() else 1.0
+        return slow - 1e-10 * setup.speed if setup.law.stiffness == 0.0 or not pressing.any() else 1.0
 
     def slides(_: float, x: FloatArray) -> float:
         if field.slip:
@@ -185,23 +183,20 @@ def _events(field: Field) -> list[tuple[Event, int]]:
 
 
 def _scales(setup: Setup) -> FloatArray:
-    start, rigid = setup.start, setup.rigid
-    d, v, b = start.depth, start.speed, start.half_base
-    impulse = rigid.mass * v
-    scales: list[float] = [d, d / b, v, v, v / b, d, start.energy, start.energy, impulse, impulse * b, impulse, d]
-    return np.array(scales + [d] * len(rigid.bed.positions))
+    d, v, b = setup.depth, setup.speed, setup.half_base
+    impulse = setup.rigid.mass * v
+    scales: list[float] = [d, d / b, v, v, v / b, d, setup.energy, setup.energy, impulse, impulse * b, impulse, d]
+    return np.array(scales + [d] * len(setup.rigid.bed.positions))
 
 
-def _report(
-    field: Field, before: float, times: FloatArray, states: FloatArray, ended: tuple[int, int]
-) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
-    start, last = field.setup.start, states[-1]
+def _report(field: Field, before: float, times: FloatArray, states: FloatArray, ended: tuple[int, int]) -> Run:
+    setup, last = field.setup, states[-1]
     pointwise = np.array([field.points(x)[2] for x in states])
     shear = np.array([field.forces(x)[1] for x in states])
     pressing = pointwise > 0.0
-    others = np.delete(pressing, start.old_foot, axis=1).any(axis=1)
-    rate = np.array([field.points(x)[1][start.new_foot] for x in states])
-    alone = ~np.delete(pressing, start.new_foot, axis=1).any(axis=1) & (rate <= 1e-3 * start.speed)
+    others = np.delete(pressing, setup.old_foot, axis=1).any(axis=1)
+    rate = np.array([field.points(x)[1][setup.new_foot] for x in states])
+    alone = ~np.delete(pressing, setup.new_foot, axis=1).any(axis=1) & (rate <= 1e-3 * setup.speed)
     touch = int(np.argmax(others)) if others.any() else -1
     over = np.flatnonzero(alone[touch:]) if touch >= 0 else np.array([], dtype=int)
     parting = touch + int(over[0]) if over.size else -1
@@ -216,12 +211,13 @@ def _report(
     ]  # fmt: skip
     whole = np.asarray(pressing.any(axis=1))
     contacts = int(whole[0]) + int((whole[1:] & ~whole[:-1]).sum())
-    samples = np.column_stack([
+    samples = [
         times, states[:, TRAVEL], pointwise.sum(axis=1), shear, pointwise @ field.bed.positions,
-        states[:, BED_LOSS], states[:, FRICTION_LOSS], states[:, :5],
-    ])  # fmt: skip
-    counts = np.array([ended[0], ended[1], 0, 0, contacts, 0], dtype=np.int64)
-    return np.array(values), counts, samples, pointwise, _intervals(times, pressing)
+        states[:, BED_LOSS], states[:, FRICTION_LOSS], *states[:, :5].T,
+    ]  # fmt: skip
+    counts = np.array([*ended, 0, 0, contacts, 0], dtype=np.int64)
+    history = dict(zip(SAMPLES, samples, strict=True))
+    return named(np.array(values), counts), history, pointwise, _intervals(times, pressing)
 
 
 def _intervals(times: FloatArray, pressing: BoolArray) -> FloatArray:

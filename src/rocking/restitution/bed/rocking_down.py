@@ -13,7 +13,7 @@ from rocking.restitution.bed.contact_bed import ContactBed
 from rocking.restitution.bed.emergent import BedStatus, status_of
 from rocking.restitution.bed.laws import LawKind
 from rocking.restitution.bed.rigid import RigidRocking
-from rocking.restitution.bed.setup import RESULTS, Setup, setup_of
+from rocking.restitution.bed.setup import Results, Setup, setup_of
 
 _MOST_RUNS = 50
 _AT_REST = 1e-3
@@ -87,10 +87,9 @@ def bed_free_rocking(
     rigid = setup.rigid
     angles, times, now, lingers = [float(rotation)], [0.0], 0.0, False
     for _ in range(_MOST_RUNS * int(peaks)):
-        results, counts = (fast.one(setup) if fast.available() else reference.one(setup))[:2]
-        row = dict(zip(RESULTS, results.tolist(), strict=True))
+        row = (fast.one(setup) if fast.available() else reference.one(setup))[0]
         now += row["time"]
-        if status_of(counts) is not BedStatus.PEAK or abs(row["rotation"]) < _AT_REST * rotation:
+        if status_of(row["status"]) is not BedStatus.PEAK or abs(row["rotation"]) < _AT_REST * rotation:
             break
         if row["rotation"] > 0.0 and not lingers and len(angles) > int(peaks):
             break
@@ -110,14 +109,16 @@ def _velocity(rigid: RigidRocking, rotation: float) -> float:
     return float(np.sqrt(2.0 * rigid.potential(rotation) / inertia))  # Eq. 128
 
 
-def _turned(setup: Setup, row: dict[str, float]) -> Setup:
+def _turned(setup: Setup, row: Results) -> Setup:
     """Return the next half cycle, seen from the other side."""
-    bed, start = setup.rigid.bed, setup.start
+    bed = setup.rigid.bed
     mirror = replace(bed, positions=-bed.positions[::-1], shares=bed.shares[::-1], heights=bed.heights[::-1])
     state = (row["y"], -row["rotation"], -row["u"], row["w"], -row["angular_velocity"])
     last = len(bed.positions) - 1
     return replace(
         setup,
         rigid=replace(setup.rigid, bed=mirror),
-        start=replace(start, state=state, old_foot=last - start.new_foot, new_foot=last - start.old_foot),
+        state=state,
+        old_foot=last - setup.new_foot,
+        new_foot=last - setup.old_foot,
     )

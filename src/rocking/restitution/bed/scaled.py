@@ -84,7 +84,7 @@ def _body(flatness: float, offset: float, share: float) -> tuple[MassPoints, tup
     masses = ([(-arm, height), (arm, height)], [0.5, 0.5]) if arm > 0.0 else ([(0.0, height)], [1.0])
     body = MassPoints(*masses, feet=feet)
     release = RELEASE * math.atan(min(-feet[0], feet[1]) / height)
-    speed = 2.0 * setup_of(body, _bed(feet, 2, 1.0, 1.0, Sticking()), rotation=release).start.landing_velocity
+    speed = 2.0 * setup_of(body, _bed(feet, 2, 1.0, 1.0, Sticking()), rotation=release).landing_velocity
     return body, feet, release, speed
 
 

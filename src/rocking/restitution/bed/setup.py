@@ -2,35 +2,17 @@
 
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
 from rocking import checks, conventions
 from rocking.bodies import Body
+from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.restitution.bed.contact_bed import ContactBed
 from rocking.restitution.bed.laws import LawKind, LawNumbers, depth_absorbing
 from rocking.restitution.bed.rigid import RigidRocking, settlement
-
-
-@dataclass(frozen=True)
-class ImpactStart:
-    """State of the body when the computation begins, and the scales of the impact."""
-
-    # base centre height y [m], rotation [rad], velocities u, w along and across the base [m/s], rotation rate [rad/s]
-    state: tuple[float, float, float, float, float]
-    landing_velocity: float  # theta_dot of rigid rocking on the old foot as it reaches theta = 0 [rad/s]
-    energy: float  # kinetic energy of that rocking [J]
-    # depth, speed, half_base: scales of the impact: depth of the bed [m], speed of the new foot [m/s], half the bed's
-    # length [m]
-    depth: float
-    speed: float
-    half_base: float
-    old_foot: int  # old_foot, new_foot: points that carry the body before and after
-    new_foot: int
-    impulsive: bool  # whether gravity is left out
-
 
 END_AT_PEAK, END_AT_PARTING = 0, 1
 
@@ -51,13 +33,37 @@ SAMPLES: Final = (
 """Columns of its history."""
 
 
+Results = dict[str, Any]
+"""A number, or a column of them, of each of `RESULTS` and `COUNTS`."""
+
+Run = tuple[Results, dict[str, FloatArray], FloatArray, FloatArray]
+"""Results of one impact, columns of `SAMPLES`, forces of the points, and intervals of contact."""
+
+
+def named(results: FloatArray, counts: IntArray) -> Results:
+    """Return the results of one impact, or of many, by name."""
+    values = [*results.T, *counts.T] if results.ndim > 1 else [*results.tolist(), *counts.tolist()]
+    return dict(zip(RESULTS + COUNTS, values, strict=True))
+
+
 @dataclass(frozen=True)
 class Setup:
     """One impact, ready to be computed."""
 
     rigid: RigidRocking  # body and bed
     law: LawNumbers  # contact law under this body
-    start: ImpactStart  # initial state and scales
+    # at the start: base centre height y [m], rotation [rad], velocities u, w along and across the base [m/s], rotation
+    # rate [rad/s]
+    state: tuple[float, float, float, float, float]
+    landing_velocity: float  # theta_dot of rigid rocking on the old foot as it reaches theta = 0 [rad/s]
+    energy: float  # kinetic energy of that rocking [J]
+    # scales of the impact: depth of the bed [m], speed of the new foot [m/s], half the bed's length [m]
+    depth: float
+    speed: float
+    half_base: float
+    old_foot: int  # old_foot, new_foot: points that carry the body before and after
+    new_foot: int
+    impulsive: bool  # whether gravity is left out
     push: float  # horizontal ground acceleration [m/s2]
     tolerance: float  # relative error of a step [-]
     longest: float  # time after which the computation ends [s]
@@ -65,12 +71,12 @@ class Setup:
     @property
     def gravity(self) -> float:
         """Vertical acceleration that acts during the impact [m/s2]."""
-        return 0.0 if self.start.impulsive else self.rigid.gravity
+        return 0.0 if self.impulsive else self.rigid.gravity
 
     @property
     def end(self) -> int:
         """Where the impact ends."""
-        return END_AT_PARTING if self.start.impulsive else END_AT_PEAK
+        return END_AT_PARTING if self.impulsive else END_AT_PEAK
 
     @property
     def farthest(self) -> float:
@@ -132,68 +138,57 @@ def setup_of(
             "use impulsive=True, or stiffness and rebound > 0"
         )
     rigid = RigidRocking.of_body(body, bed, total)
-    start = _start(rigid, law, rotation=rotation, angular_velocity=angular_velocity, impulsive=impulsive)
-    longest = 30.0 * (rigid.inertia_about(start.old_foot) / (rigid.mass * total * rigid.height)) ** 0.5
+    angle, landing = _release(rigid, rotation, angular_velocity)
+    old = rigid.pivot(-1e-9 if impulsive else angle)
+    new = rigid.pivot(1e-9 if impulsive else min(0.5 * rigid.furthest(1.0), -angle))
+    inertia = rigid.inertia_about(old)
+    energy = 0.5 * inertia * landing**2
     if impulsive:
-        longest = min(longest, 1e6 * start.depth / start.speed)
-    return Setup(rigid, law, start, push, tolerance, longest)
-
-
-def _accelerations(given: object) -> tuple[float, float]:
-    if not isinstance(given, (tuple, list, np.ndarray)) or np.shape(given) != (2,):
-        raise InvalidValueError(
-            f"ground_acceleration must be two finite numbers, horizontal and vertical [m/s2], got {given!r:.60}; "
-            "for a horizontal one alone give (value, 0.0)"
-        )
-    return (
-        checks.number("horizontal ground acceleration", given[0], "m/s2"),
-        checks.number("vertical ground acceleration", given[1], "m/s2"),
+        state = (rigid.lift(0.0), 0.0, 0.0, float(bed.positions[old]) * landing, landing)
+    else:
+        state = _on_the_old_foot(rigid, law, old, angle, landing)
+    reach = bed.ends[1] - bed.ends[0]
+    speed = landing * reach
+    depth = min(depth_absorbing(law, float(np.sum(bed.shares)), energy, speed), reach)
+    longest = 30.0 * (inertia / (rigid.mass * total * rigid.height)) ** 0.5
+    if impulsive:
+        longest = min(longest, 1e6 * depth / speed)
+    return Setup(
+        rigid, law, state, landing, energy, depth, speed, 0.5 * reach, old, new, impulsive, push, tolerance, longest
     )
 
 
-def _start(
-    rigid: RigidRocking,
-    law: LawNumbers,
-    *,
-    rotation: float | None = None,
-    angular_velocity: float | None = None,
-    impulsive: bool = False,
-) -> ImpactStart:
-    """Return the start of an impact.
+def _accelerations(values: object) -> tuple[float, float]:
+    if not isinstance(values, (tuple, list, np.ndarray)) or np.shape(values) != (2,):
+        raise InvalidValueError(
+            f"ground_acceleration must be two finite numbers, horizontal and vertical [m/s2], got {values!r:.60}; "
+            "for a horizontal one alone give (value, 0.0)"
+        )
+    return (
+        checks.number("horizontal ground acceleration", values[0], "m/s2"),
+        checks.number("vertical ground acceleration", values[1], "m/s2"),
+    )
 
-    With gravity the body starts as high as it must to land with the velocity asked for, at rest if half its range of
-    rotations is enough, its old foot as deep in the bed as the support force asks. An impulsive impact starts flat.
 
-    rotation: rotation about the old foot at which the body is let go [rad]; angular_velocity: theta_dot at which it
-    lands [rad/s].
+def _release(rigid: RigidRocking, rotation: float | None, angular_velocity: float | None) -> tuple[float, float]:
+    """Return the angle of release [rad] and the velocity of landing [rad/s], one from the other.
+
+    The body starts as high as it must to land with the velocity asked for, at rest if half its range of rotations is
+    enough.
     """
     if (rotation is None) == (angular_velocity is None):
         raise InvalidValueError("give rotation or angular_velocity, one of them: each follows from the other")
     if len(rigid.bed.positions) < 2 or not rigid.bed.ends[0] < 0.0 < rigid.bed.ends[1]:
         raise InvalidValueError("the bed must reach to both sides of the plumb line of the centre of mass")
     limit = rigid.furthest(-1.0)
-    if rotation is not None:
-        angle = -checks.within("rotation", rotation, 0.0, limit, unit="rad", open_low=True, open_high=True)
-        inertia = rigid.inertia_about(rigid.pivot(angle))
-        landing = math.sqrt(2.0 * max(rigid.potential(angle), 0.0) / inertia)
-        if landing == 0.0:
-            raise InvalidValueError(f"rotation {-angle:g} rad does not lift the centre of mass; a rounded base?")
-    else:
+    if rotation is None:
         landing = checks.positive("angular_velocity", angular_velocity, "rad/s")
-        angle = _angle_of(rigid, landing, 0.5 * limit)
-    old = rigid.pivot(-1e-9 if impulsive else angle)
-    inertia = rigid.inertia_about(old)
-    left = max(0.5 * inertia * landing**2 - (0.0 if impulsive else rigid.potential(angle)), 0.0)
-    if impulsive:
-        state = (rigid.lift(0.0), 0.0, 0.0, float(rigid.bed.positions[old]) * landing, landing)
-    else:
-        turning = math.sqrt(2.0 * left / inertia) if left > 1e-12 * inertia * landing**2 else 0.0
-        state = _on_the_old_foot(rigid, law, old, angle, turning)
-    energy = 0.5 * inertia * landing**2
-    reach = rigid.bed.ends[1] - rigid.bed.ends[0]
-    depth = depth_absorbing(law, float(np.sum(rigid.bed.shares)), energy, landing * reach)
-    new = rigid.pivot(1e-9 if impulsive else min(0.5 * rigid.furthest(1.0), -angle))
-    return ImpactStart(state, landing, energy, min(depth, reach), landing * reach, 0.5 * reach, old, new, impulsive)
+        return _angle_of(rigid, landing, 0.5 * limit), landing
+    angle = -checks.within("rotation", rotation, 0.0, limit, unit="rad", open_low=True, open_high=True)
+    landing = math.sqrt(2.0 * max(rigid.potential(angle), 0.0) / rigid.inertia_about(rigid.pivot(angle)))
+    if landing == 0.0:
+        raise InvalidValueError(f"rotation {-angle:g} rad does not lift the centre of mass; a rounded base?")
+    return angle, landing
 
 
 def _angle_of(rigid: RigidRocking, landing: float, most: float) -> float:
@@ -212,10 +207,14 @@ def _angle_of(rigid: RigidRocking, landing: float, most: float) -> float:
 
 
 def _on_the_old_foot(
-    rigid: RigidRocking, law: LawNumbers, old: int, angle: float, turning: float
+    rigid: RigidRocking, law: LawNumbers, old: int, angle: float, landing: float
 ) -> tuple[float, float, float, float, float]:
+    """Return the state of rigid rocking at an angle, the old foot as deep in the bed as the support force asks."""
+    inertia, bed = rigid.inertia_about(old), rigid.bed
+    left = max(0.5 * inertia * landing**2 - rigid.potential(angle), 0.0)
+    turning = math.sqrt(2.0 * left / inertia) if left > 1e-12 * inertia * landing**2 else 0.0
     load = max(rigid.support(angle, turning), 0.0)
     y = rigid.lift(angle) - settlement(rigid, law, angle, load)[0]
-    s, zeta = float(rigid.bed.positions[old]), float(rigid.bed.heights[old])
     # rotation about the point: in the body's axes its velocity vanishes
-    return (y, angle, -zeta * turning if rigid.bed.kinematics == "exact" else 0.0, s * turning, turning)
+    along = -float(bed.heights[old]) * turning if bed.kinematics == "exact" else 0.0
+    return (y, angle, along, float(bed.positions[old]) * turning, turning)
