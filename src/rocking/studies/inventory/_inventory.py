@@ -9,7 +9,7 @@ import numpy as np
 from rocking.conventions import g
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.motion import GroundMotion
-from rocking.studies.inventory.assessment import Assessment, DirectionResult, assess
+from rocking.studies.inventory.assessment import Assessment, assess
 from rocking.studies.inventory.hazard import COUNT, FAMILY, SEED, Hazard, IntensityLevel
 from rocking.studies.inventory.lights import Light, Thresholds
 from rocking.studies.inventory.objects import DIRECTIONS, InventoryObject
@@ -19,17 +19,21 @@ from rocking.studies.inventory.table import advice, sentence
 if TYPE_CHECKING:
     import xarray as xr
 
-# of each restitution, object and direction: unit and meaning
-_COUNTS = {
-    "count": ("1", "motions that were computed"),
-    "lifted": ("1", "motions that lift it"),
-    "overturned": ("1", "motions that overturn it"),
-    "failed": ("1", "motions that could not be computed"),
-    "lost_contact": ("1", "motions in which the ground would have to pull"),
-}
-_ROTATIONS = {
-    "median_rotation": ("1", "median of the peak rotation over the slenderness angle; infinite if it overturns there"),
-    "high_rotation": ("1", "84 % quantile of the peak rotation over the slenderness angle; infinite if it overturns"),
+# of each restitution, object and direction: kind and meaning
+_OF_DIRECTIONS = {
+    "count": (np.int64, "motions that were computed"),
+    "lifted": (np.int64, "motions that lift it"),
+    "overturned": (np.int64, "motions that overturn it"),
+    "failed": (np.int64, "motions that could not be computed"),
+    "lost_contact": (np.int64, "motions in which the ground would have to pull"),
+    "median_rotation": (
+        np.float64,
+        "median of the peak rotation over the slenderness angle; infinite if it overturns there",
+    ),
+    "high_rotation": (
+        np.float64,
+        "84 % quantile of the peak rotation over the slenderness angle; infinite if it overturns",
+    ),
 }
 
 
@@ -103,7 +107,10 @@ def _hazard(motions: Any, pga: Any, pgv: Any, count: int | None, seed: int | Non
     levels = {kind: value for kind, value in (("PGA", pga), ("PGV", pgv)) if value is not None}
     if len(levels) > 1:
         raise InvalidValueError("give pga or pgv, not both: motions are scaled to one of them")
-    level = next((_level(*pair) for pair in levels.items()), None)
+    level = None
+    for kind, value in levels.items():
+        number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        level = IntensityLevel(kind, value) if number else IntensityLevel.of(kind, value)
     if isinstance(motions, str):
         if level is None:
             raise InvalidValueError('how strong is the shaking? Give pga="0.3g" or pgv="25cm/s", or records')
@@ -119,24 +126,21 @@ def _hazard(motions: Any, pga: Any, pgv: Any, count: int | None, seed: int | Non
     return Hazard.of_records([motions] if isinstance(motions, GroundMotion) else motions, level)
 
 
-def _level(kind: str, value: Any) -> IntensityLevel:
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    return IntensityLevel(kind, value) if number else IntensityLevel.of(kind, value)
-
-
 def dataset_of(assessment: Assessment) -> "xr.Dataset":
     """Return an assessment as a labelled dataset."""
     xarray = extra("xarray", "inventory")
-    verdicts, three = assessment.verdicts, ("restitution", "object", "direction")
-    results = [[each.results for each in verdicts], [each.compared for each in verdicts]]
+    verdicts, sentences = assessment.verdicts, assessment.thresholds.sentences()
+    results = [one for of_model in ("results", "compared") for each in verdicts for one in getattr(each, of_model)]
     shape = (2, len(verdicts), len(DIRECTIONS))
 
-    def table(name: str, kind: type) -> np.ndarray:
-        flat = [_number(one, name) for of_model in results for pair in of_model for one in pair]
-        return np.array(flat, dtype=kind).reshape(shape)
+    def table(name: str, kind: type, words: str) -> tuple[Any, np.ndarray, dict[str, str]]:
+        values = [np.inf if (value := getattr(one, name)) is None else value for one in results]
+        about = {"units": "1", "long_name": words}
+        return ("restitution", "object", "direction"), np.array(values, dtype=kind).reshape(shape), about
 
+    meanings = " ".join(f"{light.word}: {sentences[light]}" for light in reversed(Light))
     data: dict[str, Any] = {
-        "light": ("object", [each.light.word for each in verdicts], {"long_name": _meanings(assessment)}),
+        "light": ("object", [each.light.word for each in verdicts], {"long_name": meanings}),
         "worse_direction": ("object", [each.worse.direction for each in verdicts]),
         "uplift_acceleration": (
             "object", [each.uplift_acceleration for each in verdicts],
@@ -148,8 +152,7 @@ def dataset_of(assessment: Assessment) -> "xr.Dataset":
         ),
         "in_words": ("object", [sentence(each, assessment) for each in verdicts]),
         "what_to_do": ("object", [advice(each, assessment) for each in verdicts]),
-        **{name: (three, table(name, np.int64), _labels(about)) for name, about in _COUNTS.items()},
-        **{name: (three, table(name, np.float64), _labels(about)) for name, about in _ROTATIONS.items()},
+        **{name: table(name, *about) for name, about in _OF_DIRECTIONS.items()},
         "reason": ("not_assessed", [each.reason for each in assessment.not_assessed]),
     }  # fmt: skip
     coordinates = {
@@ -163,17 +166,3 @@ def dataset_of(assessment: Assessment) -> "xr.Dataset":
     about = {"inventory": assessment.source, "shaking": assessment.hazard.words(), "motions": assessment.hazard.source}
     labelled: xr.Dataset = xarray.Dataset(data, coords=coordinates, attrs=about)
     return labelled
-
-
-def _number(result: DirectionResult, name: str) -> float:
-    value = getattr(result, name)
-    return np.inf if value is None else value
-
-
-def _labels(about: tuple[str, str]) -> dict[str, str]:
-    return dict(zip(("units", "long_name"), about, strict=True))
-
-
-def _meanings(assessment: Assessment) -> str:
-    sentences = assessment.thresholds.sentences()
-    return " ".join(f"{light.word}: {sentences[light]}" for light in reversed(Light))

@@ -82,8 +82,15 @@ class InventoryObject:
             value = getattr(self, name)
             if value is not None:
                 object.__setattr__(self, name, self._base(name, value, most))
-        self._check_centre()
-        self._check_mass()
+        if self.centre_of_mass_height is not None:
+            centre = _length("centre_of_mass_height", self.centre_of_mass_height)
+            if not centre < self.height:
+                raise InvalidValueError(
+                    f"centre_of_mass_height must be below the height of the body, {self.height:g} m, got {centre:g} m"
+                )
+            object.__setattr__(self, "centre_of_mass_height", centre)
+        if self.mass is not None:
+            object.__setattr__(self, "mass", self._checked_mass(self.mass))
         count: object = self.count
         if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= 1_000_000:
             raise InvalidValueError(f"count must be a whole number in [1, 1000000], got {count!r:.40}")
@@ -162,27 +169,15 @@ class InventoryObject:
             )
         return most if size > most * (1.0 - 1e-9) else size
 
-    def _check_centre(self) -> None:
-        if self.centre_of_mass_height is None:
-            return
-        height = _length("centre_of_mass_height", self.centre_of_mass_height)
-        if not height < self.height:
-            raise InvalidValueError(
-                f"centre_of_mass_height must be below the height of the body, {self.height:g} m, got {height:g} m"
-            )
-        object.__setattr__(self, "centre_of_mass_height", height)
-
-    def _check_mass(self) -> None:
-        if self.mass is None:
-            return
-        mass = checks.positive("weight", self.mass, "kg")
+    def _checked_mass(self, value: float) -> float:
+        mass = checks.positive("weight", value, "kg")
         density = mass / (self.width * self.depth * self.height)
         if not LIGHTEST <= density <= DENSEST:
             raise InvalidValueError(
                 f"weight must give between {LIGHTEST:g} and {DENSEST:g} kg/m3 over the box of the object, got "
                 f"{mass:g} kg, that is {density:.3g} kg/m3; wrong unit of the weight or of a length?"
             )
-        object.__setattr__(self, "mass", mass)
+        return mass
 
 
 @dataclass(frozen=True)

@@ -60,12 +60,6 @@ def columns_of(titles: Sequence[str], source: str) -> tuple[list[InventoryColumn
     return columns, tuple(title.strip() for title, column in pairs if column is None and title.strip())
 
 
-def has_required(titles: Sequence[str]) -> bool:
-    """Return whether the names hold all columns that an inventory must have; units are not looked at."""
-    stems = {_split(title)[0] for title in titles}
-    return all(each in stems for each in REQUIRED)
-
-
 def _split(title: str) -> tuple[str, str]:
     """Return what a column holds, and its unit."""
     plain = title.strip().casefold().replace("center", "centre")
@@ -140,18 +134,18 @@ class DecimalMark:
                 f"{name} must be one number such as 12.5, without unit and without separators of thousands, "
                 f"got {text[:40]!r}"
             )
-        if _THOUSANDS.fullmatch(text) and not self._settled(match[1]):
+        settled = (
+            self.commas and not self.points
+            if match[1] == ","
+            else not self.commas and (self.points or self.comma_delimited)
+        )
+        if _THOUSANDS.fullmatch(text) and not settled:
             digits = text.replace(match[1], "")
             decimal = text.replace(",", ".")
             raise InvalidValueError(
                 f"{name} is ambiguous: {text!r} could be {decimal} or {digits}; write {decimal}0 or {digits}"
             )
         return checks.number(name, float(text.replace(",", ".")))
-
-    def _settled(self, mark: str) -> bool:
-        if mark == ",":
-            return self.commas and not self.points
-        return not self.commas and (self.points or self.comma_delimited)
 
 
 MOST_ROWS, MOST_BYTES = 100_000, 64 << 20
@@ -248,7 +242,9 @@ def parse_inventory(text: str, source: str = "objects") -> Inventory:
     >>> found.objects[0].width, found.not_assessed[0].row
     (0.125, 3)
     """
-    lines, allowed = _separator(text.removeprefix("\ufeff"))
+    lines, allowed = text.removeprefix("\ufeff"), _DELIMITERS
+    if separator := _SEPARATOR.match(lines):
+        lines, allowed = lines[separator.end() :], (separator[1],)
     delimiter = _delimiter(lines, allowed, source)
     rows = _rows(lines, delimiter, source)
     columns, ignored = columns_of(rows[0][1], source)
@@ -256,26 +252,25 @@ def parse_inventory(text: str, source: str = "objects") -> Inventory:
     numeric = [k for k, column in enumerate(columns) if column and column.fields[0] not in _TEXTS]
     numbers = (cells[k] for _, cells in body for k in numeric if k < len(cells))
     mark = DecimalMark(numbers, comma_delimited=delimiter == ",")
+    name = next(k for k, column in enumerate(columns) if column and column.fields == ("name",))
     objects, refused = [], []
     for line, cells in body:
         try:
             objects.append(_object(line, cells, columns, mark))
         except InvalidValueError as error:
-            refused.append(NotAssessed(line, _name(cells, columns), str(error)))
+            refused.append(NotAssessed(line, "".join(cells[name : name + 1]).strip(), str(error)))
     if not objects and not refused:
         raise InvalidValueError(f"{source}: an inventory needs at least one row below its header")
     return Inventory(tuple(objects), tuple(refused), ignored, source)
 
 
-def _separator(text: str) -> tuple[str, tuple[str, ...]]:
-    """Return a text with Excel's line about the separator emptied, and what may separate the fields."""
-    line = _SEPARATOR.match(text)
-    return (text[line.end() :], (line[1],)) if line else (text, _DELIMITERS)
-
-
 def _delimiter(text: str, allowed: tuple[str, ...], source: str) -> str:
     first = next((line for line in text.splitlines() if line.strip()), "")[:_LONGEST_HEADER]
-    fits = [mark for mark in allowed if mark in _DELIMITERS and has_required(next(csv.reader([first], delimiter=mark)))]
+    fits = []
+    for mark in allowed:
+        if mark in _DELIMITERS:
+            stems = {_split(title)[0] for title in next(csv.reader([first], delimiter=mark))}  # whatever the units
+            fits += [mark] * stems.issuperset(REQUIRED)
     if len(fits) == 1:
         return fits[0]
     raise InvalidValueError(
@@ -327,8 +322,3 @@ def _value(column: InventoryColumn, cell: str, mark: DecimalMark) -> object:
     if number != int(number):
         raise InvalidValueError(f"count must be a whole number, got {cell.strip()!r:.40}")
     return int(number)
-
-
-def _name(cells: Sequence[str], columns: Sequence[InventoryColumn | None]) -> str:
-    place = next(k for k, column in enumerate(columns) if column and column.fields == ("name",))
-    return cells[place].strip() if place < len(cells) else ""

@@ -23,12 +23,16 @@ def rows(assessment: Assessment) -> list[list[str | float | int]]:
     lines: list[list[str | float | int]] = []
     for rank, verdict in enumerate(assessment.verdicts, start=1):
         worse, item, (low, high) = verdict.worse, verdict.item, verdict.interval
+        rotations = (
+            rotation_words(each) if each is None else round(each, 3)
+            for each in (worse.median_rotation, worse.high_rotation)
+        )
         lines.append([
             rank, f"{verdict.light.value} {verdict.light.word}", escaped(item.name), item.count, item.row,
             worse.direction, round(verdict.uplift_acceleration / g, 4), worse.count, worse.lifted, worse.overturned,
-            round(100.0 * low, 2), round(100.0 * high, 2), _rounded(worse.median_rotation),
-            _rounded(worse.high_rotation), verdict.worse_compared.light.word, sentence(verdict, assessment),
-            _advice(verdict, assessment), escaped(item.note),
+            round(100.0 * low, 2), round(100.0 * high, 2), *rotations, verdict.worse_compared.light.word,
+            sentence(verdict, assessment),
+            f"{advice(verdict, assessment)} {model_note(verdict, assessment)}".strip(), escaped(item.note),
         ])  # fmt: skip
     for refused in assessment.not_assessed:
         line: list[str | float | int] = [""] * len(HEADER)
@@ -45,12 +49,8 @@ def as_csv(assessment: Assessment) -> str:
     writer.writerow(HEADER)
     writer.writerows(rows(assessment))
     if assessment.ignored:
-        writer.writerow(
-            [
-                f"columns of the list that were not read: {', '.join(assessment.ignored)}" * (title == "in words")
-                for title in HEADER
-            ]
-        )
+        note = f"columns of the list that were not read: {', '.join(assessment.ignored)}"
+        writer.writerow([note if title == "in words" else "" for title in HEADER])
     return text.getvalue()
 
 
@@ -82,14 +82,6 @@ def as_plain(assessment: Assessment) -> dict[str, Any]:
     }
 
 
-def _rounded(value: float | None) -> str | float:
-    return rotation_words(value) if value is None else round(value, 3)
-
-
-def _advice(verdict: Verdict, assessment: Assessment) -> str:
-    return f"{advice(verdict, assessment)} {model_note(verdict, assessment)}".strip()
-
-
 def _plain(rank: int, verdict: Verdict, assessment: Assessment) -> dict[str, Any]:
     item = verdict.item
     return {
@@ -112,20 +104,20 @@ def _plain(rank: int, verdict: Verdict, assessment: Assessment) -> dict[str, Any
     }
 
 
+# names of a direction's results in JSON where they are not their own
+_PLAIN = {
+    "uplift_acceleration": "uplift_acceleration_m_s2", "count": "motions",
+    "median_rotation": "median_rotation_over_angle", "high_rotation": "high_rotation_over_angle",
+}  # fmt: skip
+
+
 def _direction(result: DirectionResult) -> dict[str, Any]:
-    return {
-        "direction": result.direction,
-        "light": result.light.word,
-        "uplift_acceleration_m_s2": result.uplift_acceleration,
-        "motions": result.count,
-        "lifted": result.lifted,
-        "overturned": result.overturned,
-        "failed": result.failed,
-        "lost_contact": result.lost_contact,
-        "overturned_share": result.overturned_share,
-        "median_rotation_over_angle": result.median_rotation,
-        "high_rotation_over_angle": result.high_rotation,
-    }
+    names = (
+        "direction", "light", "uplift_acceleration", "count", "lifted", "overturned", "failed", "lost_contact",
+        "overturned_share", "median_rotation", "high_rotation",
+    )  # fmt: skip
+    plain = {_PLAIN.get(name, name): getattr(result, name) for name in names}
+    return plain | {"light": result.light.word}
 
 
 SLIDING = (
