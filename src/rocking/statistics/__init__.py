@@ -33,22 +33,15 @@ __all__ = [
 ]
 
 _HOMES = {
-    "CensoredFit": "censored",
-    "Counts": "counts",
-    "Goodness": "goodness",
-    "LognormalFit": "lognormal",
-    "OrderedFit": "ordered_probit",
-    "Regression": "least_squares",
-    "Separation": "separation",
-    "StateCounts": "counts",
-    "count_outcomes": "counts",
-    "count_states": "counts",
-    "fit_counts": "lognormal",
-    "fit_crossings": "censored",
-    "fit_lognormal": "lognormal",
-    "fit_ordered": "ordered_probit",
-    "regression": "least_squares",
-    "share_interval": "counts",
+    "censored": ("CensoredFit", "fit_crossings"),
+    "counts": ("Counts", "StateCounts", "count_outcomes", "count_states", "share_interval"),
+    "goodness": ("Goodness",),
+    "least_squares": ("Regression", "regression"),
+    "lognormal": ("LognormalFit", "fit_counts", "fit_lognormal"),
+    "ordered_probit": ("OrderedFit", "fit_ordered"),
+    "separation": ("Separation",),
 }
 
-__getattr__, __dir__ = exports(__name__, {name: f"{__name__}.{home}" for name, home in _HOMES.items()})
+__getattr__, __dir__ = exports(
+    __name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}
+)

@@ -58,32 +58,22 @@ __all__ = [
     "spectrum_sensitivity",
 ]
 
+_HOMES = {
+    "histories": ("Histories", "HistoryTable", "Product"),
+    "motion_sets": ("MotionList", "MotionSet", "SyntheticSet"),
+    "sensitivity": (
+        "SampledRestitution", "Sensitivity", "fragility_sensitivity", "map_sensitivity", "spectrum_sensitivity",
+    ),
+    "axis": ("axes",),
+    "boundaries": ("boundary",),
+    "fragility": ("cloud", "compare_measures", "incremental_dynamic_analysis", "multiple_stripe_analysis"),
+    "minimum_acceleration": ("minimum_overturning_acceleration", "minimum_overturning_accelerations"),
+    "_overturning_map": ("overturning_map",),
+    "adaptive_grid": ("refined_map",),
+    "_rocking_spectrum": ("rocking_spectrum",),
+    "islands": ("safe_beyond_overturning", "safe_islands"),
+}  # fmt: skip
+
 __getattr__, __dir__ = exports(
-    __name__,
-    {
-        "Histories": "rocking.studies.histories",
-        "HistoryTable": "rocking.studies.histories",
-        "MotionList": "rocking.studies.motion_sets",
-        "MotionSet": "rocking.studies.motion_sets",
-        "Product": "rocking.studies.histories",
-        "SampledRestitution": "rocking.studies.sensitivity",
-        "Sensitivity": "rocking.studies.sensitivity",
-        "SyntheticSet": "rocking.studies.motion_sets",
-        "axes": "rocking.studies.axis",
-        "boundary": "rocking.studies.boundaries",
-        "cloud": "rocking.studies.fragility",
-        "compare_measures": "rocking.studies.fragility",
-        "fragility_sensitivity": "rocking.studies.sensitivity",
-        "incremental_dynamic_analysis": "rocking.studies.fragility",
-        "map_sensitivity": "rocking.studies.sensitivity",
-        "minimum_overturning_acceleration": "rocking.studies.minimum_acceleration",
-        "minimum_overturning_accelerations": "rocking.studies.minimum_acceleration",
-        "multiple_stripe_analysis": "rocking.studies.fragility",
-        "overturning_map": "rocking.studies._overturning_map",
-        "refined_map": "rocking.studies.adaptive_grid",
-        "rocking_spectrum": "rocking.studies._rocking_spectrum",
-        "safe_beyond_overturning": "rocking.studies.islands",
-        "safe_islands": "rocking.studies.islands",
-        "spectrum_sensitivity": "rocking.studies.sensitivity",
-    },
+    __name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}
 )

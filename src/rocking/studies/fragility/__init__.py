@@ -1,19 +1,12 @@
 """Fragility: how likely a body is to rock or to overturn at a level of shaking, and how well that is known."""
 
-from typing import TYPE_CHECKING
-
-from rocking.lazy import exports
-
-if TYPE_CHECKING:
-    from rocking.studies.fragility._fragility import fragility, fragility_analysis
-    from rocking.studies.fragility._incremental_dynamic_analysis import (
-        incremental_dynamic_analysis,
-    )
-    from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
-    from rocking.studies.fragility.cloud_analysis import cloud
-    from rocking.studies.fragility.curves import FragilityCurve, FragilityModel, model_of
-    from rocking.studies.fragility.export import fema_p58_table, to_csv, to_excel, to_mat, to_netcdf, to_nrml
-    from rocking.studies.fragility.measure_comparison import compare_measures
+from rocking.studies.fragility._fragility import fragility, fragility_analysis
+from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_analysis
+from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
+from rocking.studies.fragility.cloud_analysis import cloud
+from rocking.studies.fragility.curves import FragilityCurve, FragilityModel, model_of
+from rocking.studies.fragility.export import fema_p58_table, to_csv, to_excel, to_mat, to_netcdf, to_nrml
+from rocking.studies.fragility.measure_comparison import compare_measures
 
 __all__ = [
     "FragilityCurve",
@@ -32,24 +25,3 @@ __all__ = [
     "to_netcdf",
     "to_nrml",
 ]
-
-__getattr__, __dir__ = exports(
-    __name__,
-    {
-        "FragilityCurve": "rocking.studies.fragility.curves",
-        "FragilityModel": "rocking.studies.fragility.curves",
-        "cloud": "rocking.studies.fragility.cloud_analysis",
-        "compare_measures": "rocking.studies.fragility.measure_comparison",
-        "fema_p58_table": "rocking.studies.fragility.export",
-        "fragility": "rocking.studies.fragility._fragility",
-        "fragility_analysis": "rocking.studies.fragility._fragility",
-        "incremental_dynamic_analysis": "rocking.studies.fragility._incremental_dynamic_analysis",
-        "model_of": "rocking.studies.fragility.curves",
-        "multiple_stripe_analysis": "rocking.studies.fragility._multiple_stripe_analysis",
-        "to_csv": "rocking.studies.fragility.export",
-        "to_excel": "rocking.studies.fragility.export",
-        "to_mat": "rocking.studies.fragility.export",
-        "to_netcdf": "rocking.studies.fragility.export",
-        "to_nrml": "rocking.studies.fragility.export",
-    },
-)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -39,30 +40,6 @@ def checked_least(least: float) -> float:
 def clearly_lifted(responses: Responses, least: float) -> BoolArray:
     """Return which histories rocked, by at least a rotation over alpha [-], and stayed standing."""
     return np.asarray(responses.rocked & (responses.rotation >= least) & (responses.rotation > 0.0))
-
-
-class ClearShare:
-    """How many of the histories that rocked and stayed standing were clearly lifted, level by level.
-
-    A lognormal curve where the outcomes fix one, else their share at all levels.
-    """
-
-    def __init__(self, levels: FloatArray, responses: Responses, least: float) -> None:
-        rocked, clear = responses.rocked, clearly_lifted(responses, least)
-        self.share = float(clear.sum() / rocked.sum()) if rocked.any() else 1.0
-        self.fit: LognormalFit | None = None
-        if 0.0 < self.share < 1.0:
-            try:
-                self.fit = fit_lognormal(levels[rocked], clear[rocked])
-            except InvalidValueError:
-                # all at one level: there is no curve, and the share says all there is
-                self.fit = None
-
-    def at(self, levels: FloatArray) -> FloatArray:
-        """Return the share at levels of the measure [-]."""
-        if self.fit is None or not self.fit.exists:
-            return np.full(np.shape(levels), self.share)
-        return np.asarray(self.fit.probability(levels))
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,17 +82,36 @@ class CloudAnalysis(FragilityAnalysis):
     @cached_property
     def regression(self) -> Regression:
         """Straight line of ln(theta/alpha) over ln of the measure, of histories clearly lifted and still standing."""
-        rocked = clearly_lifted(self.responses, self.least)
-        return regression(np.log(self.motion_levels[rocked]), np.log(self.responses.rotation[rocked]))
+        levels, rotation = self.motion_levels[self._clear], self.responses.rotation[self._clear]
+        return regression(np.log(levels), np.log(rotation))
 
     @property
     def barely_lifted(self) -> int:
         """Number of histories that rocked by less than `least`: they are left out of the line."""
-        return int(np.sum(self.responses.rocked & ~clearly_lifted(self.responses, self.least)))
+        return int(np.sum(self.responses.rocked & ~self._clear))
 
     @cached_property
-    def _clear_share(self) -> ClearShare:
-        return ClearShare(self.motion_levels, self.responses, self.least)
+    def _clear(self) -> BoolArray:
+        return clearly_lifted(self.responses, self.least)
+
+    def clear_share(self, level: FloatArray) -> FloatArray:
+        """Return how many of the histories that rocked and stayed standing were clearly lifted, at levels [-].
+
+        A lognormal curve where the outcomes fix one, else their share at all levels.
+        """
+        rocked, fit = self.responses.rocked, self._clear_fit
+        if fit is not None and fit.exists:
+            return np.asarray(fit.probability(level))
+        share = float(self._clear.sum() / rocked.sum()) if rocked.any() else 1.0
+        return np.full(np.shape(level), share)
+
+    @cached_property
+    def _clear_fit(self) -> LognormalFit | None:
+        rocked = self.responses.rocked
+        with suppress(InvalidValueError):  # all at one level: there is no curve, and the share says all there is
+            if rocked.any() and 0 < self._clear.sum() < rocked.sum():
+                return fit_lognormal(self.motion_levels[rocked], self._clear[rocked])
+        return None
 
     def probability_of_rocking(self, level: Any) -> FloatArray:
         """Return the probability that the body rocks or overturns: 0 or 1 where a level decides it, else fitted [-]."""
@@ -145,7 +141,7 @@ class CloudAnalysis(FragilityAnalysis):
         # whatever overturned has rocked: where the curves cross, rocking is at least as probable
         rocks = self.probability_of_rocking(levels)
         over = np.minimum(np.asarray(self.fits["overturned"].probability(levels), dtype=np.float64), rocks)
-        beyond = self.regression.probability_above(limit, np.log(levels)) * self._clear_share.at(levels)
+        beyond = self.regression.probability_above(limit, np.log(levels)) * self.clear_share(levels)
         return {
             "no rocking": 1.0 - rocks,
             "below": (rocks - over) * (1.0 - beyond),

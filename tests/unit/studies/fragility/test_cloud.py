@@ -15,7 +15,7 @@ from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
 from rocking.statistics import regression
 from rocking.studies import cloud
-from rocking.studies.fragility.cloud_analysis import ClearShare, cloud_plan
+from rocking.studies.fragility.cloud_analysis import cloud_plan
 from rocking.studies.fragility.subject import Responses
 
 BLOCK = rk.Block(width=0.5, height=2.0)
@@ -184,14 +184,15 @@ def test_dataset_and_summary(found):
     assert told["definition"].startswith("cloud")
 
 
-def test_share_of_what_was_clearly_lifted():
+def test_share_of_what_was_clearly_lifted(found):
     """Of what rocked and stands: by hand where all are at one level, one where all are, and never above one."""
     levels, codes = np.full(5, 2.0), [Outcome.ROCKED.code] * 4 + [Outcome.OVERTURNED.code]
     rotation = np.array([0.3, 0.001, 0.2, 0.5, math.inf])
 
     def share(outcome, rotation):
         answers = Responses(np.array(outcome), np.asarray(rotation), np.zeros(5, np.int8))
-        return ClearShare(levels, answers, 0.01).at(np.array([1.0, 4.0])).tolist()
+        some = dataclasses.replace(found, responses=answers, motion_levels=levels, least=0.01)
+        return some.clear_share(np.array([1.0, 4.0])).tolist()
 
     assert share(codes, rotation) == [0.75, 0.75]
     assert share(codes, np.maximum(rotation, 0.1)) == [1.0, 1.0]
