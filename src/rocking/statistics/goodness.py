@@ -94,8 +94,7 @@ class Goodness:
         dict
             Value and p-value of each [-].
         """
-        names = ("deviance", "pearson", "hosmer_lemeshow", "kolmogorov")
-        return {name: dict(zip(Statistic._fields, getattr(self, name), strict=True)) for name in names}
+        return {name: getattr(self, name)._asdict() for name in STATISTICS}
 
 
 def goodness_of(
@@ -176,10 +175,6 @@ class Repeated:
     band: tuple[FloatArray, FloatArray] | None = None
     words: str = ""  # how the study was repeated, or why there is none
 
-    def band_at(self, size: int) -> FloatArray:
-        """Return lower and upper ends of the band, filled with NaN where there is none."""
-        return np.full((2, size), math.nan) if self.band is None else np.stack(self.band)
-
 
 def ends_of(interval: Ends | None) -> tuple[float, float]:
     """Return an interval as numbers: NaN where an end is open, or there is no interval.
@@ -223,8 +218,5 @@ def repeated_of(fit: "LognormalFit", levels: FloatArray, repetitions: int, seed:
     words = f"{sample.kind}, {sample.repetitions} repetitions, seed {seed}, {sample.ends} ends"
     if sample.undetermined:
         words += f"; {sample.undetermined} repetitions have no rising curve and widen the intervals"
-    return Repeated(_closed(*ends[0]), _closed(*ends[1]), band, words)
-
-
-def _closed(low: float, high: float) -> Ends:
-    return (low if low > 0.0 else None), (high if math.isfinite(high) else None)
+    median, dispersion = ((low if low > 0.0 else None, high if math.isfinite(high) else None) for low, high in ends)
+    return Repeated(median, dispersion, band, words)

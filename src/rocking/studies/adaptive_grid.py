@@ -141,36 +141,29 @@ class AdaptiveGrid:
     def finest(self, label: Label) -> tuple[IntArray, IntArray]:
         """Subdivide cells whose corners differ, level by level, and return columns and rows of the last that do."""
         self.compute(self.base())
-        i, j = self._differing_base(label)
+        across, up = self.plane.x.values.size - 1, self.plane.y.values.size - 1
+        j, i = (place * self.step for place in np.divmod(np.arange(across * up), max(across, 1)))
+        i, j = self._differing(label, i, j, self.step)
         for level in range(1, self.levels + 1):
             half = self.step >> level  # Eq. 185
             i = (i[:, None] + np.array([0, half, 0, half])).ravel()
             j = (j[:, None] + np.array([0, 0, half, half])).ravel()
-            self._compute_corners(i, j, half)
-            parts = (slice(first, first + _PIECE) for first in range(0, i.size, _PIECE))
-            mixed = [differing(label(self.corners(i[part], j[part], half))) for part in parts]
-            kept = np.concatenate([np.empty(0, np.bool_), *mixed])
-            i, j = i[kept], j[kept]
+            i, j = self._differing(label, i, j, half)
         return i, j
 
-    def _differing_base(self, label: Label) -> tuple[IntArray, IntArray]:
-        """Return the cells between the axes' own values whose corners differ."""
-        across, up = self.plane.x.values.size - 1, self.plane.y.values.size - 1
-        cells = [(np.empty(0, np.int64), np.empty(0, np.int64))]
-        for first in range(0, across * up, _PIECE):
-            j, i = np.divmod(np.arange(first, min(first + _PIECE, across * up)), across)
-            mixed = differing(label(self.corners(i * self.step, j * self.step, self.step)))
-            cells.append((i[mixed] * self.step, j[mixed] * self.step))
-        columns, rows = zip(*cells, strict=True)
-        return np.concatenate(columns), np.concatenate(rows)
-
-    def _compute_corners(self, i: IntArray, j: IntArray, step: int) -> None:
-        """Compute the corners of cells that are not known, in one batch."""
-        new = [np.empty(0, np.int64)]
-        for first in range(0, i.size, _PIECE):
-            columns, rows = _corners(i[first : first + _PIECE], j[first : first + _PIECE], step)
+    def _differing(self, label: Label, i: IntArray, j: IntArray, step: int) -> tuple[IntArray, IntArray]:
+        """Return the cells whose corners differ; corners that are not known are computed in one batch."""
+        pieces = [slice(first, first + _PIECE) for first in range(0, i.size, _PIECE)]
+        new, mixed = [np.empty(0, np.int64)], [np.empty(0, np.bool_)]
+        for piece in pieces:
+            columns, rows = _corners(i[piece], j[piece], step)
             new.append(absent((rows * self.columns + columns).ravel(), self.keys))
         self.compute(np.concatenate(new))
+        for piece in pieces:
+            labels = label(self.corners(i[piece], j[piece], step))
+            mixed.append(np.any(labels != labels[:, :1], axis=1))
+        kept = np.concatenate(mixed)
+        return i[kept], j[kept]
 
 
 def absent(keys: IntArray, known: IntArray) -> IntArray:
@@ -199,11 +192,6 @@ def _corners(i: IntArray, j: IntArray, step: int) -> tuple[IntArray, IntArray]:
     """Return columns and rows of the corners of cells: lower left, lower right, upper right, upper left."""
     across, up = np.array([0, step, step, 0]), np.array([0, 0, step, step])
     return i[:, None] + across, j[:, None] + up
-
-
-def differing(labels: Any) -> BoolArray:
-    """Return which cells have corners that differ."""
-    return np.asarray(np.any(labels != labels[:, :1], axis=1))
 
 
 def verdicts(modes: IntArray) -> BoolArray:
@@ -241,23 +229,17 @@ def refine(grid: AdaptiveGrid, modes: IntArray, peaks: Any = None) -> tuple[Refi
     first = grid.base()
     known = np.full(first.size, np.nan) if peaks is None else np.asarray(peaks, dtype=np.float64).ravel()
     grid.learn(first, np.asarray(modes, dtype=np.int64).ravel(), known)
-    cells = grid.finest(_whole)
+    cells = grid.finest(lambda modes: modes)
     own = np.zeros(grid.keys.size, dtype=np.bool_)
     own[np.searchsorted(grid.keys, first)] = True
     places = np.concatenate([np.flatnonzero(own), np.flatnonzero(~own)])  # the map's own first
-    x, y = _coordinates(grid, places)
-    base = np.arange(places.size) < first.size
-    return RefinedMap(x, y, grid.modes[places], grid.peaks[places], base), cells
-
-
-def _coordinates(grid: AdaptiveGrid, places: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Return the coordinates of known points, made piece by piece: on the way they take many times their room."""
     x, y = np.empty(places.size), np.empty(places.size)
-    for first in range(0, places.size, _PIECE):
-        part = slice(first, first + _PIECE)
+    for start in range(0, places.size, _PIECE):  # on the way coordinates take many times their room
+        part = slice(start, start + _PIECE)
         keys = grid.keys[places[part]]
         x[part], y[part] = grid.coordinates(keys % grid.columns, keys // grid.columns)
-    return x, y
+    base = np.arange(places.size) < first.size
+    return RefinedMap(x, y, grid.modes[places], grid.peaks[places], base), cells
 
 
 def refined_map(
@@ -294,7 +276,3 @@ def refined_map(
     plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, **options)
     results, _ = plane.answers(*plane.mesh(), progress=progress)
     return refined(plane, results["mode"], levels, progress, results["peak_ratio"])
-
-
-def _whole(modes: IntArray) -> IntArray:
-    return modes

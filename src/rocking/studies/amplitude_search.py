@@ -15,7 +15,6 @@ Run = Callable[[dict[str, FloatArray], IntArray], Arrays]
 
 # halvings after which neighbouring doubles have met, and the relative width at which a hunt is given up
 _MOST_ROUNDS, _GIVEN_UP = 70, 1e-9
-_FIELDS = ("body", "scale", "mode", "side", "peak", "time", "lost")
 
 
 @dataclass
@@ -32,13 +31,12 @@ class Samples:
 
     def joined(self, other: "Samples") -> "Samples":
         """Return these and others, sorted."""
-        both = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in _FIELDS}
-        order = np.lexsort((both["scale"], both["body"]))
-        return Samples(**{name: values[order] for name, values in both.items()})
+        both = Samples(*map(np.concatenate, zip(vars(self).values(), vars(other).values(), strict=True)))
+        return both.where(np.lexsort((both.scale, both.body)))
 
-    def where(self, keep: BoolArray) -> "Samples":
+    def where(self, keep: BoolArray | IntArray) -> "Samples":
         """Return some of them."""
-        return Samples(**{name: getattr(self, name)[keep] for name in _FIELDS})
+        return Samples(*(values[keep] for values in vars(self).values()))
 
     @property
     def good(self) -> "Samples":
@@ -176,35 +174,23 @@ def _beside_largest(values: FloatArray, same: BoolArray) -> BoolArray:
 _SHIFTS, _ENOUGH = (0.25, 0.75, 0.5, 0.125), 2
 
 
-@dataclass(frozen=True)
-class SamplesBelow:
-    """Samples of one body up to the first that overturns."""
-
-    scales: FloatArray  # factors on the motion, increasing; all but the last survive [-]
-
-    @property
-    def gap(self) -> float:
-        """Relative width of the widest gap between them [-]."""
-        return float(np.max(self.scales[1:] / self.scales[:-1])) - 1.0
-
-
-def below_minimum(samples: Samples) -> dict[int, SamplesBelow]:
-    """Return the samples of each body up to the first that overturns.
+def below_minimum(samples: Samples) -> dict[int, FloatArray]:
+    """Return the scales of each body up to the first that overturns: all but the last survive.
 
     Returns by the number of the body; without those that never overturn, or do so at the lowest sample.
 
     >>> n, x = np.array([0, 0, 0, 1, 1]), np.array([1.0, 2.0, 3.0, 1.0, 2.0])
     >>> found = below_minimum(Samples(n, x, np.array([-1, -1, 2, -1, -1]), n, x, x, x))
-    >>> {k: each.scales.tolist() for k, each in found.items()}
+    >>> {k: scales.tolist() for k, scales in found.items()}
     {0: [1.0, 2.0, 3.0]}
     """
     bodies, start = np.unique(samples.body, return_index=True)
-    made = {}
+    below = {}
     for body, first, last in zip(bodies.tolist(), start, np.append(start, samples.body.size)[1:], strict=True):
         falls = np.flatnonzero(samples.falls[first:last])
         if falls.size and falls[0] > 0:
-            made[body] = SamplesBelow(samples.scale[first : first + falls[0] + 1])
-    return made
+            below[body] = samples.scale[first : first + falls[0] + 1]
+    return below
 
 
 def search_below(scan: AmplitudeSearch, points: int) -> None:
@@ -215,7 +201,7 @@ def search_below(scan: AmplitudeSearch, points: int) -> None:
     """
     held: dict[int, int] = {}
     for shift in _SHIFTS:
-        known = {k: each.scales for k, each in below_minimum(scan.samples.good).items() if held.get(k, 0) < _ENOUGH}
+        known = {k: each for k, each in below_minimum(scan.samples.good).items() if held.get(k, 0) < _ENOUGH}
         if not known:
             return
         share = (np.arange(points) + shift) / points

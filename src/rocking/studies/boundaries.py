@@ -41,15 +41,6 @@ class Polyline:
         return len(self.points) > 2 and bool((self.points[0] == self.points[-1]).all())
 
 
-@dataclass(frozen=True)
-class Edges:
-    """Crossed edges of a grid, to be bisected all at once."""
-
-    number: IntArray  # their numbers, increasing
-    point: FloatArray  # vertices x, y; shape (edges, 2)
-    modes: IntArray  # modes outside and inside; shape (edges, 2)
-
-
 def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
     body: Body,
     motion: Motion,
@@ -140,15 +131,17 @@ def _outlined(
     if not i.size:
         return []
     corners = inside(grid.corners(i, j, 1))
-    numbers = edge_numbers(i, j, grid.columns)
-    joined = segments(corners, numbers, _centres(grid, inside, corners, i, j))
-    edges = bisected(grid, inside, np.unique(joined), tolerance)
-    lines = []
-    for chain in chains(joined):
-        places = np.searchsorted(edges.number, chain)
-        names = (grid.plane.x.name, grid.plane.y.name)
-        lines.append(Polyline(edges.point[places], edges.modes[places], region, names))
-    return lines
+    centre = np.zeros(i.size, dtype=np.bool_)  # whether the centre of a saddle is inside
+    saddle = crossed_edges(corners).all(axis=1)
+    if saddle.any():
+        ends = grid.coordinates(i[saddle], j[saddle]), grid.coordinates(i[saddle] + 1, j[saddle] + 1)
+        x, y = (0.5 * (low + high) for low, high in zip(*ends, strict=True))
+        centre[saddle] = inside(grid.plane.answers(x, y, progress=grid.progress)[0]["mode"])
+    joined = segments(corners, edge_numbers(i, j, grid.columns), centre)
+    numbers, names = np.unique(joined), (grid.plane.x.name, grid.plane.y.name)
+    points, modes = bisected(grid, inside, numbers, tolerance)
+    places = [np.searchsorted(numbers, chain) for chain in chains(joined)]
+    return [Polyline(points[each], modes[each], region, names) for each in places]
 
 
 def _cells_passed(grid: AdaptiveGrid, inside: Inside, seeds: tuple[IntArray, IntArray]) -> tuple[IntArray, IntArray]:
@@ -165,31 +158,19 @@ def _cells_passed(grid: AdaptiveGrid, inside: Inside, seeds: tuple[IntArray, Int
         passed = crossed.any(axis=1)
         i, j, crossed = i[passed], j[passed], crossed[passed]
         known = merged(known, j * grid.columns + i)
-        steps = ((0, -1), (1, 0), (0, 1), (-1, 0))  # below, right, above, left
-        beside = [_cells(grid, i[crossed[:, k]] + a, j[crossed[:, k]] + b) for k, (a, b) in enumerate(steps)]
-        new = absent(np.concatenate(beside), seen)
+        cell, edge = np.nonzero(crossed)
+        right, up = np.array([(0, -1), (1, 0), (0, 1), (-1, 0)]).T  # to what is below, right, above, left
+        i, j = i[cell] + right[edge], j[cell] + up[edge]
+        within = (i >= 0) & (j >= 0) & (i < grid.columns - 1) & (j < grid.rows - 1)
+        new = absent(j[within] * grid.columns + i[within], seen)
     return known % grid.columns, known // grid.columns
 
 
-def _cells(grid: AdaptiveGrid, i: IntArray, j: IntArray) -> IntArray:
-    within = (i >= 0) & (j >= 0) & (i < grid.columns - 1) & (j < grid.rows - 1)
-    return np.asarray(j[within] * grid.columns + i[within])
+def bisected(grid: AdaptiveGrid, inside: Inside, numbers: IntArray, tolerance: float) -> tuple[FloatArray, IntArray]:
+    """Return where the boundary of a region crosses edges of a grid, and the modes outside and inside, of each.
 
-
-def _centres(grid: AdaptiveGrid, inside: Inside, corners: BoolArray, i: IntArray, j: IntArray) -> BoolArray:
-    """Return whether the centres of saddles are inside; False elsewhere."""
-    centre = np.zeros(i.size, dtype=np.bool_)
-    saddle = crossed_edges(corners).all(axis=1)
-    if saddle.any():
-        low = grid.coordinates(i[saddle], j[saddle])
-        high = grid.coordinates(i[saddle] + 1, j[saddle] + 1)
-        middle = [0.5 * (a + b) for a, b in zip(low, high, strict=True)]
-        centre[saddle] = inside(grid.plane.answers(middle[0], middle[1], progress=grid.progress)[0]["mode"])
-    return centre
-
-
-def bisected(grid: AdaptiveGrid, inside: Inside, numbers: IntArray, tolerance: float) -> Edges:
-    """Return where the boundary of a region crosses edges of a grid: one batch for each halving."""
+    One batch for each halving.
+    """
     upright = numbers % 2 == 1
     i, j = (numbers // 2) % grid.columns, (numbers // 2) // grid.columns
     ends = [(i, j), (i + ~upright, j + upright)]
@@ -208,7 +189,7 @@ def bisected(grid: AdaptiveGrid, inside: Inside, numbers: IntArray, tolerance: f
         mode = grid.plane.answers(middle[:, 0], middle[:, 1], progress=grid.progress)[0]["mode"]
         side = inside(mode).astype(np.int64)
         points[rows, side], modes[rows, side] = middle, mode
-    return Edges(numbers, points.mean(axis=1), modes)
+    return points.mean(axis=1), modes
 
 
 # edges of a cell by number: bottom, right, top, left; corners: lower left, lower right, upper right, upper left
@@ -267,10 +248,9 @@ def _chain_from(start: int, neighbours: dict[int, list[int]], seen: set[int]) ->
     chain, here = [start], start
     seen.add(start)
     while True:
-        onward = [edge for edge in neighbours[here] if edge not in seen]
-        if not onward:
+        here = next((edge for edge in neighbours[here] if edge not in seen), here)
+        if here in seen:
             break
-        here = onward[0]
         seen.add(here)
         chain.append(here)
     closed = len(chain) > 2 and start in neighbours[here]

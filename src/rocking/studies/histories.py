@@ -5,7 +5,7 @@ import json
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -176,11 +176,6 @@ class Histories(ABC):
         """Motions that were made for an earlier piece, the oldest first."""
         return {}
 
-    def _segments(self, number: int) -> Segments:
-        segments = self._kept.pop(number, None) or self.motions[number].segments()
-        self._kept[number] = segments  # the newest last
-        return segments
-
     def _forget(self) -> None:
         """Forget the oldest motions: all but the last where those of the next piece are others, or there is no room."""
         scattered = self.together == 1 and self.count > len(self.motions)
@@ -205,16 +200,20 @@ class Histories(ABC):
                     {name: rows.values[name][chosen] for name in ROWS}, places[chosen].astype(np.int64) - low,
                     rows.stream[chosen],
                 )  # fmt: skip
-                for name, values in self._made(some, local, threads).items():
+                batch = Batch(self._laid_out(some.tolist()), self.law, self.settings, threads, self.engine)
+                for name, values in batch.run(len(local), partial(part, local))[0].items():
                     results[name][start - first + chosen] = values
         return results
 
-    def _made(self, wanted: np.ndarray, rows: Rows, threads: int | None) -> Arrays:
-        """Run some histories with their motions, made here; the rows number these from nought."""
-        segments = [self._segments(int(k)) for k in wanted]
+    def _laid_out(self, wanted: list[int]) -> list[Segments]:
+        """Return some motions, made unless they are kept; the newest stand last."""
+        every = []
+        for number in wanted:
+            segments = self._kept.pop(number, None) or self.motions[number].segments()
+            self._kept[number] = segments
+            every.append(segments)
         self._forget()
-        batch = Batch(segments, self.law, self.settings, threads, self.engine)
-        return batch.run(len(rows), lambda first, last: part(rows, first, last))[0]
+        return every
 
 
 def results_of(

@@ -135,8 +135,20 @@ class Cases:
         """Return the cases of some bodies under one motion, to be looked for between peak accelerations [m/s2]."""
         if not motion.peak > 0.0:
             raise InvalidValueError(f"motion must have a peak above zero to be scaled, got {motion.name!r}")
-        uplift, (low, high) = _range(motion, sides, settings, lowest, highest)
-        return cls(sides, np.full(uplift.size, motion.peak), uplift, low, high, isinstance(motion, GroundMotion))
+        both = np.stack([sides["alpha_right"], sides["alpha_left"]])
+        lifts = settings.gravity * (both if settings.linear else np.tan(both))  # Eq. 25
+        uplift, record = lifts.min(axis=0), isinstance(motion, GroundMotion)
+        light = isinstance(motion, GroundMotion) and motion.vertical is not None
+        low, high = (_FROM_VERTICAL if light else _FROM) * uplift, _TO * lifts.max(axis=0)
+        if lowest is not None:
+            low = np.full_like(low, checks.positive("lowest", lowest, "m/s2"))
+        if highest is not None:
+            high = np.full_like(high, checks.positive("highest", highest, "m/s2"))
+        bad = np.flatnonzero(~(low < high))
+        if bad.size:
+            k = bad[0]
+            raise InvalidValueError(f"lowest must be below highest, got {low[k]:g} and {high[k]:g} m/s2 for body {k}")
+        return cls(sides, np.full(uplift.size, motion.peak), uplift, low, high, record)
 
     @classmethod
     def joined(cls, parts: Sequence["Cases"]) -> "Cases":
@@ -161,29 +173,9 @@ def searched(cases: Cases, effort: Effort, run: Run) -> tuple[Transitions | None
     return _transitions(scan, cases, effort)
 
 
-def _range(
-    motion: Motion, sides: dict[str, FloatArray], settings: Settings, lowest: float | None, highest: float | None
-) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
-    """Return the accelerations that lift the bodies, and between which to look."""
-    both = np.stack([sides["alpha_right"], sides["alpha_left"]])
-    lifts = settings.gravity * (both if settings.linear else np.tan(both))  # Eq. 25
-    light = isinstance(motion, GroundMotion) and motion.vertical is not None
-    low = (_FROM_VERTICAL if light else _FROM) * lifts.min(axis=0)
-    high = _TO * lifts.max(axis=0)
-    if lowest is not None:
-        low = np.full_like(low, checks.positive("lowest", lowest, "m/s2"))
-    if highest is not None:
-        high = np.full_like(high, checks.positive("highest", highest, "m/s2"))
-    bad = np.flatnonzero(~(low < high))
-    if bad.size:
-        k = bad[0]
-        raise InvalidValueError(f"lowest must be below highest, got {low[k]:g} and {high[k]:g} m/s2 for body {k}")
-    return lifts.min(axis=0), (low, high)
-
-
 def _transitions(scan: AmplitudeSearch, cases: Cases, effort: Effort) -> tuple[Transitions | None, ...]:
     brackets, all_modes, count = scan.brackets(effort.tolerance), scan.samples.mode, cases.uplift.size
-    gaps = {k: each.gap for k, each in below_minimum(scan.samples.good).items()}
+    gaps = {k: float(np.max(s[1:] / s[:-1])) - 1.0 for k, s in below_minimum(scan.samples.good).items()}
     # both are sorted by body
     bounds, marks = (np.searchsorted(each.body, np.arange(count + 1)) for each in (brackets, scan.samples))
     transitions: list[Transitions | None] = []

@@ -127,9 +127,9 @@ def modes_of(results: Arrays) -> np.ndarray:
     [-2, -1, 1, -3]
     """
     outcome = np.asarray(results["outcome"])
-    modes = np.where(outcome == Outcome.OVERTURNED.code, results["impacts"], SURVIVED)
-    modes = np.where(outcome == Outcome.NO_UPLIFT.code, UNLIFTED, modes)
-    return np.asarray(np.where(outcome == Outcome.FAILED.code, FAILED, modes), dtype=np.int64)
+    modes = {Outcome.OVERTURNED: results["impacts"], Outcome.NO_UPLIFT: UNLIFTED, Outcome.FAILED: FAILED}
+    chosen = np.select([outcome == each.code for each in modes], list(modes.values()), SURVIVED)
+    return np.asarray(chosen, dtype=np.int64)
 
 
 def peak_ratio(peak: FloatArray, right: FloatArray, left: FloatArray) -> FloatArray:

@@ -240,12 +240,12 @@ def test_the_properties_say_that_they_hold_among_the_samples():
 
 
 def test_samples_up_to_the_first_fall():
-    """The gap is the widest up to the first that overturns, of each body for itself; there is none without it."""
+    """Scales up to the first that overturns, of each body for itself; there are none without it."""
     body = np.array([0, 0, 0, 0, 1, 1, 2, 2, 3])
     scale = np.array([1.0, 1.5, 1.8, 9.0, 1.0, 2.0, 1.0, 2.0, 1.0])
     mode = np.array([-2, -1, 0, -1, -1, -1, 0, -1, 3])
     found = below_minimum(Samples(body, scale, mode, body, scale, scale, scale))
     assert list(found) == [0]
-    assert found[0].gap == pytest.approx(0.5)
+    assert found[0].tolist() == [1.0, 1.5, 1.8]
     assert below_minimum(Samples(*(np.empty(0, dtype=np.int64) for _ in range(7)))) == {}
     assert math.isnan(minimum_overturning_acceleration(BLOCK, SINE, 0.85, highest=2.0, threads=1).resolution_below)

@@ -15,7 +15,7 @@ from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.statistics.censored import CensoredFit, fit_crossings
 from rocking.studies.fragility._multiple_stripe_analysis import MultipleStripeAnalysis, multiple_stripe_plan
-from rocking.studies.fragility._overturning_intervals import OverturningInterval, overturning_intervals, survivals_of
+from rocking.studies.fragility._overturning_intervals import OverturningInterval, overturning_intervals
 from rocking.studies.fragility.subject import Motions, Progress
 from rocking.studies.histories import Product, results_of
 
@@ -97,7 +97,12 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
     @property
     def survivals(self) -> list[tuple[int, float, float]]:
         """Motion and ends of the levels, above an overturning one, at which it leaves the body standing after all."""
-        return survivals_of(self.intervals, float(self.levels[-1]))
+        highest = float(self.levels[-1])
+        return [
+            (one.motion, one.end, after.start if after is not None and after.motion == one.motion else highest)
+            for one, after in zip(self.intervals, (*self.intervals[1:], None), strict=False)
+            if not one.is_open
+        ]
 
     def resurrected(self, wider_than: float = 0.0) -> list[int]:
         """Return which motions leave the body standing at levels above one at which they overturn it.

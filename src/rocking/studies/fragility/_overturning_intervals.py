@@ -1,9 +1,8 @@
 """Where along the levels a motion starts and stops to overturn a body, found as closely as wanted."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -147,16 +146,6 @@ def intervals_of(brackets: OutcomeBrackets) -> list[OverturningInterval]:
             end, end_width = float(middle[k + 1]), float(width[k + 1])
         intervals.append(OverturningInterval(motion, float(middle[k]), end, float(width[k]), end_width))
     return intervals
-
-
-def survivals_of(intervals: Sequence[OverturningInterval], highest: float) -> list[tuple[int, float, float]]:
-    """Return motion and ends of the levels, above an overturning one, at which the body stays standing."""
-    survivals = []
-    for one, after in pairwise([*intervals, None]):
-        if one is not None and not one.is_open:
-            same = after is not None and after.motion == one.motion
-            survivals.append((one.motion, one.end, after.start if after is not None and same else highest))
-    return survivals
 
 
 def overturning_intervals(

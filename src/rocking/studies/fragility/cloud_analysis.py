@@ -82,16 +82,17 @@ class CloudAnalysis(FragilityAnalysis):
     @cached_property
     def regression(self) -> Regression:
         """Straight line of ln(theta/alpha) over ln of the measure, of histories clearly lifted and still standing."""
-        levels, rotation = self.motion_levels[self._clear], self.responses.rotation[self._clear]
+        levels, rotation = self.motion_levels[self.clear], self.responses.rotation[self.clear]
         return regression(np.log(levels), np.log(rotation))
 
     @property
     def barely_lifted(self) -> int:
         """Number of histories that rocked by less than `least`: they are left out of the line."""
-        return int(np.sum(self.responses.rocked & ~self._clear))
+        return int(np.sum(self.responses.rocked & ~self.clear))
 
     @cached_property
-    def _clear(self) -> BoolArray:
+    def clear(self) -> BoolArray:
+        """Which histories rocked, by at least `least`, and stayed standing."""
         return clearly_lifted(self.responses, self.least)
 
     def clear_share(self, level: FloatArray) -> FloatArray:
@@ -102,15 +103,15 @@ class CloudAnalysis(FragilityAnalysis):
         rocked, fit = self.responses.rocked, self._clear_fit
         if fit is not None and fit.exists:
             return np.asarray(fit.probability(level))
-        share = float(self._clear.sum() / rocked.sum()) if rocked.any() else 1.0
+        share = float(self.clear.sum() / rocked.sum()) if rocked.any() else 1.0
         return np.full(np.shape(level), share)
 
     @cached_property
     def _clear_fit(self) -> LognormalFit | None:
         rocked = self.responses.rocked
         with suppress(InvalidValueError):  # all at one level: there is no curve, and the share says all there is
-            if rocked.any() and 0 < self._clear.sum() < rocked.sum():
-                return fit_lognormal(self.motion_levels[rocked], self._clear[rocked])
+            if rocked.any() and 0 < self.clear.sum() < rocked.sum():
+                return fit_lognormal(self.motion_levels[rocked], self.clear[rocked])
         return None
 
     def probability_of_rocking(self, level: Any) -> FloatArray:

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 CLAIMS = ("method", "verdict", "interval_method")
 """What is said of each curve wherever it goes."""
 
-_BOTH = ("state", "end")
 Crossing = Literal["refuse", "common-dispersion"]
 
 TOLERANCE = 1e-6
@@ -221,13 +220,13 @@ def model_of(
     """
     chosen = checks.one_of("method", method, ORDERED_METHODS)
     subject: Subject = analysis.subject
-    by_state = {state: curve_of(state, fit) for state, fit in analysis.fits.items()}
-    by_state = {
-        state: curve and with_evidence(curve, analysis.fits[state], analysis.levels, bootstrap, seed)
-        for state, curve in by_state.items()
-    }
-    without = [state for state, curve in by_state.items() if curve is None]
-    curves = tuple(curve for curve in by_state.values() if curve is not None)
+    curves, without = [], []
+    for state, fit in analysis.fits.items():
+        curve = curve_of(state, fit)
+        if curve is None:
+            without.append(state)
+        else:
+            curves.append(with_evidence(curve, fit, analysis.levels, bootstrap, seed))
     if not curves:
         raise InvalidValueError(
             f"nothing to export: no state of {name!r:.60} has a lognormal curve; the histories must both reach a "
@@ -235,8 +234,8 @@ def model_of(
         )
     about = subject.about() | {"definition": analysis.definition, "without_curve": ", ".join(without)}
     model = FragilityModel(
-        name, subject.measure.name, subject.measure.unit, curves, analysis.levels, analysis.trials, analysis.counts,
-        source or analysis.definition, subject.uplift_threshold, about,
+        name, subject.measure.name, subject.measure.unit, tuple(curves), analysis.levels, analysis.trials,
+        analysis.counts, source or analysis.definition, subject.uplift_threshold, about,
         {state: analysis.fits[state].verdict for state in without},
     )  # fmt: skip
     return model if chosen == "separate" else with_common_dispersion(model)
@@ -270,41 +269,43 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
     tried = np.asarray(model.trials) > 0
     reached = np.array([np.asarray(model.reached[c.state], dtype=np.float64)[tried] for c in model.curves])
     fitted = nested_curves(model.levels[tried], reached, np.asarray(model.trials, dtype=np.float64)[tried])
-    curves = tuple(_common(curve, *pair) for curve, pair in zip(model.curves, fitted, strict=True))
-    return replace(model, curves=curves)
-
-
-def _common(curve: FragilityCurve, median: float, dispersion: float) -> FragilityCurve:
-    verdict = (
-        f"One dispersion was fitted to all states, so that no curves cross; alone this state has median"
-        f" {curve.median:.4g}, dispersion {curve.dispersion:.3g}. {curve.verdict}"
-    )
-    return FragilityCurve(curve.state, median, dispersion, "common-dispersion", verdict.strip())
+    curves = []
+    for curve, (median, dispersion) in zip(model.curves, fitted, strict=True):
+        verdict = (
+            f"One dispersion was fitted to all states, so that no curves cross; alone this state has median"
+            f" {curve.median:.4g}, dispersion {curve.dispersion:.3g}. {curve.verdict}"
+        )
+        curves.append(FragilityCurve(curve.state, median, dispersion, "common-dispersion", verdict.strip()))
+    return replace(model, curves=tuple(curves))
 
 
 def variables_of(curves: Sequence[FragilityCurve], levels: int, unit: str) -> dict[str, Any]:
     """Return intervals, goodness of fit and bootstrap of curves, over state; NaN where there is none."""
-    meaning = "95 % interval, missing where it is open, or there is none"
-    variables: dict[str, Any] = {}
-    for name, of in (("median_95", unit), ("dispersion_95", "1")):
-        variables[name] = (_BOTH, np.array([ends_of(getattr(curve, name)) for curve in curves]), _told(of, meaning))
+
+    def intervals(ends: Sequence[Ends | None], of: str, meaning: str) -> tuple[Any, np.ndarray, dict[str, str]]:
+        words = f"95 % interval{meaning}, missing where it is open, or there is none"
+        return ("state", "end"), np.array([ends_of(each) for each in ends]), {"units": of, "long_name": words}
+
+    variables: dict[str, Any] = {
+        "median_95": intervals([curve.median_95 for curve in curves], unit, ""),
+        "dispersion_95": intervals([curve.dispersion_95 for curve in curves], "1", ""),
+    }
     agreements = [curve.agreement or Agreement() for curve in curves]
     for name, words in STATISTICS.items():
         value, p_value = np.array([each.numbers[name] for each in agreements]).T
-        variables[name] = ("state", value, _told("1", words))
-        variables[f"{name}_p_value"] = ("state", p_value, _told("1", f"p-value: {words}"))
+        variables[name] = ("state", value, {"units": "1", "long_name": words})
+        variables[f"{name}_p_value"] = ("state", p_value, {"units": "1", "long_name": f"p-value: {words}"})
     variables["agreement"] = ("state", np.array([each.words for each in agreements]))
-    return variables | (_repeated(curves, levels, unit) if any(curve.repeated for curve in curves) else {})
-
-
-def _repeated(curves: Sequence[FragilityCurve], levels: int, unit: str) -> dict[str, Any]:
-    meaning = "95 % interval from the bootstrap, missing where it is open, or there is none"
-    each = [curve.repeated or Repeated() for curve in curves]
-    bands = np.array([one.band_at(levels) for one in each])
-    return {
-        "median_bootstrap_95": (_BOTH, np.array([ends_of(one.median_95) for one in each]), _told(unit, meaning)),
-        "dispersion_bootstrap_95": (_BOTH, np.array([ends_of(one.dispersion_95) for one in each]), _told("1", meaning)),
-        "probability_bootstrap_95": (("state", "end", "level"), bands, _told("1", meaning)),
+    if not any(curve.repeated for curve in curves):
+        return variables
+    each, meaning = [curve.repeated or Repeated() for curve in curves], " from the bootstrap"
+    open_band = np.full((2, levels), math.nan)
+    bands = np.array([open_band if one.band is None else one.band for one in each])
+    dispersion = intervals([one.dispersion_95 for one in each], "1", meaning)
+    return variables | {
+        "median_bootstrap_95": intervals([one.median_95 for one in each], unit, meaning),
+        "dispersion_bootstrap_95": dispersion,
+        "probability_bootstrap_95": (("state", "end", "level"), bands, dispersion[2]),
         "bootstrap": ("state", np.array([one.words for one in each])),
     }
 
@@ -353,7 +354,3 @@ def nested(model: FragilityModel, crossing: Crossing = "refuse", highest: float 
 def check_crossing(crossing: Any) -> str:
     """Return the way to treat curves that cross, or refuse what is none."""
     return checks.one_of("crossing", crossing, get_args(Crossing))
-
-
-def _told(unit: str, words: str) -> dict[str, str]:
-    return {"units": unit, "long_name": words}

@@ -13,11 +13,10 @@ import numpy as np
 from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import MEASURES, spectral_measure, spectral_period
-from rocking.statistics.goodness import STATISTICS, Ends, Repeated
+from rocking.statistics.goodness import STATISTICS
 from rocking.studies.fragility.curves import (
     CLAIMS,
     Crossing,
-    FragilityCurve,
     FragilityModel,
     check_crossing,
     nested,
@@ -32,7 +31,6 @@ from rocking.tables import to_netcdf as dataset_to_netcdf
 TABLES = ("parameters", "points", "fema-p58")
 """Tables that can be written."""
 
-_AGREEMENT = (*(f"{name}{what} [-]" for name in STATISTICS for what in ("", " p-value")), "agreement")
 Destination = str | os.PathLike[str]
 
 
@@ -45,61 +43,52 @@ def table(model: FragilityModel, which: str = "parameters", *, crossing: Crossin
     return makers[which](model) if which in makers else fema_p58_table(model, crossing=crossing)
 
 
-def _bracket(model: FragilityModel) -> str:
-    return f"[{model.unit}]"
-
-
 def _parameters(model: FragilityModel) -> Table:
+    unit, ends = f"[{model.unit}]", ("from", "to")
+    evidence = {name: each[1].tolist() for name, each in variables_of(model.curves, model.levels.size, "").items()}
+    intervals = {"median 95 %": ("median_95", unit), "dispersion 95 %": ("dispersion_95", "[-]")}
+    repeated = {
+        "median bootstrap 95 %": ("median_bootstrap_95", unit),
+        "dispersion bootstrap 95 %": ("dispersion_bootstrap_95", "[-]"),
+    }
     header = (
-        "component", "state", "measure", f"median {_bracket(model)}", "dispersion [-]", "method",
-        f"lowest level {_bracket(model)}", f"highest level {_bracket(model)}", "histories", "source",
-        f"median 95 % from {_bracket(model)}", f"median 95 % to {_bracket(model)}", "dispersion 95 % from [-]",
-        "dispersion 95 % to [-]", "intervals by", "verdict", *_AGREEMENT,
+        "component", "state", "measure", f"median {unit}", "dispersion [-]", "method", f"lowest level {unit}",
+        f"highest level {unit}", "histories", "source",
+        *(f"{words} {end} {of}" for words, (_, of) in intervals.items() for end in ends),
+        "intervals by", "verdict", *(f"{name}{what} [-]" for name in STATISTICS for what in ("", " p-value")),
+        "agreement",
     )  # fmt: skip
-    repeated = any(c.repeated for c in model.curves)
-    if repeated:
-        words = (f"median bootstrap 95 % {{}} {_bracket(model)}", "dispersion bootstrap 95 % {} [-]")
-        header += (*(word.format(end) for word in words for end in ("from", "to")), "bootstrap")
-    ends = float(model.levels[0]), float(model.levels[-1])
-    count = int(np.sum(model.trials))
-    rows = tuple(
-        (
-            model.name, c.state, model.measure, c.median, c.dispersion, c.method, *ends, count, model.source,
-            *_cells(c.median_95), *_cells(c.dispersion_95), c.interval_method, c.verdict,
-            *_agreement(c), *(_repeated(c.repeated) if repeated else ()),
-        )
-        for c in model.curves
-    )  # fmt: skip
-    known: dict[str, Cell] = {"component": model.name, "measure": model.measure, "method": "none"}
-    known |= {"source": model.source, "histories": count, header[6]: ends[0], header[7]: ends[1]}
-    for state, why in model.without.items():
-        cells = {**known, "state": state, "verdict": why}
-        rows += (tuple(cells.get(name, "") for name in header),)
-    return Table.of_rows("parameters", header, rows)
-
-
-def _agreement(curve: FragilityCurve) -> tuple[Cell, ...]:
-    if curve.agreement is None:
-        return ("",) * len(_AGREEMENT)
-    numbers = [number for name in STATISTICS for number in curve.agreement.numbers[name]]
-    return (*("" if math.isnan(number) else number for number in numbers), curve.agreement.words)
-
-
-def _repeated(repeated: Repeated | None) -> tuple[Cell, ...]:
-    intervals = repeated or Repeated()
-    return (*_cells(intervals.median_95), *_cells(intervals.dispersion_95), intervals.words)
-
-
-def _cells(interval: Ends | None) -> tuple[Cell, Cell]:
-    low, high = ("" if end is None else end for end in interval or (None, None))
-    return low, high
+    if "bootstrap" in evidence:
+        header += (*(f"{words} {end} {of}" for words, (_, of) in repeated.items() for end in ends), "bootstrap")
+        intervals |= repeated
+    known: dict[str, Cell] = {
+        "component": model.name, "measure": model.measure, "method": "none", header[6]: float(model.levels[0]),
+        header[7]: float(model.levels[-1]), "histories": int(np.sum(model.trials)), "source": model.source,
+    }  # fmt: skip
+    rows = []
+    for k, c in enumerate(model.curves):
+        cells = known | {
+            "state": c.state, header[3]: c.median, header[4]: c.dispersion, "method": c.method,
+            "intervals by": c.interval_method, "verdict": c.verdict,
+        }  # fmt: skip
+        numbers = {
+            f"{words} {end} {of}": value
+            for words, (name, of) in intervals.items()
+            for end, value in zip(ends, evidence[name][k], strict=True)
+        }
+        for name in STATISTICS:
+            numbers |= {f"{name} [-]": evidence[name][k], f"{name} p-value [-]": evidence[f"{name}_p_value"][k]}
+        cells |= {name: value for name, value in numbers.items() if not math.isnan(value)}
+        rows.append(cells | {name: evidence[name][k] for name in ("agreement", "bootstrap") if name in evidence})
+    rows += [{**known, "state": state, "verdict": why} for state, why in model.without.items()]
+    return Table.of_rows("parameters", header, [tuple(cells.get(name, "") for name in header) for cells in rows])
 
 
 def _points(model: FragilityModel) -> Table:
     fitted = {c.state: c.probability(model.levels) for c in model.curves}
     observed = {f"observed {name} [histories]": np.asarray(values) for name, values in model.reached.items()}
     columns = {
-        f"{model.measure} {_bracket(model)}": model.levels,
+        f"{model.measure} [{model.unit}]": model.levels,
         "histories": np.asarray(model.trials),
         **observed,
         **{f"fitted {name} [-]": values for name, values in fitted.items()},

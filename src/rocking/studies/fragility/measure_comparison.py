@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking import checks
-from rocking.conventions import BoolArray, FloatArray
+from rocking.conventions import FloatArray
 from rocking.dynamics.settings import check_progress
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.intensity import measure
-from rocking.statistics.least_squares import Regression, regression
-from rocking.studies.fragility.cloud_analysis import LEAST, CloudAnalysis, checked_least, clearly_lifted
+from rocking.statistics.least_squares import regression
+from rocking.studies.fragility.cloud_analysis import LEAST, CloudAnalysis, checked_least
 from rocking.studies.fragility.curves import curve_of
 from rocking.studies.fragility.subject import Progress, fits_of
 
@@ -137,7 +137,7 @@ def compare_measures(
         other = replace_measure(analysis, one)
         if progress is not None:
             progress(len(analysis.subject.motions))
-        if len(np.unique(other.motion_levels[_rocked(other)])) == 1:
+        if len(np.unique(other.motion_levels[other.clear])) == 1:
             left_out[one.name] = f"{one.name} is {other.motion_levels[0]:g} {one.unit} for all that rocked"
         else:
             scores.append(_score(other, columns))
@@ -153,34 +153,23 @@ def replace_measure(analysis: CloudAnalysis, name: Any) -> CloudAnalysis:
     return replace(analysis, subject=subject, motion_levels=subject.measure.scaled(subject.intensities, factor))
 
 
-def _rocked(analysis: CloudAnalysis) -> BoolArray:
-    return clearly_lifted(analysis.responses, analysis.least)
-
-
 def _score(analysis: CloudAnalysis, columns: Mapping[str, FloatArray]) -> MeasureScore:
-    line, rocked = analysis.regression, _rocked(analysis)
-    dispersion, verdict = _overturning(analysis)
-    proficiency = line.scatter / abs(line.slope) if line.slope else math.inf  # Eq. 222
-    return MeasureScore(
-        analysis.subject.measure.name, analysis.subject.measure.unit, line.scatter, line.slope, proficiency,
-        line.determination, dispersion, verdict,
-        {name: _sufficiency(line, values[rocked]) for name, values in columns.items()},
-        line.count, int(np.nansum(analysis.responses.overturned)), analysis.barely_lifted,
-    )  # fmt: skip
-
-
-def _overturning(analysis: CloudAnalysis) -> tuple[float, str]:
-    worst = analysis.states[-1]
+    line, worst, of = analysis.regression, analysis.states[-1], analysis.subject.measure
+    dispersion = math.nan
     try:
         fit = fits_of(analysis.subject, [worst], analysis.motion_levels, analysis.responses)[worst.name]
     except InvalidValueError as error:
-        return math.nan, str(error)
-    curve = curve_of(worst.name, fit)
-    return (math.nan if curve is None else curve.dispersion), fit.verdict
-
-
-def _sufficiency(line: Regression, values: FloatArray) -> float:
-    return regression(values, line.residuals).p_value
+        verdict = str(error)
+    else:
+        curve, verdict = curve_of(worst.name, fit), fit.verdict
+        dispersion = math.nan if curve is None else curve.dispersion
+    proficiency = line.scatter / abs(line.slope) if line.slope else math.inf  # Eq. 222
+    left = {name: regression(values[analysis.clear], line.residuals) for name, values in columns.items()}
+    return MeasureScore(
+        of.name, of.unit, line.scatter, line.slope, proficiency, line.determination, dispersion, verdict,
+        {name: each.p_value for name, each in left.items()}, line.count,
+        int(np.nansum(analysis.responses.overturned)), analysis.barely_lifted,
+    )  # fmt: skip
 
 
 def _column(name: str, column: Any, analysis: CloudAnalysis) -> FloatArray:

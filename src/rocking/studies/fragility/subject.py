@@ -88,7 +88,7 @@ class Subject:
     def names(self) -> list[str]:
         """Names of the motions."""
         names, horizontal = [], True
-        for k in self._all:
+        for k in range(len(self.motions)):
             motion = self.motions[k]
             names.append(motion.name)
             horizontal &= getattr(motion, "vertical", None) is None
@@ -98,11 +98,7 @@ class Subject:
     @cached_property
     def _are_horizontal(self) -> bool:
         # without the names: those of ten million motions take more room than all results
-        return all(getattr(self.motions[k], "vertical", None) is None for k in self._all)
-
-    @property
-    def _all(self) -> range:
-        return range(len(self.motions))
+        return all(getattr(self.motions[k], "vertical", None) is None for k in range(len(self.motions)))
 
     @cached_property
     def clusters(self) -> IntArray:

@@ -109,8 +109,8 @@ def _hazard(motions: Any, pga: Any, pgv: Any, count: int | None, seed: int | Non
         raise InvalidValueError("give pga or pgv, not both: motions are scaled to one of them")
     level = None
     for kind, value in levels.items():
-        number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        level = IntensityLevel(kind, value) if number else IntensityLevel.of(kind, value)
+        in_si = isinstance(value, (int, float)) and not isinstance(value, bool)
+        level = IntensityLevel(kind, value) if in_si else IntensityLevel.of(kind, value)
     if isinstance(motions, str):
         if level is None:
             raise InvalidValueError('how strong is the shaking? Give pga="0.3g" or pgv="25cm/s", or records')

@@ -242,7 +242,8 @@ def parse_inventory(text: str, source: str = "objects") -> Inventory:
     >>> found.objects[0].width, found.not_assessed[0].row
     (0.125, 3)
     """
-    lines, allowed = text.removeprefix("\ufeff"), _DELIMITERS
+    lines = text.removeprefix("\ufeff")
+    allowed: tuple[str, ...] = _DELIMITERS
     if separator := _SEPARATOR.match(lines):
         lines, allowed = lines[separator.end() :], (separator[1],)
     delimiter = _delimiter(lines, allowed, source)

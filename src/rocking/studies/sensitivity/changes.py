@@ -116,6 +116,8 @@ def _codes(values: Any) -> np.ndarray:
 
 def _effective(flipped: FloatArray, groups: np.ndarray | None) -> tuple[float, int]:
     """Return how many independent histories tell as much about the share, and how many motions they belong to."""
+    from scipy.special import stdtrit
+
     # Korn & Graubard 1998 (Survey Methodology 24:193): the size whose binomial variance is that between the motions
     if groups is None:
         return float(flipped.size), 0
@@ -128,15 +130,9 @@ def _effective(flipped: FloatArray, groups: np.ndarray | None) -> tuple[float, i
     excess = np.bincount(place, flipped - share)
     variance = clusters / (clusters - 1) * float(excess @ excess) / flipped.size**2
     size = share * (1.0 - share) / variance if variance > 0.0 else float(flipped.size)  # Eq. 188
-    return min(max(size * _student(flipped.size, clusters), 1.0), float(flipped.size)), clusters
-
-
-def _student(histories: int, clusters: int) -> float:
-    """Return the factor on the size for a variance estimated from few motions."""
-    from scipy.special import stdtrit
-
-    tail = 0.5 * (1.0 + LEVEL)
-    return float((stdtrit(histories - 1, tail) / stdtrit(clusters - 1, tail)) ** 2)
+    # for a variance estimated from few motions
+    few, many = stdtrit(np.array([clusters, flipped.size]) - 1, 0.5 * (1.0 + LEVEL))
+    return min(max(size * float((many / few) ** 2), 1.0), float(flipped.size)), clusters
 
 
 _FEWEST = 0.975
@@ -217,7 +213,7 @@ def curve_change(
     enough = int(good.sum()) >= max(_FEWEST * good.size, 1)
     samples = _moved(drawn[:, 0, good], drawn[:, 1, good])
     changes = [
-        Change(float(value), _ends(sample) if enough else None)
+        Change(float(value), tuple(np.quantile(sample, [0.025, 0.975]).tolist()) if enough else None)
         for value, sample in zip(_moved(log_median, dispersion), samples, strict=True)
     ]
     level = float(np.exp(curve_distance(log_median, dispersion)[1]))
@@ -274,11 +270,6 @@ def _drawn(levels: FloatArray, hits: list[FloatArray], repetitions: int, seed: i
         for whole, table in zip(counts, tables, strict=True):
             whole[first:last] = weights @ table
     return np.array([fits(levels, reached, counts[0]) for reached in counts[1:]])
-
-
-def _ends(sample: FloatArray) -> tuple[float, float]:
-    low, high = np.quantile(sample, [0.025, 0.975]).tolist()
-    return low, high
 
 
 def _indicators(name: str, values: Any, levels: int) -> FloatArray:

@@ -173,27 +173,26 @@ class Sensitivity:
             known = ", ".join(self.states) or "none: it is no fragility analysis by stripes"
             raise InvalidValueError(f"state must be one of the study's, {known}; got {state!r:.60}")
         first, second = (_curve(result.fits[state]) for result in pair)
-        reached = [_reached(result, state) for result in pair]
+        reached = [one.responses.exceed(next(s for s in one.states if s.name == state)) for one in pair]
         return curve_change((first, second), pair[0].levels, *reached, repetitions=self.repetitions, seed=self.seed)
 
     @property
     def states(self) -> tuple[str, ...]:
         """Names of the states that have a fragility curve; none unless the study is of stripes."""
         results = self.results.values()
-        stripes = all(getattr(result, "kind", None) == MultipleStripeAnalysis.kind for result in results)
-        if not stripes:
+        if any(getattr(result, "kind", None) != MultipleStripeAnalysis.kind for result in results):
             return ()
         return tuple(name for name in self.results[self.baseline].fits if all(name in r.fits for r in results))
 
     @cached_property
     def _curve_changes(self) -> dict[str, dict[str, CurveChange | str]]:
-        return {label: {state: self._change_or_why(label, state) for state in self.states} for label in self.labels[1:]}
-
-    def _change_or_why(self, label: str, state: str) -> CurveChange | str:
-        try:
-            return self.curve_change(label, state)
-        except InvalidValueError as error:  # data without a curve are an answer, not a mistake of the user
-            return str(error)
+        changes: dict[str, dict[str, CurveChange | str]] = {label: {} for label in self.labels[1:]}
+        for label, state in product(changes, self.states):
+            try:
+                changes[label][state] = self.curve_change(label, state)
+            except InvalidValueError as error:  # data without a curve are an answer, not a mistake of the user
+                changes[label][state] = str(error)
+        return changes
 
     def summary(self) -> list[dict[str, Any]]:
         """Return one row of plain values for every choice.
@@ -284,12 +283,6 @@ def _curve(fit: Any) -> tuple[float, float]:
     if fit.median is None or fit.dispersion is None:
         raise InvalidValueError(f"no curve to compare: {fit.verdict}".rstrip("."))
     return float(fit.median), float(fit.dispersion)
-
-
-def _reached(analysis: Any, state: str) -> np.ndarray:
-    """Return which histories reached a state; NaN for those that failed."""
-    wanted = next(s for s in analysis.states if s.name == state)
-    return np.asarray(analysis.responses.exceed(wanted))
 
 
 def _plain(state: str, change: CurveChange | str) -> dict[str, Any]:

@@ -59,14 +59,11 @@ def label_of(choice: Any) -> str:
 
 def _drawn(law: DrawnRestitution) -> str:
     each = "history" if law.per_history else "impact"
-    of_feet = [f"{middle:.4g} [{low:.4g}, {high:.4g}]" for low, middle, high in (_middle(law, foot) for foot in FEET)]
+    quantiles = [[law.quantile(probability, foot) for probability in (0.025, 0.5, 0.975)] for foot in FEET]
+    of_feet = [f"{middle:.4g} [{low:.4g}, {high:.4g}]" for low, middle, high in quantiles]
     sides = of_feet[0] if law.factors.ndim == 1 else f"left {of_feet[0]}, right {of_feet[1]}"
     cut = cut_words(dict(zip(FEET, law.cut, strict=True)))
     return f"drawn per {each}, {sides}, seed {law.seed}{_times(law.times)}{cut}"
-
-
-def _middle(law: DrawnRestitution, onto: Foot) -> list[float]:
-    return [law.quantile(probability, onto) for probability in (0.025, 0.5, 0.975)]
 
 
 def _times(base: Any) -> str:
