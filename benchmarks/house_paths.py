@@ -13,10 +13,16 @@ import rocking
 ROOT = str(Path(rocking.__file__).parent)
 passed = set()
 
+def importing(frame):
+    while frame := frame.f_back:
+        if frame.f_code.co_name == "<module>" and frame.f_code.co_filename.startswith(ROOT):
+            return True
+    return False
+
 def follow(frame, event, argument):
     code = frame.f_code
-    # the body of a class or module is no call: it has no locals of its own
-    if event == "call" and code.co_flags & 1 and code.co_filename.startswith(ROOT):
+    # the body of a class or module is no call (it has no locals of its own), nor what a module does once, when imported
+    if event == "call" and code.co_flags & 1 and code.co_filename.startswith(ROOT) and not importing(frame):
         passed.add(code.co_filename)
 
 BEFORE
