@@ -1,5 +1,7 @@
 """What the browser is told of a finished study, by its kind."""
 
+import math
+import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -26,12 +28,18 @@ _FINE = 120
 _WIDE = 0.01
 
 
-def plain(values: Any) -> Any:
-    """Return an array as lists, with None where there is no finite number."""
-    array = np.asarray(values)
-    if array.dtype.kind != "f" or np.isfinite(array).all():
-        return array.tolist()
-    return np.where(np.isfinite(array), array, np.array(None, dtype=object)).tolist()
+def plain(value: Any) -> Any:
+    """Return tables and arrays as plain values, with None where there is no finite number."""
+    match value:
+        case dict():
+            return {str(name): plain(each) for name, each in value.items()}
+        case list() | tuple():
+            return [plain(each) for each in value]
+        case np.ndarray() | np.generic():
+            if value.dtype.kind != "f" or np.isfinite(value).all():
+                return value.tolist()
+            return np.where(np.isfinite(value), value, np.array(None, dtype=object)).tolist()
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def meaning(mode: int) -> str:
@@ -45,17 +53,21 @@ def meaning(mode: int) -> str:
 
 def shares(modes: np.ndarray) -> list[dict[str, Any]]:
     """Return how many histories end in which way, by mode."""
-    found, counts = np.unique(modes, return_counts=True)
+    counts = zip(*(part.tolist() for part in np.unique(modes, return_counts=True)), strict=True)
     return [
-        {"mode": mode, "meaning": meaning(mode), "count": count, "share": count / modes.size}
-        for mode, count in zip(found.tolist(), counts.tolist(), strict=True)
+        {"mode": mode, "meaning": meaning(mode), "count": count, "share": count / modes.size} for mode, count in counts
     ]
 
 
 def coordinate(study: OpenStudy, name: str) -> dict[str, Any]:
     """Return what is known of a dimension of a study."""
-    found = study.job.job.study.coordinates[name]
-    return {"name": name, "values": plain(found.values), "unit": found.unit, "words": found.meaning}
+    axis = study.job.job.study.coordinates[name]
+    return {"name": name, "values": axis.values, "unit": axis.unit, "words": axis.meaning}
+
+
+def coordinates(study: OpenStudy, **names: str) -> dict[str, Any]:
+    """Return what is known of some dimensions, by the keys of an answer."""
+    return {key: coordinate(study, name) for key, name in names.items()}
 
 
 def by_restitution(study: OpenStudy, name: str) -> np.ndarray:
@@ -82,14 +94,14 @@ def keep_result(study: OpenStudy) -> bytes:
 
 def minimum_result(study: OpenStudy) -> dict[str, Any]:
     """Return minimum overturning accelerations, `MinimumResult`."""
-    return {"motions": coordinate(study, "motion"), "bodies": coordinate(study, "body"), "tables": tables_of(study)}
+    return {**coordinates(study, motions="motion", bodies="body"), "tables": tables_of(study)}
 
 
 def tables_of(study: OpenStudy) -> dict[str, Any]:
     """Return the tables of an adaptive study."""
     return {
         name: [
-            {"name": title, "unit": each.unit, "words": each.meaning, "values": plain(each.values)}
+            {"name": title, "unit": each.unit, "words": each.meaning, "values": each.values}
             for title, each in table.columns.items()
         ]
         for name, table in study.answer.tables.items()
@@ -100,33 +112,20 @@ def product_result(study: OpenStudy) -> dict[str, Any]:
     """Return the counts of plain histories."""
     modes, peaks = by_restitution(study, "mode"), by_restitution(study, "peak_ratio")
     known = modes != -3
-    standing = np.where(known & (modes < 0), peaks, np.nan)
-    result: dict[str, Any] = {
-        "motions": coordinate(study, "motion"),
-        "bodies": coordinate(study, "body"),
-        "scales": coordinate(study, "scale"),
-        "slenderness_angles": coordinate(study, "slenderness_angle"),
+    with warnings.catch_warnings():  # where no motion leaves the body standing there is no median
+        warnings.simplefilter("ignore", RuntimeWarning)
+        median = np.nanmedian(np.where(known & (modes < 0), peaks, np.nan), axis=1)
+    return {
+        **coordinates(study, motions="motion", bodies="body", scales="scale", slenderness_angles="slenderness_angle"),
         "shares": [shares(each) for each in modes],
         "cells": {
-            "computed": known.sum(axis=1).tolist(),
-            "lifted": (known & (modes > -2)).sum(axis=1).tolist(),
-            "overturned": (modes >= 0).sum(axis=1).tolist(),
-            "median_peak": plain(_median(standing)),
+            "computed": known.sum(axis=1),
+            "lifted": (known & (modes > -2)).sum(axis=1),
+            "overturned": (modes >= 0).sum(axis=1),
+            "median_peak": median,
         },
+        **({"mode": modes, "peak": peaks} if modes.size <= _LARGEST else {}),
     }
-    if modes.size <= _LARGEST:
-        result |= {"mode": modes.tolist(), "peak": plain(peaks)}
-    return result
-
-
-def _median(values: np.ndarray) -> np.ndarray:
-    """Return the median over the motions; NaN where there is none."""
-    rows = np.sort(values, axis=1)  # NaN comes last
-    count = np.isfinite(rows).sum(axis=1)
-    low, high = (np.maximum(place, 0)[:, None] for place in ((count - 1) // 2, count // 2))
-    last = rows.shape[1] - 1
-    pair = [np.take_along_axis(rows, np.minimum(place, last), 1)[:, 0] for place in (low, high)]
-    return np.where(count > 0, 0.5 * (pair[0] + pair[1]), np.nan)
 
 
 def spectrum_result(study: OpenStudy) -> dict[str, Any]:
@@ -134,27 +133,21 @@ def spectrum_result(study: OpenStudy) -> dict[str, Any]:
     from rocking.plots.rocking_spectrum import fractiles
 
     job = study.job.job
-    angles = coordinate(study, "slenderness_angle")
-    modes = by_restitution(study, "mode")
-    coefficient = job.study.coordinates["coefficient"].values
+    modes, coefficient = by_restitution(study, "mode"), job.study.coordinates["coefficient"].values
     curves = []
     for k, label in enumerate(job.problem.restitutions):
-        found = study.dataset(k)
-        for place, angle in enumerate(angles["values"]):
-            low, middle, high = fractiles(found, place)
+        spectra = study.dataset(k)
+        for place, angle in enumerate(job.study.coordinates["slenderness_angle"].values):
+            low, middle, high = fractiles(spectra, place)
             mode = modes[k][:, place]
             with np.errstate(invalid="ignore"):  # where nothing could be computed there is no share
                 share = (mode >= 0).sum(axis=0) / (mode != -3).sum(axis=0)
             curves.append({
-                "restitution": label, "angle": angle, "low": plain(low), "median": plain(middle), "high": plain(high),
-                "overturned": plain(share),
-                "coefficient": plain(coefficient[place, :, k] if coefficient.ndim > 2 else coefficient[place]),
+                "restitution": label, "angle": angle, "low": low, "median": middle, "high": high, "overturned": share,
+                "coefficient": coefficient[place, :, k] if coefficient.ndim > 2 else coefficient[place],
             })  # fmt: skip
     return {
-        "x": coordinate(study, "period"),
-        "angles": angles,
-        "motions": coordinate(study, "motion"),
-        "semi_diagonals": coordinate(study, "semi_diagonal"),
+        **coordinates(study, x="period", angles="slenderness_angle", motions="motion", semi_diagonals="semi_diagonal"),
         "curves": curves,
         "shares": [shares(each) for each in modes],
     }
@@ -162,20 +155,18 @@ def spectrum_result(study: OpenStudy) -> dict[str, Any]:
 
 def map_result(study: OpenStudy) -> dict[str, Any]:
     """Return an overturning map."""
-    y, x = (coordinate(study, name) for name in study.axes)
-    modes = by_restitution(study, "mode")
-    axes = np.asarray(x["values"], dtype=np.float64), np.asarray(y["values"], dtype=np.float64)
-    about = study.job.job.study.attributes
+    axes = coordinates(study, y=study.axes[0], x=study.axes[1])
+    values = [np.asarray(axes[side]["values"], dtype=np.float64) for side in ("x", "y")]
+    modes, about = by_restitution(study, "mode"), study.job.job.study.attributes
     return {
-        "x": x,
-        "y": y,
-        "outcome": by_restitution(study, "outcome").tolist(),
-        "mode": modes.tolist(),
-        "mode_words": {str(mode): meaning(mode) for mode in np.unique(modes).tolist()},
-        "peak": plain(by_restitution(study, "peak_ratio")),
-        "impacts": by_restitution(study, "impacts").tolist(),
+        **axes,
+        "outcome": by_restitution(study, "outcome"),
+        "mode": modes,
+        "mode_words": {mode: meaning(mode) for mode in np.unique(modes).tolist()},
+        "peak": by_restitution(study, "peak_ratio"),
+        "impacts": by_restitution(study, "impacts"),
         "shares": [shares(each) for each in modes],
-        "contours": [contours_of(each >= 0, *axes, known=each != -3) for each in modes],
+        "contours": [contours_of(each >= 0, *values, known=each != -3) for each in modes],
         "body": str(about.get("body", "")),
         "motion": str(about.get("motion", "")),
         "tables": {} if study.job.job.study.search is None else tables_of(study),
@@ -200,55 +191,47 @@ def contours_of(
     )
     j, i = np.divmod(mixed, inside.shape[1] - 1)
     joined = segments(corners[mixed], edge_numbers(i, j, inside.shape[1]), np.zeros(mixed.size, dtype=bool))
-    return [_points(np.array(chain), x, y) for chain in chains(joined)]
+    return [_middles(np.array(chain), x, y).tolist() for chain in chains(joined)]
 
 
 def _corners(grid: np.ndarray) -> np.ndarray:
     return np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=-1).reshape(-1, 4)
 
 
-def _points(edges: np.ndarray, x: FloatArray, y: FloatArray) -> list[list[float]]:
+def _middles(edges: np.ndarray, x: FloatArray, y: FloatArray) -> FloatArray:
     """Return the middles of edges, numbered as `edge_numbers` does."""
-    j, i = np.divmod(edges // 2, x.size)
-    upright = edges % 2 == 1
-    right = np.minimum(i + 1, x.size - 1)
-    above = np.minimum(j + 1, y.size - 1)
-    across = np.where(upright, x[i], 0.5 * (x[i] + x[right]))
-    along = np.where(upright, 0.5 * (y[j] + y[above]), y[j])
-    return np.stack([across, along], axis=-1).tolist()  # type: ignore[no-any-return]
+    (j, i), upright = np.divmod(edges // 2, x.size), edges % 2
+    return np.stack([0.5 * (x[i] + x[i + 1 - upright]), 0.5 * (y[j] + y[j + upright])], axis=-1)
 
 
 def fragility_result(study: OpenStudy) -> dict[str, Any]:
     """Return a fragility analysis."""
-    analyses = study.analyses
-    first = next(iter(analyses.values()))
+    first = next(iter(study.analyses.values()))
     measure = first.subject.measure
-    threshold = first.subject.uplift_threshold
     return {
         "measure": {"name": measure.name, "unit": measure.unit, "words": measure.words},
         "motions": coordinate(study, "motion"),
         "definition": first.definition,
-        "uplift_threshold": None if threshold is None else float(threshold),
-        "analyses": [{"restitution": label, **_analysis(one)} for label, one in analyses.items()],
+        "uplift_threshold": first.subject.uplift_threshold,
+        "analyses": [{"restitution": label, **_analysis(one)} for label, one in study.analyses.items()],
     }
 
 
-def _analysis(found: Any) -> dict[str, Any]:
-    levels = np.asarray(found.levels, dtype=np.float64)
-    fine = _fine(levels)
-    fits = {name: fit for name, fit in found.fits.items() if fit is not None}
-    facts = {
-        "levels": levels.tolist(),
-        "trials": np.asarray(found.trials).tolist(),
-        "failed": int(getattr(found, "stripes", found).failed),
-        "states": list(found.counts),
-        "points": {name: _curve_points(found, name) for name in found.counts},
+def _analysis(analysis: Any) -> dict[str, Any]:
+    levels = np.asarray(analysis.levels, dtype=np.float64)
+    fits = {name: fit for name, fit in analysis.fits.items() if fit is not None}
+    return {
+        "levels": levels,
+        "trials": np.asarray(analysis.trials),
+        "failed": int(getattr(analysis, "stripes", analysis).failed),
+        "states": list(analysis.counts),
+        "points": {name: _points(analysis, name) for name in analysis.counts},
         "fits": {name: _fit(fit) for name, fit in fits.items()},
-        "curves": {name: _curve(fit, fine) for name, fit in fits.items() if fit.exists},
+        "curves": {name: _curve(fit, _fine(levels)) for name, fit in fits.items() if fit.exists},
         "sentences": [f"{name}: {fit.verdict}" for name, fit in fits.items()],
+        **(_cloud(analysis) if hasattr(type(analysis), "regression") else {}),
+        **(_incremental(analysis) if hasattr(type(analysis), "first_crossings") else {}),
     }
-    analysis: dict[str, Any] = _finite(facts | _more(found))
-    return analysis
 
 
 def _fine(levels: FloatArray) -> FloatArray:
@@ -260,22 +243,16 @@ def _fine(levels: FloatArray) -> FloatArray:
     return np.linspace(max(low - 0.06 * (high - low), 1e-3 * low), high + 0.06 * (high - low), _FINE)
 
 
-def _curve_points(found: Any, name: str) -> dict[str, Any]:
+def _points(analysis: Any, state: str) -> dict[str, Any]:
     from rocking.plots.fragility import gathered
     from rocking.statistics.counts import share_interval
 
-    counted = (np.asarray(part, dtype=np.float64) for part in (found.counts[name], found.trials))
-    at, reached, trials = gathered(np.asarray(found.levels, dtype=np.float64), *counted)
+    columns = (analysis.levels, analysis.counts[state], analysis.trials)
+    at, reached, trials = gathered(*(np.asarray(column, dtype=np.float64) for column in columns))
     share = reached / trials
     ends = [share_interval(s * n, n) for s, n in zip(share.tolist(), trials.tolist(), strict=True)]
-    return {
-        "x": at.tolist(),
-        "reached": reached.tolist(),
-        "trials": trials.tolist(),
-        "share": share.tolist(),
-        "low": [low for low, _ in ends],
-        "high": [high for _, high in ends],
-    }
+    low, high = zip(*ends, strict=True)
+    return {"x": at, "reached": reached, "trials": trials, "share": share, "low": low, "high": high}
 
 
 def _fit(fit: Any) -> dict[str, Any]:
@@ -284,51 +261,40 @@ def _fit(fit: Any) -> dict[str, Any]:
 
 
 def _curve(fit: Any, fine: FloatArray) -> dict[str, Any]:
-    curve = {"x": fine.tolist(), "probability": fit.probability(fine).tolist(), "low": None, "high": None}
+    curve = {"x": fine, "probability": fit.probability(fine), "low": None, "high": None}
     try:
         low, high = fit.band(fine, 0.95, "profile" if fit.counts.cluster_trials is None else "bootstrap")
     except InvalidValueError as error:
         # a curve of few motions has no band: the points show how little is known
         return {**curve, "band": str(error)}
-    return {**curve, "low": low.tolist(), "high": high.tolist(), "band": "95 % of the curve at each level"}
+    return {**curve, "low": low, "high": high, "band": "95 % of the curve at each level"}
 
 
-def _more(found: Any) -> dict[str, Any]:
-    """Return what only a cloud or an incremental analysis has."""
-    if hasattr(type(found), "regression"):
-        try:
-            line = found.regression
-        except InvalidValueError as error:
-            return {"regression": None, "regression_words": str(error)}
-        names = ("slope", "scatter", "determination", "count")
-        cloud = {"x": found.motion_levels, "rotation": found.responses.rotation, "outcome": found.responses.outcome}
-        points = {name: plain(values) for name, values in cloud.items()}
-        return {"regression": {name: getattr(line, name) for name in names}, "cloud": points}
-    if not hasattr(type(found), "first_crossings"):
-        return {}
-    fit, whole = found.first_crossing_fit, int(found.complete.sum())
-    again = len(found.resurrected()), len(found.resurrected(_WIDE))
+def _cloud(analysis: Any) -> dict[str, Any]:
+    try:
+        line = analysis.regression
+    except InvalidValueError as error:
+        return {"regression": None, "regression_words": str(error)}
+    responses = analysis.responses
     return {
-        "definitions": found.definitions,
-        "first_crossings": plain(found.first_crossings),
+        "regression": {name: getattr(line, name) for name in ("slope", "scatter", "determination", "count")},
+        "cloud": {"x": analysis.motion_levels, "rotation": responses.rotation, "outcome": responses.outcome},
+    }
+
+
+def _incremental(analysis: Any) -> dict[str, Any]:
+    fit, whole = analysis.first_crossing_fit, int(analysis.complete.sum())
+    again = len(analysis.resurrected()), len(analysis.resurrected(_WIDE))
+    return {
+        "definitions": analysis.definitions,
+        "first_crossings": analysis.first_crossings,
         "first_crossing": None if fit is None else fit.summary(),
-        "intervals": [{"motion": i.motion, "start": i.start, "end": i.end} for i in found.intervals],
+        "intervals": [{"motion": i.motion, "start": i.start, "end": i.end} for i in analysis.intervals],
         "resurrection": (
             f"{again[0]} of {whole} motion{'s' * (whole != 1)} left it standing at levels above one that overturns "
             f"it, {again[1]} of them over more than 1 % of the level."
         ),
     }
-
-
-def _finite(value: Any) -> Any:
-    """Return plain values with None where there is no finite number."""
-    if isinstance(value, dict):
-        return {str(name): _finite(one) for name, one in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_finite(one) for one in value]
-    if isinstance(value, np.generic):
-        value = value.item()
-    return None if isinstance(value, float) and not np.isfinite(value) else value
 
 
 _BY_KIND: dict[str, Callable[[OpenStudy], dict[str, Any]]] = {
@@ -346,13 +312,13 @@ def result_of(study: OpenStudy) -> dict[str, Any]:
     """Return the result of a finished study."""
     document = study.job.job.document
     kind = str(document.campaign.kind)
-    head = {"id": study.id, "kind": kind, "name": str(document.campaign.name), "contact": _contact(study, kind)}
-    return {**head, "restitutions": list(study.job.job.problem.restitutions), **_BY_KIND[kind](study)}
-
-
-def _contact(study: OpenStudy, kind: str) -> str:
-    """In how many histories the ground would have to pull; empty if in none."""
-    if kind != "minimum-acceleration":
-        return contact_words(lost_contact(study.raw))
-    searches = [found.lost_contact for found in study.answer.value if found is not None]
-    return contact_words(np.concatenate(searches or [np.empty(0)]))
+    if kind == "minimum-acceleration":
+        lost = [np.empty(0), *(each.lost_contact for each in study.answer.value if each is not None)]
+        contact = contact_words(np.concatenate(lost))
+    else:
+        contact = contact_words(lost_contact(study.raw))
+    head = {"id": study.id, "kind": kind, "name": str(document.campaign.name), "contact": contact}
+    result: dict[str, Any] = plain(
+        {**head, "restitutions": list(study.job.job.problem.restitutions), **_BY_KIND[kind](study)}
+    )
+    return result
