@@ -5,6 +5,7 @@ The same requests with one protection switched off succeed: what is tested is th
 
 import dataclasses
 import hashlib
+import math
 import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,7 +15,7 @@ import pytest
 
 from rocking.app.application import create_app
 from rocking.app.security import gate
-from rocking.app.security import requests as limits
+from rocking.app.security import request_body as limits
 from rocking.app.security.sessions import Sessions
 from rocking.app.settings import Limits, ServerSettings
 
@@ -198,14 +199,14 @@ class Page:
         self.app = create_app(ServerSettings(folder=folder, limits=dataclasses.replace(Limits(), **changed)))
         self.client = TestClient(self.app, base_url=OWN)
         self.sessions: Sessions = self.app.state.rocking.sessions
-        value = self.sessions.sign_in(self.sessions.first_link())
+        value = self.sessions.sign_in(self.sessions.new_link(math.inf))
         key = self.sessions.key
         self.known = {
             "value": value,
             "short": value[:-1],
             "upper": value.upper(),
             "hash": hashlib.sha256(value.encode()).hexdigest(),
-            "token": self.sessions.first_link(),
+            "token": self.sessions.new_link(math.inf),
             "key": key,
             "key_short": key[:-1],
         }

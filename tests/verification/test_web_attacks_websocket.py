@@ -1,5 +1,6 @@
 """Attacks on the websocket by its handshake: a foreign page, name or person hears nothing."""
 
+import math
 import warnings
 from pathlib import Path
 
@@ -24,8 +25,8 @@ class Page:
         self.app = create_app(ServerSettings(folder=folder))
         self.client = TestClient(self.app, base_url=OWN)
         sessions = self.app.state.rocking.sessions
-        value = sessions.sign_in(sessions.first_link())
-        self.known = {"token": sessions.first_link(), "key": sessions.key}
+        value = sessions.sign_in(sessions.new_link(math.inf))
+        self.known = {"token": sessions.new_link(math.inf), "key": sessions.key}
         self.head = {"host": "127.0.0.1:8765", "origin": OWN, "cookie": f"rocking-8765={value}"}
 
 

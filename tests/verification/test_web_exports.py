@@ -231,7 +231,7 @@ def test_files_of_inputs_keep_the_name_and_nothing_of_it_runs(name, records):
 @names
 def test_names_of_files_are_harmless(name):
     """The header that names a download is one line of ASCII in quotes, without a folder."""
-    header = attachment(b"", f"{plain_line(name)} report.pdf", "application/pdf").headers["Content-Disposition"]
+    header = attachment(b"", f"{plain_line(name)} report.pdf").headers["Content-Disposition"]
     assert re.fullmatch(r'attachment; filename="[A-Za-z0-9][A-Za-z0-9._-]{0,90}"', header), header
 
 

@@ -157,7 +157,7 @@ def test_a_server_that_fails_is_seen(script: TestClient, monkeypatch: pytest.Mon
     def broken(*_: Any) -> None:
         raise RuntimeError("secret place")
 
-    monkeypatch.setattr(response, "question_of", broken)
+    monkeypatch.setattr(response, "problem_from", broken)
     answer = script.post("/api/response", json=INPUTS)
     assert answer.status_code == 500
     assert "secret" not in answer.text

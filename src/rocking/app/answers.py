@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, create_model
 from pydantic_core import to_json
 from starlette.responses import JSONResponse, Response
 
-from rocking.app.errors import status_and_kind
+from rocking.app.errors import Refused, kind_of, kind_of_status
 from rocking.app.plain_text import safe_name
 from rocking.errors import RockingError
 from rocking.quantities import QUANTITIES
@@ -29,6 +29,23 @@ Kind = Literal[
     "invalid-value", "record", "body-file", "geometry", "unknown-model", "missing-extra", "not-found", "too-large",
     "busy", "no-room", "forbidden", "internal",
 ]  # fmt: skip
+MEDIA_TYPES = {
+    "csv": "text/csv; charset=utf-8",
+    "gif": "image/gif",
+    "html": "text/html; charset=utf-8",
+    "mat": "application/x-matlab-data",
+    "nc": "application/x-netcdf",
+    "parquet": "application/vnd.apache.parquet",
+    "pdf": "application/pdf",
+    "png": "image/png",
+    "svg": "image/svg+xml",
+    "toml": "application/toml",
+    "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+    "xml": "application/xml",
+    "zip": "application/zip",
+}
+"""What a browser is told of a file, by the ending of its name; all of them are saved, none is shown as a page."""
+
 FILE_SENT: dict[str, Any] = {
     "requestBody": {
         "required": True,
@@ -80,27 +97,25 @@ def _plain(value: Any) -> Any:
 
 def error_answer(status: int, kind: str, message: str, needs: Sequence[str] = ()) -> JsonAnswer:
     """Return an error as the client is told it."""
-    error: dict[str, Any] = {"kind": kind, "message": message}
-    if needs:
-        error["needs"] = list(needs)
+    error = {"kind": kind, "message": message} | ({"needs": list(needs)} if needs else {})
     return JsonAnswer({"error": error}, status_code=status)
 
 
 def refusal(error: RockingError, *, close: bool = False) -> JsonAnswer:
     """Return an error of this package as the client is told it, with Retry-After where another try makes sense."""
-    status, kind = status_and_kind(error)
-    answer = error_answer(status, kind, str(error), getattr(error, "needs", ()))
-    seconds = getattr(error, "seconds", None)
-    if seconds is not None or status == 429:
-        answer.headers["Retry-After"] = str(math.ceil(seconds or 1.0))
+    own = error if isinstance(error, Refused) else None
+    kind = kind_of_status(own.status) if own else kind_of(error)
+    answer = error_answer(own.status if own else 422, kind, str(error), own.needs if own else ())
+    if own and (own.seconds is not None or own.status == 429):
+        answer.headers["Retry-After"] = str(math.ceil(own.seconds or 1.0))
     if close:
         answer.headers["Connection"] = "close"
     return answer
 
 
-def attachment(data: bytes, name: str, media_type: str) -> Response:
-    """Return an answer that a browser saves as a file and never shows as a page."""
-    return Response(data, media_type=media_type, headers=attachment_headers(name))
+def attachment(data: bytes, name: str) -> Response:
+    """Return an answer that a browser saves as a file and never shows as a page; its type is that of the ending."""
+    return Response(data, media_type=MEDIA_TYPES[name.rpartition(".")[2]], headers=attachment_headers(name))
 
 
 def attachment_headers(name: str) -> dict[str, str]:
@@ -120,8 +135,8 @@ def shape(name: str, meaning: str, base: type[Answer] = Answer, /, **fields: Any
     fields: by key the type; type and words; or type, words and the quantity whose unit it has. The unit that the key
     ends with follows the words. What else a key needs, such as a default, is a `Field` in place of the words.
     """
-    made: Any = {key: _field(key, *(value if isinstance(value, tuple) else (value,))) for key, value in fields.items()}
-    return create_model(name, __base__=base, __doc__=meaning, __module__=__name__, **made)
+    keys: Any = {key: _field(key, *(value if isinstance(value, tuple) else (value,))) for key, value in fields.items()}
+    return create_model(name, __base__=base, __doc__=meaning, __module__=__name__, **keys)
 
 
 def _field(key: str, kind: Any, words: Any = None, quantity: str | None = None) -> tuple[Any, Any]:
@@ -138,11 +153,11 @@ def answered(kind: Any, words: str, status: int = 200) -> dict[int | str, dict[s
     return {status: {"model": kind, "description": words}}
 
 
-def answered_with_file(words: str, *media_types: str) -> dict[int | str, dict[str, Any]]:
-    """Return what an endpoint declares of a file that it answers with."""
+def answered_with_file(words: str, *endings: str) -> dict[int | str, dict[str, Any]]:
+    """Return what an endpoint declares of a file that it answers with; endings: of the names that it may have."""
     name = {"schema": {"type": "string"}, "description": "attachment, with a harmless name of the file"}
     file = {"schema": {"type": "string", "format": "binary"}}
-    content = {kind.partition(";")[0]: file for kind in media_types}
+    content = {MEDIA_TYPES[ending].partition(";")[0]: file for ending in endings}
     return {200: {"description": words, "headers": {"Content-Disposition": name}, "content": content}}
 
 
@@ -180,7 +195,11 @@ def describe_api(app: FastAPI) -> None:
         schema = plain()
         components = schema.setdefault("components", {})
         components["securitySchemes"] = {"key": key}
-        components["responses"] = {f"Error{status}": _error(status) for status in _ERRORS}
+        content = {"application/json": {"schema": {"$ref": "#/components/schemas/ErrorAnswer"}}}
+        errors = {status: {"description": words, "content": content} for status, words in _ERRORS.items()}
+        again = {"schema": {"type": "integer"}, "description": "when another try makes sense [s]"}
+        errors[429]["headers"] = {"Retry-After": again}
+        components["responses"] = {f"Error{status}": error for status, error in errors.items()}
         for path, item in schema["paths"].items():
             for operation in item.values():
                 operation["security"] = [] if path == "/api/session" else [{"key": []}]
@@ -189,10 +208,3 @@ def describe_api(app: FastAPI) -> None:
         return schema
 
     app.openapi = openapi  # type: ignore[method-assign]  # the way that FastAPI provides
-
-
-def _error(status: int) -> dict[str, Any]:
-    content = {"application/json": {"schema": {"$ref": "#/components/schemas/ErrorAnswer"}}}
-    error = {"description": _ERRORS[status], "content": content}
-    again = {"schema": {"type": "integer"}, "description": "when another try makes sense [s]"}
-    return {**error, "headers": {"Retry-After": again}} if status == 429 else error

@@ -22,7 +22,7 @@ from rocking.app.errors import kind_of_status
 from rocking.app.records import RecordStore
 from rocking.app.security import sessions as session
 from rocking.app.security.gate import Failures, Gate, SafeHeaders
-from rocking.app.security.requests import BodyLimits
+from rocking.app.security.request_body import BodyLimits
 from rocking.app.security.sessions import Sessions
 from rocking.app.settings import AppState, ServerSettings
 from rocking.app.studies import router as studies
@@ -43,35 +43,21 @@ folder and is new at every start, and with every POST or DELETE also `Origin: {o
 own address. Errors are `{{"error": {{"kind", "message"}}}}`."""
 
 
-def install_handlers(app: FastAPI) -> None:
-    """Let errors of the endpoints be answered in one form."""
-    app.add_exception_handler(RockingError, _handler(refusal))
-    app.add_exception_handler(RequestValidationError, _handler(_invalid))
-    app.add_exception_handler(ValidationError, _handler(_invalid))
-    app.add_exception_handler(HTTPException, _handler(_refused))
-
-
 def validation_sentence(error: ValidationError | RequestValidationError) -> str:
     """Return what is wrong with an input in one sentence: key, allowed range and value of the first error."""
-    errors = [_without_place(dict(each)) for each in error.errors()]
+    errors: list[dict[str, Any]] = [dict(each) for each in error.errors()]
+    for each in errors:
+        if each["loc"] and each["loc"][0] in {"body", "query", "path", "header"}:
+            each["loc"] = tuple(each["loc"][1:])
+        each["type"] = _SAME_AS.get(each["type"], each["type"])
     if errors and errors[0]["loc"] == ():
         errors[0]["loc"] = ("the body of the request",)
-    in_body = errors and errors[0]["loc"][0] == "body"
-    units = _units_of(getattr(error, "body", None)) if in_body else None
+    match getattr(error, "body", None):
+        case {"body": {"units": stated}} if errors and errors[0]["loc"][0] == "body":
+            units = stated
+        case _:
+            units = None
     return sentence(cast("ValidationError", SimpleNamespace(errors=lambda **_: errors)), units)
-
-
-def _without_place(error: dict[str, Any]) -> dict[str, Any]:
-    place = error["loc"]
-    if place and place[0] in {"body", "query", "path", "header"}:
-        error["loc"] = tuple(place[1:])
-    error["type"] = _SAME_AS.get(error["type"], error["type"])
-    return error
-
-
-def _units_of(document: Any) -> Any:
-    body = document.get("body") if isinstance(document, dict) else None
-    return body.get("units") if isinstance(body, dict) else None
 
 
 def _invalid(error: ValidationError | RequestValidationError) -> JsonAnswer:
@@ -115,25 +101,23 @@ def create_app(settings: ServerSettings) -> FastAPI:
             Middleware(BodyLimits, limits=settings.limits),
         ],
     )
-    app.state.rocking = _state(settings)
-    install_handlers(app)
-    for part in (session, info, body, impact, records, motion, response, pictures, tables, documents, studies):
-        app.include_router(part.router, responses=ERRORS)
-    describe_api(app)
-    _add_pages(app)
-    return app
-
-
-def _state(settings: ServerSettings) -> AppState:
-    limits = settings.limits
-    store = RecordStore(settings.folder, limits)
-    return AppState(
+    limits, store = settings.limits, RecordStore(settings.folder, settings.limits)
+    app.state.rocking = AppState(
         settings=settings,
         records=store,
         studies=StudyManager(settings.folder, limits, store, workers=settings.workers),
         sessions=Sessions(limits),
         heavy=ComputationQueue(limits.heavy_at_once, limits.heavy_waiting),
     )
+    app.add_exception_handler(RockingError, _handler(refusal))
+    app.add_exception_handler(RequestValidationError, _handler(_invalid))
+    app.add_exception_handler(ValidationError, _handler(_invalid))
+    app.add_exception_handler(HTTPException, _handler(_refused))
+    for part in (session, info, body, impact, records, motion, response, pictures, tables, documents, studies):
+        app.include_router(part.router, responses=ERRORS)
+    describe_api(app)
+    _add_pages(app)
+    return app
 
 
 @asynccontextmanager

@@ -65,11 +65,9 @@ class NoRoom(Refused):
     status = 507
 
 
-def status_and_kind(error: RockingError) -> tuple[int, str]:
-    """Return how an error is told."""
-    if isinstance(error, Refused):
-        return error.status, kind_of_status(error.status)
-    return 422, next(kind for family, kind in _KINDS if isinstance(error, family))
+def kind_of(error: RockingError) -> str:
+    """Return the kind of an error that is not the server's own."""
+    return next(kind for family, kind in _KINDS if isinstance(error, family))
 
 
 def kind_of_status(status: int) -> str:

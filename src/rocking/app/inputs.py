@@ -265,7 +265,7 @@ class ResponseInputs(Inputs):
         return self
 
 
-class ResponseAsked(ResponseInputs):
+class ResponseRequest(ResponseInputs):
     """Inputs that have a response, and how its curves are drawn."""
 
     model_config = _shown(_INPUTS)
@@ -274,7 +274,7 @@ class ResponseAsked(ResponseInputs):
     window: Window | None = None
 
 
-class BodyAsked(JobTable):
+class BodyRequest(JobTable):
     """A body, and the gravity under which it stands."""
 
     model_config = _shown({"body": _BODY})
@@ -283,7 +283,7 @@ class BodyAsked(JobTable):
     settings: SettingsTable = SettingsTable()
 
 
-class ImpactAsked(BodyAsked):
+class ImpactRequest(BodyRequest):
     """A body, and the foot on which it lands."""
 
     model_config = _shown({"body": _BODY, "onto": "both"})
@@ -291,7 +291,7 @@ class ImpactAsked(BodyAsked):
     onto: Literal["left", "right", "both"] = "both"
 
 
-class MotionAsked(JobTable):
+class MotionRequest(JobTable):
     """A motion, and how much of it."""
 
     model_config = _shown({"motion": _MOTION})
@@ -342,7 +342,7 @@ _BODIES: Remembered[Body] = Remembered(32)
 _SYNTHETIC: Remembered[Motion] = Remembered(16)
 
 
-def question_of(inputs: Inputs, records: "RecordStore") -> ResponseProblem:
+def problem_from(inputs: Inputs, records: "RecordStore") -> ResponseProblem:
     """Return what a user asked, with everything read that it needs."""
     motion = None if inputs.motion is None else motion_from(inputs.motion, records)
     return problem_of(inputs, body_from(inputs.body), motion)

@@ -1,5 +1,6 @@
 """Words that came from a user, made harmless before they go into a file; and plain values as TOML that people read."""
 
+import json
 import re
 import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,7 +18,6 @@ _LONGEST_FILE_NAME = 80
 _LONGEST_TITLE = 120
 _HIDDEN = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"}
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
-_SHORT = {"\b": r"\b", "\t": r"\t", "\n": r"\n", "\f": r"\f", "\r": r"\r", '"': r"\"", "\\": r"\\"}
 _ONE_LINE = 80
 """Longest list that stands in one line [characters]."""
 
@@ -151,14 +151,10 @@ def _key(key: str) -> str:
 
 
 def _quoted(text: str) -> str:
-    return '"' + "".join(map(_escaped, text)) + '"'
-
-
-def _escaped(character: str) -> str:
-    if character in _SHORT:
-        return _SHORT[character]
     # what cannot be seen is spelled out: a reader of the file shall see all that stands in it
-    if character == " " or character.isprintable():
-        return character
-    code = ord(character)
-    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+    marks = json.dumps(text, ensure_ascii=False)
+    return "".join(mark if mark == " " or mark.isprintable() else _code(ord(mark)) for mark in marks)
+
+
+def _code(number: int) -> str:
+    return f"\\u{number:04x}" if number < 1 << 16 else f"\\U{number:08x}"

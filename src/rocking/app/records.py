@@ -8,6 +8,8 @@ from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
+from pydantic import TypeAdapter
+
 from rocking.app.errors import NotFound, TooLarge, room_on_disk
 from rocking.app.plain_text import safe_name
 from rocking.app.settings import Limits
@@ -35,6 +37,9 @@ class StoredRecord:
     uploaded: str  # when, in UTC
 
 
+_NOTE = TypeAdapter(StoredRecord)
+
+
 def is_hash(word: object) -> bool:
     """Return whether a word is the SHA-256 of a file."""
     return isinstance(word, str) and len(word) == 64 and _DIGITS.issuperset(word)
@@ -43,11 +48,8 @@ def is_hash(word: object) -> bool:
 def read_note(note: Path) -> StoredRecord | None:
     """Return what a note says; None if it is no note that was written here."""
     try:
-        words = json.loads(note.read_bytes())
-        record = StoredRecord(
-            str(words["record"]), str(words["file_name"]), int(words["bytes"]), str(words["uploaded"])
-        )
-    except (OSError, ValueError, TypeError, KeyError):
+        record = _NOTE.validate_json(note.read_bytes(), strict=True)
+    except (OSError, ValueError):
         return None
     harmless = safe_name(record.file_name, "record") == record.file_name
     return record if harmless and record.record == note.stem else None
@@ -98,7 +100,9 @@ class RecordStore:
     def get(self, sha: str) -> StoredRecord:
         """Return one file."""
         record = read_note(self.folder / f"{sha}.json") if is_hash(sha) else None
-        if record is None or not self._is_own(record):
+        path = self._place(record) if record else None
+        # what was written here is no link, nor is its folder
+        if record is None or path is None or path.is_symlink() or path.parent.is_symlink() or not path.is_file():
             raise NotFound(f"no record {str(sha)[:12]}... is kept here: upload the file once more")
         return record
 
@@ -149,11 +153,6 @@ class RecordStore:
 
     def _place(self, record: StoredRecord) -> Path:
         return self.folder / record.record / record.file_name
-
-    def _is_own(self, record: StoredRecord) -> bool:
-        """Return whether a file was written here: neither it nor its folder is a link to another place."""
-        path = self._place(record)
-        return not path.is_symlink() and not path.parent.is_symlink() and path.is_file()
 
     def _keep(self, record: StoredRecord, content: bytes) -> None:
         """Write a file and its note, for this user alone; what could not be written leaves nothing behind."""

@@ -4,6 +4,7 @@ import asyncio
 import contextlib
 import errno
 import json
+import math
 import os
 import signal
 import socket
@@ -13,7 +14,6 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import h11
@@ -91,13 +91,6 @@ def _bound(host: str, port: int) -> socket.socket:
     return door
 
 
-def warm_up_later(*more: Step) -> None:
-    """Start to warm up in a thread, once the first page has had its time."""
-    timer = threading.Timer(_FIRST_PAGE_SECONDS, warm_up, more)
-    timer.daemon = True
-    timer.start()
-
-
 def warm_up(*more: Step) -> None:
     """Fit the calibration, answer one question of each kind and draw one picture.
 
@@ -111,21 +104,21 @@ def warm_up(*more: Step) -> None:
 
 def _impact() -> None:
     from rocking.app.api import impact
-    from rocking.app.inputs import ImpactAsked
+    from rocking.app.inputs import ImpactRequest
 
-    impact.answer(ImpactAsked.model_validate({"body": _BLOCK}))
+    impact.answer(ImpactRequest.model_validate({"body": _BLOCK}))
 
 
 def _response() -> None:
     from rocking.app.api.response import answers_facts
-    from rocking.app.inputs import ResponseAsked, body_from
+    from rocking.app.inputs import ResponseRequest, body_from
     from rocking.motions.pulses import pulse
     from rocking.motions.spectrum import response_spectrum
     from rocking.plots.traces import fine_samples
     from rocking.spec.response import problem_of
 
     words = "sine:amplitude=3,period=0.8"
-    inputs = ResponseAsked.model_validate({"body": _BLOCK, "motion": {"pulse": words}})
+    inputs = ResponseRequest.model_validate({"body": _BLOCK, "motion": {"pulse": words}})
     motion = pulse(words)
     answers_facts(problem_of(inputs, body_from(inputs.body), motion), 10)
     response_spectrum(fine_samples(motion), [1.0], 0.05)
@@ -149,7 +142,7 @@ class DataFolder:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._lock: FolderLock | None = None
+        self._lock = FolderLock(path)
 
     def __enter__(self) -> "DataFolder":
         try:
@@ -159,28 +152,24 @@ class DataFolder:
             raise InvalidValueError(
                 f"the data folder {str(self.path)!r} cannot be used ({error.strerror}): choose another with --data"
             ) from error
-        lock = FolderLock(self.path)
         try:
-            lock.__enter__()
+            self._lock.__enter__()
         except CampaignBusyError as error:
             raise FolderInUseError(
                 f"another rocking serve runs with the data folder {str(self.path)!r}: stop it, "
                 "or choose another folder with --data"
             ) from error
-        self._lock = lock
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         for name in (KEY_FILE, _NOTE):
             (self.path / name).unlink(missing_ok=True)
-        if self._lock is not None:
-            self._lock.__exit__(kind, error, trace)
+        self._lock.__exit__()
 
     def publish(self, url: str, key: str) -> Path:
         """Leave the address for a second start, and the key for scripts in a file that only its owner can read."""
-        write_private(self.path / _NOTE, json.dumps({"url": url, "process": os.getpid(), "machine": _machine()}))
+        note = {"url": url, "process": os.getpid(), "machine": socket.gethostname()}
+        write_private(self.path / _NOTE, json.dumps(note))
         return write_private(self.path / KEY_FILE, key)
 
     def running(self) -> tuple[str, str] | None:
@@ -190,7 +179,7 @@ class DataFolder:
             key = (self.path / KEY_FILE).read_text(encoding="utf-8")
         except (OSError, ValueError):
             return None
-        return (note["url"], key) if note.get("machine") == _machine() else None
+        return (note["url"], key) if note.get("machine") == socket.gethostname() else None
 
 
 def write_private(path: Path, text: str) -> Path:
@@ -200,10 +189,6 @@ def write_private(path: Path, text: str) -> Path:
     with os.fdopen(handle, "w", encoding="utf-8") as file:
         file.write(text)
     return path
-
-
-def _machine() -> str:
-    return socket.gethostname()
 
 
 @dataclass(frozen=True)
@@ -229,14 +214,10 @@ def serve(settings: ServerSettings, started: Callable[[Started], None], *, port:
         with contextlib.closing(listen(settings.host, wanted, search=port is None)) as door:
             left = _run(replace(settings, port=door.getsockname()[1]), folder, door, started)
     if left.busy and threading.current_thread() is threading.main_thread():
-        _end_at_once()
-
-
-def _end_at_once() -> None:
-    """End without the threads that still compute: Python itself would wait for them, however long that takes."""
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(0)
+        # end without the threads that still compute: Python itself would wait for them, however long that takes
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(0)
 
 
 def _run(
@@ -247,8 +228,11 @@ def _run(
     key_file = folder.publish(settings.origin, sessions.key)
 
     def tell() -> None:
-        started(Started(settings.origin, sessions.first_link(), settings.port, key_file))
-        warm_up_later(app.openapi)  # the first who reads it would hold up everybody else
+        started(Started(settings.origin, sessions.new_link(math.inf), settings.port, key_file))
+        # the first who reads the schema would hold up everybody else; the first page has had its time by then
+        timer = threading.Timer(_FIRST_PAGE_SECONDS, warm_up, (app.openapi,))
+        timer.daemon = True
+        timer.start()
 
     sys.setswitchinterval(_TURN)
     server = _Server(_config(app), tell)

@@ -100,7 +100,12 @@ class Remembered(Generic[T]):
                     del self._held[key]
             future.set_exception(error)
             raise
-        self._make_room()
+        with self._lock:
+            sizes = {key: self._size(one.result()) for key, one in self._held.items() if one.done()}
+            for oldest in list(sizes)[:-1]:
+                if sum(sizes.values()) <= self._most:
+                    break
+                del sizes[oldest], self._held[oldest]
         return future.result()
 
     def known(self, key: Hashable) -> T | None:
@@ -114,11 +119,3 @@ class Remembered(Generic[T]):
         with self._lock:
             for key in [key for key in self._held if concerned(key)]:
                 del self._held[key]
-
-    def _make_room(self) -> None:
-        with self._lock:
-            sizes = {key: self._size(one.result()) for key, one in self._held.items() if one.done()}
-            for key in list(sizes)[:-1]:
-                if sum(sizes.values()) <= self._most:
-                    return
-                del sizes[key], self._held[key]

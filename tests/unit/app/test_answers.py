@@ -11,7 +11,7 @@ import pytest
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.requests import Request
 
-from rocking.app.answers import ErrorAnswer, JsonAnswer, attachment, safe_name
+from rocking.app.answers import ErrorAnswer, JsonAnswer, attachment_headers, safe_name
 from rocking.app.errors import Busy, NotFound, Refused, TooLarge
 from rocking.app.work import ComputationQueue, heavy
 from rocking.errors import (
@@ -187,7 +187,7 @@ def test_word_nan_is_not_the_number():
 def test_file_names_are_harmless(given, kept):
     """Whatever a file is called, its name on the way out is plain."""
     assert safe_name(given) == kept
-    assert attachment(b"", given, "text/csv").headers["Content-Disposition"] == f'attachment; filename="{kept}"'
+    assert attachment_headers(given)["Content-Disposition"] == f'attachment; filename="{kept}"'
     for name in (kept, safe_name(given * 1000), safe_name(given, "study")):
         assert re.fullmatch(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*", name)
         assert len(name) <= 80

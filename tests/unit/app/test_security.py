@@ -1,6 +1,7 @@
 """Who may ask and what: the head of a request, its body while it arrives, one-time links, sessions, the key."""
 
 import asyncio
+import math
 import re
 from contextlib import contextmanager
 
@@ -8,18 +9,17 @@ import pytest
 from fastapi.testclient import TestClient
 
 from rocking.app.errors import Busy, Refused
-from rocking.app.security.requests import (
-    BodyLimits,
+from rocking.app.security.gate import (
     RequestHead,
     check_content,
     check_host,
-    check_json,
     check_method,
     check_origin,
     check_site,
     check_target,
     own_hosts,
 )
+from rocking.app.security.request_body import BodyLimits, check_json
 from rocking.app.security.sessions import Sessions, new_token
 from rocking.app.settings import Limits, ServerSettings
 
@@ -362,7 +362,7 @@ def test_tokens_have_256_bits_and_differ():
 
 def test_link_works_once(sessions):
     """The token of a link signs one browser in and is used up."""
-    token = sessions.first_link()
+    token = sessions.new_link(math.inf)
     assert sessions.knows(sessions.sign_in(token))
     with pytest.raises(Refused, match="wrong, used up or too old"):
         sessions.sign_in(token)
@@ -370,7 +370,7 @@ def test_link_works_once(sessions):
 
 def test_later_link_gets_too_old(sessions, clock):
     """A link for another browser is good for 15 minutes, the first one for ever."""
-    first, early, late = sessions.first_link(), sessions.new_link(), sessions.new_link()
+    first, early, late = sessions.new_link(math.inf), sessions.new_link(), sessions.new_link()
     clock.now += 899.0
     assert sessions.knows(sessions.sign_in(early))
     clock.now += 2.0
@@ -382,7 +382,7 @@ def test_later_link_gets_too_old(sessions, clock):
 
 def test_session_ends_after_idle_hours(sessions, clock):
     """A session that is used stays; one that is idle for more than 12 h ends."""
-    value = sessions.sign_in(sessions.first_link())
+    value = sessions.sign_in(sessions.new_link(math.inf))
     for _ in range(3):
         clock.now += 12 * 3600.0
         assert sessions.knows(value)
@@ -392,7 +392,7 @@ def test_session_ends_after_idle_hours(sessions, clock):
 
 def test_eleventh_wrong_token_within_a_minute_is_not_looked_at(sessions, clock):
     """After ten wrong tokens the door is shut for the rest of the minute, for the right one too."""
-    token = sessions.first_link()
+    token = sessions.new_link(math.inf)
     for _ in range(10):
         with pytest.raises(Refused, match="wrong, used up or too old"):
             sessions.sign_in("wrong")
@@ -405,7 +405,7 @@ def test_eleventh_wrong_token_within_a_minute_is_not_looked_at(sessions, clock):
 
 def test_nothing_secret_is_kept_but_the_key(sessions):
     """Links and sessions are kept as hashes: what they are cannot be read from memory."""
-    token = sessions.first_link()
+    token = sessions.new_link(math.inf)
     kept = repr({name: value for name, value in vars(sessions).items() if name != "key"})
     value = sessions.sign_in(token)
     kept += repr({name: value for name, value in vars(sessions).items() if name != "key"})
@@ -429,7 +429,7 @@ def test_number_of_sessions_and_links_is_bounded(sessions):
 
 def test_browser_signs_in_and_out(stranger):
     """A link becomes a cookie that scripts cannot read and other sites cannot send, until somebody signs out."""
-    token = stranger.app.state.rocking.sessions.first_link()
+    token = stranger.app.state.rocking.sessions.new_link(math.inf)
     assert stranger.get("/api/session").json() == {"signed_in": False}
     answer = stranger.post("/api/session", json={"token": token}, headers=ORIGIN)
     assert answer.json() == {"signed_in": True}
@@ -446,7 +446,7 @@ def test_browser_signs_in_and_out(stranger):
 def test_cookie_is_secure_where_the_connection_is(app):
     """Behind an encrypted connection the cookie is marked Secure."""
     with TestClient(app, base_url="https://127.0.0.1:8765") as browser:  # type: ignore[arg-type]
-        token = browser.app.state.rocking.sessions.first_link()  # type: ignore[attr-defined]
+        token = browser.app.state.rocking.sessions.new_link(math.inf)  # type: ignore[attr-defined]
         head = {"Origin": "https://127.0.0.1:8765"}
         answer = browser.post("/api/session", json={"token": token}, headers=head)
     assert "; secure" in answer.headers["Set-Cookie"].lower()

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query, Request
 
 from rocking.app.answers import FILE_SENT, JsonAnswer, Point, answered, shape
 from rocking.app.errors import Refused, room_on_disk
-from rocking.app.inputs import BodyAsked, BodyInput, body_from, check_file, parsed_toml, size_of
+from rocking.app.inputs import BodyInput, BodyRequest, body_from, check_file, parsed_toml, size_of
 from rocking.app.plain_text import safe_name
 from rocking.app.work import heavy, sized
 from rocking.bodies import Body
@@ -78,9 +78,13 @@ BodyInFile: Any = shape(
 
 
 @router.post("/body", summary="What a body is", responses=answered(DescribedBody, "The body."))
-async def body(request: Request, asked: BodyAsked) -> JsonAnswer:
+async def body(request: Request, inputs: BodyRequest) -> JsonAnswer:
     """Answer with the keys of `body` of `rocking cor --json`, the polygons that draw it, and its warnings."""
-    return JsonAnswer(await sized(request, size_of(asked.body), _of_inputs, asked))
+    gravity = inputs.settings.gravity or g
+    described_body = await sized(
+        request, size_of(inputs.body), lambda: described(body_from(inputs.body), gravity, inputs.body.name)
+    )
+    return JsonAnswer(described_body)
 
 
 @router.post(
@@ -110,10 +114,6 @@ def described(body: Body, gravity: float, name: str | None) -> dict[str, Any]:
     warnings = facts["warnings"] + [outside_evidence(body, foot) for foot in FEET]
     warnings = list(dict.fromkeys(sentence for sentence in warnings if sentence))
     return {"name": name, **facts, **outline_facts(body), "warnings": warnings}
-
-
-def _of_inputs(asked: BodyAsked) -> dict[str, Any]:
-    return described(body_from(asked.body), asked.settings.gravity or g, asked.body.name)
 
 
 def _of_file(content: bytes, name: str, units: str | None, density: float | None) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from fastapi import APIRouter, Request
 
 from rocking.app.answers import Foot, JsonAnswer, Point, answered, shape
 from rocking.app.api.body import DrawnBody
-from rocking.app.inputs import ImpactAsked, body_from, size_of
+from rocking.app.inputs import ImpactRequest, body_from, size_of
 from rocking.app.work import Remembered, sized
 from rocking.bodies import Block
 from rocking.conventions import g
@@ -103,42 +103,39 @@ ImpactAnswered: Any = shape(
     summary="What an impact costs",
     responses=answered(ImpactAnswered, "Every model, the measurements, and the three stages."),
 )
-async def impact(request: Request, asked: ImpactAsked) -> JsonAnswer:
+async def impact(request: Request, inputs: ImpactRequest) -> JsonAnswer:
     """Answer with the keys of `rocking cor --json`, and what its pictures are drawn from.
 
     `measured` and `curves` are for the picture; `stages` by foot has velocities at points of the body for the three
     stages of KED; `warnings` are in plain words, each with the models that it concerns.
     """
-    return await sized(request, size_of(asked.body), answer, asked)
+    return await sized(request, size_of(inputs.body), answer, inputs)
 
 
-def answer(asked: ImpactAsked) -> JsonAnswer:
+def answer(inputs: ImpactRequest) -> JsonAnswer:
     """Return what an impact costs; one that was asked for lately is not computed again."""
-    return _HELD.get(asked.model_dump_json(exclude_unset=True), lambda: JsonAnswer(_facts(asked)))
+    return _HELD.get(inputs.model_dump_json(exclude_unset=True), lambda: JsonAnswer(_facts(inputs)))
 
 
-def _facts(asked: ImpactAsked) -> dict[str, Any]:
-    body = body_from(asked.body)
+def _facts(inputs: ImpactRequest) -> dict[str, Any]:
+    body = body_from(inputs.body)
     # a block is the same on both sides; what is the same is told once
-    onto = "right" if asked.onto == "both" and isinstance(body, Block) else asked.onto
+    onto = "right" if inputs.onto == "both" and isinstance(body, Block) else inputs.onto
     coefficients = ImpactAnswer.of(
-        body, None, onto=onto, eta=1.0, gravity=asked.settings.gravity or g, identities=False
+        body, None, onto=onto, eta=1.0, gravity=inputs.settings.gravity or g, identities=False
     )
     facts = impact_facts(coefficients)
-    facts["body"] |= {"name": asked.body.name, **outline_facts(body)}
+    facts["body"] |= {"name": inputs.body.name, **outline_facts(body)}
+    rows = [row for table in coefficients.tables.values() for row in table]
+    warned: dict[str, dict[str, None]] = {}  # by sentence the models, each once
+    for row in rows:
+        for sentence in row.warnings:
+            warned.setdefault(sentence, {})[row.name] = None
     return {
         **facts,
-        "titles": {row.name: row.title for rows in coefficients.tables.values() for row in rows},
+        "titles": {row.name: row.title for row in rows},
         "measured": measured_facts(),
         "curves": curves_facts(),
         "stages": {foot: stages_facts(body, foot) for foot in coefficients.tables},
-        "warnings": _warnings(coefficients),
+        "warnings": [{"words": sentence, "models": list(names)} for sentence, names in warned.items()],
     }
-
-
-def _warnings(coefficients: ImpactAnswer) -> list[dict[str, Any]]:
-    models: dict[str, dict[str, None]] = {}
-    for row in (row for rows in coefficients.tables.values() for row in rows):
-        for words in row.warnings:
-            models.setdefault(words, {})[row.name] = None
-    return [{"words": words, "models": list(names)} for words, names in models.items()]

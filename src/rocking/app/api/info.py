@@ -15,6 +15,7 @@ from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, g
 from rocking.version import __version__
 
 router = APIRouter(prefix="/api", tags=["info"])
+_OF_FORMATS = ("title", "states_unit", "states_time_step", "notes")
 PARAMETERS = {
     "amplitude": ("m/s2", "peak acceleration"),
     "velocity": ("m/s", "velocity amplitude"),
@@ -110,7 +111,9 @@ def info(request: Request) -> JsonAnswer:
 def _constant() -> dict[str, Any]:
     from rocking.app.studies.job_document import KINDS
     from rocking.dynamics.plane import fast_engine
+    from rocking.motions.formats import formats
     from rocking.motions.pulses import catalogue
+    from rocking.motions.synthetic.families import families
     from rocking.spec.document import NEEDS
     from rocking.studies.axis import axes
 
@@ -126,8 +129,17 @@ def _constant() -> dict[str, Any]:
             name: {"summary": (inspect.getdoc(one) or "").partition("\n")[0], "parameters": _parameters(one)}
             for name, one in sorted(catalogue().items())
         },
-        "families": _families(),
-        "formats": _formats(),
+        "families": [
+            {
+                "name": name, "title": one.title, "summary": f"{one.title}; {one.origin}", "generator": one.generator,
+                "time_step_s": one.time_step,
+            }
+            for name, one in families().items()
+        ],
+        "formats": [
+            {"name": name, "suffixes": list(one.suffixes), **{key: getattr(one, key) for key in _OF_FORMATS}}
+            for name, one in formats().items()
+        ],
         "units": {"length": list(LENGTH_UNITS), "acceleration": list(ACCELERATION_UNITS)},
         "measures": listed_measures(),
         "axes": [_quantity(one) for one in axes().values()],
@@ -178,37 +190,7 @@ def _parameters(kind: Any) -> dict[str, dict[str, Any]]:
     parameters = {}
     for name, one in inspect.signature(kind).parameters.items():
         unit, words = PARAMETERS.get(name, ("-", name.replace("_", " ")))
-        parameters[name] = {"unit": unit, "words": words, "default": _usual(one.default)}
+        default = None if one.default is inspect.Parameter.empty else one.default  # None: a value must be given
+        unlimited = isinstance(default, float) and math.isinf(default)
+        parameters[name] = {"unit": unit, "words": words, "default": UNLIMITED if unlimited else default}
     return parameters
-
-
-def _usual(default: Any) -> Any:
-    """Return the default of a parameter; None where a value must be given, which an infinite default is not."""
-    if default is inspect.Parameter.empty:
-        return None
-    return UNLIMITED if isinstance(default, float) and math.isinf(default) else default
-
-
-def _families() -> list[dict[str, Any]]:
-    from rocking.motions.synthetic.families import families
-
-    return [
-        {
-            "name": name,
-            "title": one.title,
-            "summary": f"{one.title}; {one.origin}",
-            "generator": one.generator,
-            "time_step_s": one.time_step,
-        }
-        for name, one in families().items()
-    ]
-
-
-def _formats() -> list[dict[str, Any]]:
-    from rocking.motions.formats import formats
-
-    keys = ("title", "states_unit", "states_time_step", "notes")
-    return [
-        {"name": name, "suffixes": list(one.suffixes), **{key: getattr(one, key) for key in keys}}
-        for name, one in formats().items()
-    ]

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from rocking.app.answers import JsonAnswer, answered, shape
 from rocking.app.api.response import thinned
-from rocking.app.inputs import MotionAsked, motion_from
+from rocking.app.inputs import MotionRequest, motion_from
 from rocking.app.records import RecordStore
 from rocking.app.settings import state_of
 from rocking.app.work import Remembered, heavy
@@ -81,41 +81,41 @@ MotionAnswered: Any = shape(
 
 
 @router.post("/motion", summary="What a motion is", responses=answered(MotionAnswered, "The motion."))
-async def motion(request: Request, asked: MotionAsked) -> JsonAnswer:
+async def motion(request: Request, inputs: MotionRequest) -> JsonAnswer:
     """Answer with the keys of `rocking motion --json` but its spectrum.
 
     `series` is as drawn over `points` dots, each with the extremes of every curve, between the two times of `window` if
     given; `spectrum` at 100 periods for 5 % damping; `measures` as a list.
     """
-    return await heavy(request, _answer, asked, state_of(request).records)
+    return await heavy(request, _answer, inputs, state_of(request).records)
 
 
-def _answer(asked: MotionAsked, records: RecordStore) -> JsonAnswer:
-    if asked.motion.record is not None:
-        records.get(asked.motion.record)  # what was deleted is gone, even if its answer is still held
-    return _HELD.get(asked.model_dump_json(exclude_unset=True), lambda: JsonAnswer(_facts(asked, records)))
+def _answer(inputs: MotionRequest, records: RecordStore) -> JsonAnswer:
+    if inputs.motion.record is not None:
+        records.get(inputs.motion.record)  # what was deleted is gone, even if its answer is still held
+    return _HELD.get(inputs.model_dump_json(exclude_unset=True), lambda: JsonAnswer(_facts(inputs, records)))
 
 
-def _facts(asked: MotionAsked, records: RecordStore) -> dict[str, Any]:
-    motion = motion_from(asked.motion, records)
-    moved = motion if asked.motion.scale == 1.0 else motion.scaled(asked.motion.scale)
+def _facts(inputs: MotionRequest, records: RecordStore) -> dict[str, Any]:
+    motion = motion_from(inputs.motion, records)
+    moved = motion if inputs.motion.scale == 1.0 else motion.scaled(inputs.motion.scale)
     samples, curves = fine_samples(moved), traces(moved)
     measures = measures_of(moved, samples, curves)
     columns = {name: getattr(curves, name) for name in ("acceleration", "velocity", "displacement")}
     if isinstance(moved, GroundMotion) and samples.vertical is not None:
         columns["vertical"] = np.interp(curves.time, moved.time, samples.vertical)
-    kept = thinned(curves.time, list(columns.values()), asked.points, asked.window)
+    kept = thinned(curves.time, list(columns.values()), inputs.points, inputs.window)
     columns = {"time": curves.time, **columns}
     return {
         **motion_facts(moved, samples, measures),
-        "scale": asked.motion.scale,
+        "scale": inputs.motion.scale,
         "peak_acceleration_m_s2": moved.peak,
         "series": {
             **{name: values[kept].tolist() for name, values in columns.items()},
             "shown": int(kept.size),
             "of": int(curves.time.size),
         },
-        "spectrum": _spectrum_facts(spectrum_of(samples)) if asked.spectrum else None,
+        "spectrum": _spectrum_facts(spectrum_of(samples)) if inputs.spectrum else None,
         "measures": [
             {"name": key, "value": one.value, "unit": one.unit, "words": one.name} for key, one in measures.items()
         ],
@@ -131,9 +131,9 @@ def spectrum_of(samples: GroundMotion) -> ResponseSpectrum:
 def _spectrum_facts(spectrum: ResponseSpectrum) -> dict[str, Any]:
     return {
         "damping_ratio": spectrum.damping,
-        "period": spectrum.periods.tolist(),
-        "acceleration": spectrum.pseudo_acceleration.tolist(),
-        "velocity": spectrum.pseudo_velocity.tolist(),
-        "displacement": spectrum.displacement.tolist(),
-        "absolute_acceleration": spectrum.absolute_acceleration.tolist(),
+        "period": spectrum.periods,
+        "acceleration": spectrum.pseudo_acceleration,
+        "velocity": spectrum.pseudo_velocity,
+        "displacement": spectrum.displacement,
+        "absolute_acceleration": spectrum.absolute_acceleration,
     }

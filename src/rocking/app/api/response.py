@@ -9,7 +9,7 @@ from fastapi import APIRouter, Request
 from rocking.app.answers import Foot, JsonAnswer, answered, shape
 from rocking.app.api.body import DrawnBody
 from rocking.app.errors import TooLarge
-from rocking.app.inputs import ResponseAsked, question_of
+from rocking.app.inputs import ResponseRequest, problem_from
 from rocking.app.records import RecordStore
 from rocking.app.settings import state_of
 from rocking.app.work import heavy
@@ -31,7 +31,7 @@ MOST_SAMPLES = 500_000
 """Samples of a response whose forces and energy are computed here."""
 
 MOST_TOGETHER = 3_000_000
-"""Samples of all responses of one question, those after an overturning among them: they are computed as well."""
+"""Samples of all responses of one problem, those after an overturning among them: they are computed as well."""
 
 _NEWTON_STEPS = 8
 
@@ -164,7 +164,7 @@ ResponseAnswered: Any = shape(
     summary="How the body rocks",
     responses=answered(ResponseAnswered, "One answer for every restitution, and what they say together."),
 )
-async def response(request: Request, inputs: ResponseAsked) -> JsonAnswer:
+async def response(request: Request, inputs: ResponseRequest) -> JsonAnswer:
     """Answer for every restitution, in the order in which they were chosen, with the keys of `rocking simulate --json`.
 
     `series` is as drawn over `points` dots, each with the extremes of every curve, between the two times of `window` if
@@ -175,42 +175,42 @@ async def response(request: Request, inputs: ResponseAsked) -> JsonAnswer:
     return JsonAnswer(await heavy(request, _answer, inputs, state_of(request).records))
 
 
-def _answer(inputs: ResponseAsked, records: RecordStore) -> dict[str, Any]:
-    return answers_facts(question_of(inputs, records), inputs.points, inputs.body.name, inputs.window)
+def _answer(inputs: ResponseRequest, records: RecordStore) -> dict[str, Any]:
+    return answers_facts(problem_from(inputs, records), inputs.points, inputs.body.name, inputs.window)
 
 
 def answers_facts(
-    question: ResponseProblem, points: int, name: str | None = None, window: tuple[float, float] | None = None
+    problem: ResponseProblem, points: int, name: str | None = None, window: tuple[float, float] | None = None
 ) -> dict[str, Any]:
     """Return what every restitution makes of one question; window: the part of the time that is drawn [s]."""
-    assert not isinstance(question.motion, dict)  # the page has one component
-    answers = responses_of(question)
+    assert not isinstance(problem.motion, dict)  # the page has one component
+    answers = responses_of(problem)
     verdict = ModelAgreement.of({label: one for label, one in answers.items() if isinstance(one, Response)})
     return {
         "answers": [
             {"label": label, "error": one}
             if isinstance(one, str)
-            else answer_facts(label, one, question, points, window)
+            else answer_facts(label, one, problem, points, window)
             for label, one in answers.items()
         ],
         "verdict": {"decides": verdict.decides, "sentence": verdict.sentence},
         "body": {
-            "name": name, **body_facts(question.body, question.settings.gravity), **outline_facts(question.body),
+            "name": name, **body_facts(problem.body, problem.settings.gravity), **outline_facts(problem.body),
         },
-        "motion": moved_facts(question.motion, question.scale),
+        "motion": moved_facts(problem.motion, problem.scale),
     }  # fmt: skip
 
 
-def responses_of(question: ResponseProblem) -> dict[str, Response | str]:
+def responses_of(problem: ResponseProblem) -> dict[str, Response | str]:
     """Return by label the response with every restitution, or why there is none; at least one is there."""
     answers: dict[str, Response | str] = {}
     samples = 0
-    for label, restitution in question.restitutions.items():
-        answers[label] = one = _tried(question, restitution)
+    for label, restitution in problem.restitutions.items():
+        answers[label] = one = _tried(problem, restitution)
         samples += one.segments.count if isinstance(one, Response) else 0
         if samples > MOST_TOGETHER:
             raise TooLarge(
-                f"{len(answers)} of {len(question.restitutions)} responses together take {samples} steps, more than "
+                f"{len(answers)} of {len(problem.restitutions)} responses together take {samples} steps, more than "
                 f"the {MOST_TOGETHER} that are computed at once; fewer restitutions, a motion with longer steps, or "
                 "the command line"
             )
@@ -221,16 +221,22 @@ def responses_of(question: ResponseProblem) -> dict[str, Response | str]:
 
 
 def answer_facts(
-    label: str, response: Response, question: ResponseProblem, points: int, window: tuple[float, float] | None = None
+    label: str, response: Response, problem: ResponseProblem, points: int, window: tuple[float, float] | None = None
 ) -> dict[str, Any]:
     """Return one response as the API tells it: its facts, with label, curves and fall."""
-    facts, series = response_facts(response, question.assumed_friction), response_series(response, points, window)
-    return {"label": label, **facts, "series": series, "fall": fall_series(response)}
+    lying = DrawnShape.of(response.body).lying
+    fall = fall_of(response, lying)
+    return {
+        "label": label,
+        **response_facts(response, problem.assumed_friction),
+        "series": response_series(response, points, window),
+        "fall": {"time": fall.time[1:].tolist(), "rotation": fall.rotation[1:].tolist(), "lying": list(lying)},
+    }
 
 
-def _tried(question: ResponseProblem, restitution: Any) -> Response | str:
+def _tried(problem: ResponseProblem, restitution: Any) -> Response | str:
     try:
-        response: Response = question.answer(restitution)
+        response: Response = problem.answer(restitution)
     except InvalidValueError as error:
         return str(error)
     if response.outcome is Outcome.FAILED:
@@ -256,13 +262,6 @@ def response_series(response: Response, points: int, window: tuple[float, float]
         "shown": int(time.size),
         "of": int(whole.size),
     }
-
-
-def fall_series(response: Response) -> dict[str, Any]:
-    """Return how the fall of a response goes on after its curves end, `FallAnswer`; empty if there is no more."""
-    lying = DrawnShape.of(response.body).lying
-    fall = fall_of(response, lying)
-    return {"time": fall.time[1:].tolist(), "rotation": fall.rotation[1:].tolist(), "lying": list(lying)}
 
 
 def _states(response: Response) -> tuple[FloatArray, dict[str, FloatArray]]:

@@ -13,9 +13,6 @@ from rocking.dynamics.response import Response
 from rocking.errors import RockingError
 from rocking.reports.response_facts import restitution_words
 
-MEDIA_TYPES = {"html": "text/html; charset=utf-8", "gif": "image/gif"}
-"""What a browser is told about an animation; it is saved, never shown as a page of this server."""
-
 _FRAME, _MOST_FRAMES = 0.08, 150
 _LONGEST = 90.0
 _REFUSED = 3
@@ -26,8 +23,7 @@ def page_of(response: Response) -> bytes:
     from rocking.plots.animation import page
 
     label = response.parameters.label
-    told = page(response).replace(f"restitution {label};", f"restitution {restitution_words(label)};", 1)
-    return told.encode("utf-8")
+    return page(response).replace(f"restitution {label};", f"restitution {restitution_words(label)};", 1).encode()
 
 
 def gif_of(response: Response) -> bytes:
@@ -48,19 +44,15 @@ def gif_of(response: Response) -> bytes:
         return path.read_bytes()
 
 
-def _draw(response: Response, path: Path) -> None:
+def _main() -> int:
     from rocking.plots.animation import animate_gif
     from rocking.plots.response import shown_until
 
-    speed = max(1.0, float(np.ceil(100.0 * shown_until(response) / (_FRAME * (_MOST_FRAMES - 2)))) / 100.0)
-    animate_gif(response, path, fps=1.0 / _FRAME, speed=speed)
-
-
-def _main() -> int:
     # the parent's own response, through a pipe that nobody else writes to
     response = pickle.loads(sys.stdin.buffer.read())
     try:
-        _draw(response, Path(sys.argv[1]))
+        speed = max(1.0, float(np.ceil(100.0 * shown_until(response) / (_FRAME * (_MOST_FRAMES - 2)))) / 100.0)
+        animate_gif(response, Path(sys.argv[1]), fps=1.0 / _FRAME, speed=speed)
     except RockingError as error:
         sys.stderr.write(str(error))
         return _REFUSED

@@ -8,10 +8,10 @@ from fastapi import APIRouter, Query, Request
 from starlette.responses import Response as Answer
 
 from rocking.app.answers import FILE_SENT, JsonAnswer, answered, answered_with_file, attachment
-from rocking.app.downloads.animation import MEDIA_TYPES, gif_of, page_of
+from rocking.app.downloads.animation import gif_of, page_of
 from rocking.app.downloads.archive import bundle_of, inputs_from_file
 from rocking.app.downloads.evaluation import Evaluation
-from rocking.app.downloads.inputs_file import commands, fingerprint, inputs_as_toml, plain_inputs
+from rocking.app.downloads.inputs_file import FILE_NAME, commands, fingerprint, inputs_as_toml, plain_inputs
 from rocking.app.downloads.pictures import drawn, figure_of
 from rocking.app.inputs import Inputs, ResponseInputs
 from rocking.app.plain_text import plain_line
@@ -28,22 +28,20 @@ Place = Annotated[int | None, Query(ge=0, description="which response, counted f
 _DATE = "day that is printed on the report, as 2026-11-21; none if left out"
 
 
-@router.post("/report.pdf", summary="The report as PDF", responses=answered_with_file("The report.", "application/pdf"))
+@router.post("/report.pdf", summary="The report as PDF", responses=answered_with_file("The report.", "pdf"))
 async def report(
     request: Request, inputs: ResponseInputs, date: Annotated[datetime.date | None, Query(description=_DATE)] = None
 ) -> Answer:
     """Return the report: body, coefficients, motion, responses, and how to do it again."""
     evaluation = Evaluation(inputs, state_of(request).records)
     day = "" if date is None else f"{date.day} {date:%B %Y}"
-    return attachment(
-        await heavy(request, report_of, evaluation, day), _name(evaluation, "report.pdf"), "application/pdf"
-    )
+    return attachment(await heavy(request, report_of, evaluation, day), f"{evaluation.label} report.pdf")
 
 
 @router.post(
     "/animation.{kind}",
     summary="The body in motion",
-    responses=answered_with_file("The animation.", *MEDIA_TYPES.values()),
+    responses=answered_with_file("The animation.", "html", "gif"),
 )
 async def animation(
     request: Request, kind: Literal["html", "gif"], inputs: ResponseInputs, restitution: Place = None
@@ -52,29 +50,28 @@ async def animation(
     evaluation = Evaluation(inputs, state_of(request).records)
     make = page_of if kind == "html" else gif_of
     data = await heavy(request, lambda: make(evaluation.chosen(restitution)))
-    return attachment(data, f"{evaluation.file_stem('animation', restitution)}.{kind}", MEDIA_TYPES[kind])
+    return attachment(data, f"{evaluation.file_stem('animation', restitution)}.{kind}")
 
 
 @router.post(
     "/inputs.toml",
     summary="The inputs as a file of the command line",
-    responses=answered_with_file("What `rocking simulate` takes.", "application/toml"),
+    responses=answered_with_file("What `rocking simulate` takes.", "toml"),
 )
 async def inputs_file(request: Request, inputs: Inputs) -> Answer:
     """Return the file that `rocking simulate` takes for the same result."""
-    data = await heavy(request, inputs_as_toml, inputs)
-    return attachment(data.encode("utf-8"), "response.toml", "application/toml")
+    return attachment((await heavy(request, inputs_as_toml, inputs)).encode(), FILE_NAME)
 
 
 @router.post(
     "/inputs.zip",
     summary="The inputs with their record",
-    responses=answered_with_file("The file of inputs, the record, and what to type.", "application/zip"),
+    responses=answered_with_file("The file of inputs, the record, and what to type.", "zip"),
 )
 async def inputs_bundle(request: Request, inputs: Inputs) -> Answer:
     """Return an archive of the file of inputs, the record, and what to type."""
     evaluation = Evaluation(inputs, state_of(request).records)
-    return attachment(await heavy(request, bundle_of, evaluation), _name(evaluation, "response.zip"), "application/zip")
+    return attachment(await heavy(request, bundle_of, evaluation), f"{evaluation.label} response.zip")
 
 
 @router.post(
@@ -90,16 +87,12 @@ async def inputs_read(request: Request) -> JsonAnswer:
     return JsonAnswer(plain_inputs(await heavy(request, inputs_from_file, data, state_of(request).records)))
 
 
-def _name(evaluation: Evaluation, ending: str) -> str:
-    return f"{evaluation.name or 'rocking'} {ending}"
-
-
 def report_of(evaluation: Evaluation, date: str) -> bytes:
     """Return the report as PDF."""
     inputs, motion = evaluation.inputs, None if evaluation.inputs.motion is None else evaluation.motion
     results = ReportResults(
         evaluation.impact, motion, {} if motion is None else measures_of(motion, fine_samples(motion)),
-        evaluation.responses, evaluation.refused, evaluation.question.assumed_friction,
+        evaluation.responses, evaluation.refused, evaluation.problem.assumed_friction,
     )  # fmt: skip
     subject = ReportSubject(
         evaluation.name, date, inputs_as_toml(inputs), [plain_line(each, 2000) for each in commands(inputs)],

@@ -6,7 +6,7 @@ from functools import cached_property
 from rocking.app.api.response import responses_of
 from rocking.app.downloads.inputs_file import fingerprint
 from rocking.app.errors import Refused
-from rocking.app.inputs import Inputs, body_from, motion_from, question_of
+from rocking.app.inputs import Inputs, body_from, motion_from, problem_from
 from rocking.app.plain_text import plain_line
 from rocking.app.records import RecordStore
 from rocking.bodies import Body
@@ -34,6 +34,16 @@ class Evaluation:
         return plain_line(self.inputs.body.name or "", 100)
 
     @property
+    def label(self) -> str:
+        """How names of files begin."""
+        return self.name or "rocking"
+
+    @property
+    def scale(self) -> float:
+        """Factor on the motion [-]."""
+        return 1.0 if self.inputs.motion is None else self.inputs.motion.scale
+
+    @property
     def gravity(self) -> float:
         """Acceleration of gravity [m/s2]."""
         return self.inputs.settings.gravity or g
@@ -50,22 +60,22 @@ class Evaluation:
         if chosen is None:
             raise Refused("no motion was chosen: the ground is at rest", needs=["motion"])
         motion = _named_plainly(motion_from(chosen, self.records))
-        return motion if chosen.scale == 1.0 else motion.scaled(chosen.scale)
+        return motion if self.scale == 1.0 else motion.scaled(self.scale)
 
     @cached_property
-    def question(self) -> ResponseProblem:
+    def problem(self) -> ResponseProblem:
         """Body, motion, restitutions and settings."""
         if self.inputs.motion is None and self.inputs.response.free is None:
             raise Refused("what moves the body? Choose a motion, or free rocking", needs=["motion"])
-        question = question_of(self.inputs, self.records)
-        if question.motion is None or isinstance(question.motion, dict):
-            return question
-        return replace(question, motion=_named_plainly(question.motion))
+        problem = problem_from(self.inputs, self.records)
+        if problem.motion is None or isinstance(problem.motion, dict):
+            return problem
+        return replace(problem, motion=_named_plainly(problem.motion))
 
     @cached_property
     def answers(self) -> dict[str, Response | str]:
         """By label: the response with a restitution, or why there is none."""
-        return responses_of(self.question)
+        return responses_of(self.problem)
 
     @property
     def responses(self) -> dict[str, Response]:
@@ -91,7 +101,7 @@ class Evaluation:
 
     def file_stem(self, what: str, index: int | None) -> str:
         """Return what a file of one response is called: with its restitution, where there are several."""
-        restitution, stem = self.inputs.restitution, f"{self.name or 'rocking'} {what}"
+        restitution, stem = self.inputs.restitution, f"{self.label} {what}"
         if len(restitution.models or ()) + len(restitution.values or ()) < 2:
             return stem
         return f"{stem} {plain_line(self.chosen(index).parameters.label, 60)}"

@@ -56,12 +56,15 @@ def commands(inputs: Inputs) -> list[str]:
 
 def inputs_as_toml(inputs: Inputs) -> str:
     """Return inputs as a file that `rocking simulate` takes."""
-    plain, friction = plain_inputs(inputs), inputs.response.assumed_friction
+    plain, friction, record = plain_inputs(inputs), inputs.response.assumed_friction, record_name(inputs)
+    motion: dict[str, Any] | None = plain.get("motion")
+    if motion is not None and record is not None:
+        motion = {"record": record} | {key: motion[key] for key in motion if key not in {"record", "file_name"}}
     assumed = {} if isinstance(friction, Assumed) else {"assumed_friction": friction}
     tables: dict[str, Any] = {
         "response": assumed | plain.get("response", {}),
         "body": plain["body"],
-        "motion": _motion_on_disk(plain.get("motion"), record_name(inputs)),
+        "motion": motion,
         "restitution": plain.get("restitution", {"model": "ked"}),
         "settings": plain.get("settings"),
     }
@@ -101,12 +104,6 @@ def _head(inputs: Inputs) -> list[str]:
     return lines
 
 
-def _motion_on_disk(motion: Mapping[str, Any] | None, record: str | None) -> dict[str, Any] | None:
-    if motion is None or record is None:
-        return None if motion is None else dict(motion)
-    return {"record": record, **{key: value for key, value in motion.items() if key not in {"record", "file_name"}}}
-
-
 def _stored(word: str, text: str, find: FindRecord) -> dict[str, Any]:
     """Return hash and name of the record that a file of inputs means."""
     noted = _RECORD.search(text)
@@ -129,21 +126,20 @@ def simulate_words(inputs: Mapping[str, Any], record: str | None = None) -> str 
     >>> simulate_words({"body": block, "motion": {"pulse": "sine:amplitude=3,period=0.8"}})
     'rocking simulate --width 50.0 --height 200.0 --units cm --motion sine:amplitude=3,period=0.8 --restitution ked'
     """
-    parts = [_body(inputs["body"]), _start(inputs, record), _restitution(inputs), _how(inputs)]
-    if any(part is None for part in parts):
+    body, start, restitution = _body(inputs["body"]), _start(inputs, record), _restitution(inputs)
+    if body is None or start is None or restitution is None:
         return None
-    words = _one_of_units([word for part in parts if part is not None for word in part])
-    return " ".join(["rocking simulate", *(quote(word) for word in words)])
-
-
-def _one_of_units(words: list[str]) -> list[str]:
-    """Return the words with the units of body and record in one option, as the command takes them."""
-    places = [k for k, word in enumerate(words) if word == "--units"]
-    if len(places) < 2:
-        return words
-    first, second = places
-    joined = f"{words[first + 1]},{words[second + 1]}"
-    return [*words[: first + 1], joined, *words[first + 2 : second], *words[second + 2 :]]
+    if "--units" in start:  # those of body and record are one option
+        place = start.index("--units")
+        body[-1] += f",{start[place + 1]}"
+        start = start[:place] + start[place + 2 :]
+    settings = dict(inputs.get("settings") or {})
+    if settings.get("engine") == "auto":
+        del settings["engine"]
+    if not settings.get("linear"):
+        settings.pop("linear", None)
+    words = [*body, *start, *restitution, *_sets("settings", settings)]
+    return " ".join(["rocking simulate", *map(quote, words)])
 
 
 def _body(body: Mapping[str, Any]) -> list[str] | None:
@@ -179,15 +175,6 @@ def _restitution(inputs: Mapping[str, Any]) -> list[str] | None:
     return None if first is None else ["--restitution", str(first)]
 
 
-def _how(inputs: Mapping[str, Any]) -> list[str] | None:
-    settings = {name: value for name, value in (inputs.get("settings") or {}).items() if value is not None}
-    if settings.get("engine") == "auto":
-        del settings["engine"]
-    if not settings.get("linear"):
-        settings.pop("linear", None)
-    return _sets("settings", settings)
-
-
 def _sets(table: str, values: Mapping[str, Any]) -> list[str]:
     stated = {name: value for name, value in values.items() if value is not None}
     texts = {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in stated.items()}
@@ -195,11 +182,10 @@ def _sets(table: str, values: Mapping[str, Any]) -> list[str]:
 
 
 def _options(values: Mapping[str, Any]) -> list[str]:
-    words: list[str] = []
+    options: list[str] = []
     for name, value in values.items():
-        if value is None:
-            continue
-        option, text = f"--{name.replace('_', '-')}", repr(value) if isinstance(value, float) else str(value)
-        # with = between, a value may begin with a dash
-        words += [f"{option}={text}"] if text.startswith("-") else [option, text]
-    return words
+        if value is not None:
+            option, text = f"--{name.replace('_', '-')}", repr(value) if isinstance(value, float) else str(value)
+            # with = between, a value may begin with a dash
+            options += [f"{option}={text}"] if text.startswith("-") else [option, text]
+    return options

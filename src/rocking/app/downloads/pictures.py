@@ -6,7 +6,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from textwrap import wrap
 from threading import RLock
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 import numpy as np
 from fastapi import APIRouter, Query, Request
@@ -30,9 +30,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PictureKind = Literal["png", "svg"]
-
-MEDIA_TYPES: dict[str, str] = {"png": "image/png", "svg": "image/svg+xml"}
-"""What a browser is told about a picture."""
 
 _ENOUGH = 2700
 """Runs of a curve whose extremes are drawn: one for each dot of the widest picture."""
@@ -58,7 +55,7 @@ router = APIRouter(prefix="/api", tags=["take away"], default_response_class=Ans
 
 
 @router.post(
-    "/picture/{what}.{kind}", summary="A picture", responses=answered_with_file("The picture.", *MEDIA_TYPES.values())
+    "/picture/{what}.{kind}", summary="A picture", responses=answered_with_file("The picture.", *get_args(PictureKind))
 )
 async def picture(
     request: Request,
@@ -75,7 +72,7 @@ async def picture(
     data = await heavy(
         request, drawn, lambda: named(figure_of(what, evaluation, restitution), what, evaluation.name), kind
     )
-    return attachment(data, f"{evaluation.name or 'rocking'} {what}.{kind}", MEDIA_TYPES[kind])
+    return attachment(data, f"{evaluation.label} {what}.{kind}")
 
 
 def figure_of(what: str, evaluation: Evaluation, restitution: int | None = None) -> "Figure":
@@ -83,37 +80,29 @@ def figure_of(what: str, evaluation: Evaluation, restitution: int | None = None)
     from rocking.plots.body import body_picture, coefficient_picture
     from rocking.plots.energy_stages import energy_stages_picture
     from rocking.plots.ground_motion import ground_motion_picture
-
-    if what == "motion":
-        return _scaled(ground_motion_picture(evaluation.motion), evaluation)
-    if what == "response":
-        return _responses(evaluation, restitution)
-    if what == "coefficients":
-        tables = evaluation.impact.tables
-        return in_words(coefficient_picture(evaluation.body, tables), [row.name for row in tables[evaluation.foot]])
-    if what == "stages":
-        return energy_stages_picture(evaluation.body, onto=evaluation.foot)
-    return body_picture(evaluation.body)
-
-
-def _responses(evaluation: Evaluation, restitution: int | None) -> "Figure":
     from rocking.plots.response import response_picture
 
-    if restitution is None and len(evaluation.responses) > 1:
-        return comparison_picture(evaluation.responses)
-    chosen = evaluation.chosen(restitution)
-    return in_words(response_picture(chosen, evaluation.question.assumed_friction), [chosen.parameters.label])
+    match what:
+        case "motion":
+            figure, scale = ground_motion_picture(evaluation.motion), evaluation.scale
+            # the name of a motion speaks of the one that it was before it was scaled
+            return figure if scale == 1.0 else _titled(figure, f"{scale:g} times {evaluation.motion.name}")
+        case "response" if restitution is None and len(evaluation.responses) > 1:
+            return comparison_picture(evaluation.responses)
+        case "response":
+            chosen = evaluation.chosen(restitution)
+            return in_words(response_picture(chosen, evaluation.problem.assumed_friction), [chosen.parameters.label])
+        case "coefficients":
+            tables = evaluation.impact.tables
+            return in_words(coefficient_picture(evaluation.body, tables), [row.name for row in tables[evaluation.foot]])
+        case "stages":
+            return energy_stages_picture(evaluation.body, onto=evaluation.foot)
+    return body_picture(evaluation.body)
 
 
 def named(figure: "Figure", what: str, name: str) -> "Figure":
     """Write the name of the body over a picture that has no title of its own."""
     return _titled(figure, name) if name and what in {"body", "coefficients", "stages"} else figure
-
-
-def _scaled(figure: "Figure", evaluation: Evaluation) -> "Figure":
-    """Say that a motion was scaled: its name speaks of the one that it was."""
-    scale = 1.0 if evaluation.inputs.motion is None else evaluation.inputs.motion.scale
-    return figure if scale == 1.0 else _titled(figure, f"{scale:g} times {evaluation.motion.name}")
 
 
 def _titled(figure: "Figure", title: str) -> "Figure":
@@ -155,17 +144,13 @@ def in_words(figure: "Figure", labels: Iterable[str]) -> "Figure":
     known = {label: restitution_words(label) for label in labels}
     rows = {label.replace(":", "\n"): words.replace(", ", ",\n", 1) for label, words in known.items()}
     for axes in figure.axes:
-        _name_rows(axes, rows)
+        names = [text.get_text() for text in axes.get_yticklabels()]
+        if any(text in rows for text in names):
+            axes.set_yticks(axes.get_yticks(), [rows.get(text, text) for text in names], fontsize=6)
     for text in figure.findobj(Text):
         for label, words in known.items():
             text.set_text(text.get_text().replace(f"restitution: {label};", f"restitution: {words};"))
     return figure
-
-
-def _name_rows(axes: "Axes", rows: dict[str, str]) -> None:
-    names = [text.get_text() for text in axes.get_yticklabels()]
-    if any(text in rows for text in names):
-        axes.set_yticks(axes.get_yticks(), [rows.get(text, text) for text in names], fontsize=6)
 
 
 @in_journal_style
@@ -234,11 +219,9 @@ def _frame(axes: "list[Axes]", responses: Mapping[str, Response]) -> None:
 
 def _reach(responses: Mapping[str, Response]) -> tuple[float, float]:
     """Fit the velocities before a body falls for good."""
-    low, high = 0.0, 0.0
-    for response in responses.values():
-        time, _, velocity = motion_curves(response)
-        values = velocity[~(time > response.overturning_time)]
-        low, high = min(low, float(np.min(values, initial=0.0))), max(high, float(np.max(values, initial=0.0)))
+    curves = [(motion_curves(response), response.overturning_time) for response in responses.values()]
+    values = np.concatenate([velocity[~(time > end)] for (time, _, velocity), end in curves])
+    low, high = float(np.min(values, initial=0.0)), float(np.max(values, initial=0.0))
     room = 0.12 * (high - low) or 1.0
     return low - room, high + room
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 from fastapi import APIRouter, Query, Request
@@ -35,14 +35,6 @@ from rocking.tables import Cell, Column, Table, text_array, to_csv, to_dataset, 
 What = Literal["body", "coefficients", "measures", "motion", "spectrum", "response", "outcomes", "impacts"]
 Kind = Literal["csv", "xlsx", "mat", "nc"]
 
-MEDIA_TYPES = {
-    "csv": "text/csv; charset=utf-8",
-    "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
-    "mat": "application/x-matlab-data",
-    "nc": "application/x-netcdf",
-}
-"""What a browser is told about a table."""
-
 MOST_CELLS = 2_000_000
 """Cells of a workbook; more would take minutes to write and longer to open."""
 
@@ -52,9 +44,7 @@ _UNITS = {"m_s2": "m/s2", "rad_s": "rad/s", "rad": "rad", "kg_m2": "kg m2", "kg"
 router = APIRouter(prefix="/api", tags=["take away"], default_response_class=Answer)
 
 
-@router.post(
-    "/table/{what}.{kind}", summary="A table", responses=answered_with_file("The table.", *MEDIA_TYPES.values())
-)
+@router.post("/table/{what}.{kind}", summary="A table", responses=answered_with_file("The table.", *get_args(Kind)))
 async def table(
     request: Request,
     what: What,
@@ -69,19 +59,23 @@ async def table(
     """Return a table as a file that Excel, MATLAB, Python or R opens."""
     evaluation = Evaluation(inputs, state_of(request).records, onto)
     data, name = await heavy(request, _named_table, what, kind, evaluation, restitution)
-    return attachment(data, f"{name}.{kind}", MEDIA_TYPES[kind])
+    return attachment(data, f"{name}.{kind}")
 
 
 def _named_table(what: str, kind: str, evaluation: Evaluation, restitution: int | None) -> tuple[bytes, str]:
     data = table_of(what, kind, evaluation, restitution)
     of_one = what == "response" and (kind != "xlsx" or restitution is not None)
-    return data, evaluation.file_stem(what, restitution) if of_one else f"{evaluation.name or 'rocking'} {what}"
+    return data, evaluation.file_stem(what, restitution) if of_one else f"{evaluation.label} {what}"
 
 
 def table_of(what: str, kind: str, evaluation: Evaluation, restitution: int | None = None) -> bytes:
     """Return a table as a file."""
-    if what == "response" and kind != "xlsx":
-        return _exported(evaluation.chosen(restitution), kind)
+    if what == "response" and kind != "xlsx":  # the file that the library writes: numbers under names of its own
+        response = evaluation.chosen(restitution)
+        write = {"csv": response.to_csv, "mat": response.to_mat, "nc": response.to_netcdf}[kind]
+        with TemporaryDirectory(prefix="rocking-response-") as folder:
+            data = write(Path(folder) / f"response.{kind}").read_bytes()
+        return codecs.BOM_UTF8 + data if kind == "csv" else data
     if what != "response":
         return written([(what, _one_table(what, evaluation))], kind)
     about = evaluation.about
@@ -104,14 +98,6 @@ def _one_table(what: str, evaluation: Evaluation) -> Table:
         return (impacts_table if what == "impacts" else outcomes_table)(evaluation.responses, about)
     of_motion = {"motion": motion_table, "measures": measures_table, "spectrum": spectrum_table}[what]
     return of_motion(evaluation.motion, about)
-
-
-def _exported(response: Response, kind: str) -> bytes:
-    """Return the file that the library writes: numbers under names of its own."""
-    write = {"csv": response.to_csv, "mat": response.to_mat, "nc": response.to_netcdf}[kind]
-    with TemporaryDirectory(prefix="rocking-response-") as folder:
-        data = write(Path(folder) / f"response.{kind}").read_bytes()
-    return codecs.BOM_UTF8 + data if kind == "csv" else data
 
 
 def body_table(body: Body, gravity: float, name: str, about: dict[str, str]) -> Table:
@@ -165,10 +151,10 @@ def motion_table(motion: Motion, about: dict[str, str]) -> Table:
         fine = traces(motion)
         curves = fine.time, fine.acceleration, fine.velocity, fine.displacement
     names = {"time": "s", "acceleration": "m/s2", "velocity": "m/s", "displacement": "m"}
-    made = {name: (unit, values) for (name, unit), values in zip(names.items(), curves, strict=True)}
+    columns = {name: (unit, values) for (name, unit), values in zip(names.items(), curves, strict=True)}
     if isinstance(motion, GroundMotion) and motion.vertical is not None:
-        made["vertical_acceleration"] = ("m/s2", motion.vertical)
-    return as_table(about, made)
+        columns["vertical_acceleration"] = ("m/s2", motion.vertical)
+    return as_table(about, columns)
 
 
 def measures_table(motion: Motion, about: dict[str, str]) -> Table:
@@ -250,15 +236,19 @@ def _column(unit: str, values: "Iterable[Cell] | np.ndarray") -> Column:
 
 def written(sheets: Sequence[tuple[str, Table]], kind: str) -> bytes:
     """Return tables as a file: all of them, under their names, in Excel, the first one elsewhere."""
-    if kind not in MEDIA_TYPES:
-        raise NotFound(f"tables are {', '.join(MEDIA_TYPES)}, not {kind!r:.20}")
+    if kind not in get_args(Kind):
+        raise NotFound(f"tables are {', '.join(get_args(Kind))}, not {kind!r:.20}")
     first = sheets[0][1]
     with TemporaryDirectory(prefix="rocking-table-") as folder:
         path = Path(folder) / f"table.{kind}"
         if kind == "csv":
             to_csv(first, path, for_excel=True)
         elif kind == "xlsx":
-            _check_cells([one for _, one in sheets])
+            cells = sum(len(table) * len(table.columns) for _, table in sheets)
+            if cells > MOST_CELLS:
+                raise InvalidValueError(
+                    f"a workbook holds up to {MOST_CELLS} cells, this would have {cells}: take csv or mat"
+                )
             to_excel([(plain_line(name), one) for name, one in sheets], path, others="csv or mat", dressed=True)
         elif kind == "mat":
             to_mat(_doubles(first), path)
@@ -266,12 +256,6 @@ def written(sheets: Sequence[tuple[str, Table]], kind: str) -> bytes:
             units = {name: replace(each, unit=each.unit or "1") for name, each in _doubles(first).columns.items()}
             to_netcdf(to_dataset(replace(first, columns=units)), path)
         return path.read_bytes()
-
-
-def _check_cells(tables: Sequence[Table]) -> None:
-    cells = sum(len(one) * len(one.columns) for one in tables)
-    if cells > MOST_CELLS:
-        raise InvalidValueError(f"a workbook holds up to {MOST_CELLS} cells, this would have {cells}: take csv or mat")
 
 
 def _doubles(one: Table) -> Table:

@@ -1,26 +1,171 @@
-"""The gate: every request and every websocket passes these checks before anything reads it."""
+"""The gate: every request and every websocket passes these checks of its head before anything reads it."""
 
 import logging
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
 
 from starlette.datastructures import MutableHeaders
 from starlette.requests import ClientDisconnect, HTTPConnection
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from rocking.app.answers import error_answer, refusal
-from rocking.app.errors import INTERNAL, Refused, kind_of_status
-from rocking.app.security.requests import (
-    RequestHead,
-    check_content,
-    check_host,
-    check_method,
-    check_origin,
-    check_site,
-    check_target,
-    own_hosts,
-)
-from rocking.app.security.sessions import check_session
+from rocking.app.errors import INTERNAL, NotFound, Refused, kind_of_status
+from rocking.app.security.sessions import is_signed_in
 from rocking.app.settings import ServerSettings
+
+_MOST_HEADERS = 100
+_MOST_BYTES = 1 << 14
+SAFE = frozenset({"GET", "HEAD"})
+_ONCE = {
+    "host",
+    "origin",
+    "authorization",
+    "cookie",
+    "content-type",
+    "content-length",
+    "content-encoding",
+    "transfer-encoding",
+    "sec-fetch-site",
+    "sec-fetch-mode",
+    "sec-fetch-dest",
+}
+_METHODS = SAFE | {"POST", "DELETE", "WEBSOCKET"}
+_PATH = re.compile(r"(/[A-Za-z0-9_-][A-Za-z0-9._-]*)+/?|/")
+_ALWAYS = ("127.0.0.1", "localhost", "[::1]")
+_OWN_SITES = {"same-origin", "none"}
+_PUBLIC = {("POST", "/api/session"), ("GET", "/api/session"), ("GET", "/api/openapi.json")}
+JSON, BYTES = "application/json", "application/octet-stream"
+
+
+@dataclass(frozen=True)
+class RequestHead:
+    """The head of a request or of a websocket handshake."""
+
+    method: str  # in capitals; "WEBSOCKET" for a handshake
+    target: str  # path as it stands in the request line, nothing decoded
+    query: str  # what follows the question mark
+    scheme: str  # "http" or "https"
+    headers: Mapping[str, str]  # lower-case name -> value
+
+    @classmethod
+    def of(cls, scope: Mapping[str, Any]) -> "RequestHead":
+        """Return the head of an ASGI connection."""
+        pairs = scope["headers"]
+        if len(pairs) > _MOST_HEADERS or sum(len(name) + len(value) for name, value in pairs) > _MOST_BYTES:
+            raise Refused(f"the head has more than {_MOST_HEADERS} headers or {_MOST_BYTES} bytes", status=431)
+        headers: dict[str, str] = {}
+        for raw, value in pairs:
+            name = raw.decode("latin-1").lower()
+            if name in headers and name in _ONCE:
+                raise Refused(f"the header {name} is there twice", status=400)
+            headers[name] = value.decode("latin-1").strip()
+        target = (scope.get("raw_path") or scope["path"].encode()).decode("latin-1")
+        return cls(
+            method="WEBSOCKET" if scope["type"] == "websocket" else scope["method"],
+            target=target.partition("?")[0],
+            query=scope.get("query_string", b"").decode("latin-1"),
+            scheme={"ws": "http", "wss": "https"}.get(scope["scheme"], scope["scheme"]),
+            headers=headers,
+        )
+
+    @property
+    def unsafe(self) -> bool:
+        """Whether it may change something."""
+        return self.method not in SAFE
+
+    @property
+    def of_api(self) -> bool:
+        """Whether it asks the API and not for a page."""
+        return self.target.startswith("/api/")
+
+    @property
+    def has_body(self) -> bool:
+        """Whether a body follows, by its length or by its being chunked."""
+        return "transfer-encoding" in self.headers or self.headers.get("content-length", "0") != "0"
+
+
+def check_method(head: RequestHead) -> None:
+    """Refuse methods that nothing here takes; OPTIONS too, as no other site may ask."""
+    if head.method not in _METHODS:
+        raise Refused("the method must be GET, HEAD, POST or DELETE", status=405)
+    if head.method in SAFE and head.has_body:
+        raise Refused(f"a {head.method} request has no body", status=400)
+
+
+def check_target(head: RequestHead, most: int) -> None:
+    """Refuse paths of anything but letters, digits, dots, dashes and slashes; most: of path and query [bytes]."""
+    if len(head.target) + len(head.query) > most:
+        raise Refused(f"path and query are longer than {most} bytes", status=414)
+    if not _PATH.fullmatch(head.target):
+        raise NotFound("there is no such page: its path has characters that none here has")
+
+
+def own_hosts(settings: ServerSettings) -> frozenset[str]:
+    """Return every Host header that is the server's own."""
+    host = f"[{settings.host}]" if ":" in settings.host else settings.host
+    names = {*_ALWAYS, host.lower()}
+    with_port = {f"{name}:{settings.port}" for name in names}
+    return frozenset(with_port | names if settings.port == 80 else with_port)
+
+
+def check_host(head: RequestHead, own: frozenset[str]) -> None:
+    """Refuse a request that was sent to another name."""
+    if head.headers.get("host", "").lower() not in own:
+        raise Refused(
+            "the Host header is not this server's address: open it by the link that `rocking serve` prints", status=403
+        )
+
+
+def check_origin(head: RequestHead, own: frozenset[str]) -> None:
+    """Refuse a request of another page; one that may change something must say where it comes from."""
+    origin = head.headers.get("origin")
+    if origin is None:
+        if head.unsafe:
+            name = head.headers.get("host", "127.0.0.1")
+            raise Refused(f"the Origin header is missing: a script sends Origin: {head.scheme}://{name}", status=403)
+    elif origin.lower() not in {f"{head.scheme}://{name}" for name in own}:
+        raise Refused("the Origin header names another page than this server's own", status=403)
+
+
+def check_site(head: RequestHead) -> None:
+    """Refuse what a browser sends on behalf of another site, but for somebody following a link to a page."""
+    site = head.headers.get("sec-fetch-site")
+    if site is None or site in _OWN_SITES:
+        return
+    follows_link = head.headers.get("sec-fetch-mode") == "navigate" and head.headers.get("sec-fetch-dest") == "document"
+    if head.unsafe or head.of_api or not follows_link:
+        raise Refused("another site asks for this", status=403)
+
+
+def content_type(head: RequestHead) -> str:
+    """Return the type of a body in lower case, without its parameters; empty if none is given."""
+    return head.headers.get("content-type", "").partition(";")[0].strip().lower()
+
+
+def check_content(head: RequestHead) -> None:
+    """Refuse bodies of other types, in another charset, or packed."""
+    kind = content_type(head)
+    if head.headers.get("content-encoding", "identity").lower() != "identity":
+        raise Refused("the body must not be compressed", status=415)
+    if (head.has_body or kind) and head.unsafe and kind not in {JSON, BYTES}:
+        raise Refused(f"Content-Type must be {JSON}, or {BYTES} for a file", status=415)
+    parameters = head.headers.get("content-type", "").partition(";")[2].replace(" ", "").lower()
+    if kind == JSON and parameters not in {"", "charset=utf-8", 'charset="utf-8"'}:
+        raise Refused("JSON must be in UTF-8", status=415)
+
+
+def check_session(head: RequestHead, request: HTTPConnection) -> None:
+    """Refuse what is not public to somebody who is not signed in."""
+    public = not head.of_api or ("GET" if head.method == "HEAD" else head.method, head.target) in _PUBLIC
+    if not public and not is_signed_in(request):
+        raise Refused(
+            "nobody is signed in: open the link that `rocking serve` prints, "
+            "or send Authorization: Bearer with the key in the file api-key of the data folder",
+            status=401,
+        )
+
 
 Check = Callable[["Gate", RequestHead, HTTPConnection], None]
 CHECKS: dict[str, Check] = {
@@ -81,17 +226,13 @@ class Gate:
                 for check in CHECKS.values():
                     check(self, head, HTTPConnection(scope))
             except Refused as error:
-                await _refuse(error, scope, receive, send)
+                if scope["type"] == "http":
+                    await refusal(error, close=True)(scope, receive, send)
+                else:
+                    await receive()
+                    await send({"type": "websocket.close", "code": 1008, "reason": kind_of_status(error.status)})
                 return
         await self._app(scope, receive, send)
-
-
-async def _refuse(error: Refused, scope: Scope, receive: Receive, send: Send) -> None:
-    if scope["type"] == "websocket":
-        await receive()
-        await send({"type": "websocket.close", "code": 1008, "reason": kind_of_status(error.status)})
-    else:
-        await refusal(error, close=True)(scope, receive, send)
 
 
 class SafeHeaders:

@@ -15,16 +15,13 @@ from starlette.requests import HTTPConnection
 
 from rocking.app.answers import JsonAnswer, shape
 from rocking.app.errors import Busy, Refused
-from rocking.app.security.requests import RequestHead
 from rocking.app.settings import Limits, state_of
 
 router = APIRouter(prefix="/api/session", tags=["session"])
-_PUBLIC = {("POST", "/api/session"), ("GET", "/api/session"), ("GET", "/api/openapi.json")}
 _MOST_SESSIONS = 64
 _MOST_LINKS = 16
 _LINK_SECONDS = 900.0
 _MINUTE = 60.0
-_FOREVER = float("inf")
 
 
 class SignIn(BaseModel):
@@ -93,17 +90,6 @@ def is_signed_in(request: HTTPConnection) -> bool:
     return state.sessions.knows(request.cookies.get(cookie_name(state.settings.port)))
 
 
-def check_session(head: RequestHead, request: HTTPConnection) -> None:
-    """Refuse what is not public to somebody who is not signed in."""
-    public = not head.of_api or ("GET" if head.method == "HEAD" else head.method, head.target) in _PUBLIC
-    if not public and not is_signed_in(request):
-        raise Refused(
-            "nobody is signed in: open the link that `rocking serve` prints, "
-            "or send Authorization: Bearer with the key in the file api-key of the data folder",
-            status=401,
-        )
-
-
 def new_token() -> str:
     """Return 256 random bits as text."""
     return secrets.token_urlsafe(32)
@@ -122,17 +108,13 @@ class Sessions:
         self.key = new_token()
 
     def new_link(self, seconds: float = _LINK_SECONDS) -> str:
-        """Return a token that signs one browser in, once; seconds: time for which it is good [s]."""
+        """Return a token that signs one browser in, once; seconds: time for which it is good, perhaps infinite [s]."""
         token = new_token()
         with self._lock:
             while len(self._links) >= _MOST_LINKS:
                 self._links.pop(next(iter(self._links)))
             self._links[_digest(token)] = self._clock() + seconds
         return token
-
-    def first_link(self) -> str:
-        """Return the token of the link that is printed at the start: good once, however late."""
-        return self.new_link(_FOREVER)
 
     def sign_in(self, token: str) -> str:
         """Use a token up, and return the value of a cookie: a new one every time, whatever the browser had before."""
@@ -165,16 +147,14 @@ class Sessions:
             self._sessions[session] = now
         return True
 
-    def knows_key(self, key: str | None) -> bool:
+    def knows_key(self, key: str) -> bool:
         """Return whether this is the key for scripts."""
-        return key is not None and hmac.compare_digest(_digest(key), _digest(self.key))
+        return hmac.compare_digest(_digest(key), _digest(self.key))
 
     def sign_out(self, value: str | None) -> None:
         """Forget a session."""
         with self._lock:
-            session = _known(value, self._sessions)
-            if session is not None:
-                del self._sessions[session]
+            self._sessions.pop(_known(value, self._sessions) or b"", None)
 
 
 def _digest(token: str) -> bytes:
@@ -182,7 +162,5 @@ def _digest(token: str) -> bytes:
 
 
 def _known(token: str | None, known: dict[bytes, float]) -> bytes | None:
-    if token is None:
-        return None
-    digest = _digest(token)
+    digest = _digest(token or "")
     return next(iter([other for other in known if hmac.compare_digest(other, digest)]), None)

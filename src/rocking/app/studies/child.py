@@ -22,8 +22,9 @@ _PATIENCE = 3.0
 
 def main(arguments: list[str]) -> int:
     """Begin or go on with the campaign of a study."""
-    _end_with_the_server()
-    _be_nice()
+    threading.Thread(target=_end_with_the_server, daemon=True).start()
+    with contextlib.suppress(OSError, AttributeError):
+        os.nice(10)
     from rocking.campaigns import CampaignInterrupted
     from rocking.errors import RockingError
 
@@ -65,16 +66,7 @@ def _compute(study: Path, workers: int) -> None:
     keep_result(OpenStudy(study.name, StudyFolder(study), folder))
 
 
-def _be_nice() -> None:
-    with contextlib.suppress(OSError, AttributeError):
-        os.nice(10)
-
-
 def _end_with_the_server() -> None:
-    threading.Thread(target=_watch, daemon=True).start()
-
-
-def _watch() -> None:
     with contextlib.suppress(OSError):
         while os.read(0, 1):
             pass

@@ -23,19 +23,6 @@ Crossing = Literal["refuse", "common-dispersion"]
 
 Kind = Literal["nc", "csv", "mat", "xlsx", "parquet", "toml", "png", "svg", "xml"]
 
-MEDIA_TYPES: dict[str, str] = {
-    "nc": "application/x-netcdf",
-    "csv": "text/csv; charset=utf-8",
-    "mat": "application/x-matlab-data",
-    "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
-    "parquet": "application/vnd.apache.parquet",
-    "toml": "application/toml",
-    "png": "image/png",
-    "svg": "image/svg+xml",
-    "xml": "application/xml",
-}
-"""What a browser is told of a file."""
-
 
 @dataclass(frozen=True)
 class OpenStudy:
@@ -128,17 +115,14 @@ def written(
 
         draw_to(_picture(study, restitution), target)
     else:
-        _exported(study, target, what or ("fragility" if kind == "xml" else None), labels[restitution], crossing)
+        from rocking.campaigns.jobs import export
 
-
-def _exported(study: OpenStudy, target: Path, what: str | None, label: str, crossing: Crossing | None) -> None:
-    from rocking.campaigns.jobs import export
-
-    of_curves = what in {"fragility", "fema-p58"}
-    try:
-        export(study.job, target, what, restitution=label if of_curves else None, crossing=crossing)
-    except RockingError as error:
-        raise Refused(study.folder.without_paths(str(error)).replace(f"{target.parent}/", "")) from error
+        what = what or ("fragility" if kind == "xml" else None)
+        of_curves = what in {"fragility", "fema-p58"}
+        try:
+            export(study.job, target, what, restitution=labels[restitution] if of_curves else None, crossing=crossing)
+        except RockingError as error:
+            raise Refused(study.folder.without_paths(str(error)).replace(f"{target.parent}/", "")) from error
 
 
 def _picture(study: OpenStudy, restitution: int) -> "Callable[[], Figure]":

@@ -4,13 +4,14 @@ import tomllib
 import warnings
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from rocking.app.api.response import answer_facts
 from rocking.app.errors import NotFound
 from rocking.app.studies.finished import OpenStudy
+from rocking.app.studies.job_document import motions_in
 from rocking.app.studies.results import meaning, plain
 from rocking.bodies import Block, Body
 from rocking.bodies.formats.body_writer import body_to_toml
@@ -18,7 +19,7 @@ from rocking.dynamics import simulate
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.motions.motion import GroundMotion
-from rocking.motions.pulse import Motion, Pulse
+from rocking.motions.pulse import Motion
 from rocking.motions.pulses import pulse
 from rocking.outcome import Outcome
 from rocking.spec.construction import motions_of
@@ -28,9 +29,6 @@ from rocking.studies.adaptive_grid import Plane
 from rocking.studies.axis import RestitutionAxis, axis_of
 from rocking.studies.question import Question
 from rocking.studies.variations import changed_body
-
-if TYPE_CHECKING:
-    from rocking.spec.document import MotionTable
 
 _ACROSS = {
     "rocking-spectrum": ("period", "slenderness_angle"),
@@ -73,8 +71,8 @@ class HistoryPlace:
     def of(cls, study: OpenStudy, x: int, y: int, restitution: int = 0, motion: int = 0) -> "HistoryPlace":
         """Return the history at a point of a picture."""
         dims, choices = study.job.job.study.dims, len(study.job.job.problem.restitutions)
-        across = across_of(study)
-        index = {"motion": motion} | {across[0]: x, across[1]: y}
+        across = _ACROSS.get(str(study.job.job.document.campaign.kind), study.axes[::-1])
+        index = {"motion": motion} | dict(zip(across, (x, y), strict=True))
         sizes = {name: dims[name] for name in study.axes} | {"the restitution": choices}
         at = {name: index.get(name, 0) for name in study.axes} | {"the restitution": restitution}
         for name, size in sizes.items():
@@ -83,15 +81,6 @@ class HistoryPlace:
         places = [at[name] if name in study.axes else restitution for name in dims]
         number = int(np.ravel_multi_index(tuple(places), study.job.job.study.shape))
         return cls(number, {"motion": 0} | {name: at[name] for name in study.axes}, restitution)
-
-
-def across_of(study: OpenStudy) -> tuple[str, str]:
-    """Return the dimensions that a picture of a study has along x and y; empty where it has only one."""
-    kind = str(study.job.job.document.campaign.kind)
-    if kind in _ACROSS:
-        return _ACROSS[kind]
-    y, x = study.axes
-    return x, y
 
 
 @dataclass(frozen=True)
@@ -175,7 +164,9 @@ def _choice(study: OpenStudy, place: HistoryPlace) -> tuple[str, Any, dict[str, 
 
 def _motion_at(study: OpenStudy, number: int, stretch: float) -> tuple[Motion, dict[str, Any] | None, float]:
     """Return a motion of a study, its time stretched; how inputs name it, None where they cannot; its table's scale."""
-    table, place = _table_of(study, number)
+    place, tables = number, iter(study.job.job.document.motions)
+    while place >= (size := motions_in(table := next(tables))):
+        place -= size
     if table.pulse is not None:
         words = stretched_words(table.pulse[place], stretch)
         return pulse(words), {"pulse": words}, table.scale
@@ -191,7 +182,10 @@ def _motion_at(study: OpenStudy, number: int, stretch: float) -> tuple[Motion, d
         source = {"synthetic": table.synthetic, "seed": table.seed or 0, "member": place}
         keys, scale = _OF_FAMILIES, 1.0
     source |= {key: getattr(table, key) for key in keys if getattr(table, key) is not None}
-    return (motion, source, scale) if stretch == 1.0 else (_stretched(motion, stretch), None, scale)
+    if stretch == 1.0:
+        return motion, source, scale
+    assert isinstance(motion, GroundMotion)  # pulses are above
+    return replace(motion, time_step=motion.time_step * stretch), None, scale
 
 
 def stretched_words(words: str, stretch: float) -> str:
@@ -212,24 +206,6 @@ def stretched_words(words: str, stretch: float) -> str:
     return stretched
 
 
-def _table_of(study: OpenStudy, number: int) -> tuple["MotionTable", int]:
-    """Return the table that a motion stands in, and its place there."""
-    left = number
-    for table in study.job.job.document.motions:
-        size = int(table.count or 0) or len(table.records or []) or len(table.pulse or [])
-        if left < size:
-            return table, left
-        left -= size
-    raise IndexError(number)
-
-
-def _stretched(motion: Motion, stretch: float) -> Motion:
-    if stretch == 1.0 or isinstance(motion, Pulse):
-        return motion
-    assert isinstance(motion, GroundMotion)  # there is nothing else
-    return replace(motion, time_step=motion.time_step * stretch)
-
-
 def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict[str, Any]:
     """Return the history behind a point of a picture, `HistoryAnswer`.
 
@@ -242,16 +218,20 @@ def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict
         if isinstance(variation.restitution, float) and not np.isfinite(variation.restitution):
             return cell | {"note": "the coefficient of this cell would create energy: nothing was computed"}
         motion, source, scale = _motion_at(study, place.index["motion"], variation.stretch)
-        question, response = _responded(study, place, variation, motion, scale * variation.scale)
+        problem, response = _responded(study, place, variation, motion, scale * variation.scale)
     except InvalidValueError as error:
         return cell | {"note": str(error)}
     note = _why_not(variation, source)
-    inputs = None if note else _inputs(study, variation, {**(source or {}), "scale": variation.scale * scale})
-    cell |= {"inputs": inputs, "note": note}
+    if not note:
+        settings = study.job.job.document.settings.model_dump(exclude_unset=True, exclude_none=True)
+        moved = {**(source or {}), "scale": variation.scale * scale}
+        inputs = {"body": variation.table, "motion": moved, "restitution": variation.choice}
+        cell["inputs"] = inputs | ({"settings": settings} if settings else {})
+    cell["note"] = note
     if response.outcome is Outcome.FAILED:
         return cell | {"note": f"there is no response: {response.status.value}"}
     difference = abs(response.peak_rotation - abs(cell["stored"]["peak_rotation_rad"]))
-    answer = answer_facts(variation.label, response, question, points)
+    answer = answer_facts(variation.label, response, problem, points)
     return cell | {"answer": answer, "difference_rad": difference}
 
 
@@ -266,13 +246,13 @@ def _responded(
     study: OpenStudy, place: HistoryPlace, variation: Variation, motion: Motion, scale: float
 ) -> tuple[ResponseProblem, Response]:
     job, engine = study.job.job, study.job.job.document.settings.engine
-    question = ResponseProblem(
+    problem = ResponseProblem(
         variation.body, motion, {variation.label: variation.restitution}, job.problem.settings, engine, scale=scale
     )
-    how = {**question.settings.stated, "engine": engine, "stream": place.number}
+    how = {**problem.settings.stated, "engine": engine, "stream": place.number}
     with warnings.catch_warnings():  # the answer shows its doubts
         warnings.simplefilter("ignore", PureRockingWarning)
-        return question, simulate(variation.body, motion, variation.restitution, scale=scale, **how)
+        return problem, simulate(variation.body, motion, variation.restitution, scale=scale, **how)
 
 
 def _why_not(variation: Variation, source: dict[str, Any] | None) -> str:
@@ -285,9 +265,3 @@ def _why_not(variation: Variation, source: dict[str, Any] | None) -> str:
     if variation.choice is None:
         return "the coefficient is drawn at every impact, by the number of the history, which inputs do not have"
     return ""
-
-
-def _inputs(study: OpenStudy, variation: Variation, motion: dict[str, Any]) -> dict[str, Any]:
-    settings = study.job.job.document.settings.model_dump(exclude_unset=True, exclude_none=True)
-    inputs = {"body": variation.table, "motion": motion, "restitution": variation.choice}
-    return inputs | ({"settings": settings} if settings else {})

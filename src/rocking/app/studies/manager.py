@@ -15,7 +15,7 @@ from rocking.app.settings import Limits
 from rocking.app.studies.finished import OpenStudy
 from rocking.app.studies.job_document import JobDocument
 from rocking.app.studies.queue import GONE, StudyQueue
-from rocking.app.studies.study import HostedStudy, processors
+from rocking.app.studies.study import HostedStudy
 from rocking.app.studies.study_folder import (
     CAMPAIGN,
     CANCELLED,
@@ -32,6 +32,7 @@ from rocking.app.studies.study_folder import (
 )
 from rocking.app.work import Remembered
 from rocking.campaigns import disk
+from rocking.dynamics.compiled import processors
 
 _RESULTS, _ANSWERS = 256 * 2**20, 64 * 2**20
 """Memory for results and for answers [byte]."""
@@ -67,7 +68,7 @@ class StudyManager:
                 f"the study has {count} histories; this server takes up to {self._limits.histories}: fewer values, "
                 "or `rocking campaign` on the command line, which has no limit"
             )
-        return self.queue.enter(lambda: self._made(name or document.document.campaign.name, document)).folder.id
+        return self.queue.enter(lambda: self._new_study(name or document.document.campaign.name, document)).folder.id
 
     def overview(self) -> list[dict[str, Any]]:
         """Return name, kind, state and progress of all studies, the newest first; nothing is read for it."""
@@ -95,54 +96,52 @@ class StudyManager:
     def cancel(self, study: str) -> None:
         """Stop a study within a second; what is finished is safe, and it can be resumed."""
         with self.queue.lock:
-            found = self.queue.study(study)
-            if found.meta.state not in {WAITING, RUNNING}:
-                raise Refused(f"the study is {found.meta.state}: only one that waits or runs can be cancelled")
-            found.cancelled, process = True, found.process
+            hosted = self.queue.study(study)
+            if hosted.meta.state not in {WAITING, RUNNING}:
+                raise Refused(f"the study is {hosted.meta.state}: only one that waits or runs can be cancelled")
+            hosted.cancelled, process = True, hosted.process
             if process is None:
-                found.become(CANCELLED, "cancelled before it began")
+                hosted.become(CANCELLED, "cancelled before it began")
         if process is not None:
             process.stop()
-            self.queue.end(found, process)
+            self.queue.end(hosted, process)
         self.queue.changed()
 
     def resume(self, study: str) -> None:
         """Put a study in the queue again; it goes on where it stopped."""
 
         def again() -> HostedStudy:
-            """Return the study, which waits again."""
             with self.queue.lock:
-                found = self.queue.study(study)
-                if found.unreadable:
-                    raise Refused(found.meta.message)
-                if found.meta.state not in {CANCELLED, INTERRUPTED, FAILED}:
-                    raise Refused(f"the study is {found.meta.state}: there is nothing to resume")
-                found.cancelled = False
-                found.become(WAITING)
-                return found
+                hosted = self.queue.study(study)
+                if hosted.unreadable:
+                    raise Refused(hosted.meta.message)
+                if hosted.meta.state not in {CANCELLED, INTERRUPTED, FAILED}:
+                    raise Refused(f"the study is {hosted.meta.state}: there is nothing to resume")
+                hosted.cancelled = False
+                hosted.become(WAITING)
+                return hosted
 
         self.queue.enter(again)
 
     def delete(self, study: str) -> None:
         """Forget a study and all its results; one that runs is stopped."""
-        found, process = self.queue.leave(study)
+        hosted, process = self.queue.leave(study)
         if process is not None:
             process.stop()
             process.close()
         self.opened.forget(lambda key: key == study)
         self.answers.forget(lambda key: key[0] == study)
-        remove(found)
+        remove(hosted)
         self.queue.changed()
 
     def close(self) -> None:
         """Stop what runs, so that it can be resumed, and watch no longer."""
         self.queue.close()
 
-    def _made(self, name: str, document: JobDocument) -> HostedStudy:
+    def _new_study(self, name: str, document: JobDocument) -> HostedStudy:
         check_room(self._folder, _BYTES * document.most, self._limits.studies_bytes)
         folder = StudyFolder(self._folder / new_id())
-        created = datetime.now(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
-        meta = Meta(shown(name), document.kind, created, document.histories)
+        meta = Meta(shown(name), document.kind, _instant(datetime.now(UTC)), document.histories)
         try:
             folder.create(meta, document, self._records)
         except OSError as error:
@@ -163,7 +162,7 @@ def studies_in(folder: Path) -> dict[str, HostedStudy]:
         if path.is_symlink() or not path.is_dir() or not is_id(path.name):
             continue
         meta = StudyFolder(path).ended()
-        if meta is None and _half_made(path):
+        if meta is None and _is_half_written(path):
             shutil.rmtree(path, ignore_errors=True)
             continue
         studies[path.name] = HostedStudy(StudyFolder(path), meta or _unknown(path), unreadable=meta is None)
@@ -171,7 +170,7 @@ def studies_in(folder: Path) -> dict[str, HostedStudy]:
     return studies
 
 
-def _half_made(path: Path) -> bool:
+def _is_half_written(path: Path) -> bool:
     """Return whether its server was killed while it was made: there is nothing in it that anybody would miss."""
     try:
         return not {META, CAMPAIGN} & {each.name for each in path.iterdir()}
@@ -181,8 +180,12 @@ def _half_made(path: Path) -> bool:
 
 def _unknown(path: Path) -> Meta:
     """Return what can be said of a study that is not understood, perhaps of a later version, and is left as it is."""
-    created = datetime.fromtimestamp(path.lstat().st_mtime, UTC).isoformat(timespec="microseconds")
-    return Meta(f"study {path.name}", "unknown", created.replace("+00:00", "Z"), 0, FAILED, _UNREADABLE)
+    created = _instant(datetime.fromtimestamp(path.lstat().st_mtime, UTC))
+    return Meta(f"study {path.name}", "unknown", created, 0, FAILED, _UNREADABLE)
+
+
+def _instant(time: datetime) -> str:
+    return time.isoformat(timespec="microseconds").replace("+00:00", "Z")
 
 
 def remove(study: HostedStudy) -> None:
@@ -196,20 +199,14 @@ def remove(study: HostedStudy) -> None:
 
 def check_room(folder: Path, wanted: int, limit: int) -> None:
     """Refuse a study whose results need more room than there is, or than all studies may take together [byte]."""
-    used = _size(folder)
+    used = 0
+    for where, _, names in os.walk(folder):
+        for name in names:
+            with suppress(OSError):  # others are deleted meanwhile, and are not missed
+                used += Path(where, name).lstat().st_size
     room = min(shutil.disk_usage(folder).free, limit - used)
     if wanted > room:
         raise TooLarge(
             f"the results need about {wanted / 1e6:.1f} MB, and there is room for {max(room, 0) / 1e6:.1f} MB; "
             "delete studies that are no longer needed"
         )
-
-
-def _size(folder: Path) -> int:
-    """Return what the files in a folder take; others are deleted meanwhile, and are not missed."""
-    total = 0
-    for where, _, names in os.walk(folder):
-        for name in names:
-            with suppress(OSError):
-                total += Path(where, name).lstat().st_size
-    return total

@@ -35,10 +35,9 @@ class StudyQueue:
 
     def study(self, name: str) -> HostedStudy:
         """Return a study."""
-        found = self._studies.get(name)
-        if found is None:
+        if name not in self._studies:
             raise NotFound(GONE)
-        return found
+        return self._studies[name]
 
     def enter(self, make: Callable[[], HostedStudy]) -> HostedStudy:
         """Put a study in the queue; its place is kept while it is made."""
@@ -62,9 +61,9 @@ class StudyQueue:
     def leave(self, name: str) -> tuple[HostedStudy, StudyProcess | None]:
         """Take a study out for good, and return it with its process."""
         with self.lock:
-            found = self.study(name)
-            found.cancelled = found.left = True
-            return self._studies.pop(name), found.process
+            study = self.study(name)
+            study.cancelled = study.left = True
+            return self._studies.pop(name), study.process
 
     def end(self, study: HostedStudy, process: StudyProcess) -> None:
         """Note how a study ended, once its process has; nothing if it was noted, or another process computes it."""
@@ -111,13 +110,13 @@ class StudyQueue:
         self._wake.set()
         if self._thread is not None:
             self._thread.join()
-        for found in list(self._studies.values()):
-            process = found.process
+        for study in list(self._studies.values()):
+            process = study.process
             if process is not None:
                 process.stop()
-                self.end(found, process)
-            elif found.meta.state == WAITING:
-                found.become(
+                self.end(study, process)
+            elif study.meta.state == WAITING:
+                study.become(
                     INTERRUPTED, "the server was closed before it began; it begins when the server starts again"
                 )
         self.publish()
@@ -128,7 +127,10 @@ class StudyQueue:
                 for each in self._running():
                     self._tend(each)
                 self._begin_next()
-                unsaved = self._save_again()
+                with self.lock:  # what the disk did not take is written again
+                    for each in self._studies.values():
+                        each.save()
+                    unsaved = not all(each.saved for each in self._studies.values())
                 self.publish()
             except Exception:  # noqa: BLE001 - whatever it is, the studies go on
                 _LOG.exception("the queue of studies stumbled")
@@ -148,13 +150,6 @@ class StudyQueue:
             with self.lock:
                 if each.process is None and each.meta.state == RUNNING:
                     each.become(FAILED, f"its end could not be noted ({type(error).__name__}); resume it")
-
-    def _save_again(self) -> bool:
-        """Write what the disk did not take, and return whether something is still left."""
-        with self.lock:
-            for each in self._studies.values():
-                each.save()
-            return not all(each.saved for each in self._studies.values())
 
     def _running(self) -> list[HostedStudy]:
         with self.lock:

@@ -156,7 +156,7 @@ def spectrum_result(study: OpenStudy) -> dict[str, Any]:
 def map_result(study: OpenStudy) -> dict[str, Any]:
     """Return an overturning map."""
     axes = coordinates(study, y=study.axes[0], x=study.axes[1])
-    values = [np.asarray(axes[side]["values"], dtype=np.float64) for side in ("x", "y")]
+    x, y = (np.asarray(axes[side]["values"], dtype=np.float64) for side in ("x", "y"))
     modes, about = by_restitution(study, "mode"), study.job.job.study.attributes
     return {
         **axes,
@@ -166,7 +166,7 @@ def map_result(study: OpenStudy) -> dict[str, Any]:
         "peak": by_restitution(study, "peak_ratio"),
         "impacts": by_restitution(study, "impacts"),
         "shares": [shares(each) for each in modes],
-        "contours": [contours_of(each >= 0, *values, known=each != -3) for each in modes],
+        "contours": [contours_of(each >= 0, x, y, known=each != -3) for each in modes],
         "body": str(about.get("body", "")),
         "motion": str(about.get("motion", "")),
         "tables": {} if study.job.job.study.search is None else tables_of(study),

@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 from fastapi import APIRouter, Query, Request
 from pydantic import BaseModel, ConfigDict, Field
@@ -16,11 +16,11 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, Response
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from rocking.app.answers import Deleted, JsonAnswer, answered, answered_with_file, attachment_headers
+from rocking.app.answers import MEDIA_TYPES, Deleted, JsonAnswer, answered, answered_with_file, attachment_headers
 from rocking.app.plain_text import safe_name
 from rocking.app.settings import state_of
 from rocking.app.studies.answers import HistoryAnswer, Launched, Studies, StudyFacts, StudyResult
-from rocking.app.studies.finished import MEDIA_TYPES, Crossing, Kind
+from rocking.app.studies.finished import Crossing, Kind
 from rocking.app.studies.manager import StudyManager
 from rocking.app.studies.study_folder import StudyFolder
 from rocking.app.work import heavy
@@ -41,7 +41,7 @@ MOST = 64
 _TRY_LATER = 1013
 
 
-class StudyAsked(BaseModel):
+class StudyRequest(BaseModel):
     """A study to launch."""
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
@@ -52,7 +52,7 @@ class StudyAsked(BaseModel):
     job: Annotated[dict[str, Any], Field(description=_JOB)]
 
 
-class PointAsked(BaseModel):
+class PointRequest(BaseModel):
     """A point of the picture of a study: numbers of values along its axes."""
 
     model_config = ConfigDict(extra="forbid")
@@ -67,10 +67,10 @@ class PointAsked(BaseModel):
 @router.post(
     "", status_code=202, summary="Launch a study", description=_JOB, responses=answered(Launched, "It is in line.", 202)
 )
-async def create_study(request: Request, asked: StudyAsked) -> JsonAnswer:
+async def create_study(request: Request, study: StudyRequest) -> JsonAnswer:
     """Put a study in line."""
-    made = await heavy(request, _studies(request).create, asked.name, asked.job)
-    return JsonAnswer({"id": made}, status_code=202)
+    name = await heavy(request, _studies(request).create, study.name, study.job)
+    return JsonAnswer({"id": name}, status_code=202)
 
 
 @router.get("", summary="All studies", responses=answered(Studies, "The studies."))
@@ -131,7 +131,7 @@ async def study_result(request: Request, study: str) -> Response:
     summary="The history behind a point of its picture",
     responses=answered(HistoryAnswer, "The history."),
 )
-async def study_cell(request: Request, study: str, point: Annotated[PointAsked, Query()]) -> Response:
+async def study_cell(request: Request, study: str, point: Annotated[PointRequest, Query()]) -> Response:
     """Return inputs and response of one history of a finished study."""
     manager = _studies(request)
     manager.finished(study)
@@ -142,7 +142,7 @@ async def study_cell(request: Request, study: str, point: Annotated[PointAsked, 
     "/{study}/export.{kind}",
     summary="A finished study as a file",
     response_class=Response,
-    responses=answered_with_file("The study.", *MEDIA_TYPES.values()),
+    responses=answered_with_file("The study.", *get_args(Kind)),
 )
 async def export_study(
     request: Request,
@@ -188,7 +188,7 @@ def _result(manager: StudyManager, study: str) -> bytes:
         return manager.answers.get((study, "result"), lambda: kept_result(folder) or keep_result(manager.open(folder)))
 
 
-def _cell(manager: StudyManager, study: str, point: PointAsked) -> bytes:
+def _cell(manager: StudyManager, study: str, point: PointRequest) -> bytes:
     from rocking.app.studies.history_at_point import HistoryPlace, cell_of
 
     with _there(manager, study) as folder:
@@ -224,31 +224,24 @@ async def serve(manager: StudyManager, socket: WebSocket) -> None:
     if manager.queue.watchers >= MOST:
         await socket.close(_TRY_LATER)
         return
-    leave = manager.queue.subscribe(tell)
-    gone = None
+    leave, tasks = manager.queue.subscribe(tell), set[asyncio.Task[Any]]()
     try:
         await socket.accept()
-        gone = asyncio.create_task(_gone(socket))
+        tasks.add(gone := asyncio.create_task(_gone(socket)))
         while not gone.done():
             changed.clear()
             await socket.send_text(bytes(JsonAnswer({"studies": manager.overview()}).body).decode())
-            await _either(gone, changed)
+            tasks.add(woken := asyncio.create_task(changed.wait()))
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+            tasks.remove(woken)
+            woken.cancel()
             await asyncio.wait({gone}, timeout=SHORTEST)
     except (WebSocketDisconnect, RuntimeError):  # it went while it was told
         pass
     finally:
         leave()
-        if gone is not None:
-            gone.cancel()
-
-
-async def _either(gone: "asyncio.Task[None]", changed: asyncio.Event) -> None:
-    woken: asyncio.Task[Any] = asyncio.create_task(changed.wait())
-    try:
-        both: set[asyncio.Task[Any]] = {gone, woken}
-        await asyncio.wait(both, return_when=asyncio.FIRST_COMPLETED)
-    finally:
-        woken.cancel()
+        for task in tasks:
+            task.cancel()
 
 
 async def _gone(socket: WebSocket) -> None:

@@ -10,16 +10,13 @@ import time
 from collections import deque
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rocking.app.studies import GRACE
 from rocking.app.studies.study_folder import CANCELLED, DONE, FAILED, INTERRUPTED, LOG, RUNNING, Meta, StudyFolder
 from rocking.campaigns import Estimate
 from rocking.campaigns.status import Speed
 from rocking.errors import RockingError
-
-if TYPE_CHECKING:
-    pass
 
 _WINDOW = 6.0
 _LEAST = 0.15
@@ -99,7 +96,7 @@ class StudyProcess:
 
     def close(self) -> None:
         """Let go of the pipe, once it has ended."""
-        if self._process.stdin is not None:
+        if self._process.stdin:
             self._process.stdin.close()
 
     def refusal(self) -> str:
@@ -115,14 +112,6 @@ class StudyProcess:
             return self.folder.without_paths(refusals[-1])[:_LONGEST_SENTENCE]
         how = "was ended by the system" if (self.code or 0) < 0 else "ended unexpectedly"
         return f"the computation {how}; what was finished is safe, and its log is {Path(self.folder.id) / LOG}"
-
-
-def processors() -> int:
-    """Return how many processors this process may use."""
-    try:
-        return len(os.sched_getaffinity(0))
-    except AttributeError:
-        return os.cpu_count() or 1
 
 
 @dataclass

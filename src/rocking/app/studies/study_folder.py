@@ -6,11 +6,12 @@ import re
 import secrets
 import shutil
 from contextlib import suppress
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from pydantic import TypeAdapter
 
 from rocking.app.errors import NotFound
 from rocking.app.plain_text import record_file_name
@@ -53,6 +54,9 @@ class Meta:
     histories: int  # how many it has
     state: str = WAITING  # one of `STATES`
     message: str = ""  # A sentence about how it ended; empty while there is none
+
+
+_META = TypeAdapter(Meta)
 
 
 @dataclass(frozen=True)
@@ -113,13 +117,10 @@ class StudyFolder:
     def read(self) -> Meta | None:
         """Return what is known of the study; None where there is nothing, or nothing that can be read."""
         try:
-            words = json.loads((self.path / META).read_bytes())
-            meta = Meta(**{item.name: words[item.name] for item in fields(Meta)})
-        except (OSError, ValueError, KeyError, TypeError):
+            meta = _META.validate_json((self.path / META).read_bytes(), strict=True)
+        except (OSError, ValueError):
             return None
-        texts = (meta.name, meta.kind, meta.created, meta.state, meta.message)
-        sound = all(isinstance(text, str) for text in texts) and isinstance(meta.histories, int)
-        return meta if sound and meta.state in STATES else None
+        return meta if meta.state in STATES else None
 
     def status(self) -> tuple[CampaignStatus | None, bool]:
         """Return how far the campaign is (None where nothing has begun), and whether it is complete."""
@@ -137,14 +138,14 @@ class StudyFolder:
             complete = self.status()[1]
         except (RockingError, OSError):
             complete = False
-        words = "" if complete else "the server ended before the study did; what was finished is safe, and it goes on"
-        meta = replace(meta, state=DONE if complete else WAITING, message=words)
+        message = "" if complete else "the server ended before the study did; what was finished is safe, and it goes on"
+        meta = replace(meta, state=DONE if complete else WAITING, message=message)
         with suppress(OSError):  # a full disk: the next start finds out again
             self.write(meta)
         return meta
 
-    def without_paths(self, words: str) -> str:
+    def without_paths(self, sentence: str) -> str:
         """Return a sentence without the paths of this machine in it, which are nobody's business."""
         for folder in (self.campaign, self.path):
-            words = words.replace(f"{folder}{os.sep}", "").replace(str(folder), "the study")
-        return words.removeprefix(f"{JOB}: ")
+            sentence = sentence.replace(f"{folder}{os.sep}", "").replace(str(folder), "the study")
+        return sentence.removeprefix(f"{JOB}: ")

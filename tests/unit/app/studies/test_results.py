@@ -5,7 +5,7 @@ import io
 import json
 import re
 import tomllib
-from typing import Any
+from typing import Any, get_args
 from xml.etree import ElementTree as ET
 
 import h5netcdf
@@ -15,12 +15,12 @@ import pytest
 from scipy.io import loadmat
 
 import rocking as rk
-from rocking.app.answers import JsonAnswer
+from rocking.app.answers import MEDIA_TYPES, JsonAnswer
 from rocking.app.errors import NotFound, Refused
-from rocking.app.inputs import Inputs, question_of
+from rocking.app.inputs import Inputs, problem_from
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
-from rocking.app.studies.finished import MEDIA_TYPES, written
+from rocking.app.studies.finished import Kind, written
 from rocking.app.studies.history_at_point import HistoryPlace, cell_of, stretched_words
 from rocking.app.studies.manager import StudyManager
 from rocking.app.studies.results import contours_of, plain, result_of
@@ -266,7 +266,7 @@ def test_cells_of_every_axis_are_what_the_map_has(name, computed, map_job, recor
         assert cell["stored"]["peak_rotation_rad"] == alone["peak_rotation"][0]
         assert cell["stored"]["mode"] == again["mode"][0]
         assert cell["stored"]["peak_rotation_over_alpha"] == again["peak_ratio"][0]
-        question = question_of(Inputs.model_validate(cell["inputs"]), records)
+        question = problem_from(Inputs.model_validate(cell["inputs"]), records)
         response = question.answer(next(iter(question.restitutions.values())))
         assert response.outcome.code == cell["stored"]["outcome"]
         # the response has samples between the steps of the map: the same accuracy by other steps
@@ -282,7 +282,7 @@ def test_another_cell_is_another_history(computed, map_job, records):
     """A negative control: the inputs of the neighbour do not give the numbers of the cell."""
     study = computed(map_job(map={"x": _axis("frequency_ratio"), "y": {"axis": "pga", "values": [4.0, 4.01]}}))
     inputs = cell_of(study, HistoryPlace.of(study, 2, 1))["inputs"]
-    question = question_of(Inputs.model_validate(inputs), records)
+    question = problem_from(Inputs.model_validate(inputs), records)
     found = question.answer("ked").peak_rotation
     here, there = (cell_of(study, HistoryPlace.of(study, 2, y))["stored"]["peak_rotation_rad"] for y in (1, 0))
     assert found == pytest.approx(abs(here), rel=1e-9)
@@ -293,7 +293,7 @@ def test_sections_change_their_size(computed, map_job, records):
     """A polygon scaled by an axis is told point by point, and rocks as the map says."""
     study = computed(map_job(body=SECTION, map={"x": _axis("semi_diagonal"), "y": _axis("pga")}))
     for _, cell in _cells(study):
-        question = question_of(Inputs.model_validate(cell["inputs"]), records)
+        question = problem_from(Inputs.model_validate(cell["inputs"]), records)
         response = question.answer(next(iter(question.restitutions.values())))
         assert response.outcome.code == cell["stored"]["outcome"]
         assert response.peak_rotation == pytest.approx(abs(cell["stored"]["peak_rotation_rad"]), rel=1e-4)
@@ -314,7 +314,7 @@ def test_cells_of_records_name_the_upload(record, computed, map_job, records):
     study = computed(map_job(motions=motions, map={"x": _axis("width"), "y": _axis("scale")}))
     for _, cell in _cells(study):
         assert cell["inputs"]["motion"]["record"] == record
-        question = question_of(Inputs.model_validate(cell["inputs"]), records)
+        question = problem_from(Inputs.model_validate(cell["inputs"]), records)
         response = question.answer(next(iter(question.restitutions.values())))
         assert response.outcome.code == cell["stored"]["outcome"]
         assert response.peak_rotation == pytest.approx(abs(cell["stored"]["peak_rotation_rad"]), rel=1e-4)
@@ -357,7 +357,7 @@ def test_points_of_other_studies_are_histories_too(kind, computed, map_job, reco
             cell = cell_of(
                 study, HistoryPlace.of(study, x, y, 1, motion=2 if kind in {"rocking-spectrum", "histories"} else 0)
             )
-            question = question_of(Inputs.model_validate(cell["inputs"]), records)
+            question = problem_from(Inputs.model_validate(cell["inputs"]), records)
             response = question.answer(next(iter(question.restitutions.values())))
             assert response.outcome.code == cell["stored"]["outcome"]
             assert response.peak_rotation == pytest.approx(abs(cell["stored"]["peak_rotation_rad"]), rel=1e-4)
@@ -372,7 +372,7 @@ def test_draws_of_a_history_become_its_coefficient(computed, map_job, records):
             assert (cell["inputs"] is not None) == told
             assert cell["difference_rad"] < 1e-4
             if told:
-                question = question_of(Inputs.model_validate(cell["inputs"]), records)
+                question = problem_from(Inputs.model_validate(cell["inputs"]), records)
                 response = question.answer(next(iter(question.restitutions.values())))
                 assert response.outcome.code == cell["stored"]["outcome"]
 
@@ -531,5 +531,5 @@ def test_what_a_map_does_not_have_is_refused(kind, what, restitution, error, stu
 
 def test_every_format_has_a_type():
     """None is sent as a page."""
-    assert all("html" not in kind for kind in MEDIA_TYPES.values())
-    assert set(MEDIA_TYPES) == {"nc", "csv", "mat", "xlsx", "parquet", "toml", "png", "svg", "xml"}
+    assert set(get_args(Kind)) == {"nc", "csv", "mat", "xlsx", "parquet", "toml", "png", "svg", "xml"}
+    assert all("html" not in MEDIA_TYPES[kind] for kind in get_args(Kind))
