@@ -1,5 +1,6 @@
 """Studies that are computed here, without a server and its processes."""
 
+import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from rocking.campaigns.jobs import Job, JobFolder
 Tables = dict[str, Any]
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def map_job() -> Callable[..., Tables]:
     """Return a function that makes the job of a small map, with some tables replaced."""
 
@@ -43,22 +44,32 @@ def long_job(map_job: Callable[..., Tables]) -> Tables:
                    settings={"longest_step": 0.004})  # fmt: skip
 
 
-@pytest.fixture
-def records(tmp_path: Path) -> RecordStore:
-    return RecordStore(tmp_path, Limits())
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the data folder of what is computed here."""
+    return tmp_path_factory.mktemp("data")
 
 
-@pytest.fixture
-def computed(tmp_path: Path, records: RecordStore) -> Callable[[Tables], OpenStudy]:
-    """Return a function that computes a job as the process of a study does, and opens it."""
+@pytest.fixture(scope="module")
+def records(folder: Path) -> RecordStore:
+    return RecordStore(folder, Limits())
+
+
+@pytest.fixture(scope="module")
+def computed(folder: Path, records: RecordStore) -> Callable[[Tables], OpenStudy]:
+    """Return a function that computes a job as the process of a study does, and opens it; the same job once."""
+    known: dict[str, OpenStudy] = {}
 
     def compute(job: Tables) -> OpenStudy:
-        document = JobDocument.of(job)
-        folder = StudyFolder(tmp_path / "studies" / new_id())
-        meta = Meta(document.document.campaign.name, document.kind, "2026-01-01T00:00:00Z", document.histories)
-        folder.create(meta, document, records)
-        JobFolder.create(folder.campaign, Job.read(folder.path / "job.toml")).run(workers=1)
-        return OpenStudy.of(folder)
+        key = json.dumps(job, sort_keys=True)
+        if key not in known:
+            document = JobDocument.of(job)
+            study = StudyFolder(folder / "studies" / new_id())
+            meta = Meta(document.document.campaign.name, document.kind, "2026-01-01T00:00:00Z", document.histories)
+            study.create(meta, document, records)
+            JobFolder.create(study.campaign, Job.read(study.path / "job.toml")).run(workers=1)
+            known[key] = OpenStudy.of(study)
+        return known[key]
 
     return compute
 

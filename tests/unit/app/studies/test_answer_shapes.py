@@ -108,7 +108,7 @@ class Asker:
 
 @pytest.fixture
 def asker(
-    tmp_path: Path, computed: Callable[[Tables], OpenStudy], map_job: Callable[..., Tables]
+    folder: Path, computed: Callable[[Tables], OpenStudy], map_job: Callable[..., Tables]
 ) -> Iterator[tuple[Asker, dict[str, str]]]:
     """Return a script, and the names of finished studies by kind."""
     made = {}
@@ -118,7 +118,7 @@ def asker(
     job = map_job(4, restitution={"model": "ked"})
     job["map"]["refine"] = 1
     made["refined"] = computed(job).id
-    settings = ServerSettings(folder=tmp_path, workers=1)
+    settings = ServerSettings(folder=folder, workers=1)
     app = create_app(settings)
     head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": settings.origin}
     with TestClient(app, base_url=settings.origin, headers=head) as client:
@@ -151,7 +151,7 @@ def _ask_session_and_records(script: Asker) -> None:
     told = {"units": "g", "time_step": 0.01}
     script.ask("GET", "/api/records")
     script.ask("GET", "/api/records/{record}", fill={"record": kept}, params=told)
-    script.ask("POST", "/api/motion", json={"motion": {"record": kept, **told}})
+    script.ask("POST", "/api/motion", json={"motion": {"record": kept, **told}, "points": 20})
     script.ask("DELETE", "/api/records/{record}", fill={"record": kept})
 
 
@@ -163,10 +163,10 @@ def _ask_bodies(script: Asker) -> None:
     outline = b"POLYGON ((0 0, 1 0, 1 3, 0 3, 0 0))"
     script.ask("POST", "/api/body/file", params=words, content=outline, headers=OCTETS)
     for motion in (PULSE, SYNTHETIC):
-        script.ask("POST", "/api/motion", json={"motion": motion})
-    script.ask("POST", "/api/motion", json={"motion": PULSE, "spectrum": False})
+        script.ask("POST", "/api/motion", json={"motion": motion, "points": 20})
+    script.ask("POST", "/api/motion", json={"motion": PULSE, "spectrum": False, "points": 20})
     for inputs in (MOVED, FREE, {**MOVED, "motion": SYNTHETIC}):
-        script.ask("POST", "/api/response", json=inputs)
+        script.ask("POST", "/api/response", json={**inputs, "points": 20})
     text = script.take("POST", "/api/inputs.toml", json=MOVED)
     script.ask("POST", "/api/inputs/read", content=text, headers=OCTETS)
 

@@ -26,10 +26,10 @@ pytestmark = [pytest.mark.timed, pytest.mark.skipif(sys.platform == "win32", rea
 
 Tables = dict[str, Any]
 ORPHAN = """
-import signal, time
+import signal, threading, time
 signal.signal(signal.SIGINT, signal.SIG_IGN)
 from rocking.app.studies import child
-child._end_with_the_server()
+threading.Thread(target=child._end_with_the_server, daemon=True).start()
 print("ready", flush=True)
 time.sleep(30.0)
 """
