@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from browser_pages import link
 
 playwright = pytest.importorskip("playwright.sync_api")
 
@@ -187,3 +188,15 @@ def shot(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
         return target
 
     return taken
+
+
+@pytest.fixture
+def answered(open_page: Callable[..., Any]) -> Callable[..., Any]:
+    """Open the view by a link and wait for its answer."""
+
+    def opened(fragment: str | None = None, **more: Any) -> Any:
+        page = open_page(fragment or link(), **more)
+        page.locator(".response-results[data-drawn]").wait_for()
+        return page
+
+    return opened
