@@ -32,7 +32,7 @@ from rocking.app.studies.study_folder import (
 )
 from rocking.app.work import Remembered
 from rocking.campaigns import disk
-from rocking.dynamics.compiled import processors
+from rocking.dynamics.settings import processors
 
 _RESULTS, _ANSWERS = 256 * 2**20, 64 * 2**20
 """Memory for results and for answers [byte]."""
