@@ -11,7 +11,7 @@ import typer
 from rocking.bodies import Solid
 from rocking.cli import options
 from rocking.cli.arguments import Arguments, document_file, hinted
-from rocking.cli.exports import PICTURES, Export, Exports, picture, write_records
+from rocking.cli.exports import PICTURES, Export, Exports, draw, write_records
 from rocking.cli.numbers import in_unit
 from rocking.cli.page import Page, deliver
 from rocking.conventions import FEET, Foot, g
@@ -35,10 +35,6 @@ class BodyDocument(JobTable):
     restitution: Any = None
 
 
-def _draw(answer: Any) -> Any:
-    return answer.draw()
-
-
 def _stages(answer: Any, path: Path) -> None:
     from rocking.plots import energy_stages_picture, write
 
@@ -46,7 +42,7 @@ def _stages(answer: Any, path: Path) -> None:
 
 
 EXPORTS = {
-    "picture": picture(_draw),
+    "picture": Export(PICTURES, draw),
     "csv": Export((".csv",), lambda answer, path: answer.write_csv(path)),
     "stages": Export(PICTURES, _stages),
 }
@@ -137,26 +133,22 @@ class PlaneAnswer:
     length: str  # unit of lengths
 
     def facts(self) -> dict[str, Any]:
-        """Return everything as plain values."""
         from rocking.reports.body_facts import impact_facts
 
         return impact_facts(self.impact)
 
     def draw(self) -> Any:
-        """Return the body and its coefficients against the published measurements."""
         from rocking.plots import coefficient_picture
 
         return coefficient_picture(self.impact.body, self.impact.tables)
 
     def write_csv(self, path: Path) -> None:
-        """Write the tables as one CSV file."""
         write_records(path, [
             {"onto": foot, **row.as_dict(), "warnings": "; ".join(row.warnings)}
             for foot, rows in self.impact.tables.items() for row in rows
         ])  # fmt: skip
 
     def show(self, page: Page) -> None:
-        """Write body, tables and warnings."""
         from rocking.restitution import energy_balance
 
         impact = self.impact

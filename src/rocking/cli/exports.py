@@ -96,15 +96,26 @@ def _or(endings: Sequence[str]) -> str:
     return endings[0] if len(endings) == 1 else f"{', '.join(endings[:-1])} or {endings[-1]}"
 
 
-def picture(draw: Callable[[Any], Any], needs: str = "") -> Export:
-    """Return the export of a picture, from what draws the figure of an answer."""
+def draw(answer: Any, path: Path) -> None:
+    """Write the picture of an answer."""
+    from rocking.plots import write
 
-    def write(answer: Any, path: Path) -> None:
-        from rocking.plots import write as write_picture
+    write(answer.draw(), path)
 
-        write_picture(draw(answer), path)
 
-    return Export(PICTURES, write, needs)
+def write_dataset(dataset: Any, path: Path) -> None:
+    """Write an `xarray.Dataset` by the ending of a file: as netCDF, or with all its values in rows as CSV."""
+    from rocking.tables import to_netcdf
+
+    if path.suffix.lower() == ".nc":
+        to_netcdf(dataset, path)
+        return
+    dataset = dataset.drop_dims("point", errors="ignore")  # points of a refined map have no row
+    over = dataset["mode"]
+    names = (*over.dims, *dataset.data_vars, *(name for name in dataset.coords if name not in over.dims))
+    rows = {name: dataset[name].broadcast_like(over).transpose(*over.dims).values.ravel() for name in names}
+    # names of restitutions have no unit
+    write_columns(path, {str(name): (row, dataset[name].attrs.get("units", "")) for name, row in rows.items()})
 
 
 def write_columns(path: Path, columns: dict[str, tuple[Any, str]]) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking.cli import options
-from rocking.cli.exports import Export, Exports, picture
+from rocking.cli.exports import PICTURES, Export, Exports, draw
 from rocking.cli.numbers import row, values_table
 from rocking.cli.page import bar, deliver
 from rocking.errors import InvalidValueError
@@ -35,10 +35,6 @@ MOST_IN_PICTURE = 6
 """Restitutions that can be told apart in a picture."""
 
 
-def _draw(answer: "FragilityAnswer") -> Any:
-    return answer.draw()
-
-
 def _csv(answer: "FragilityAnswer", path: Path) -> None:
     from rocking.tables import to_csv
 
@@ -57,7 +53,7 @@ def _of_curves(writer: str, *more: str) -> Any:
 
 
 EXPORTS = {
-    "picture": picture(_draw, "matplotlib"),
+    "picture": Export(PICTURES, draw, "matplotlib"),
     "csv": Export((".csv",), _csv),
     "p58": Export((".csv",), _of_curves("to_csv", "fema-p58")),
     "nrml": Export((".xml",), _of_curves("to_nrml")),

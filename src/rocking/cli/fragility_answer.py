@@ -100,7 +100,6 @@ class FragilityAnswer:
         return Table.of_rows("counted", head, rows)
 
     def draw(self) -> Any:
-        """Return the picture of the analysis."""
         from rocking.plots.labels import axis_label, shown_in
 
         if self.compared is not None:
@@ -124,7 +123,6 @@ class FragilityAnswer:
         return figure
 
     def facts(self) -> dict[str, Any]:
-        """Return everything as plain values."""
         body, first, compared = self.problem.bodies[0], self.first, self.compared
         return {
             "body": repr(body),
@@ -156,7 +154,6 @@ class FragilityAnswer:
         return {"kind": kind, "count": len(names), "names": names}
 
     def show(self, page: Page) -> None:
-        """Write the curves, and what is to be known of them."""
         from rocking.cli.study import body_lines
 
         first, labels = self.first, dict.fromkeys(one.subject.parameters.label for one in self.results.values())

@@ -130,7 +130,6 @@ class InventoryAnswer:
     assessment: "Assessment"
 
     def facts(self) -> Any:
-        """Return everything as plain values."""
         import json
 
         from rocking.reports.inventory_folder import inventory_json
@@ -138,7 +137,6 @@ class InventoryAnswer:
         return json.loads(inventory_json(self.assessment))
 
     def show(self, page: Page) -> None:
-        """Write the ranking."""
         from rich.text import Text
 
         from rocking.studies.inventory.table import SLIDING, advice, model_note, sentence

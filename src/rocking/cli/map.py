@@ -3,13 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from rocking.cli import options
-from rocking.cli.exports import Export, Exports, picture
+from rocking.cli.exports import PICTURES, Export, Exports, draw, write_dataset
 from rocking.cli.page import Page, bar, deliver
 from rocking.spec.document import MapTable
 
@@ -37,47 +36,10 @@ _AXIS = (
 _MEANINGS = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: "overturns without impact"}
 
 
-def _draw(answer: "MapAnswer") -> Any:
-    from rocking.plots.labels import shown_in
-    from rocking.plots.overturning_map import overturning_map_picture
-    from rocking.studies.boundaries import boundary
-
-    problem = answer.problem
-    lines = boundary(
-        problem.bodies[0], problem.motions[0], *answer.axes, problem.restitution,
-        levels=answer.table.refine or 0, tolerance=_LINE, **problem.stated,
-    ) if str(answer.arrays.attributes["engine"]).startswith("fast") else []  # fmt: skip
-    figure = overturning_map_picture(answer.arrays.to_xarray(), lines)
-    for which, axis in zip(("x", "y"), answer.axes, strict=True):
-        if axis.name in answer.written:
-            shown_in(figure.axes[0], which, *answer.unit(axis))
-    return figure
-
-
-def _write_csv(answer: "MapAnswer", path: Path) -> None:
-    import numpy as np
-
-    from rocking.cli.exports import write_columns
-
-    cells = answer.whole.drop_dims("point", errors="ignore")
-    dims = cells["mode"].dims
-    grids = np.meshgrid(*(np.asarray(cells[name].values) for name in dims), indexing="ij")
-    columns = dict(zip(dims, grids, strict=True))
-    columns |= {name: np.asarray(cells[name].transpose(*dims).values) for name in cells.data_vars}
-    # names of restitutions have no unit
-    write_columns(path, {str(n): (values.ravel(), cells[n].attrs.get("units", "")) for n, values in columns.items()})
-
-
-def _write_netcdf(answer: "MapAnswer", path: Path) -> None:
-    from rocking.tables import to_netcdf
-
-    to_netcdf(answer.whole, path)
-
-
 EXPORTS = {
-    "picture": picture(_draw),
-    "csv": Export((".csv",), _write_csv),
-    "netcdf": Export((".nc",), _write_netcdf),
+    "picture": Export(PICTURES, draw),
+    "csv": Export((".csv",), lambda answer, path: write_dataset(answer.whole, path)),
+    "netcdf": Export((".nc",), lambda answer, path: write_dataset(answer.whole, path)),
 }
 
 
@@ -238,8 +200,23 @@ class MapAnswer:
         unit = self.written.get(axis.name, "")
         return (unit, UNITS[axis.unit][unit]) if unit else (axis.unit, 1.0)
 
+    def draw(self) -> Any:
+        from rocking.plots.labels import shown_in
+        from rocking.plots.overturning_map import overturning_map_picture
+        from rocking.studies.boundaries import boundary
+
+        problem = self.problem
+        lines = boundary(
+            problem.bodies[0], problem.motions[0], *self.axes, problem.restitution,
+            levels=self.table.refine or 0, tolerance=_LINE, **problem.stated,
+        ) if str(self.arrays.attributes["engine"]).startswith("fast") else []  # fmt: skip
+        figure = overturning_map_picture(self.arrays.to_xarray(), lines)
+        for which, axis in zip(("x", "y"), self.axes, strict=True):
+            if axis.name in self.written:
+                shown_in(figure.axes[0], which, *self.unit(axis))
+        return figure
+
     def facts(self) -> dict[str, Any]:
-        """Return everything as plain values."""
         from rocking.cli.study import motion_facts
 
         arrays, problem, islands = self.arrays, self.problem, self.islands
@@ -306,7 +283,6 @@ class MapAnswer:
         return {"x": [float(x.min()), float(x.max())], "y": [float(y.min()), float(y.max())], "first": first}
 
     def show(self, page: Page) -> None:
-        """Write the map on a page."""
         from rocking.cli.study import body_lines
         from rocking.conventions import percent
 

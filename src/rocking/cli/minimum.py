@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking.cli import options
-from rocking.cli.exports import Export, Exports, picture, write_columns
+from rocking.cli.exports import PICTURES, Export, Exports, draw, write_columns
 from rocking.cli.numbers import beside_g, in_unit, quantity
 from rocking.cli.page import Page, bar, deliver, sentence
 from rocking.conventions import ACCELERATION_UNITS, g, percent
@@ -23,25 +23,23 @@ _SPOKEN = 4
 """Stretches of overturning that a sentence names."""
 
 
-def _draw(answer: "MinimumAnswer") -> Any:
-    from rocking.plots.transitions import transitions_picture
+_COLUMNS = {
+    "acceleration_m_s2": "acceleration [m/s2]", "acceleration_g": "acceleration [g]", "ratio": "ratio [1]",
+    "scale": "scale [1]", "width_m_s2": "width [m/s2]", "mode_below": "mode below [1]", "mode_above": "mode above [1]",
+}  # fmt: skip
+"""What there is of every transition: key in JSON, and head in CSV; width: of its bracket, ratio: over what lifts."""
 
-    problem = answer.problem
-    subject = (problem.bodies[0], problem.motions[0], problem.restitution)
-    return transitions_picture(answer.found, *subject, **problem.stated)
+
+def _columns(found: "Transitions") -> tuple[Any, ...]:
+    return found.acceleration, found.acceleration / g, found.ratio, found.scale, found.width, *found.modes.T
 
 
 def _write_csv(answer: "MinimumAnswer", path: "Path") -> None:
-    found = answer.found
-    columns = {
-        "acceleration [m/s2]": found.acceleration, "acceleration [g]": found.acceleration / g,
-        "ratio [1]": found.ratio, "scale [1]": found.scale, "width [m/s2]": found.width,
-        "mode below [1]": found.modes[:, 0], "mode above [1]": found.modes[:, 1],
-    }  # fmt: skip
-    write_columns(path, {name: (values, "") for name, values in columns.items()})
+    columns = zip(_COLUMNS.values(), _columns(answer.found), strict=True)
+    write_columns(path, {name: (values, "") for name, values in columns})
 
 
-EXPORTS = {"picture": picture(_draw), "csv": Export((".csv",), _write_csv)}
+EXPORTS = {"picture": Export(PICTURES, draw), "csv": Export((".csv",), _write_csv)}
 
 
 def minimum(
@@ -101,13 +99,19 @@ class MinimumAnswer:
     length: str  # units of lengths and of accelerations
     acceleration: str
 
+    def draw(self) -> Any:
+        from rocking.plots.transitions import transitions_picture
+
+        problem = self.problem
+        subject = (problem.bodies[0], problem.motions[0], problem.restitution)
+        return transitions_picture(self.found, *subject, **problem.stated)
+
     @property
     def label(self) -> str:
         """The restitution in words."""
         return str(getattr(self.problem.restitution, "label", self.problem.restitution))
 
     def facts(self) -> dict[str, Any]:
-        """Return everything as plain values; modes: -2 not lifted, -1 survives, n >= 0 overturns after n impacts."""
         from rocking.cli.study import motion_facts
 
         found, problem = self.found, self.problem
@@ -136,7 +140,6 @@ class MinimumAnswer:
         }
 
     def show(self, page: Page) -> None:
-        """Write all transitions on a page."""
         from rocking.cli.study import body_lines
 
         problem, found, unit = self.problem, self.found, beside_g(self.acceleration)
@@ -188,19 +191,9 @@ def _g(acceleration: float) -> str:
 
 
 def transitions_facts(found: "Transitions") -> list[dict[str, float | int]]:
-    """Return every transition as plain values; width: of its bracket, ratio: over what lifts the body."""
-    return [
-        {
-            "acceleration_m_s2": float(found.acceleration[k]),
-            "acceleration_g": float(found.acceleration[k]) / g,
-            "ratio": float(found.ratio[k]),
-            "scale": float(found.scale[k]),
-            "width_m_s2": float(found.width[k]),
-            "mode_below": int(found.modes[k, 0]),
-            "mode_above": int(found.modes[k, 1]),
-        }
-        for k in range(len(found))
-    ]
+    """Return every transition as plain values."""
+    rows = zip(*(values.tolist() for values in _columns(found)), strict=True)
+    return [dict(zip(_COLUMNS, row, strict=True)) for row in rows]
 
 
 def _row(one: dict[str, float | int], size: float) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ import typer
 
 from rocking import checks
 from rocking.cli import options
-from rocking.cli.exports import Export, Exports, picture
+from rocking.cli.exports import PICTURES, Export, Exports, draw
 from rocking.cli.numbers import beside_g, in_unit
 from rocking.cli.page import Page, deliver
 from rocking.conventions import ACCELERATION_UNITS, g
@@ -20,12 +20,6 @@ if TYPE_CHECKING:
     from rocking.reports.motion_facts import MotionAnswer
 
 _MOST_PERIODS = 1000
-
-
-def _draw(answer: "MotionPage") -> Any:
-    from rocking.plots import ground_motion_picture
-
-    return ground_motion_picture(answer.motion.motion)
 
 
 def _write_csv(answer: "MotionPage", path: Path) -> None:
@@ -49,7 +43,7 @@ def _write_csv(answer: "MotionPage", path: Path) -> None:
     to_csv(Table("sample", {name: Column(values, "") for name, values in columns.items()}), path, blank=False)
 
 
-EXPORTS = {"picture": picture(_draw), "csv": Export((".csv",), _write_csv)}
+EXPORTS = {"picture": Export(PICTURES, draw), "csv": Export((".csv",), _write_csv)}
 
 
 def motion(
@@ -116,8 +110,12 @@ class MotionPage:
     motion: "MotionAnswer"
     acceleration: str
 
+    def draw(self) -> Any:
+        from rocking.plots import ground_motion_picture
+
+        return ground_motion_picture(self.motion.motion)
+
     def facts(self) -> dict[str, Any]:
-        """Return everything as plain values."""
         from rocking.reports.motion_facts import motion_facts, spectrum_facts
 
         motion = self.motion
@@ -125,7 +123,6 @@ class MotionPage:
         return {**facts, "spectrum": spectrum_facts(motion.spectrum)}
 
     def show(self, page: Page) -> None:
-        """Write what it is, its intensity measures and its spectrum."""
         unit, spectrum = beside_g(self.acceleration), self.motion.spectrum
         page.line(self.motion.motion.name, "bold")
         for name, value in self._head(unit):

@@ -31,27 +31,20 @@ def answer_of(problem: ResponseProblem, length: str, acceleration: str, *, liste
     response = problem.answer()
     if response.outcome is Outcome.FAILED:
         raise RockingError(f"there is no response: {response.status.value}")
-    if problem.mechanics == "space":
-        return SpaceAnswer(problem, response, length)
-    if problem.mechanics == "contact":
-        return ContactAnswer(problem, response, length)
-    return RockingAnswer(problem, response, _others(problem, response, listed=listed), length, acceleration)
-
-
-def _others(problem: ResponseProblem, response: Any, *, listed: bool) -> dict[str, Any]:
-    """Return by model the response, or why the model has none for this body."""
+    if problem.mechanics != "rocking":
+        return (SpaceAnswer if problem.mechanics == "space" else ContactAnswer)(problem, response, length)
     rivals = dict(list(problem.restitutions.items())[1:])
     if not listed:
         from rocking.evidence._coefficient_table import default_models
 
         rivals = {model.label: model for model in default_models() if model.label != response.parameters.label}
-    others = {}
+    others: dict[str, Any] = {}
     for name, law in rivals.items():
         try:
             others[name] = problem.answer(law)
         except InvalidValueError as error:
             others[name] = str(error)
-    return others
+    return RockingAnswer(problem, response, others, length, acceleration)
 
 
 def _moved(response: Any) -> str:
@@ -60,12 +53,13 @@ def _moved(response: Any) -> str:
     return f"{'' if response.scale == 1.0 else f'{response.scale:g} times '}{response.motion.name}"
 
 
-def _some(page: Page, rows: Any, most: int, head: Sequence[str], cells: Any, left: Sequence[str]) -> None:
-    """Write the first rows of a table, and how many more there are."""
-    if not len(rows):
+def _first(page: Page, columns: dict[str, str], rows: Sequence[Sequence[Any]], most: int = _FIRST) -> None:
+    """Write the first rows of a table, and how many more there are; columns: formats by their heads, none of text."""
+    if not rows:
         return
     page.line()
-    page.table(head, [cells(k, row) for k, row in enumerate(rows[:most])], left, dense=True)
+    cells = [[f"{value:{how}}" for value, how in zip(row, columns.values(), strict=True)] for row in rows[:most]]
+    page.table(list(columns), cells, [name for name, how in columns.items() if not how], dense=True)
     if len(rows) > most:
         page.line(f"... and {len(rows) - most} more; --json has them all", style="dim")
 
@@ -81,13 +75,11 @@ class RockingAnswer:
     acceleration: str
 
     def draw(self) -> Any:
-        """Return its picture."""
         from rocking.plots.response import response_picture
 
         return response_picture(self.response, self.problem.assumed_friction)
 
     def facts(self) -> dict[str, Any]:
-        """Return everything as plain values."""
         from rocking.reports.response_facts import other_facts, response_facts
 
         facts = response_facts(self.response, self.problem.assumed_friction)
@@ -95,15 +87,15 @@ class RockingAnswer:
         return facts
 
     def show(self, page: Page) -> None:
-        """Write body, motion, outcome, impacts, doubts, and what other models say."""
         from rocking.reports.response_facts import ModelAgreement
 
         response = self.response
         page.facts(self._head())
         page.line()
         page.line(sentence(response.summary), "bold")
-        head = ("impact", "time [s]", "velocity before [rad/s]", "after [rad/s]", "r", "onto")
-        _some(page, response.impacts.tolist(), _FIRST_IMPACTS, head, _impact_row, ("onto",))
+        impacts = [(k, *row) for k, row in enumerate(response.impacts.tolist(), start=1)]
+        speeds = {"velocity before [rad/s]": "+.6f", "after [rad/s]": "+.6f"}
+        _first(page, {"impact": "d", "time [s]": ".6f", **speeds, "r": ".6f", "onto": ""}, impacts, _FIRST_IMPACTS)
         page.line()
         page.facts(self._measures(), 16)
         doubts = response.doubts(self.problem.assumed_friction)
@@ -159,11 +151,6 @@ class RockingAnswer:
         ]
 
 
-def _impact_row(k: int, row: Any) -> tuple[str, ...]:
-    time, before, after, r, onto = row
-    return str(k + 1), f"{time:.6f}", f"{before:+.6f}", f"{after:+.6f}", f"{r:.6f}", onto
-
-
 def _model_row(name: str, response: Any) -> tuple[str, ...]:
     if isinstance(response, str):
         return name, "", "not for this body", "", "", ""
@@ -193,13 +180,11 @@ class ContactAnswer:
     length: str
 
     def draw(self) -> Any:
-        """Return its picture."""
         from rocking.plots.regimes import regimes_picture
 
         return regimes_picture(self.response)
 
     def facts(self) -> dict[str, Any]:
-        """Return everything as plain values."""
         from rocking.reports.response_facts import finite, moved_facts, still_rocking_facts
 
         response, law, energy = self.response, self.response.law, self.response.energy
@@ -239,15 +224,18 @@ class ContactAnswer:
         }
 
     def show(self, page: Page) -> None:
-        """Write contact, outcome, modes, impacts and measures."""
         response, length = self.response, self.length
         page.facts(self._head())
         page.line()
         page.line(sentence(response.summary), "bold")
-        head = ("from [s]", "to [s]", "mode", "feet", f"slid [{length}]")
-        _some(page, response.regimes.tolist(), _FIRST, head, self._mode_row, ("mode", "feet"))
-        names = ("impact [s]", "feet", "velocity before [rad/s]", "after [rad/s]", "lost [J]", "feet slide")
-        _some(page, response.impacts.tolist(), _FIRST, names, _contact_impact_row, ("feet",))
+        modes = [
+            (start, end, Regime[mode].value, feet, f"{slid / LENGTH_UNITS[length]:+.6f}" if slid else "")
+            for start, end, mode, feet, _, slid in response.regimes.tolist()
+        ]
+        _first(page, {"from [s]": ".6f", "to [s]": ".6f", "mode": "", "feet": "", f"slid [{length}]": "s"}, modes)
+        impacts = [(*row[:4], lost, "yes" if slips else "") for *row, lost, slips in response.impacts.tolist()]
+        speeds = {"velocity before [rad/s]": "+.6f", "after [rad/s]": "+.6f"}
+        _first(page, {"impact [s]": ".6f", "feet": "", **speeds, "lost [J]": ".4g", "feet slide": "s"}, impacts)
         page.line()
         page.facts(self._measures(), 16)
 
@@ -265,11 +253,6 @@ class ContactAnswer:
             ("restitution", imposed),
         ]
 
-    def _mode_row(self, _: int, row: Any) -> tuple[str, ...]:
-        start, end, regime, feet, _slip, distance = row
-        slid = f"{distance / LENGTH_UNITS[self.length]:+.6f}" if distance else ""
-        return f"{start:.6f}", f"{end:.6f}", Regime[regime].value, feet, slid
-
     def _measures(self) -> list[tuple[str, str]]:
         response, energy, length = self.response, self.response.energy, self.length
         fell = response.outcome is Outcome.OVERTURNED
@@ -284,11 +267,6 @@ class ContactAnswer:
         ]
 
 
-def _contact_impact_row(_: int, row: Any) -> tuple[str, ...]:
-    time, feet, before, after, *_impulses, lost, slips = row
-    return f"{time:.6f}", feet, f"{before:+.6f}", f"{after:+.6f}", f"{lost:.4g}", "yes" if slips else ""
-
-
 @dataclass(frozen=True)
 class SpaceAnswer:
     """A response of a body in space."""
@@ -298,13 +276,11 @@ class SpaceAnswer:
     length: str
 
     def draw(self) -> Any:
-        """Return its picture."""
         from rocking.plots.spatial import spatial_picture
 
         return spatial_picture(self.response)
 
     def facts(self) -> dict[str, Any]:
-        """Return everything as plain values."""
         from rocking.cli.solids import base_facts, body_facts
         from rocking.reports.response_facts import finite
 
@@ -346,7 +322,6 @@ class SpaceAnswer:
         }
 
     def show(self, page: Page) -> None:
-        """Write body, motion, outcome, contacts, impacts and measures."""
         from rocking.cli.solids import show_body
 
         response = self.response
@@ -355,21 +330,14 @@ class SpaceAnswer:
         page.facts([("restitution", response.law.label)], 16)
         page.line()
         page.line(sentence(response.summary), "bold")
-        head = ("from [s]", "to [s]", "contact", "vertices")
-        _some(page, response.intervals, _FIRST, head, _interval_row, ("contact", "vertices"))
-        names = ("impact [s]", "energy before [J]", "after [J]", "impulse [N s]", "stays", "vertices")
-        _some(page, response.impacts.tolist(), _FIRST, names, _space_impact_row, ("stays", "vertices"))
+        contacts = [
+            (*times, contact.value, "-".join(map(str, points))) for *times, contact, points in response.intervals
+        ]
+        _first(page, {"from [s]": ".6f", "to [s]": ".6f", "contact": "", "vertices": ""}, contacts)
+        impacts = [(*row[:4], *row[5:]) for row in response.impacts.tolist()]
+        sizes = {"energy before [J]": ".5g", "after [J]": ".5g", "impulse [N s]": ".5g"}
+        _first(page, {"impact [s]": ".6f", **sizes, "stays": "", "vertices": ""}, impacts)
         page.line()
         fell = response.outcome is Outcome.OVERTURNED
         peak = "it overturned" if fell else f"{math.degrees(response.peak_tilt):.6g} deg"
         page.facts([("peak tilt", peak), ("energy closure", _CLOSURE.format(response.energy.closure))], 16)
-
-
-def _interval_row(_: int, row: Any) -> tuple[str, ...]:
-    start, end, contact, vertices = row
-    return f"{start:.6f}", f"{end:.6f}", contact.value, "-".join(map(str, vertices))
-
-
-def _space_impact_row(_: int, row: Any) -> tuple[str, ...]:
-    time, before, after, impulse, _pull, contact, vertices = row
-    return f"{time:.6f}", f"{before:.5g}", f"{after:.5g}", f"{impulse:.5g}", contact, vertices

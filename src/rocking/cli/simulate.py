@@ -11,21 +11,17 @@ from rocking import plausibility
 from rocking.bodies import Body
 from rocking.cli import options
 from rocking.cli.arguments import Arguments, document_file, hinted, parsed_sets
-from rocking.cli.exports import Export, Exports, picture
+from rocking.cli.exports import PICTURES, Export, Exports, draw
 from rocking.cli.page import deliver
 from rocking.errors import InvalidValueError
 from rocking.spec.document import ResponseDocument, ResponseTable
-from rocking.spec.reading import CommandFiles, checked, located, tables_in
-from rocking.spec.response import ResponseJob
+from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
+from rocking.spec.response import response_problem
 
 if TYPE_CHECKING:
     from rocking.spec.response import ResponseProblem
 
 _TABLES = ("body", "motion", "response", "restitution", "settings")
-
-
-def _draw(answer: Any) -> Any:
-    return answer.draw()
 
 
 def _animate(answer: Any, path: Path) -> None:
@@ -48,7 +44,7 @@ def _animate(answer: Any, path: Path) -> None:
 
 
 EXPORTS = {
-    "picture": picture(_draw),
+    "picture": Export(PICTURES, draw),
     "animation": Export((".html", ".gif"), _animate),
     "csv": Export((".csv",), lambda answer, path: answer.response.to_csv(path)),
     "mat": Export((".mat",), lambda answer, path: answer.response.to_mat(path)),
@@ -86,7 +82,7 @@ def simulate(
             tables = dict(tables_in(file) or {})
             for name, keys in parsed_sets(sets, _TABLES).items():
                 tables[name] = {**tables.get(name, {}), **keys}
-            problem = ResponseJob.of(checked(ResponseDocument, tables), file.parent).problem
+            problem = response_problem(checked(ResponseDocument, tables), InputFiles(file.parent))
     else:
         arguments = Arguments(context, *_TABLES)
         length, acceleration = arguments.length, arguments.acceleration
@@ -126,7 +122,7 @@ def _problem(arguments: Arguments) -> "ResponseProblem":
             motion = arguments.components(motions) if arguments.solid else arguments.one_motion(motions)
             scale = arguments.options["scale"] if arguments.spelt("scale") else None
             tables["motion"] = {**motion, **arguments.table("motion", {"scale": scale}, keys={"scale"})}
-        return ResponseJob.of(checked(ResponseDocument, tables), CommandFiles(Path())).problem
+        return response_problem(checked(ResponseDocument, tables), CommandFiles(Path()))
 
 
 def _restitution(arguments: Arguments) -> dict[str, Any]:

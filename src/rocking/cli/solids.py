@@ -79,7 +79,6 @@ class SolidAnswer:
         return [ROUND_BASE] if isinstance(self.solid.base, RoundBase) else []
 
     def facts(self) -> dict[str, Any]:
-        """Return everything as plain values."""
         return {
             "body": body_facts(self.solid),
             "base": base_facts(self.solid.base),
@@ -91,19 +90,16 @@ class SolidAnswer:
         }
 
     def draw(self) -> Any:
-        """Return the body on its base."""
         from rocking.plots.solid import solid_picture
 
         return solid_picture(self.solid)
 
     def write_csv(self, path: Path) -> None:
-        """Write edges and coefficients as one CSV file."""
         from rocking.cli.exports import write_records
 
         write_records(path, [_record(edge, name) for edge in self.edges for name in edge.results])
 
     def show(self, page: Page) -> None:
-        """Write body, repairs, base, and edges with the coefficients of every model."""
         show_body(page, self.solid, self.length)
         page.line()
         numbered = not isinstance(self.solid.base, RoundBase)

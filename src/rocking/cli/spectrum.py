@@ -2,13 +2,12 @@
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from rocking.cli import options
-from rocking.cli.exports import Export, Exports, picture, write_columns
+from rocking.cli.exports import PICTURES, Export, Exports, draw, write_dataset
 from rocking.cli.numbers import row, values_table
 from rocking.cli.page import Page, bar, deliver
 from rocking.errors import InvalidValueError
@@ -21,28 +20,10 @@ _MOST = 10_000_000
 """Histories; more are a campaign."""
 
 
-def _draw(answer: "SpectrumAnswer") -> Any:
-    from rocking.plots.rocking_spectrum import rocking_spectrum_picture
-
-    return rocking_spectrum_picture(answer.dataset)
-
-
-def _write_csv(answer: "SpectrumAnswer", path: Path) -> None:
-    table = answer.dataset.to_dataframe().reset_index()
-    units = {name: answer.dataset[name].attrs.get("units", "") for name in table.columns}
-    write_columns(path, {str(name): (table[name], units[name]) for name in table.columns})
-
-
-def _write_netcdf(answer: "SpectrumAnswer", path: Path) -> None:
-    from rocking.tables import to_netcdf
-
-    to_netcdf(answer.dataset, path)
-
-
 EXPORTS = {
-    "picture": picture(_draw),
-    "csv": Export((".csv",), _write_csv),
-    "netcdf": Export((".nc",), _write_netcdf),
+    "picture": Export(PICTURES, draw),
+    "csv": Export((".csv",), lambda answer, path: write_dataset(answer.dataset, path)),
+    "netcdf": Export((".nc",), lambda answer, path: write_dataset(answer.dataset, path)),
 }
 
 
@@ -131,8 +112,12 @@ class SpectrumAnswer:
 
     dataset: "xr.Dataset"
 
+    def draw(self) -> Any:
+        from rocking.plots.rocking_spectrum import rocking_spectrum_picture
+
+        return rocking_spectrum_picture(self.dataset)
+
     def facts(self) -> dict[str, Any]:
-        """Return everything as plain values, by motion, slenderness and period."""
         found = self.dataset
         return {
             "motions": [str(name) for name in found["motion"].values.tolist()],
@@ -162,7 +147,6 @@ class SpectrumAnswer:
         ]
 
     def show(self, page: Page) -> None:
-        """Write a line for every curve."""
         found, curves = self.dataset, self.curves()
         periods, sizes = found["period"].values, found["semi_diagonal"].values
         page.line(f"restitution:  {found.attrs['restitution']}")

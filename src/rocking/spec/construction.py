@@ -1,7 +1,5 @@
 """Bodies, motions and restitutions, made from the tables that describe them."""
 
-import json
-import tomllib
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rocking import checks
 from rocking.bodies import Block, Body
 from rocking.bodies.formats import read_body
-from rocking.bodies.formats.body_file import body_from_toml
+from rocking.bodies.formats.body_file import body_from_tables
 from rocking.bodies.formats.words import suggestion
 from rocking.bodies.solid import Solid
 from rocking.checks import length_unit
@@ -20,7 +18,7 @@ from rocking.motions.formats.reader import read_motion
 from rocking.motions.pulses import pulse
 from rocking.restitution import RestitutionModel, model
 from rocking.restitution.from_file import file_of, model_in_file
-from rocking.spec.reading import InputFiles, located
+from rocking.spec.reading import InputFiles, located, tables_in
 from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
 
 if TYPE_CHECKING:
@@ -30,36 +28,35 @@ if TYPE_CHECKING:
 MOST_IN_MEMORY = 100_000
 """Synthetic motions that may be put into a list with others; a set of one family alone is made piece by piece."""
 
-_INLINE = "table"
 _OUTSIDE = ("units", "name", "note")
 
 
 def restitutions_of(
-    table: "RestitutionTable", seed: int, bodies: Sequence[Body] = (), inputs: InputFiles | None = None
+    table: "RestitutionTable", seed: int, bodies: Sequence[Body | Solid] = (), inputs: InputFiles | None = None
 ) -> dict[str, Any]:
     """Return models, coefficients, pairs by side or laws, as `simulate` takes them, by their label."""
+    in_space = any(isinstance(body, Solid) for body in bodies)
     with located("restitution"):
-        texts = [*([table.model] if table.model else []), *(table.models or [])]
-        pairs = [_model_or_coefficient(text, inputs) for text in texts]
-        numbers = [*([] if table.value is None else [table.value]), *(table.values or [])]
-        pairs += [(f"{value!r}", value) for value in numbers]
+        if in_space and (table.distribution is not None or table.left is not None):
+            raise InvalidValueError("a body in space takes model, models, value or values")
+        pairs: list[tuple[str, Any]] = []
+        for text in table.models or ([table.model] if table.model else []):
+            try:
+                pairs.append((text, float(text)))
+            except ValueError:
+                law = text if in_space else _model(text, inputs)
+                pairs.append((law if isinstance(law, str) else law.label, law))
+        pairs += [
+            (f"{value!r}", value) for value in [*([] if table.value is None else [table.value]), *(table.values or [])]
+        ]
         if table.left is not None:
             pairs.append((f"left {table.left!r}, right {table.right!r}", {"left": table.left, "right": table.right}))
         if table.distribution is not None:
             pairs.append(_drawn(table.distribution, seed, bodies, inputs))
         labels = [label for label, _ in pairs]
-        twice = [label for label in labels if labels.count(label) > 1]
-        if twice:
-            raise InvalidValueError(f"{twice[0]} is given twice")
+        if twice := next((label for label in labels if labels.count(label) > 1), None):
+            raise InvalidValueError(f"{twice} is given twice")
         return dict(pairs)
-
-
-def _model_or_coefficient(text: str, inputs: InputFiles | None) -> tuple[str, Any]:
-    try:
-        return text, float(text)
-    except ValueError:
-        chosen = _model(text, inputs)
-        return chosen.label, chosen
 
 
 def _model(word: str, inputs: InputFiles | None) -> RestitutionModel:
@@ -69,7 +66,7 @@ def _model(word: str, inputs: InputFiles | None) -> RestitutionModel:
 
 
 def _drawn(
-    table: "RandomTable", seed: int, bodies: Sequence[Body], inputs: InputFiles | None
+    table: "RandomTable", seed: int, bodies: Sequence[Any], inputs: InputFiles | None
 ) -> tuple[str, Any]:  # fmt: skip
     from rocking.dynamics.impact_laws import RandomRestitution
     from rocking.dynamics.parameters import cut_of, cut_words
@@ -93,22 +90,22 @@ def _drawn(
     return f"drawn per {table.each}: {words}, seed {seed}{cut_words(most)}", drawn
 
 
-def _posterior(table: "RandomTable", seed: int, bodies: Sequence[Body]) -> tuple[Any, str]:
+def _posterior(table: "RandomTable", seed: int, bodies: Sequence[Any]) -> tuple[Any, str]:
     """Return the law that the measurements make of the body: all quantiles, or a sample of so many values."""
     from rocking.evidence._restitution_distribution import restitution_distribution
 
     if len(bodies) != 1:
-        told = f"{len(bodies)} bodies: make a job of each" if bodies else "no [body]; give values instead"
-        raise InvalidValueError(f"distribution.posterior is of one body, and the job has {told}")
-    found = restitution_distribution(bodies[0])
-    words = "posterior of the measurements"
-    if found.extrapolated:
-        words += " (extrapolated in slenderness)"
-    law = found.per_history(seed) if table.each == "history" else found.per_impact(seed)
+        many = f"{len(bodies)} bodies: make a job of each" if bodies else "no [body]; give values instead"
+        raise InvalidValueError(f"distribution.posterior is of one body, and the job has {many}")
+    distribution = restitution_distribution(bodies[0])
+    label = "posterior of the measurements"
+    if distribution.extrapolated:
+        label += " (extrapolated in slenderness)"
+    law = distribution.per_history(seed) if table.each == "history" else distribution.per_impact(seed)
     if table.count is None:
-        return law, words
-    values = {foot: found.sample(table.count, seed, foot) for foot in FEET}
-    return replace(type(law).of_sample(values, seed=seed), cut=law.cut), f"{table.count} values of the {words}"
+        return law, label
+    values = {foot: distribution.sample(table.count, seed, foot) for foot in FEET}
+    return replace(type(law).of_sample(values, seed=seed), cut=law.cut), f"{table.count} values of the {label}"
 
 
 def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:
@@ -123,20 +120,23 @@ def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Soli
     """Return the body that a table describes, plane or in space."""
     if "file" in table:
         return _body_in_file(table, inputs)
-    if {"slenderness_angle", "semi_diagonal"} & set(table):
+    sizes, angle = {"width", "height"} & set(table), {"slenderness_angle", "semi_diagonal"} & set(table)
+    if angle and sizes:
+        raise InvalidValueError("give width and height, or slenderness_angle and semi_diagonal, not both")
+    if angle:
         return _from_angle(table)
-    if {"width", "height"} & set(table):
+    if sizes:
         own = {key: value for key, value in table.items() if key not in _OUTSIDE}
         table = {**{key: value for key, value in table.items() if key in _OUTSIDE}, "block": own}
-    text = "\n".join(f"{_quoted(key)} = {_as_toml(value)}" for key, value in table.items() if value is not None)
+    tables = {key: value for key, value in table.items() if value is not None}
     if inputs is not None:
-        _note_outlines(text, ".", inputs)
+        _note_outlines(tables, ".", inputs)
     try:
-        return body_from_toml(text, name=_INLINE, folder=None if inputs is None else inputs.folder)
+        return body_from_tables(tables, None if inputs is None else inputs.folder)
     except MissingExtraError:
         raise
     except RockingError as error:
-        raise InvalidValueError(str(error).removeprefix(f"{_INLINE}: ")) from error
+        raise InvalidValueError(str(error)) from error
 
 
 _BESIDE_FILE = ("units", "density", "up", "fill_holes", "base_tolerance")
@@ -151,8 +151,7 @@ def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | So
     if inputs is None:
         raise InvalidValueError(f"names the file {table['file']!r:.60}, but a body cannot name files here")
     path = inputs.file(table["file"])
-    if path.suffix.lower() == ".toml" and path.is_file():
-        _note_outlines(path.read_text("utf-8-sig", "replace"), str(Path(table["file"]).parent), inputs)
+    _note_outlines(tables_in(path) or {}, str(Path(table["file"]).parent), inputs)
     if options.get("base_tolerance") is not None:
         options["base_tolerance"] *= length_unit(options.get("units") or "m")
     return read_body(path, **options)
@@ -173,33 +172,16 @@ def _from_angle(table: dict[str, Any]) -> Body:
     return Block.from_angle(table["slenderness_angle"], sizes["semi_diagonal"] * scale, **options)
 
 
-def _note_outlines(text: str, folder: str, inputs: InputFiles) -> None:
-    """Note the files of outlines that a body file names; what is wrong with it is said when it is read."""
+def _note_outlines(tables: dict[str, Any], folder: str, inputs: InputFiles) -> None:
+    """Note the files of outlines that a body names; what is wrong with it is said when it is read."""
     try:
-        regions = tomllib.loads(text).get("section", {}).get("region", [])
+        regions = tables.get("section", {}).get("region", [])
         names = [region[key] for region in regions for key in ("geojson", "dxf") if key in region]
-    except (ValueError, AttributeError, TypeError):
+    except (AttributeError, TypeError):
         return
     for name in names:
         if isinstance(name, str):
             inputs.file((Path(folder) / name).as_posix())
-
-
-def _quoted(value: Any) -> str:
-    return json.dumps(value, ensure_ascii=False)  # the halves of a pair would be no TOML
-
-
-def _as_toml(value: Any) -> str:
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{_quoted(k)} = {_as_toml(v)}" for k, v in value.items()) + "}"
-    if isinstance(value, list):
-        return "[" + ", ".join(_as_toml(item) for item in value) + "]"
-    if isinstance(value, float):
-        return repr(value)
-    try:
-        return _quoted(value)
-    except TypeError:
-        return str(value)  # dates: the body reader refuses them by name
 
 
 def motions_of(tables: "list[MotionTable]", inputs: InputFiles) -> MotionSet:
@@ -220,12 +202,15 @@ def motions_of(tables: "list[MotionTable]", inputs: InputFiles) -> MotionSet:
 def _motions(table: "MotionTable", inputs: InputFiles) -> "list[Motion] | SyntheticSet":
     if table.synthetic is not None:
         assert table.count is not None  # the table refuses to be without
-        levels = {"pga": table.pga, "pgv": table.pgv, "time_step": table.time_step}
-        return SyntheticSet(table.synthetic, table.count, table.seed or 0, **levels)
-    motions: list[Motion] = (
-        [pulse(text) for text in table.pulse] if table.pulse is not None else _records(table, inputs)
-    )
+        return _family(table, table.count)
+    motions: list[Motion] = [pulse(text) for text in table.pulse or ()] or _records(table, inputs)
     return motions if table.scale == 1.0 else [motion.scaled(table.scale) for motion in motions]
+
+
+def _family(table: "MotionKeys", count: int) -> SyntheticSet:
+    assert table.synthetic is not None  # the table refuses to be without
+    levels = {"pga": table.pga, "pgv": table.pgv, "time_step": table.time_step}
+    return SyntheticSet(table.synthetic, count, table.seed or 0, **levels)
 
 
 def _records(table: "MotionTable", inputs: InputFiles) -> "list[Motion]":
@@ -255,7 +240,5 @@ def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None) -> "Mot
         if inputs is None:
             raise InvalidValueError("a record is a file; only pulses and synthetic motions are made")
         return _record(inputs.file(table.record), table, inputs)
-    assert table.synthetic is not None  # the table refuses to be without
-    levels = {"pga": table.pga, "pgv": table.pgv, "time_step": table.time_step}
     member = table.member or 0
-    return SyntheticSet(table.synthetic, member + 1, table.seed or 0, **levels)[member]
+    return _family(table, member + 1)[member]

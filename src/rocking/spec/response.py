@@ -1,9 +1,7 @@
 """One body and what moves it: the problem of a response, made from its tables, and its answer."""
 
-import os
 import warnings
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking import checks, plausibility
@@ -13,12 +11,11 @@ from rocking.conventions import DEFAULT_FRICTION
 from rocking.dynamics import free_rocking, simulate
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, PureRockingWarning
-from rocking.motions.pulse import Motion
 from rocking.spec.construction import any_body_of, motion_of, restitutions_of
-from rocking.spec.reading import InputFiles, located, read_text, validated
+from rocking.spec.reading import InputFiles, located
 
 if TYPE_CHECKING:
-    from rocking.spec.document import ComponentsTable, ResponseDocument, ResponseTables, RestitutionTable
+    from rocking.spec.document import ResponseDocument, ResponseTables
 
 COMPLEMENTARITY = "complementarity"
 """Restitution of a body that slides and hops: its rocking impacts follow from complementarity, as all others do."""
@@ -98,7 +95,10 @@ def problem_of(
         )
     with located("settings"):
         settings = Settings(mechanics=mechanics, **tables.settings.stated())
-    restitutions = _restitutions(tables.restitution, mechanics, body, inputs)
+    if mechanics == "contact" and tables.restitution.model == COMPLEMENTARITY:
+        restitutions = {COMPLEMENTARITY: None}
+    else:
+        restitutions = restitutions_of(tables.restitution, 0, [body], inputs)
     if mechanics != "rocking" and len(restitutions) > 1:
         names = ", ".join(restitutions)
         raise InvalidValueError(f"restitution: {_MECHANICS[mechanics]} is computed with one, got {names}")
@@ -122,75 +122,33 @@ def _refuse(reason: str, table: Any, keys: set[str]) -> None:
         raise InvalidValueError(f"{reason}, so it takes no {', '.join(stated)}")
 
 
-def _restitutions(table: "RestitutionTable", mechanics: str, body: Any, inputs: InputFiles | None) -> dict[str, Any]:
-    if mechanics == "contact" and table.model == COMPLEMENTARITY:
-        return {COMPLEMENTARITY: None}
-    if mechanics != "space":
-        return restitutions_of(table, 0, [body], inputs)
-    if table.distribution is not None or table.left is not None:
-        raise InvalidValueError("restitution: a body in space takes model, models, value or values")
-    texts = [*([] if table.model is None else [table.model]), *(table.models or [])]
-    numbers = [*([] if table.value is None else [table.value]), *(table.values or [])]
-    return {**{text: _number_or_text(text) for text in texts}, **{repr(number): number for number in numbers}}
+def response_problem(document: "ResponseDocument", files: InputFiles) -> ResponseProblem:
+    r"""Return the problem that a file describes; files: those that it may name.
 
-
-def _number_or_text(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:
-        return text
-
-
-@dataclass(frozen=True)
-class ResponseJob:
-    """A file that describes one response, read with all files that it names."""
-
-    document: "ResponseDocument"  # its tables
-    problem: ResponseProblem  # body, motion, restitutions and settings
-    inputs: InputFiles  # the files that were read, with their hashes
-
-    @classmethod
-    def read(cls, path: str | os.PathLike[str]) -> "ResponseJob":
-        """Read a TOML file with the tables [response], [body], [motion], [restitution] and [settings]."""
-        where = Path(path)
-        with located(str(where)):
-            return cls.of_text(read_text(where), where.parent)
-
-    @classmethod
-    def of_text(cls, text: str, folder: str | os.PathLike[str]) -> "ResponseJob":
-        r"""Read the text of such a file.
-
-        >>> text = '[response]\nfree = 0.5\n[body]\nunits = "m"\nwidth = 1\nheight = 4'
-        >>> job = ResponseJob.of_text(text, ".")
-        >>> job.problem.free, list(job.problem.restitutions)
-        (0.5, ['ked'])
-        """
-        from rocking.spec.document import ResponseDocument
-
-        return cls.of(validated(ResponseDocument, text), folder)
-
-    @classmethod
-    def of(cls, document: "ResponseDocument", files: str | os.PathLike[str] | InputFiles) -> "ResponseJob":
-        """Make what tables describe; files: those that they may name, or the folder of them."""
-        inputs = files if isinstance(files, InputFiles) else InputFiles(Path(files))
-        with located("body"):
-            body = any_body_of(document.body, inputs)
-        motion = None
-        if document.motion is not None:
-            motion = _motion(document.motion, inputs, solid=isinstance(body, Solid))
-        return cls(document, problem_of(document, body, motion, inputs=inputs), inputs)
-
-
-def _motion(table: "ComponentsTable", inputs: InputFiles, *, solid: bool) -> Any:
-    if not table.components:
+    >>> from pathlib import Path
+    >>> from rocking.spec.document import ResponseDocument
+    >>> from rocking.spec.reading import validated
+    >>> text = '[response]\nfree = 0.5\n[body]\nunits = "m"\nwidth = 1\nheight = 4'
+    >>> problem = response_problem(validated(ResponseDocument, text), InputFiles(Path()))
+    >>> problem.free, list(problem.restitutions)
+    (0.5, ['ked'])
+    """
+    with located("body"):
+        body = any_body_of(document.body, files)
+    table = document.motion
+    motion: Any = None
+    if table is not None and not table.components:
         with located("motion"):
-            return motion_of(table, inputs)
-    if not solid:
-        raise InvalidValueError("motion: a plane body has one motion and its vertical part; x, y and z are for solids")
-    motions: dict[str, Motion] = {}
-    for axis, one in table.components.items():
-        with located(f"motion.{axis}"):
-            motions[axis] = motion_of(one, inputs)
-            if one.scale != 1.0:
-                motions[axis] = motions[axis].scaled(one.scale)
-    return motions
+            motion = motion_of(table, files)
+    elif table is not None:
+        if not isinstance(body, Solid):
+            raise InvalidValueError(
+                "motion: a plane body has one motion and its vertical part; x, y and z are for solids"
+            )
+        motion = {}
+        for axis, one in table.components.items():
+            with located(f"motion.{axis}"):
+                motion[axis] = motion_of(one, files)
+                if one.scale != 1.0:
+                    motion[axis] = motion[axis].scaled(one.scale)
+    return problem_of(document, body, motion, inputs=files)

@@ -77,18 +77,25 @@ def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = 
     >>> body_from_toml('units = "cm"\n[block]\nwidth = 50\nheight = 200').slenderness_ratio
     4.0
     """
+    with blamed(name):
+        return body_from_tables(parsed_toml(text), folder)
+
+
+def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -> Body:
+    """Return the body that the tables of a body file describe."""
     from rocking.bodies.formats.schema import BodyFile
 
-    with blamed(name):
-        document = validated(BodyFile, _plane(parsed_toml(text)))
-        scale = length_unit(document.units)
-        if document.block:
-            return _block(document.block, scale)
-        if document.mass_points:
-            return _mass_points(document.mass_points, scale)
-        if document.section:
-            return _section(document.section, document.units, None if folder is None else Path(folder))
-        return _shape(document, scale)
+    if "solid" in tables:
+        raise BodyFileError("describes a body in space, [solid]; a plane body is needed here")
+    document = validated(BodyFile, tables)
+    scale = length_unit(document.units)
+    if document.block:
+        return _block(document.block, scale)
+    if document.mass_points:
+        return _mass_points(document.mass_points, scale)
+    if document.section:
+        return _section(document.section, document.units, None if folder is None else Path(folder))
+    return _shape(document, scale)
 
 
 def parsed_toml(text: Any) -> dict[str, Any]:
@@ -103,12 +110,6 @@ def parsed_toml(text: Any) -> dict[str, Any]:
         raise BodyFileError(f"is not TOML: {error}") from error
     except (ValueError, RecursionError) as error:  # an integer of thousands of digits, thousands of brackets
         raise BodyFileError(f"is not TOML that can be read: {str(error).partition(';')[0]}") from error
-
-
-def _plane(given: dict[str, Any]) -> dict[str, Any]:
-    if "solid" in given:
-        raise BodyFileError("describes a body in space, [solid]; a plane body is needed here")
-    return given
 
 
 def _block(table: "schema.BlockTable", scale: float) -> Body:

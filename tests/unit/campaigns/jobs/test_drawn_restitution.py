@@ -1,5 +1,7 @@
 """A coefficient drawn from values in the job, or from what the measurements say of the body: as the Python call."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from campaign_jobs import BODY, PULSE, axes, job
@@ -10,7 +12,9 @@ from rocking.conventions import percent
 from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.evidence import restitution_distribution
-from rocking.spec.response import ResponseJob
+from rocking.spec.document import ResponseDocument
+from rocking.spec.reading import InputFiles, validated
+from rocking.spec.response import response_problem
 from rocking.studies import SampledRestitution, overturning_map
 
 BLOCK = rk.Block(width=0.5, height=2.0)
@@ -92,7 +96,8 @@ def test_labels():
 def test_one_response():
     """The document of one response takes it too, drawn per impact."""
     text = f"[response]\nfree = 0.5\n{BODY}[restitution.distribution]\nposterior = true\nseed = 3"
-    (law,) = ResponseJob.of_text(text, ".").problem.restitutions.values()
+    problem = response_problem(validated(ResponseDocument, text), InputFiles(Path()))
+    (law,) = problem.restitutions.values()
     wanted = restitution_distribution(BLOCK).per_impact(3)
     assert (type(law), law.seed) == (type(wanted), 3)
     assert np.array_equal(law.factors, wanted.factors)

@@ -10,18 +10,28 @@ import pytest
 import rocking as rk
 from rocking.cli import main
 from rocking.errors import InvalidValueError
-from rocking.spec.reading import is_response
-from rocking.spec.response import ResponseJob, ResponseProblem
+from rocking.spec.document import ResponseDocument
+from rocking.spec.reading import InputFiles, is_response, located, read_text, validated
+from rocking.spec.response import ResponseProblem, response_problem
 
 EXAMPLES = sorted((Path(__file__).parents[4] / "examples" / "responses").glob("*.toml"))
 BODY = '[body]\nunits = "cm"\nwidth = 50\nheight = 200\n'
 TEXT = f'[response]\nassumed_friction = 0.4\n{BODY}[motion]\npulse = "sine:amplitude=3,period=0.8"\nscale = 1.2\n'
 
 
+def problem_of(text, folder, files=None):
+    return response_problem(validated(ResponseDocument, text), files or InputFiles(folder))
+
+
+def problem_in(path):
+    with located(str(path)):
+        return problem_of(read_text(path), path.parent)
+
+
 def test_tables_become_the_question(tmp_path):
     """Body, motion, factor, friction, restitutions in their order, and settings are those of the file."""
     text = TEXT + '[restitution]\nmodels = ["housner"]\nvalues = [0.9]\n[settings]\ngravity = 9.81\nengine = "fast"\n'
-    question = ResponseJob.of_text(text, tmp_path).problem
+    question = problem_of(text, tmp_path)
     assert question.body == rk.Block(width=0.5, height=2.0)
     assert (question.scale, question.assumed_friction, question.engine) == (1.2, 0.4, "fast")
     assert list(question.restitutions) == ["housner", "0.9"]
@@ -32,10 +42,10 @@ def test_tables_become_the_question(tmp_path):
 def test_a_record_lies_beside_the_file(tmp_path):
     """A record is named relative to the file; its hash is noted; options for reading are taken."""
     (tmp_path / "a.txt").write_text("\n".join(f"{k * 0.01:.2f} {math.sin(k):.3f}" for k in range(50)))
-    (tmp_path / "job.toml").write_text(f'[response]\n{BODY}[motion]\nrecord = "a.txt"\nunits = "g"\n')
-    job = ResponseJob.read(tmp_path / "job.toml")
-    assert np.array_equal(job.problem.motion.acceleration, rk.read_motion(tmp_path / "a.txt", units="g").acceleration)
-    assert [item["path"] for item in job.inputs.told()] == ["a.txt"]
+    files = InputFiles(tmp_path)
+    problem = problem_of(f'[response]\n{BODY}[motion]\nrecord = "a.txt"\nunits = "g"\n', tmp_path, files)
+    assert np.array_equal(problem.motion.acceleration, rk.read_motion(tmp_path / "a.txt", units="g").acceleration)
+    assert [item["path"] for item in files.told()] == ["a.txt"]
 
 
 def test_free_rocking_starts_at_a_share_of_the_slenderness_angle():
@@ -56,7 +66,7 @@ def test_a_question_has_one_start(given):
 def test_examples_run_as_they_say(path, capsys):
     """Every example is recognised, answered, and prints JSON with the restitutions that it lists."""
     assert is_response(path)
-    question = ResponseJob.read(path).problem
+    question = problem_in(path)
     with pytest.raises(SystemExit) as stop:
         main(["simulate", str(path), "--json"])
     assert not stop.value.code
@@ -68,7 +78,7 @@ def test_examples_run_as_they_say(path, capsys):
 
 def test_the_example_of_a_decision_shows_one():
     """Under the pulse of the example KED overturns and Housner stands: two models, two verdicts."""
-    question = ResponseJob.read(next(path for path in EXAMPLES if "pulse" in path.stem)).problem
+    question = problem_in(next(path for path in EXAMPLES if "pulse" in path.stem))
     outcomes = [question.answer(choice).outcome.name for choice in ("ked", "housner")]
     assert outcomes == ["OVERTURNED", "ROCKED"]
 
@@ -115,7 +125,7 @@ def test_slips_are_refused_by_name(case, tmp_path):
     path = tmp_path / "question.toml"
     path.write_text(text)
     with pytest.raises(InvalidValueError) as refused:
-        ResponseJob.read(path)
+        problem_in(path)
     assert words in str(refused.value)
     assert str(refused.value).startswith(str(path))
 
