@@ -127,7 +127,7 @@ def test_one_history_is_the_row_of_a_batch(kind: str) -> None:
     """`run` gives the bits of the batch; of a body that falls, all but what it does after the top."""
     table = table_of(kind)
     whole = table.run()
-    columns = {"peak_velocity": "peak_angular_velocity"}
+    columns = {"peak_velocity": "peak_velocity"}
     for k in range(0, COUNT, 4):
         row = {name: float(values[k]) for name, values in table.values.items()}
         right, left = (RockingSide(row[f"alpha_{s}"], row[f"p_{s}"], 1.0, row[f"r_{s}"]) for s in ("right", "left"))

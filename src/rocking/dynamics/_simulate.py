@@ -139,10 +139,11 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
         "gravity": gravity, "linear": linear, "rest_speed": rest_speed, "most_events": most_events,
         "longest_step": longest_step, "order": order, "tolerance": tolerance,
     }  # fmt: skip
-    alone = {"rotation": rotation, "angular_velocity": angular_velocity, "engine": engine, "stream": stream}
-    moved = components_of(motion) if in_space(body) else in_plane(motion)
-    how = {"scale": scale, "duration": duration}
-    return _response(body, moved, restitution, settings, alone, {"friction": friction, "bounce": bounce}, start, how)
+    return _followed(
+        body, components_of(motion) if in_space(body) else in_plane(motion), restitution, settings, friction=friction,
+        bounce=bounce, rotation=rotation, angular_velocity=angular_velocity, start=start, engine=engine, stream=stream,
+        scale=scale, duration=duration,
+    )  # fmt: skip
 
 
 @overload
@@ -231,24 +232,29 @@ def free_rocking(  # type: ignore[misc]  # noqa: PLR0913 - as for `simulate`
         "gravity": gravity, "linear": linear, "rest_speed": rest_speed, "most_events": most_events,
         "longest_step": longest_step, "order": order, "tolerance": tolerance,
     }  # fmt: skip
-    alone = {"rotation": rotation, "angular_velocity": angular_velocity, "engine": engine, "stream": stream}
-    contact = {"friction": friction, "bounce": bounce}
-    moved = (None, None, None) if in_space(body) else None
-    return _response(body, moved, restitution, settings, alone, contact, start, {"duration": duration})
+    return _followed(
+        body, (None, None, None) if in_space(body) else None, restitution, settings, friction=friction, bounce=bounce,
+        rotation=rotation, angular_velocity=angular_velocity, start=start, engine=engine, stream=stream,
+        duration=duration,
+    )  # fmt: skip
 
 
-def _response(  # noqa: PLR0917 - what the two questions have in common
+def _followed(  # noqa: PLR0913 - what the two questions have in common
     body: Any,
     motion: Any,
     restitution: Any,
     settings: dict[str, Any],
-    alone: dict[str, Any],
-    contact: dict[str, Any],
+    *,
+    friction: float | None,
+    bounce: float,
+    rotation: float,
+    angular_velocity: Any,
     start: Any,
-    how: dict[str, Any],
+    engine: str,
+    stream: int,
+    **how: Any,
 ) -> Any:
-    state = {name: alone[name] for name in ("rotation", "angular_velocity")}
-    if start is not None and any(np.any(value) for value in state.values()):
+    if start is not None and (np.any(rotation) or np.any(angular_velocity)):
         raise InvalidValueError("give either start or rotation and angular_velocity, got both")
     if in_space(body):
         from rocking.dynamics.space.attitude import SpatialStart
@@ -256,35 +262,40 @@ def _response(  # noqa: PLR0917 - what the two questions have in common
         from rocking.dynamics.space.histories import response_in_space
 
         body = SpatialBody.of(body)
-        _refuse("a body in space", {**contact, "engine": alone["engine"], "stream": alone["stream"]})
-        spin = state["angular_velocity"] if np.ndim(state["angular_velocity"]) else (0.0, 0.0, 0.0)
-        if not np.ndim(state["angular_velocity"]) and state["angular_velocity"]:
+        refuse("a body in space", friction=friction, bounce=bounce, engine=engine, stream=stream)
+        if not np.ndim(angular_velocity) and angular_velocity:
             raise InvalidValueError("angular_velocity of a body in space must be three numbers [rad/s], got one")
-        leaning = _start(start, SpatialStart) or SpatialStart(state["rotation"], angular_velocity=spin)
+        spin = angular_velocity if np.ndim(angular_velocity) else (0.0, 0.0, 0.0)
+        leaning = _start(start, SpatialStart) or SpatialStart(rotation, angular_velocity=spin)
         return response_in_space(
             body, motion, restitution, Settings(**settings, mechanics="space"), start=leaning, **how
         )
-    friction = contact["friction"]
-    if friction is None:
-        _refuse("a body without friction=, which rocks alone", {"bounce": contact["bounce"], "start": start})
-        response = response_of_rocking(body, motion, restitution, Settings(**settings), **alone, **how)
-        for sentence in response.doubts():
-            errors.warn(sentence, PureRockingWarning)
-        return response
-    from rocking.dynamics.contact.base import Start
-    from rocking.dynamics.contact.histories import response_with_contact
+    if friction is not None:
+        from rocking.dynamics.contact.base import Start
+        from rocking.dynamics.contact.histories import response_with_contact
 
-    _refuse("a body with friction", {"engine": alone["engine"], "stream": alone["stream"]})
-    return response_with_contact(
-        body, motion, friction, restitution, Settings(**settings, mechanics="contact"), bounce=contact["bounce"],
-        start=_start(start, Start) or Start(**state), **how,
+        refuse("a body with friction", engine=engine, stream=stream)
+        return response_with_contact(
+            body, motion, friction, restitution, Settings(**settings, mechanics="contact"), bounce=bounce,
+            start=_start(start, Start) or Start(rotation, angular_velocity), **how,
+        )  # fmt: skip
+    refuse("a body without friction=, which rocks alone", bounce=bounce, start=start)
+    response = response_of_rocking(
+        body, motion, restitution, Settings(**settings), rotation=rotation, angular_velocity=angular_velocity,
+        engine=engine, stream=stream, **how,
     )  # fmt: skip
+    for sentence in response.doubts():
+        errors.warn(sentence, PureRockingWarning)
+    return response
 
 
-_USUAL = {"friction": (None,), "bounce": (0.0,), "engine": ("auto", "reference"), "stream": (0,), "start": (None,)}
+_USUAL: dict[str, tuple[Any, ...]] = {
+    "friction": (None,), "bounce": (0.0,), "engine": ("auto", "reference"), "stream": (0,), "start": (None,),
+    "twin": (False,), "threads": (None,), "duration": (None,),
+}  # fmt: skip
 
 
-def _refuse(what: str, options: dict[str, Any]) -> None:
+def refuse(what: str, **options: Any) -> None:
     """Refuse what these mechanics do not know."""
     for name, value in options.items():
         if np.ndim(value) or not any(value is usual or value == usual for usual in _USUAL[name]):

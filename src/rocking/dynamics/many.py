@@ -9,9 +9,9 @@ import numpy as np
 from rocking import checks, conventions, plausibility, quantities
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
-from rocking.dynamics._simulate import components_of, in_plane, in_space
+from rocking.dynamics._simulate import components_of, in_plane, in_space, refuse
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
-from rocking.dynamics.parameters import SIDES, RockingParameters
+from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.motion import GroundMotion
@@ -118,7 +118,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     }  # fmt: skip
     several: list[Any] = list(bodies) if isinstance(bodies, (list, tuple)) else [bodies]
     if any(map(in_space, several)) and not any(isinstance(body, Body) for body in several):
-        _refuse("bodies in space", twin=twin, friction=friction, bounce=bounce)
+        refuse("bodies in space", twin=twin, friction=friction, bounce=bounce)
         settings = Settings(**given, mechanics="space, many")
         return _in_space(several, motions, restitution, scale, start, settings, duration, engine, threads, progress)
     body_list = _several("bodies", bodies, (Body,))
@@ -129,13 +129,13 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     if not restitutions:
         raise InvalidValueError("restitution must be at least one model, got none")
     if friction is None:
-        _refuse("bodies without friction=, which rock alone from rest", bounce=bounce, start=start, duration=duration)
+        refuse("bodies without friction=, which rock alone from rest", bounce=bounce, start=start, duration=duration)
         return _rocking_alone(
             body_list, motion_list, scales, restitutions, Settings(**given), twin, threads, engine, progress
         )
     from rocking.dynamics.contact.histories import many_with_contact
 
-    _refuse("bodies with friction", twin=twin, threads=threads, engine=engine)
+    refuse("bodies with friction", twin=twin, threads=threads, engine=engine)
     settings, mus = Settings(**given, mechanics="contact"), _row("friction", friction)
     results = many_with_contact(
         body_list, motion_list, scales, restitutions, mus, settings, bounce, start, duration, progress
@@ -148,18 +148,6 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
             "start": repr(start or "at rest"), "duration_s": np.nan if duration is None else duration,
         },
     )  # fmt: skip
-
-
-_USUAL: dict[str, tuple[Any, ...]] = {
-    "twin": (False,), "friction": (None,), "bounce": (0.0,), "threads": (None,), "engine": ("auto", "reference"),
-    "start": (None,), "duration": (None,),
-}  # fmt: skip
-
-
-def _refuse(what: str, **options: Any) -> None:
-    for name, value in options.items():
-        if not any(value is usual or (np.ndim(value) == 0 and value == usual) for usual in _USUAL[name]):
-            raise InvalidValueError(f"{name} is nothing for {what}, got {value!r:.60}")
 
 
 def _rocking_alone(  # noqa: PLR0913, PLR0917
@@ -176,7 +164,10 @@ def _rocking_alone(  # noqa: PLR0913, PLR0917
     from rocking.dynamics.plane.batch import Batch
     from rocking.dynamics.plane.fast_engine import instruction_set
 
-    law = _common_law(restitutions)
+    laws = [each for each in restitutions if isinstance(each, ImpactLaw)]
+    if laws and len(restitutions) > 1:
+        raise InvalidValueError("a law that changes from impact to impact must be the only restitution of a call")
+    law = laws[0] if laws else ConstantRestitution()
     all_parameters = [
         [RockingParameters.of_body(body, each, settings.gravity) for each in restitutions] for body in bodies
     ]
@@ -187,12 +178,14 @@ def _rocking_alone(  # noqa: PLR0913, PLR0917
     if twin:
         finer = replace(settings, longest_step=max(SHORTEST_STEP, 0.5 * settings.longest_step))
         halved = replace(batch, motions=[segments.refined(2) for segments in batch.motions], settings=finer)
-        results |= _twin(results, halved.run(count, _pieces(all_parameters, scales, shape))[0])
+        again, _ = halved.run(count, _pieces(all_parameters, scales, shape))
+        change = np.abs(np.abs(results["peak_rotation"]) - np.abs(again["peak_rotation"]))  # NaN without two results
+        flips = np.abs(overturned(results["outcome"]) - overturned(again["outcome"]))
+        results |= {"twin_change": change, "twin_flips": flips}
     results |= flags(results)
-    labels = [
-        _most_cut(column).label if law.kind else _label(each)
-        for column, each in zip(zip(*all_parameters, strict=True), restitutions, strict=True)
-    ]
+    labels = list(map(_label, restitutions))
+    if law.kind:  # the label of the body that keeps the least of a distribution stands for all
+        labels = [min((row[0] for row in all_parameters), key=lambda p: min(p.left.share, p.right.share)).label]
     attributes = {
         "engine": f"fast ({instruction_set()})" if work else "reference",
         "contact": contact_words(results["lost_contact"]),
@@ -245,23 +238,13 @@ def _in_space(bodies: list[Any], motions: Any, restitution: Any, scale: Any, sta
     return batch_in_space(bodies, components, restitutions, scale, starts, *how).to_xarray()
 
 
-def _twin(results: dict[str, Any], again: dict[str, Any]) -> dict[str, FloatArray]:
-    """Change of the peak, and whether one of the two overturns; NaN where one has no result."""
-    first, second = overturned(results["outcome"]), overturned(again["outcome"])
-    change = np.abs(np.abs(results["peak_rotation"]) - np.abs(again["peak_rotation"]))
-    return {"twin_change": change, "twin_flips": np.abs(first - second)}
-
-
 def _pieces(
     all_parameters: list[list[RockingParameters]], scales: np.ndarray, shape: tuple[int, ...]
 ) -> "Callable[[int, int], Rows]":
     from rocking.dynamics.plane.batch import Rows
 
-    table = {
-        f"{short}_{side}": np.array([[getattr(getattr(r, side), name) for r in row] for row in all_parameters])
-        for short, name in SIDES
-        for side in ("right", "left")
-    }
+    both = sides_of([parameters for row in all_parameters for parameters in row])
+    table = {name: values.reshape(shape[0], shape[3]) for name, values in both.items()}
 
     def rows(first: int, last: int) -> "Rows":
         body, motion, factor, choice = np.unravel_index(np.arange(first, last), shape)
@@ -294,20 +277,6 @@ def _row(name: str, values: Any) -> FloatArray:
     if bad.size:
         raise InvalidValueError(f"{name} must be finite and within 1e6, got {row[bad[0]]:g} at index {bad[0]}")
     return row
-
-
-def _common_law(restitutions: Sequence[Any]) -> ImpactLaw:
-    laws = [c for c in restitutions if isinstance(c, ImpactLaw)]
-    if not laws:
-        return ConstantRestitution()
-    if len(restitutions) > 1:
-        raise InvalidValueError("a law that changes from impact to impact must be the only restitution of a call")
-    return laws[0]
-
-
-def _most_cut(all_parameters: Sequence[RockingParameters]) -> RockingParameters:
-    """Return the first of those bodies that keep the least of a distribution: its label stands for all."""
-    return min(all_parameters, key=lambda parameters: min(parameters.left.share, parameters.right.share))
 
 
 def _label(restitution: Any) -> str:

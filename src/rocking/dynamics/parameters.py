@@ -1,12 +1,14 @@
 """A body as the equations of motion see it: angle, frequency parameter and coefficient on either side."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from rocking import checks, plausibility
 from rocking.bodies import Body
-from rocking.conventions import FEET, Foot, percent
+from rocking.conventions import FEET, FloatArray, Foot, percent
 from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, ImpactLaw
 from rocking.errors import InvalidValueError
 from rocking.restitution import RestitutionModel, model
@@ -17,11 +19,11 @@ _ROUNDING = 1e-9
 _SAID = 1e-4
 
 
-SIDES = (
-    ("alpha", "slenderness_angle"), ("p", "frequency_parameter"), ("r", "coefficient"), ("q", "inertia_ratio"),
-    ("share", "share"),
-)  # fmt: skip
-"""What rows call the properties of a `RockingSide`."""
+# what rows call the properties of a `RockingSide`
+_SHORT = {
+    "alpha": "slenderness_angle", "p": "frequency_parameter", "r": "coefficient", "q": "inertia_ratio",
+    "share": "share",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -185,6 +187,15 @@ class RockingParameters:
             for foot, side in sides.items()
         }
         return cls(made["right"], made["left"], law, _label(law, shares, label))
+
+
+def sides_of(bodies: Sequence[RockingParameters | None]) -> dict[str, FloatArray]:
+    """Return alpha [rad], p [rad/s], r, q, share [-] of both sides of many bodies; NaN where there is no body."""
+    return {
+        f"{short}_{foot}": np.array([np.nan if body is None else getattr(getattr(body, foot), name) for body in bodies])
+        for short, name in _SHORT.items()
+        for foot in ("right", "left")
+    }
 
 
 def cut_of(law: ImpactLaw, body: Body) -> dict[Foot, float]:

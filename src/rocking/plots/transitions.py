@@ -9,6 +9,7 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray, g
+from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Motion
@@ -27,7 +28,7 @@ from rocking.plots.style import (
     stroke,
 )  # fmt: skip
 from rocking.studies.minimum_acceleration import Transitions
-from rocking.studies.question import Question, sides_of
+from rocking.studies.question import Question
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,6 +9,7 @@ from rocking import checks, conventions
 from rocking.bodies import Block
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.pulse import Motion
@@ -16,7 +17,7 @@ from rocking.outcome import contact_words, flags
 from rocking.quantities import HISTORY, attributes
 from rocking.studies.histories import Product, results_of
 from rocking.studies.motion_sets import MotionList
-from rocking.studies.question import Question, modes_of, peak_ratio, sides_of
+from rocking.studies.question import Question, modes_of, peak_ratio
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,6 +11,7 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError
@@ -18,7 +19,7 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion
 from rocking.outcome import contact_words
 from rocking.studies.amplitude_search import AmplitudeSearch, Run, below_minimum, search_below
-from rocking.studies.question import FAILED, Question, sides_of
+from rocking.studies.question import FAILED, Question
 
 Interval = tuple[float, float]
 

@@ -1,6 +1,6 @@
 """What a study asks beside its axes: one body, one motion, its restitution and the settings, ready to be run."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -11,7 +11,7 @@ from rocking import quantities
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ImpactLaw
-from rocking.dynamics.parameters import SIDES, RockingParameters
+from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import Arrays, instruction_set
 from rocking.dynamics.settings import Settings
@@ -109,15 +109,6 @@ class Question:
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in self.settings.stated.items()},
             **{f"work_{k}": v for k, v in work.items()},
         }
-
-
-def sides_of(all_parameters: Sequence[RockingParameters | None]) -> dict[str, FloatArray]:
-    """Return alpha [rad], p [rad/s], r, q, share [-] of both sides of many bodies; NaN where there is no body."""
-    return {
-        f"{short}_{side}": np.array([np.nan if r is None else getattr(getattr(r, side), name) for r in all_parameters])
-        for short, name in SIDES
-        for side in ("right", "left")
-    }
 
 
 def modes_of(results: Arrays) -> np.ndarray:

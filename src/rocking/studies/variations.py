@@ -8,9 +8,9 @@ import numpy as np
 
 from rocking.bodies import Block, Body
 from rocking.conventions import FloatArray
-from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.errors import InvalidValueError
-from rocking.studies.question import Question, sides_of
+from rocking.studies.question import Question
 
 
 @dataclass(frozen=True)

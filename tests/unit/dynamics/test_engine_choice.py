@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.conventions import FEET
-from rocking.dynamics.parameters import SIDES
+from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
@@ -107,8 +106,7 @@ def test_responses_say_what_ran(wanted: str, monkeypatch: pytest.MonkeyPatch) ->
         step, a = 0.02 * 5.0 ** -rng.random(), rng.uniform(4.0, 40.0) * np.sin(0.3 * np.arange(43))
         record = rk.GroundMotion(a, step, vertical=0.1 * a if up else None)
         response = rk.simulate(BODY, record, 0.9, engine="fast", scale=0.7, duration=43 * step)
-        sides = [(f"{short}_{foot}", name, foot) for short, name in SIDES for foot in FEET]
-        rows = {key: getattr(getattr(response.parameters, foot), name) for key, name, foot in sides}
+        rows = sides_of([response.parameters])
         _, work = Batch([response.segments]).run(1, lambda *_, rows=rows: Rows.of(1, scale=0.7, **rows))
         order = work["orders"] // work["steps"]
         orders.add(order)

@@ -78,7 +78,7 @@ def test_entries_are_single_histories(name: str, tables: dict[str, Any]) -> None
         if run.outcome is not Outcome.OVERTURNED:
             expected |= {
                 "peak_time": run.peak_time,
-                "peak_velocity": run.peak_angular_velocity,
+                "peak_velocity": run.peak_velocity,
                 "truncation": run.truncation,
             }
         for key, value in expected.items():

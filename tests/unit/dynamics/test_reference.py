@@ -144,7 +144,7 @@ def test_numbers_that_run_out() -> None:
     found = run(Segments.between_samples(1e80, np.array([0.0, 1e200, 1e200])))
     assert (found.outcome, found.status) == (Outcome.FAILED, Status.NOT_FINITE)
     assert math.isnan(found.peak_rotation)
-    assert math.isnan(found.peak_angular_velocity)
+    assert math.isnan(found.peak_velocity)
     for poison in (math.nan, math.inf):
         lines = np.zeros((5, 2))
         lines[3, 1] = poison
@@ -223,8 +223,8 @@ def test_error_and_peaks_are_finite(name: str) -> None:
     """A good history has finite peaks, an error estimate from zero, and no overturning time."""
     run = rk.simulate(BLOCK, BURSTS, 0.6, engine=name).trajectory
     assert 0.0 <= run.truncation < 1e-8
-    assert math.isfinite(run.peak_angular_velocity)
-    assert run.peak_angular_velocity >= np.abs(run.angular_velocity).max() * (1.0 - 1e-12)
+    assert math.isfinite(run.peak_velocity)
+    assert run.peak_velocity >= np.abs(run.angular_velocity).max() * (1.0 - 1e-12)
     assert abs(run.peak_rotation) >= np.abs(run.rotation).max() * (1.0 - 1e-12)
     assert math.isnan(run.overturning_time)
     assert run.side == 0

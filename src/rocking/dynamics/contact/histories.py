@@ -17,7 +17,8 @@ from rocking.dynamics.contact.impact_resolution import GroundContact
 from rocking.dynamics.contact.response import ContactResponse
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.plane.histories import followed, ground_at_rest
+from rocking.dynamics.settings import Settings, check_progress
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
@@ -26,7 +27,6 @@ from rocking.outcome import Outcome, overturned
 
 # sqrt(g / R) times the step between samples of a pulse's response, and times what is followed after the motion
 _FINE, _AFTER, _FREE = 0.1, 15.0, 60.0
-_MOST_SAMPLES = 2_000_000
 
 
 def response_with_contact(  # noqa: PLR0913 - what the front door hands on
@@ -74,8 +74,7 @@ def many_with_contact(  # noqa: PLR0913, PLR0917 - what the front door hands on
     """Return the results of every combination, the last axis (friction) running fastest; one history at a time."""
     if start is not None and not isinstance(start, Start):
         raise InvalidValueError(f"start must be a Start(...), got {start!r:.60}")
-    if progress is not None and not callable(progress):
-        raise InvalidValueError(f"progress must be a function of the histories done, or None, got {progress!r:.60}")
+    check_progress(progress)
     for mu in friction:
         plausibility.warn(plausibility.of_friction(checks.positive("friction", float(mu))))
     rows = []
@@ -131,23 +130,9 @@ def _segments(motion: object, base: PlaneBase, gravity: float, duration: float |
     slow = math.sqrt(base.size / gravity)
     if motion is None:
         length = _FREE * slow if duration is None else checks.positive("duration", duration, "s")
-        count = max(1, math.ceil(length / (_FINE * slow) - 1e-9))
-        _check_samples(count)
-        return Segments.still(length / count, count)
+        return ground_at_rest(length / max(1, math.ceil(length / (_FINE * slow) - 1e-9)), length)
     if not isinstance(motion, (GroundMotion, Pulse)):
         raise InvalidValueError(f"motion must be a GroundMotion, a pulse or None, got {motion!r:.60}")
     length = motion.duration + _AFTER * slow if duration is None else checks.positive("duration", duration, "s")
     segments = motion.segments()
-    if isinstance(motion, Pulse):
-        segments = segments.refined(math.ceil(segments.step / (_FINE * slow)))
-    _check_samples(length / segments.step)
-    keep = max(1, math.ceil(length / segments.step - 1e-9))
-    vertical = None if segments.vertical is None else segments.vertical[:keep]
-    return Segments(segments.step, segments.horizontal[:keep], vertical).extended(length)
-
-
-def _check_samples(count: float) -> None:
-    if not count <= _MOST_SAMPLES:
-        raise InvalidValueError(
-            f"the response would have {count:.3g} samples, more than {_MOST_SAMPLES:.0e}; a shorter duration, please"
-        )
+    return followed(segments, length, math.ceil(segments.step / (_FINE * slow)), motion)

@@ -89,17 +89,18 @@ class Batch:
         check_threads(threads)
         if self.law.per_history:
             return self._constant.run(count, lambda a, b: drawn_rows(rows(a, b), self.law), progress, threads)
-        quick = fast_engine.chosen(self.engine, self.law) == "fast"
-        self._check_order(quick=quick)
+        library = self._library if fast_engine.chosen(self.engine, self.law) == "fast" else None
         results = fast_engine.empty_results(count)
         total: dict[str, int] = {}
-        library = self._library if quick else None
         for first in range(0, count, PIECE):
             last = min(first + PIECE, count)
             out = {name: values[first:last] for name, values in results.items()}
             piece = rows(first, last)
             if library is None:
-                self._one_by_one(piece, out)
+                for k, (motion, stream) in enumerate(zip(piece.motion.tolist(), piece.stream.tolist(), strict=True)):
+                    row = {name: float(values[k]) for name, values in piece.values.items()}
+                    for name, value in self._one(row, motion, stream).items():
+                        out[name][k] = value
             else:
                 done = fast_engine.module().run_batch(
                     library.handle, {**piece.values, "motion": piece.motion, "key": piece.stream}, out,
@@ -118,47 +119,33 @@ class Batch:
 
     @cached_property
     def _library(self) -> fast_engine.Library:
-        return fast_engine.Library(list(self.motions))
-
-    def _check_order(self, *, quick: bool) -> None:
         order, linear = self.settings.order, self.settings.linear
-        vertical = any(motion.vertical is not None for motion in self.motions)
-        if quick and order != 8 and (linear or vertical):
+        if order != 8 and (linear or any(motion.vertical is not None for motion in self.motions)):
             which = "the linear equations" if linear else "motions with a vertical part"
             raise InvalidValueError(
                 f"order must be 8 for {which}, got {order}: "
                 "orders 4 and 6 exist only for nonlinear equations and motions without a vertical part"
             )
-
-    def _one_by_one(self, rows: Rows, out: fast_engine.Arrays) -> None:
-        for k in range(len(rows)):
-            row = {name: float(values[k]) for name, values in rows.values.items()}
-            for name, value in self._one(row, int(rows.motion[k]), int(rows.stream[k])).items():
-                out[name][k] = value
+        return fast_engine.Library(list(self.motions))
 
     def _one(self, row: dict[str, float], motion: int, stream: int) -> dict[str, float]:
+        """Results of one history by the reference engine."""
         if not valid_row(row) or not 0 <= motion < len(self.motions):
             bad = dict.fromkeys(fast_engine.RESULTS, np.nan) | {"outcome": Outcome.FAILED.code, "side": 0}
             return bad | {"status": Status.INVALID.code, "impacts": 0, "uplifts": 0, "still_rocking": 0}
         from rocking.dynamics.plane.reference import Reference
 
-        sides = [
+        right, left = (
             RockingSide(row[f"alpha_{s}"], row[f"p_{s}"], 1.0, row[f"r_{s}"], row[f"q_{s}"], row[f"share_{s}"])
             for s in ("right", "left")
-        ]
+        )
         reference = Reference(
-            RockingParameters(sides[0], sides[1], self.law, ""), self.motions[motion], self.settings,
-            scale=row["scale"], stream=stream, to_the_ground=False,
+            RockingParameters(right, left, self.law, ""), self.motions[motion], self.settings, scale=row["scale"],
+            stream=stream, to_the_ground=False,
         )  # fmt: skip
         run = reference.run(row["rotation"], row["velocity"])
-        uplift = next((e.time for e in run.events if e.kind == 0), np.nan)
-        return {
-            "outcome": run.outcome.code, "status": run.status.code, "side": run.side, "truncation": run.truncation,
-            "peak_rotation": run.peak_rotation, "peak_time": run.peak_time, "peak_velocity": run.peak_angular_velocity,
-            "first_uplift": uplift, "overturning_time": run.overturning_time,
-            "impacts": run.impacts, "uplifts": run.uplifts, "least_force": run.least_force,
-            "friction_demand": run.friction_demand, "still_rocking": run.still_rocking,
-        }  # fmt: skip
+        codes = {"outcome": run.outcome.code, "status": run.status.code}
+        return {name: getattr(run, name) for name in fast_engine.RESULTS} | codes
 
 
 def valid_row(row: dict[str, float]) -> bool:
@@ -166,14 +153,20 @@ def valid_row(row: dict[str, float]) -> bool:
 
     Returns false for what is not finite or outside.
     """
-    half_pi = 0.5 * np.pi
-    angles = all(0.0 < row[f"alpha_{s}"] < half_pi for s in ("right", "left"))
-    frequencies = all(1e-9 < row[f"p_{s}"] < 1e9 for s in ("right", "left"))
-    levers = not any(row[f"q_{s}"] <= 0.0 or row[f"q_{s}"] > 1.000001 for s in ("right", "left"))
-    coefficients = all(0.0 <= row[f"r_{s}"] <= 100.0 for s in ("right", "left"))
-    shares = all(0.0 < row[f"share_{s}"] <= 1.0 for s in ("right", "left"))
-    motion = abs(row["scale"]) <= 1e9 and abs(row["rotation"]) < half_pi and abs(row["velocity"]) < 1e9
-    return bool(angles and frequencies and levers and coefficients and shares and motion)
+
+    def both(low: float, high: float, name: str) -> bool:
+        return low < row[f"{name}_right"] < high and low < row[f"{name}_left"] < high
+
+    return (
+        both(0.0, 0.5 * np.pi, "alpha")
+        and both(1e-9, 1e9, "p")
+        and all(0.0 <= row[f"r_{foot}"] <= 100.0 for foot in FEET)
+        and not any(row[f"q_{foot}"] <= 0.0 or row[f"q_{foot}"] > 1.000001 for foot in FEET)
+        and all(0.0 < row[f"share_{foot}"] <= 1.0 for foot in FEET)
+        and abs(row["scale"]) <= 1e9
+        and abs(row["rotation"]) < 0.5 * np.pi
+        and abs(row["velocity"]) < 1e9
+    )
 
 
 def drawn_rows(rows: Rows, law: ImpactLaw) -> Rows:

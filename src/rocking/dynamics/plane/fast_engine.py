@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.conventions import FEET, FloatArray
+from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ImpactLaw
-from rocking.dynamics.parameters import SIDES, RockingParameters
+from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.trajectory import Event, EventKind, Trajectory
 from rocking.dynamics.settings import ENGINES, CompiledEngine, Settings
 from rocking.errors import InvalidValueError
@@ -140,7 +140,7 @@ def common(settings: Settings, law: ImpactLaw) -> Arrays:
 
 
 _ORDER = 8
-_OUTCOMES, _STATUSES, _KINDS = list(Outcome), list(Status), {kind.value: kind for kind in EventKind}
+_OUTCOMES, _STATUSES = list(Outcome), list(Status)
 
 
 def run(
@@ -164,65 +164,34 @@ def run(
             f"order must be {_ORDER} for one history, got {settings.order}: orders 4 and 6 exist only in batches "
             "(simulate_many), for nonlinear equations and motions without a vertical part"
         )
-    if taken == "fast":
-        return _run_fast(parameters, segments, settings, scale, stream, rotation, velocity)
-    from rocking.dynamics.plane.reference import Reference
+    if taken == "reference":
+        from rocking.dynamics.plane.reference import Reference
 
-    return Reference(parameters, segments, settings, scale=scale, stream=stream).run(rotation, velocity)
-
-
-def _run_fast(  # noqa: PLR0917 - as `run` has them
-    parameters: RockingParameters,
-    segments: Segments,
-    settings: Settings,
-    scale: float,
-    stream: int,
-    rotation: float,
-    velocity: float,
-) -> Trajectory:
-    library = Library([segments])
-    values = {"scale": scale, "rotation": rotation, "velocity": velocity} | {
-        f"{short}_{foot}": getattr(getattr(parameters, foot), name) for short, name in SIDES for foot in FEET
-    }
-    rows = {name: np.array([value]) for name, value in values.items()}
-    rows |= {"motion": np.zeros(1, np.int64), "key": np.array([stream], np.int64)}
-    out = empty_results(1)
+        return Reference(parameters, segments, settings, scale=scale, stream=stream).run(rotation, velocity)
+    library, out = Library([segments]), empty_results(1)
+    rows = sides_of([parameters]) | {
+        "scale": np.array([scale]), "rotation": np.array([rotation]), "velocity": np.array([velocity]),
+        "motion": np.zeros(1, np.int64), "key": np.array([stream], np.int64),
+    }  # fmt: skip
     rotations, velocities = np.zeros(segments.count + 1), np.zeros(segments.count + 1)
     arguments = common(settings, parameters.law)
-    order = 6 if _takes_order_six(parameters, segments, settings, scale) else _ORDER
-    # a wider register brings a single history nothing: the kernels of AVX2 serve it
-    kernels = "avx2" if arguments["isa"] == "avx512" and order == _ORDER else arguments["isa"]
     noted = module().run_single(
         library.handle, rows, out, to_the_ground=True, rotation=rotations, velocity=velocities, **arguments
     )
-    outcome = _OUTCOMES[out["outcome"][0]]
-    if outcome in {Outcome.OVERTURNED, Outcome.FAILED}:
-        latest = max((event[0] for event in noted), default=0.0)
-        after = max(_last_written(rotations, velocities), int(latest / segments.step) + 1)
+    results = {name: values[0].item() for name, values in out.items()}
+    results |= {"outcome": _OUTCOMES[results["outcome"]], "status": _STATUSES[results["status"]]}
+    if results["outcome"] in {Outcome.OVERTURNED, Outcome.FAILED}:  # nothing was written after the last event
+        written = np.flatnonzero((rotations != 0.0) | (velocities != 0.0))
+        latest = int(max((event[0] for event in noted), default=0.0) / segments.step)
+        after = max(written[-1] if written.size else 0, latest) + 1
         rotations[after:] = velocities[after:] = np.nan
-    return Trajectory(
-        rotation=rotations,
-        angular_velocity=velocities,
-        events=[Event(t, _KINDS[kind], side, before, then, r) for t, kind, side, before, then, r in noted],
-        outcome=outcome,
-        status=_STATUSES[out["status"][0]],
-        side=int(out["side"][0]),
-        peak_rotation=float(out["peak_rotation"][0]),
-        peak_time=float(out["peak_time"][0]),
-        peak_angular_velocity=float(out["peak_velocity"][0]),
-        overturning_time=float(out["overturning_time"][0]),
-        impacts=int(out["impacts"][0]),
-        uplifts=int(out["uplifts"][0]),
-        truncation=float(out["truncation"][0]),
-        least_force=float(out["least_force"][0]),
-        friction_demand=float(out["friction_demand"][0]),
-        engine=f"fast (Taylor, order {order}, {kernels})",
-    )
-
-
-def _last_written(rotations: np.ndarray, velocities: np.ndarray) -> int:
-    moving = np.flatnonzero((rotations != 0.0) | (velocities != 0.0))
-    return int(moving[-1]) + 1 if moving.size else 1
+    order = 6 if _takes_order_six(parameters, segments, settings, scale) else _ORDER
+    # a wider register brings a single history nothing: the kernels of AVX2 serve it
+    kernels = "avx2" if arguments["isa"] == "avx512" and order == _ORDER else arguments["isa"]
+    events = [Event(t, EventKind(kind), side, before, then, r) for t, kind, side, before, then, r in noted]
+    for name in ("first_uplift", "still_rocking"):  # the trajectory knows them
+        del results[name]
+    return Trajectory(rotations, velocities, events, engine=f"fast (Taylor, order {order}, {kernels})", **results)
 
 
 def _takes_order_six(parameters: RockingParameters, segments: Segments, settings: Settings, scale: float) -> bool:

@@ -40,61 +40,49 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
     scale = checks.within("scale", scale, -1e6, 1e6)
     plausibility.warn(plausibility.of_scaled([motion], scale))
     parameters = RockingParameters.of_body(body, restitution, settings.gravity)
-    rotation, velocity = initial_state(parameters, rotation, angular_velocity)
-    slow, quick = _frequencies(parameters)
+    frequencies = parameters.right.frequency_parameter, parameters.left.frequency_parameter
+    slow, quick = min(frequencies), max(frequencies)
+    half_pi = 0.5 * math.pi
+    rotation = checks.within(
+        "rotation", rotation, -half_pi, half_pi, unit="rad", open_low=True, open_high=True, hint="degrees?"
+    )
+    most = 100.0 * quick
+    velocity = checks.within("angular_velocity", angular_velocity, -most, most, unit="rad/s", hint="degrees?")
     usual = _FREE / slow if motion is None else motion.duration + _AFTER / slow
     length = usual if duration is None else checks.positive("duration", duration, "s")
-    segments = _still(_FINE / quick, length) if motion is None else _shaken(motion, length, quick)
+    if motion is None:
+        segments = ground_at_rest(_FINE / quick, length)
+    else:
+        segments = motion.segments()
+        segments = followed(segments, length, math.ceil(quick * segments.step / _FINE), motion)
+    _check_stream(stream)
     found = run(
-        parameters,
-        segments,
-        settings,
-        engine=engine,
-        scale=scale,
-        stream=_stream(stream),
-        rotation=rotation,
-        velocity=velocity,
+        parameters, segments, settings, engine=engine, scale=scale, stream=stream, rotation=rotation, velocity=velocity
     )
     if motion is None and duration is None:
         found, segments = _until_rest(found, segments)
     return Response(body, motion, parameters, settings, segments, scale, stream, found)
 
 
-def _still(step: float, length: float) -> Segments:
+def _check_stream(stream: object) -> None:
+    if isinstance(stream, bool) or not isinstance(stream, int) or not 0 <= stream < 2**63:
+        raise InvalidValueError(f"stream must be a whole number in [0, 2^63), got {stream!r}")
+
+
+def ground_at_rest(step: float, length: float) -> Segments:
+    """Return ground at rest in steps, for a length [s]."""
     _check_samples(length / step)
     return Segments.still(step, max(1, math.ceil(length / step - 1e-9)))
 
 
-def _shaken(motion: Motion, length: float, quick: float) -> Segments:
-    segments = motion.segments()
+def followed(segments: Segments, length: float, parts: int, motion: Motion) -> Segments:
+    """Return a motion cut or followed by rest to a length [s]; the stretches of a pulse in so many parts."""
     if isinstance(motion, Pulse):
-        segments = segments.refined(math.ceil(quick * segments.step / _FINE))
+        segments = segments.refined(parts)
     _check_samples(length / segments.step)
-    return _cut(segments, length).extended(length)
-
-
-def initial_state(parameters: RockingParameters, rotation: float, angular_velocity: float) -> tuple[float, float]:
-    """Return checked initial conditions.
-
-    rotation, angular_velocity: theta [rad] and theta' [rad/s]. Returns the same, finite and within a quarter turn.
-    """
-    half_pi = 0.5 * math.pi
-    rotation = checks.within(
-        "rotation", rotation, -half_pi, half_pi, unit="rad", open_low=True, open_high=True, hint="degrees?"
-    )
-    most = 100.0 * _frequencies(parameters)[1]
-    return rotation, checks.within("angular_velocity", angular_velocity, -most, most, unit="rad/s", hint="degrees?")
-
-
-def _frequencies(parameters: RockingParameters) -> tuple[float, float]:
-    both = parameters.right.frequency_parameter, parameters.left.frequency_parameter
-    return min(both), max(both)
-
-
-def _stream(stream: Any) -> int:
-    if isinstance(stream, bool) or not isinstance(stream, int) or not 0 <= stream < 2**63:
-        raise InvalidValueError(f"stream must be a whole number in [0, 2^63), got {stream!r}")
-    return stream
+    keep = max(1, math.ceil(length / segments.step - 1e-9))
+    vertical = None if segments.vertical is None else segments.vertical[:keep]
+    return Segments(segments.step, segments.horizontal[:keep], vertical).extended(length)
 
 
 def _check_samples(count: float) -> None:
@@ -102,14 +90,6 @@ def _check_samples(count: float) -> None:
         raise InvalidValueError(
             f"the response would have {count:.3g} samples, more than {_MOST_SAMPLES:.0e}; a shorter duration, please"
         )
-
-
-def _cut(segments: Segments, length: float) -> Segments:
-    keep = max(1, math.ceil(length / segments.step - 1e-9))
-    if keep >= segments.count:
-        return segments
-    vertical = None if segments.vertical is None else segments.vertical[:keep]
-    return Segments(segments.step, segments.horizontal[:keep], vertical)
 
 
 def _until_rest(found: Any, segments: Segments) -> tuple[Any, Segments]:

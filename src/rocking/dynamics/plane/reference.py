@@ -327,7 +327,7 @@ class Reference:
             side=self.side if over else 0,
             peak_rotation=peak if good else math.nan,
             peak_time=when if good else math.nan,
-            peak_angular_velocity=self.fastest if good else math.nan,
+            peak_velocity=self.fastest if good else math.nan,
             overturning_time=self.over_time if over else math.nan,
             impacts=self.impacts,
             uplifts=self.uplifts,

@@ -1,5 +1,6 @@
 """What an engine hands back for one history, whichever engine it was."""
 
+import math
 from dataclasses import dataclass, field
 from enum import IntEnum
 
@@ -40,7 +41,7 @@ class Trajectory:
     side: int  # +1 or -1 to which it overturned, else 0
     peak_rotation: float  # theta of largest size; a quarter turn if it overturned [rad]
     peak_time: float  # when [s]
-    peak_angular_velocity: float  # largest |theta'| [rad/s]
+    peak_velocity: float  # largest |theta'| [rad/s]
     # when the centre of mass passed over the foot for the last time, or the end of the motion if it does so later; NaN
     # if it did not overturn [s]
     overturning_time: float
@@ -54,6 +55,11 @@ class Trajectory:
     # largest ratio of horizontal to normal force at the same instants; infinite where contact is lost [-]
     friction_demand: float
     engine: str  # which engine, and how
+
+    @property
+    def first_uplift(self) -> float:
+        """When the body was first lifted from rest; NaN if never [s]."""
+        return next((event.time for event in self.events if event.kind is EventKind.UPLIFT), math.nan)
 
     @property
     def still_rocking(self) -> bool:

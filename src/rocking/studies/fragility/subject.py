@@ -16,7 +16,7 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
-from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError, extra
@@ -28,7 +28,6 @@ from rocking.statistics.counts import pooled
 from rocking.statistics.lognormal import LognormalFit, fit_counts
 from rocking.studies.histories import HistoryTable, Product
 from rocking.studies.motion_sets import MotionList, MotionSet, digest
-from rocking.studies.question import sides_of
 from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from rocking import checks
 from rocking.bodies import Block
 from rocking.conventions import FloatArray, g
 from rocking.dynamics.impact_laws import ImpactLaw
-from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, RockingError
@@ -22,7 +22,6 @@ from rocking.studies.inventory.lights import Light, Thresholds
 from rocking.studies.inventory.objects import DIRECTIONS, Direction, InventoryObject, NotAssessed
 from rocking.studies.inventory.reading import Inventory
 from rocking.studies.motion_sets import MotionList
-from rocking.studies.question import sides_of
 
 
 @dataclass(frozen=True)

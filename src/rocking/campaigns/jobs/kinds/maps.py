@@ -11,6 +11,7 @@ from rocking.campaigns.jobs.adaptive import AdaptiveResult, Compute, DelegatedQu
 from rocking.campaigns.jobs.study import Study, along, labels_along
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.content import hash_of
+from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.plane.batch import Rows
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
@@ -23,7 +24,7 @@ from rocking.studies.axis import RestitutionAxis
 from rocking.studies.boundaries import Polyline, checked, outlines
 from rocking.studies.histories import Histories
 from rocking.studies.motion_sets import MotionList
-from rocking.studies.question import Question, modes_of, peak_ratio, sides_of
+from rocking.studies.question import Question, modes_of, peak_ratio
 from rocking.studies.sensitivity.restitutions import sampled
 from rocking.tables import PIECE, Column, Table, text_array
 

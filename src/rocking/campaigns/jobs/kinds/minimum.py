@@ -10,7 +10,7 @@ from rocking.campaigns.jobs.adaptive import AdaptiveResult, Compute, NumberedTab
 from rocking.campaigns.jobs.study import Study, along, labels_along
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.impact_laws import ImpactLaw
-from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.fast_engine import Arrays, empty_results
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Pulse
@@ -20,7 +20,7 @@ from rocking.spec.reading import located
 from rocking.spec.study import StudyProblem
 from rocking.studies.minimum_acceleration import Cases, Effort, Transitions, searched
 from rocking.studies.motion_sets import MotionList
-from rocking.studies.question import modes_of, peak_ratio, sides_of
+from rocking.studies.question import modes_of, peak_ratio
 from rocking.studies.sensitivity.restitutions import sampled
 from rocking.tables import Column, Table, text_array
 

@@ -9,14 +9,13 @@ from rocking.bodies import Block, Body
 from rocking.campaigns.jobs.study import Study, along, labels_along, motions_along
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
-from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.errors import InvalidValueError
 from rocking.spec.document import HistoriesTable
 from rocking.spec.fields import Values
 from rocking.spec.reading import located
 from rocking.spec.study import StudyProblem
 from rocking.studies.histories import Histories, Product
-from rocking.studies.question import sides_of
 from rocking.studies.sensitivity.restitutions import sampled
 from rocking.tables import Column
 
