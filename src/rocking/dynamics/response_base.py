@@ -1,5 +1,6 @@
-"""What the responses of every mechanics share: how they end, in words, and what they can be handed over as."""
+"""What the responses of every mechanics share: how they end, in words, in files, and how long a motion lasts."""
 
+import math
 from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +12,8 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.lazy import presenter
+from rocking.motions.pulse import Motion, Pulse
+from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, Status
 from rocking.version import SOFTWARE
 
@@ -260,3 +263,29 @@ class ResponseBase(Drawable):
         if bad.size:
             raise InvalidValueError(f"time must be in [0, {end:g}] s, where the response is known, got {bad[0]:g}")
         return np.clip(times, 0.0, end)
+
+
+_MOST_SAMPLES = 2_000_000
+
+
+def ground_at_rest(step: float, length: float) -> Segments:
+    """Return ground at rest in steps, for a length [s]."""
+    _check_samples(length / step)
+    return Segments.still(step, max(1, math.ceil(length / step - 1e-9)))
+
+
+def followed(segments: Segments, length: float, parts: int, motion: Motion) -> Segments:
+    """Return a motion cut or followed by rest to a length [s]; the stretches of a pulse in so many parts."""
+    if isinstance(motion, Pulse):
+        segments = segments.refined(parts)
+    _check_samples(length / segments.step)
+    keep = max(1, math.ceil(length / segments.step - 1e-9))
+    vertical = None if segments.vertical is None else segments.vertical[:keep]
+    return Segments(segments.step, segments.horizontal[:keep], vertical).extended(length)
+
+
+def _check_samples(count: float) -> None:
+    if not count <= _MOST_SAMPLES:
+        raise InvalidValueError(
+            f"the response would have {count:.3g} samples, more than {_MOST_SAMPLES:.0e}; a shorter duration, please"
+        )

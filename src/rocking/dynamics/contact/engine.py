@@ -69,7 +69,10 @@ class ContactEngine:
             self._strike(FLIGHT)
         else:
             self._change()
-        self._first_sample()
+        if self.ended is None:
+            ground = self._ground(self.step)
+            self.latest = mode_series(self.base, self.state, self.mode, ground, self.law.friction, _ORDER)
+        self.history.sample(0, self.state, self.mode, self.latest, 0.0)
         while self.ended is None and not self._over():
             self._step()
         history = self.history
@@ -163,7 +166,9 @@ class ContactEngine:
 
     def _end(self, kind: ModeEnd, whole: ModeSeries, at: float) -> None:
         """Let a mode end."""
-        self._count()
+        self.events += 1
+        if self.events >= self.settings.most_events:
+            self.ended = Status.TOO_MANY_EVENTS
         if kind is ModeEnd.LYING:
             self.lies, self.ended = True, Status.GOOD
         elif kind is ModeEnd.LANDING:
@@ -225,11 +230,6 @@ class ContactEngine:
         found = choose(self.base, calm, self._ground(1.0 / self.pace), self.law.friction)
         return calm if isinstance(found, NextMode) and found.mode.feet == BOTH else after
 
-    def _count(self) -> None:
-        self.events += 1
-        if self.events >= self.settings.most_events:
-            self.ended = Status.TOO_MANY_EVENTS
-
     def _change(self) -> None:
         """Choose the mode that follows."""
         if self.ended is not None:
@@ -248,12 +248,6 @@ class ContactEngine:
             self.state = kept(self.base, self.state, self.mode.feet, stick=self.mode.slip == 0)
 
     # ---- rest -------------------------------------------------------------------------------------------------------
-
-    def _first_sample(self) -> None:
-        if self.ended is None:
-            ground = self._ground(self.step)
-            self.latest = mode_series(self.base, self.state, self.mode, ground, self.law.friction, _ORDER)
-        self.history.sample(0, self.state, self.mode, self.latest, 0.0)
 
     def _skip(self) -> bool:
         """Rest through stretches that cannot move the body; whether there were any."""

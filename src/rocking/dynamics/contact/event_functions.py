@@ -99,15 +99,11 @@ def first_end(found: list[EventFunction], stretch: float, tolerance: float) -> t
         k = leading(function, stretch, tolerance)
         if k < 0:
             continue
-        at = first_fall(_trimmed(function.series[k:]))
+        rest = function.series[k:]
+        at = first_fall(rest[: np.flatnonzero(rest)[-1] + 1].tolist())
         if at is not None and (first is None or at < first[0]):
             first = at, function.kind
     return first
-
-
-def _trimmed(series: FloatArray) -> list[float]:
-    kept = np.flatnonzero(series)
-    return series[: kept[-1] + 1].tolist() if kept.size else [0.0]
 
 
 def excited_stretches(base: PlaneBase, push: FloatArray, lift: FloatArray, friction: float) -> np.ndarray:

@@ -17,7 +17,7 @@ from rocking.dynamics.contact.impact_resolution import GroundContact
 from rocking.dynamics.contact.response import ContactResponse
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters
-from rocking.dynamics.plane.histories import followed, ground_at_rest
+from rocking.dynamics.response_base import followed, ground_at_rest
 from rocking.dynamics.settings import Settings, check_progress
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.motions.motion import GroundMotion

@@ -106,15 +106,9 @@ class History:
         if series.sliding is not None and series.sliding.any():
             self.friction_loss -= series.unit * integral(series.tangential, series.sliding, at)
             self.slid += abs(series.unit * integral(np.ones(1), series.sliding, at))
-        self._raise_peak(series.rotation, at)
-        self._use(series, at, friction)
-
-    def _raise_peak(self, rotation: FloatArray, at: float) -> None:
-        turns = derivative(rotation)
-        inside = turning_points(rotation.tolist(), at) if value(turns, 0.0) * value(turns, at) < 0.0 else []
-        self.peak = max(self.peak, *(abs(value(rotation, instant)) for instant in (0.0, at, *inside)))
-
-    def _use(self, series: ModeSeries, at: float, friction: float) -> None:
+        turns = derivative(series.rotation)
+        inside = turning_points(series.rotation.tolist(), at) if value(turns, 0.0) * value(turns, at) < 0.0 else []
+        self.peak = max(self.peak, *(abs(value(series.rotation, instant)) for instant in (0.0, at, *inside)))
         for instant in (0.0, at):
             normal = sum(value(c, instant) for c in series.normals.values())
             tangential = abs(value(series.tangential, instant))

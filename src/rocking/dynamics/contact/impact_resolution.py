@@ -9,8 +9,9 @@ and for every foot ``0 <= P_n  _|_  v_n(after) + e_N v_n(before) >= 0``, and ``P
 that only the sum of the ``P_t`` is determined: it is shared as the ``P_n`` are.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 from typing import NamedTuple
 
 from rocking import checks, plausibility
@@ -74,9 +75,12 @@ def strike(base: PlaneBase, state: ContactState, friction: float, bounce: dict[i
     good = [s for s in _solutions(base, state, friction, targets) if _valid(base, s, friction, targets, speed)]
     if not good:
         return Status.NO_CONTACT_FORCE
-    if any(_differ(base, good[0].state, other.state, speed) for other in good[1:]):
-        return Status.AMBIGUOUS
-    if kinetic(base, good[0].state) > kinetic(base, state) * (1.0 + 10.0 * _ROUNDING):
+    first = good[0].state
+    for other in (struck.state for struck in good[1:]):
+        gap = max(abs(first.u - other.u), abs(first.w - other.w), base.height * abs(first.spin - other.spin))
+        if gap > 1e-8 * speed:
+            return Status.AMBIGUOUS
+    if kinetic(base, first) > kinetic(base, state) * (1.0 + 10.0 * _ROUNDING):
         return Status.ENERGY_GAIN
     return good[0]
 
@@ -89,22 +93,17 @@ def largest_speed(base: PlaneBase, state: ContactState) -> float:
     return max(abs(state.u), abs(state.w), base.size * abs(state.spin))
 
 
-def _solutions(base: PlaneBase, state: ContactState, friction: float, targets: dict[int, float]) -> list[Struck]:
+def _solutions(base: PlaneBase, state: ContactState, friction: float, targets: dict[int, float]) -> Iterator[Struck]:
     """Every choice of feet that take part and of how they slide, whether or not it is valid."""
-    parts = [part for n in range(1, len(targets) + 1) for part in combinations(state.touching, n)]
-    tried = (_try(base, state, part, slip, friction, targets) for slip in (0, 1, -1) for part in parts)
-    return [struck for struck in tried if struck is not None]
-
-
-def _try(
-    base: PlaneBase, state: ContactState, feet: tuple[int, ...], slip: int, friction: float, targets: dict[int, float]
-) -> Struck | None:
-    pull = slip * friction if slip else 0.0
-    if len(feet) == 2:
-        return _on_both(base, state, slip, pull, targets)
-    if slip:
-        return _sliding_on_one(base, state, feet[0], slip, pull, targets[feet[0]])
-    return _on_one(base, state, feet[0], targets[feet[0]])
+    for slip, n in product((0, 1, -1), range(1, len(targets) + 1)):
+        pull = slip * friction
+        for feet in combinations(state.touching, n):
+            if n == 2:
+                yield _on_both(base, state, slip, pull, targets)
+            elif not slip:
+                yield _on_one(base, state, feet[0], targets[feet[0]])
+            elif (struck := _sliding_on_one(base, state, feet[0], slip, pull, targets[feet[0]])) is not None:
+                yield struck
 
 
 def _on_one(base: PlaneBase, state: ContactState, foot: int, target: float) -> Struck:
@@ -151,11 +150,6 @@ def _valid(base: PlaneBase, struck: Struck, friction: float, targets: dict[int, 
     if struck.slip:
         return struck.slip * along(base, struck.state, next(iter(struck.normal))) >= -slack
     return abs(struck.tangential) <= friction * sum(struck.normal.values()) + slack * (1.0 + friction)
-
-
-def _differ(base: PlaneBase, one: ContactState, other: ContactState, speed: float) -> bool:
-    gap = max(abs(one.u - other.u), abs(one.w - other.w), base.height * abs(one.spin - other.spin))
-    return gap > 1e-8 * speed
 
 
 def cleaned(base: PlaneBase, struck: Struck, stop: float) -> ContactState:

@@ -9,7 +9,8 @@ where sigma is the direction of sliding: moments about the foot, and about the c
 ``z'' = r_x theta'' + r_z theta'^2``. Where ``j + r_x L <= 0`` the second one has no meaning (Painleve 1895).
 """
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from operator import mul
 from typing import NamedTuple
 
@@ -23,45 +24,6 @@ class PivotSeries(NamedTuple):
     arm_x: list[float]
     arm_z: list[float]
     stiff: float  # ``j + r_x L`` at the start, over its value without friction; 1 for a foot that sticks [-]
-
-
-class _Stick:
-    """Moments about a foot that does not move."""
-
-    def __init__(self, inertia: float, unit: float, push: Sequence[float], lift: Sequence[float]) -> None:
-        self.inertia, self.unit2, self.push, self.lift = inertia, unit * unit, push, lift
-        self.stiff = 1.0
-
-    def acceleration(self, k: int, x: list[float], z: list[float], _: list[float]) -> float:
-        """Coefficient k of theta''."""
-        moment: float = sum(map(mul, self.lift, x[k::-1])) - sum(map(mul, self.push, z[k::-1]))
-        return -moment * (self.unit2 / (self.inertia + x[0] ** 2 + z[0] ** 2))  # Eq. 66
-
-
-class _Slide:
-    """Moments about the centre, with the friction of a foot that slides."""
-
-    def __init__(self, inertia: float, unit: float, lift: Sequence[float], pull: float) -> None:
-        self.inertia, self.unit2, self.lift, self.pull = inertia, unit * unit, lift, pull
-        self.level: list[float] = []
-        self.stiffness: list[float] = []
-        self.square: list[float] = []
-        self.force: list[float] = []
-        self.found: list[float] = []
-        self.stiff = 1.0
-
-    def acceleration(self, k: int, x: list[float], z: list[float], spin: list[float]) -> float:
-        """Coefficient k of theta'' by division of series."""
-        self.level.append(x[k] + self.pull * z[k])
-        self.stiffness.append(sum(map(mul, x, self.level[k::-1])) + (self.inertia if k == 0 else 0.0))
-        self.square.append(sum(map(mul, spin, spin[k::-1])))
-        weight = self.lift[k] * self.unit2 if k < len(self.lift) else 0.0
-        self.force.append(weight + sum(map(mul, z, self.square[k::-1])))
-        if k == 0:
-            self.stiff = self.stiffness[0] / (self.inertia + x[0] ** 2)
-        known = sum(map(mul, self.level, self.force[k::-1])) + sum(map(mul, self.stiffness[1:], self.found[::-1]))
-        self.found.append(-known / self.stiffness[0] if self.stiffness[0] else float("nan"))  # Eq. 67
-        return self.found[-1]
 
 
 def pivot_motion(
@@ -83,12 +45,38 @@ def pivot_motion(
     [0.0, 0.0, -0.5]
     """
     push, lift, unit = ground
-    law = _Stick(inertia, unit, push, lift) if pull is None else _Slide(inertia, unit, lift, pull)
     rotation, spin = [motion[0], motion[1] * unit], [motion[1] * unit]
     x, z = [arm[0]], [arm[1]]
+    acceleration: Callable[[int], float]
+    if pull is None:
+        stiff = 1.0
+
+        def acceleration(k: int) -> float:
+            """Moments about a foot that does not move."""
+            moment: float = sum(map(mul, lift, x[k::-1])) - sum(map(mul, push, z[k::-1]))
+            return -moment * (unit * unit / (inertia + x[0] ** 2 + z[0] ** 2))  # Eq. 66
+
+    else:
+        level: list[float] = []
+        stiffness: list[float] = []
+        square: list[float] = []
+        force: list[float] = []
+        found: list[float] = []
+        stiff = (x[0] * (x[0] + pull * z[0]) + inertia) / (inertia + x[0] ** 2)
+
+        def acceleration(k: int) -> float:
+            """Moments about the centre, with the friction of a foot that slides: a division of series."""
+            level.append(x[k] + pull * z[k])
+            stiffness.append(sum(map(mul, x, level[k::-1])) + (inertia if k == 0 else 0.0))
+            square.append(sum(map(mul, spin, spin[k::-1])))
+            force.append((lift[k] * (unit * unit) if k < len(lift) else 0.0) + sum(map(mul, z, square[k::-1])))
+            known = sum(map(mul, level, force[k::-1])) + sum(map(mul, stiffness[1:], found[::-1]))
+            found.append(-known / stiffness[0] if stiffness[0] else math.nan)  # Eq. 67
+            return found[-1]
+
     floor, small, least = 1e-300, 0, len(push) + len(lift)
     for k in range(order - 1):
-        spin.append(law.acceleration(k, x, z, spin) / (k + 1))
+        spin.append(acceleration(k) / (k + 1))
         rotation.append(spin[-1] / (k + 2))
         floor = max(floor, _SMALLEST * abs(spin[-1]), _SMALLEST * abs(spin[0]))
         x_next = sum(map(mul, spin, z[k::-1])) / (k + 1)  # Eq. 68
@@ -98,4 +86,4 @@ def pivot_motion(
         small = small + 1 if abs(spin[-1]) <= floor and k >= least else 0
         if small == 3:
             break
-    return PivotSeries(rotation, x, z, law.stiff)
+    return PivotSeries(rotation, x, z, stiff)

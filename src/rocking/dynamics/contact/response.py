@@ -62,31 +62,6 @@ class ContactForces:
         return np.asarray(self.left + self.right)
 
 
-def energy_of(response: "ContactResponse") -> ContactEnergy:
-    """Return the energy of a response."""
-    mass, j = response.base.mass, response.base.inertia
-    u, w, spin = response.horizontal_velocity, response.vertical_velocity, response.angular_velocity
-    return ContactEnergy(
-        response.time,
-        0.5 * mass * (u**2 + w**2 + j * spin**2),  # Eq. 62
-        mass * response.settings.gravity * response.rise,
-        mass * response._sampled("work"),
-        mass * response._sampled("impact_loss"),
-        mass * response._sampled("friction_loss"),
-    )
-
-
-def forces_of(response: "ContactResponse") -> ContactForces:
-    """Return the forces of a response; at its samples, as limits from before."""
-    mass, friction = response.base.mass, response.law.friction
-    tangential = response._sampled("tangential")
-    left, right = response._sampled("normal_left"), response._sampled("normal_right")
-    most = friction * (left + right)
-    usage = np.zeros(most.size)
-    np.divide(np.abs(tangential), most, out=usage, where=most > 0.0)  # Eq. 78
-    return ContactForces(response.time, mass * tangential, mass * left, mass * right, usage)
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class ContactResponse(ResponseBase):
     """What `simulate` returns of a plane body with friction.
@@ -188,12 +163,22 @@ class ContactResponse(ResponseBase):
     @cached_property
     def energy(self) -> ContactEnergy:
         """Kinetic and potential energy, work of the ground, losses in impacts and in friction [J]."""
-        return energy_of(self)
+        mass, u, w, spin = self.base.mass, self.horizontal_velocity, self.vertical_velocity, self.angular_velocity
+        return ContactEnergy(
+            self.time,
+            0.5 * mass * (u**2 + w**2 + self.base.inertia * spin**2),  # Eq. 62
+            mass * self.settings.gravity * self.rise,
+            *(mass * self._sampled(name) for name in ("work", "impact_loss", "friction_loss")),
+        )
 
     @cached_property
     def forces(self) -> ContactForces:
-        """Forces of the ground on the feet [N], and how much of the friction is used."""
-        return forces_of(self)
+        """Forces of the ground on the feet [N], and how much of the friction is used; as limits from before."""
+        along, left, right = (self._sampled(name) for name in ("tangential", "normal_left", "normal_right"))
+        most, mass = self.law.friction * (left + right), self.base.mass
+        usage = np.zeros(most.size)
+        np.divide(np.abs(along), most, out=usage, where=most > 0.0)  # Eq. 78
+        return ContactForces(self.time, mass * along, mass * left, mass * right, usage)
 
     @property
     def friction_usage(self) -> float:

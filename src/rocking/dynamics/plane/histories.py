@@ -9,14 +9,14 @@ from rocking.bodies import Body
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.response import Response
+from rocking.dynamics.response_base import followed, ground_at_rest
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
-from rocking.motions.pulse import Motion, Pulse
+from rocking.motions.pulse import Motion
 from rocking.motions.segments import Segments
 
 # p times: the step between samples of a pulse's response, what is followed after a motion, and on ground at rest
 _FINE, _AFTER, _FREE = 0.05, 15.0, 300.0
-_MOST_SAMPLES = 2_000_000
 
 
 def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
@@ -67,29 +67,6 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
 def _check_stream(stream: object) -> None:
     if isinstance(stream, bool) or not isinstance(stream, int) or not 0 <= stream < 2**63:
         raise InvalidValueError(f"stream must be a whole number in [0, 2^63), got {stream!r}")
-
-
-def ground_at_rest(step: float, length: float) -> Segments:
-    """Return ground at rest in steps, for a length [s]."""
-    _check_samples(length / step)
-    return Segments.still(step, max(1, math.ceil(length / step - 1e-9)))
-
-
-def followed(segments: Segments, length: float, parts: int, motion: Motion) -> Segments:
-    """Return a motion cut or followed by rest to a length [s]; the stretches of a pulse in so many parts."""
-    if isinstance(motion, Pulse):
-        segments = segments.refined(parts)
-    _check_samples(length / segments.step)
-    keep = max(1, math.ceil(length / segments.step - 1e-9))
-    vertical = None if segments.vertical is None else segments.vertical[:keep]
-    return Segments(segments.step, segments.horizontal[:keep], vertical).extended(length)
-
-
-def _check_samples(count: float) -> None:
-    if not count <= _MOST_SAMPLES:
-        raise InvalidValueError(
-            f"the response would have {count:.3g} samples, more than {_MOST_SAMPLES:.0e}; a shorter duration, please"
-        )
 
 
 def _until_rest(found: Any, segments: Segments) -> tuple[Any, Segments]:
