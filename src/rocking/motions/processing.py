@@ -154,7 +154,7 @@ def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
 
     A finer step, of any ratio, takes the straight lines between the samples: every new sample is exact, and if the
     ratio is whole the motion drives bodies as before; its Arias intensity falls to that of the lines. A coarser step
-    must be a whole multiple; then a linear-phase low pass (Hamming window, 20 taps a multiple on either side, no
+    must be a whole multiple; then a linear-phase low pass (Hamming window, 10 taps a multiple on either side, no
     shift) removes first what the new step cannot carry.
 
     Parameters

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from rocking.conventions import FloatArray
 from rocking.portable import each, times
@@ -178,9 +177,10 @@ def _cutting(degree: int, parts: int) -> FloatArray:
 def _shifted_chebyshev(n: int) -> FloatArray:
     """Return T_k(2 tau - 1) in powers of tau, one polynomial a row; all entries are integers."""
     rows = np.zeros((n, n))
-    for k in range(n):
-        series = np.polynomial.Polynomial(chebyshev.cheb2poly(np.eye(n)[k][: k + 1]))
-        rows[k, : k + 1] = series(np.polynomial.Polynomial([-1.0, 2.0])).coef
+    rows[0, 0], rows[1, :2] = 1.0, (-1.0, 2.0)
+    for k in range(2, n):
+        rows[k] -= 2.0 * rows[k - 1] + rows[k - 2]
+        rows[k, 1:] += 4.0 * rows[k - 1, :-1]
     return rows
 
 

@@ -25,7 +25,7 @@ MARGIN = 1.001
 HIGH = 0.8
 """Samples whose state is so large, compared with the largest, give the first guess of the peaks [-]."""
 
-TOGETHER = 60_000
+TOGETHER = 180_000
 """Steps times periods that are held at once: they fit into the cache of a processor."""
 
 _BLOCK = 16  # samples of a row that follow one another in the recurrence of its states

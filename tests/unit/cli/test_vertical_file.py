@@ -74,6 +74,9 @@ def test_a_file_of_several_components(capsys, files, tmp_path):
     code, out, err = run(capsys, "motion", table, f"z={table}#column 3", *units)
     assert (code, out) == (2, "")
     assert f"say which one: '{table}#column 2'" in err
+    code, out, err = run(capsys, "motion", f"{table}#column 2", f"z={table}", *units)
+    assert (code, out) == (2, "")
+    assert f"the file has the components column 2, column 3; say which one: '{table}#column 2' or" in err
 
 
 def test_refusals(capsys, files, tmp_path):
