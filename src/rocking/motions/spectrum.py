@@ -143,11 +143,11 @@ def _largest(motion: GroundMotion, periods: FloatArray, damping: float) -> Float
     parts = np.ceil(POINTS_PER_PERIOD * motion.time_step / periods).astype(np.int64)
     result = np.empty((periods.size, 3))
     size = max(1, TOGETHER // len(motion))
-    for number in np.unique(parts):
+    for number in sorted(set(parts.tolist())):  # NumPy's unique would load masked arrays
         same = np.flatnonzero(parts == number)
         for start in range(0, same.size, size):
             chosen = same[start : start + size]
-            result[chosen] = _peaks(motion, np.asarray(rates[chosen], dtype=np.complex128), int(number)).T
+            result[chosen] = _peaks(motion, np.asarray(rates[chosen], dtype=np.complex128), number).T
     return result
 
 

@@ -194,7 +194,9 @@ class InventoryTable(JobTable):
     encoding: Words = _key("encoding of the CSV file; cp1252 for some spreadsheets", "utf-8-sig")
     pga: Words | None = _key("peak ground acceleration of every motion: 0.3g, 2.9m/s2")
     pgv: Words | None = _key("peak ground velocity in its place: 25cm/s, 0.25m/s")
-    thresholds: ThresholdsTable = _key("where one light ends and the next begins", ThresholdsTable())
+    thresholds: ThresholdsTable = Field(
+        default_factory=ThresholdsTable, description="where one light ends and the next begins"
+    )
 
     @model_validator(mode="after")
     def _one_level(self) -> "InventoryTable":
@@ -223,7 +225,7 @@ class SpectrumTable(JobTable):
 class HistoriesTable(JobTable):
     """What the histories of a campaign are made with, beside bodies, motions and restitutions."""
 
-    scales: Numbers = _key("factors on the motions [-]", Values(values=[1.0]))
+    scales: Numbers = Field(default_factory=lambda: Values(values=[1.0]), description="factors on the motions [-]")
 
 
 class FragilityTable(JobTable):
@@ -259,7 +261,7 @@ class CampaignDocument(JobTable):
     campaign: CampaignTable
     body: Annotated[list[dict[str, Any]], Field(min_length=1), BeforeValidator(in_list)] | None = None
     motions: Annotated[list[MotionTable], Field(min_length=1), BeforeValidator(in_list)]
-    restitution: RestitutionTable = RestitutionTable(model="ked")
+    restitution: RestitutionTable = Field(default_factory=lambda: RestitutionTable(model="ked"))
     map: MapTable | None = None
     spectrum: SpectrumTable | None = None
     histories: HistoriesTable | None = None
@@ -267,7 +269,7 @@ class CampaignDocument(JobTable):
     minimum: MinimumTable | None = None
     inventory: InventoryTable | None = None
     export: ExportTable | None = None
-    settings: SettingsTable = SettingsTable()
+    settings: SettingsTable = Field(default_factory=SettingsTable)
 
     @property
     def is_adaptive(self) -> bool:
@@ -390,9 +392,9 @@ class ComponentsTable(OneMotionTable):
 class ResponseTables(JobTable):
     """What every document of a response has, wherever its body and motion come from."""
 
-    restitution: RestitutionTable = RestitutionTable(model="ked")
-    response: ResponseTable = ResponseTable()
-    settings: SettingsTable = SettingsTable()
+    restitution: RestitutionTable = Field(default_factory=lambda: RestitutionTable(model="ked"))
+    response: ResponseTable = Field(default_factory=ResponseTable)
+    settings: SettingsTable = Field(default_factory=SettingsTable)
 
     @model_validator(mode="after")
     def _coefficient_of_one_history(self) -> "ResponseTables":

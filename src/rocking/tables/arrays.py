@@ -14,7 +14,7 @@ import numpy as np
 
 from rocking.errors import InvalidValueError, extra
 from rocking.quantities import QUANTITIES
-from rocking.tables.table import Column, Grid, Table, blocks
+from rocking.tables.table import Column, Grid, Table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,18 +27,7 @@ _MARGIN = 150_000  # attributes, and what HDF5 needs for itself [bytes]
 
 
 def to_dataset(table: Table) -> "xr.Dataset":
-    """Return a table as a labelled dataset.
-
-    Parameters
-    ----------
-    table : Table
-        The table; the column that is called as its rows are is the coordinate.
-
-    Returns
-    -------
-    xarray.Dataset
-        Columns over their rows, those of tables beside it over theirs, with units, meanings, codes and provenance.
-    """
+    """Return columns over their rows, those of tables beside it over theirs; one called as the rows is coordinate."""
     xarray = extra("xarray", "a labelled dataset")
     every = {name: (table.row, each.values, each.attributes) for name, each in table.columns.items()}
     for row, other in table.beside.items():
@@ -50,20 +39,7 @@ def to_dataset(table: Table) -> "xr.Dataset":
 
 
 def to_netcdf(content: "xr.Dataset | Grid", path: Path) -> Path:
-    """Write netCDF 4, which xarray and MATLAB open.
-
-    Parameters
-    ----------
-    content : xarray.Dataset or Grid
-        A labelled dataset, or results that come piece by piece.
-    path : Path
-        The file.
-
-    Returns
-    -------
-    Path
-        The file.
-    """
+    """Write netCDF 4, which xarray and MATLAB open."""
     extra("h5py", "netCDF")
     extra("h5netcdf", "netCDF")
     if isinstance(content, Grid):
@@ -87,25 +63,12 @@ def _grid_to_netcdf(grid: Grid, path: Path) -> None:
             variable.attrs.update(QUANTITIES[name].attributes)
             if also:
                 variable.attrs["coordinates"] = also
-        for first, last, arrays in grid.arrays():
-            for name, values in arrays.items():
-                for place, part in blocks(first, last, grid.shape):
-                    shape = tuple(s.stop - s.start for s in place)
-                    file.variables[name][place] = np.asarray(values)[part].reshape(shape)
+        for name, place, values in grid.blocks():
+            file.variables[name][place] = values
 
 
 def add_to_netcdf(tables: Mapping[str, Table], path: Path, provenance: Mapping[str, Any]) -> None:
-    """Write tables as variables of a netCDF file, which is made or, where it is there, added to.
-
-    Parameters
-    ----------
-    tables : dict of str to Table
-        The tables.
-    path : Path
-        The file.
-    provenance : dict
-        What was computed from what: attributes of the file.
-    """
+    """Write tables as variables of a netCDF file, which is made or, where it is there, added to."""
     room = sum(_room(each.values) for table in tables.values() for each in table.columns.values())
     with _netcdf_file(path, "a", room) as file:
         file.attrs.update(provenance)
@@ -153,31 +116,19 @@ def _room(values: np.ndarray) -> int:
 def to_mat(
     content: Table | Grid | Mapping[str, Any], path: Path, name: str = "rocking", *, apart: bool = False
 ) -> Path:
-    """Write one structure as a MATLAB file of version 5.
+    """Write one structure as a MATLAB file of version 5: a table, results over dimensions, or the structure itself.
 
-    Parameters
-    ----------
-    content : Table, Grid or dict
-        A table, results over dimensions, of which the last one is the last one there, or the structure itself.
-    path : Path
-        The file.
-    name : str
-        What the structure is called.
-    apart : bool
-        Whether columns of a table, their full names and meanings have structures of their own.
-
-    Returns
-    -------
-    Path
-        The file.
+    apart: columns of the table, their full names and meanings have structures of their own.
     """
     from scipy.io import savemat
 
-    structure: Any = content
-    if isinstance(content, Grid):
-        structure = _structure_of_grid(content)
-    elif isinstance(content, Table):
-        structure = _structure(content, apart=apart)
+    match content:
+        case Grid():
+            structure: Any = _structure_of_grid(content)
+        case Table():
+            structure = _structure(content, apart=apart)
+        case _:
+            structure = content
     savemat(path, {name: structure}, oned_as="column", appendmat=False, long_field_names=True)
     return path
 
@@ -197,18 +148,17 @@ def _structure(table: Table, *, apart: bool) -> dict[str, Any]:
         provenance = table.provenance["provenance"]
         return {"columns": values, "names": names, "units": units, "words": meanings, "provenance": provenance}
     beside = {row: other.columns for row, other in table.beside.items()}
+    # numbers as MATLAB's own double; text as a column of cells
+    kinds = {True: object, False: np.float64}
     return {
         **values,
-        **{f"{row}s": {name: _double(each) for name, each in other.items()} for row, other in beside.items()},
+        **{
+            f"{row}s": {n: c.values.astype(kinds[c.is_text]) for n, c in other.items()} for row, other in beside.items()
+        },
         "units": units,
         **{f"{row}_units": {name: c.unit for name, c in other.items() if c.unit} for row, other in beside.items()},
         "provenance": json.dumps(table.provenance),
     }
-
-
-def _double(column: Column) -> np.ndarray:
-    """Numbers as MATLAB's own double; text as a column of cells."""
-    return column.values.astype(object if column.is_text else np.float64)
 
 
 def _structure_of_grid(grid: Grid) -> dict[str, Any]:
@@ -217,10 +167,8 @@ def _structure_of_grid(grid: Grid) -> dict[str, Any]:
             f"MATLAB files take arrays up to 2 GiB, these are {len(grid)} {grid.row}; take .nc, which MATLAB reads"
         )
     whole = {name: np.empty(grid.shape, kind) for name, kind in grid.results.items()}
-    for first, last, arrays in grid.arrays():
-        for name, values in arrays.items():
-            for place, part in blocks(first, last, grid.shape):
-                whole[name][place] = values[part].reshape(whole[name][place].shape)
+    for name, place, values in grid.blocks():
+        whole[name][place] = values
     return {
         "dimensions": np.array(list(grid.dims), dtype=object),
         "coordinates": {name: each.values for name, each in grid.coordinates.items()},

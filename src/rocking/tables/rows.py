@@ -26,18 +26,7 @@ _WIDEST = 60
 
 
 def to_dataframe(table: Table) -> "pd.DataFrame":
-    """Return a table as pandas has it.
-
-    Parameters
-    ----------
-    table : Table
-        The table.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Columns such as ``rotation [rad]``.
-    """
+    """Return a table as pandas has it."""
     pandas = extra("pandas", "a table")
     arrays = (each.array for each in decoded(table.columns).values())
     frame: pd.DataFrame = pandas.DataFrame(dict(zip(table.header, arrays, strict=True)))
@@ -47,22 +36,8 @@ def to_dataframe(table: Table) -> "pd.DataFrame":
 def to_csv(table: Table | Grid, path: Path, *, blank: bool = True, for_excel: bool = False) -> Path:
     """Write a table as comma-separated values, all digits kept; units stand in the header.
 
-    Parameters
-    ----------
-    table : Table or Grid
-        The table.
-    path : Path
-        The file.
-    blank : bool
-        Whether cells without a finite number are empty.
-    for_excel : bool
-        Whether a mark before the first line tells Excel that it is UTF-8, and text is quoted: a semicolon separates
-        nothing then, whatever Excel takes for the separator.
-
-    Returns
-    -------
-    Path
-        The file.
+    for_excel: a mark before the first line tells Excel that it is UTF-8, and text is quoted: a semicolon separates
+    nothing then, whatever Excel takes for the separator.
     """
     with path.open("w", newline="", encoding="utf-8-sig" if for_excel else "utf-8") as file:
         writer = csv.writer(file, quoting=csv.QUOTE_NONNUMERIC if for_excel else csv.QUOTE_MINIMAL)
@@ -73,43 +48,27 @@ def to_csv(table: Table | Grid, path: Path, *, blank: bool = True, for_excel: bo
 
 
 def to_parquet(table: Table | Grid, path: Path) -> None:
-    """Write a table as Parquet, a group of rows a piece; units are in the metadata of the columns.
-
-    Parameters
-    ----------
-    table : Table or Grid
-        The table.
-    path : Path
-        The file.
-    """
+    """Write a table as Parquet, a group of rows a piece; units are in the metadata of the columns."""
     pa: Any = extra("pyarrow", "Parquet")
     parquet: Any = extra("pyarrow.parquet", "Parquet")
-    fields = [
-        pa.field(name, _arrow_type(pa, each), metadata={"units": each.unit, "long_name": each.meaning})
-        for name, each in table.columns.items()
-    ]
-    provenance = {
-        key: value if isinstance(value, str) else json.dumps(value) for key, value in table.provenance.items()
-    }
+    text, coded = pa.string(), pa.dictionary(pa.int32(), pa.string())
+
+    def arrow(column: Column) -> Any:
+        if not column.is_text:
+            return pa.array(column.array)
+        words, index = pa.array(column.values.tolist(), text), column.index
+        return words if index is None else pa.DictionaryArray.from_arrays(pa.array(index.astype(np.int32)), words)
+
+    fields = []
+    for name, each in table.columns.items():
+        number = None if each.is_text else pa.from_numpy_dtype(each.values.dtype)
+        kind = number or (text if each.index is None else coded)
+        fields.append(pa.field(name, kind, metadata={"units": each.unit, "long_name": each.meaning}))
+    provenance = {key: each if isinstance(each, str) else json.dumps(each) for key, each in table.provenance.items()}
     schema = pa.schema(fields, metadata=provenance)
     with parquet.ParquetWriter(path, schema) as writer:
         for piece in table.pieces():
-            arrays = [_arrow(pa, column) for column in piece.columns.values()]
-            writer.write_table(pa.table(arrays, schema=schema))
-
-
-def _arrow_type(pa: Any, column: Column) -> Any:
-    if not column.is_text:
-        return pa.from_numpy_dtype(column.values.dtype)
-    return pa.string() if column.index is None else pa.dictionary(pa.int32(), pa.string())
-
-
-def _arrow(pa: Any, column: Column) -> Any:
-    values, index = column.values, column.index
-    if not column.is_text:
-        return pa.array(column.array)
-    text = pa.array(values.tolist(), pa.string())
-    return text if index is None else pa.DictionaryArray.from_arrays(pa.array(index.astype(np.int32)), text)
+            writer.write_table(pa.table([arrow(column) for column in piece.columns.values()], schema=schema))
 
 
 def to_excel(
@@ -119,20 +78,8 @@ def to_excel(
     """Write tables as a workbook, whose text is text and never a formula.
 
     It is packed in memory: an archive that a full disk cuts off cannot be closed, and complains when it is forgotten.
-
-    Parameters
-    ----------
-    sheets : sequence of (str, Table or Grid)
-        The sheets with their titles.
-    path : Path
-        The file.
-    provenance : dict, optional
-        What the last sheet says; none if not given.
-    others : str
-        The formats that take more rows.
-    dressed : bool
-        Whether headings are bold and stay in sight, columns are as wide as they need, and numbers keep all digits
-        (16 otherwise), which takes longer.
+    others: the formats that take more rows. dressed: headings are bold and stay in sight, columns are as wide as they
+    need, and numbers keep all digits (16 otherwise), which takes longer.
     """
     for _, table in sheets:
         if len(table) > MOST_ROWS_OF_EXCEL:
@@ -179,13 +126,13 @@ def _fill(page: Any, table: Table | Grid) -> None:
         one.font = fonts.Font(bold=True)
     page.append(head)
     for piece in table.pieces():
-        for row in zip(*(_raw(each) for each in decoded(piece.columns).values()), strict=True):
+        # text as it is: the kind of its cell says that it is no formula
+        columns = (
+            [text or None for text in each.array.tolist()] if each.is_text else each.cells(slice(None))
+            for each in decoded(piece.columns).values()
+        )
+        for row in zip(*columns, strict=True):
             page.append([None if value is None else _filled(cells.WriteOnlyCell(page), value) for value in row])
-
-
-def _raw(column: Column) -> list[Cell]:
-    """Text as it is: the kind of its cell says that it is no formula."""
-    return [text or None for text in column.array.tolist()] if column.is_text else column.cells(slice(None))
 
 
 def _filled(cell: Any, value: Cell) -> Any:

@@ -26,56 +26,23 @@ _FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20", "\t", "\
 class Column:
     """Values of one kind, and what they are.
 
-    Parameters
-    ----------
-    values : ndarray
-        Numbers, NaN where there is nothing, or text.
-    unit : str
-        The unit; ``1`` for numbers without one, or empty.
-    meaning : str
-        What the values are.
-    variable : str, optional
-        The name in netCDF and MATLAB files, where it differs.
-    dims : tuple of str
-        Dimensions of the values, where they are not the rows of a table.
-    codes : dict of int to str
-        What whole numbers stand for.
-    index : ndarray of int, optional
-        Which of the values each row has; the values stand in the order of the rows if not given.
-    standard_name : str
-        The name in the table of the CF conventions, where that has it.
-
-    Examples
-    --------
     >>> Column.of("rotation", np.zeros(2)).attributes
     {'units': 'rad', 'long_name': 'rotation theta, positive clockwise'}
     """
 
-    values: np.ndarray
-    unit: str = "1"
-    meaning: str = ""
-    variable: str | None = None
-    dims: tuple[str, ...] = ()
-    codes: Mapping[int, str] = field(default_factory=dict)
+    values: np.ndarray  # numbers, NaN where there is nothing, or text
+    unit: str = "1"  # the unit; ``1`` for numbers without one, or empty
+    meaning: str = ""  # what the values are
+    variable: str | None = None  # the name in netCDF and MATLAB files, where it differs
+    dims: tuple[str, ...] = ()  # dimensions of the values, where they are not the rows of a table
+    codes: Mapping[int, str] = field(default_factory=dict)  # what whole numbers stand for
+    # which of the values each row has; the values stand in the order of the rows if not given
     index: np.ndarray | None = None
-    standard_name: str = ""
+    standard_name: str = ""  # the name in the table of the CF conventions, where that has it
 
     @classmethod
     def of(cls, name: str, values: np.ndarray) -> "Column":
-        """Return values of what has an entry in `rocking.quantities`.
-
-        Parameters
-        ----------
-        name : str
-            The entry.
-        values : ndarray
-            The values.
-
-        Returns
-        -------
-        Column
-            With unit, meaning and codes.
-        """
+        """Return values of what has an entry in `rocking.quantities`."""
         entry = QUANTITIES[name]
         return cls(values, entry.unit, entry.meaning, codes=entry.codes, standard_name=entry.standard_name)
 
@@ -107,20 +74,7 @@ class Column:
         return Column(text_array([*(self.codes[code] for code in sorted(self.codes)), ""]), "", index=index)
 
     def cells(self, rows: slice, *, blank: bool = True) -> list[Cell]:
-        """Return some rows as cells of a file.
-
-        Parameters
-        ----------
-        rows : slice
-            Which rows.
-        blank : bool
-            Whether cells without a finite number are empty.
-
-        Returns
-        -------
-        list
-            Numbers with all digits, text that no spreadsheet takes for a formula, None where there is nothing.
-        """
+        """Return some rows as cells: all digits, text that no spreadsheet takes for a formula, None for nothing."""
         values = self.array[rows]
         cells: list[Cell] = values.tolist()
         if self.is_text:
@@ -134,49 +88,20 @@ class Column:
 class Table:
     """Columns of one length, and where they come from.
 
-    Parameters
-    ----------
-    row : str
-        What a row is: the dimension in netCDF files.
-    columns : dict of str to Column
-        The columns by name.
-    provenance : dict
-        What was computed from what: plain values.
-    beside : dict of str to Table
-        Further tables of the same result, by what one of their rows is.
-    no_unit : str
-        What headings say in brackets of numbers without unit; no brackets if empty.
-
-    Examples
-    --------
     >>> Table("sample", {"rotation": Column.of("rotation", np.zeros(2))}).header
     ['rotation [rad]']
     """
 
-    row: str
-    columns: Mapping[str, Column]
-    provenance: Mapping[str, Any] = field(default_factory=dict)
+    row: str  # what a row is: the dimension in netCDF files
+    columns: Mapping[str, Column]  # the columns by name
+    provenance: Mapping[str, Any] = field(default_factory=dict)  # what was computed from what: plain values
+    # further tables of the same result, by what one of their rows is
     beside: Mapping[str, "Table"] = field(default_factory=dict)
-    no_unit: str = ""
+    no_unit: str = ""  # what headings say in brackets of numbers without unit; no brackets if empty
 
     @classmethod
     def of_rows(cls, row: str, header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> "Table":
-        """Return a table of cells whose headings say the units already.
-
-        Parameters
-        ----------
-        row : str
-            What the table is called.
-        header : sequence of str
-            Headings, each different.
-        rows : iterable of sequences
-            Text and finite numbers; empty text where there is nothing.
-
-        Returns
-        -------
-        Table
-            The same as columns.
-        """
+        """Return a table of cells whose headings say the units already."""
         if len(set(header)) < len(header):
             raise InvalidValueError(f"headings of a table must differ, got {', '.join(header)}")
         cells = [list(map(_checked, each)) for each in rows]
@@ -198,60 +123,28 @@ class Table:
         return list(zip(*(column.values.tolist() for column in self.columns.values()), strict=True))
 
     def cells(self, *, blank: bool = True) -> Iterator[tuple[Cell, ...]]:
-        """Return the rows of a file.
-
-        Parameters
-        ----------
-        blank : bool
-            Whether cells without a finite number are empty.
-
-        Yields
-        ------
-        tuple
-            A row, harmless to spreadsheets.
-        """
+        """Return the rows of a file, harmless to spreadsheets; blank: cells without a finite number are empty."""
         columns = decoded(self.columns).values()
         for first in range(0, len(self), PIECE):
             part = slice(first, first + PIECE)
             yield from zip(*(each.cells(part, blank=blank) for each in columns), strict=True)
 
     def pieces(self) -> Iterator["Table"]:
-        """Return the table as a stream of tables.
-
-        Yields
-        ------
-        Table
-            This one.
-        """
+        """Return the table as a stream of tables."""
         yield self
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
-    """Results over dimensions that may be larger than the memory: they come piece by piece.
+    """Results over dimensions that may be larger than the memory: they come piece by piece."""
 
-    Parameters
-    ----------
-    row : str
-        What the results are of, in the plural.
-    dims : dict of str to int
-        Length of every dimension; the last one changes fastest.
-    coordinates : dict of str to Column
-        What is known along dimensions: columns with `dims`.
-    results : dict of str to dtype
-        Types of the results, by their names in `rocking.quantities`.
-    arrays : callable
-        Returns an iterator over first row, last row (not included) and arrays of the results between them.
-    provenance : dict
-        What was computed from what: plain values.
-    """
-
-    row: str
-    dims: Mapping[str, int]
-    coordinates: Mapping[str, Column]
-    results: Mapping[str, Any]
+    row: str  # what the results are of, in the plural
+    dims: Mapping[str, int]  # length of every dimension; the last one changes fastest
+    coordinates: Mapping[str, Column]  # what is known along dimensions: columns with `dims`
+    results: Mapping[str, Any]  # types of the results, by their names in `rocking.quantities`
+    # returns an iterator over first row, last row (not included) and arrays of the results between them
     arrays: Callable[[], Iterator[tuple[int, int, Arrays]]]
-    provenance: Mapping[str, Any] = field(default_factory=dict)
+    provenance: Mapping[str, Any] = field(default_factory=dict)  # what was computed from what: plain values
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -273,15 +166,16 @@ class Grid:
         return _header(self.columns, "")
 
     def pieces(self) -> Iterator[Table]:
-        """Return a row for each place, as a stream of tables.
-
-        Yields
-        ------
-        Table
-            The next rows.
-        """
+        """Return a row for each place, as a stream of tables."""
         for first, last, arrays in self.arrays():
             yield self._piece(first, last, arrays)
+
+    def blocks(self) -> Iterator[tuple[str, tuple[slice, ...], np.ndarray]]:
+        """Return the results in rectangular blocks: name, place and values."""
+        for first, last, arrays in self.arrays():
+            for place, part in blocks(first, last, self.shape):
+                for name, values in arrays.items():
+                    yield name, place, np.asarray(values)[part].reshape([each.stop - each.start for each in place])
 
     def _piece(self, first: int, last: int, arrays: Arrays) -> Table:
         places = dict(zip(self.dims, np.unravel_index(np.arange(first, last, dtype=np.int64), self.shape), strict=True))
@@ -321,18 +215,6 @@ def blocks(first: int, last: int, shape: tuple[int, ...]) -> Iterator[Block]:
 def safe_cell(cell: Cell) -> Cell:
     """Return a cell that no spreadsheet takes for a formula.
 
-    Parameters
-    ----------
-    cell : str, int, float or None
-        What goes into it.
-
-    Returns
-    -------
-    str, int, float or None
-        Text without control characters, and `escaped`; numbers stay, and must be finite.
-
-    Examples
-    --------
     >>> safe_cell("=1+1"), safe_cell(-1.5)
     ("'=1+1", -1.5)
     """
@@ -351,18 +233,6 @@ def _checked(cell: Cell) -> Cell:
 def escaped(text: str) -> str:
     """Return text that no spreadsheet takes for a formula.
 
-    Parameters
-    ----------
-    text : str
-        The text.
-
-    Returns
-    -------
-    str
-        The same, with an apostrophe before it if it starts with ``=``, ``+``, ``-``, ``@``, a tab or a line break.
-
-    Examples
-    --------
     >>> escaped("=1+1"), escaped("vase")
     ("'=1+1", 'vase')
     """
@@ -370,18 +240,7 @@ def escaped(text: str) -> str:
 
 
 def target_of(path: str | os.PathLike[str]) -> Path:
-    """Return the path of a file that can be written.
-
-    Parameters
-    ----------
-    path : str or path
-        The file, in a folder that is there.
-
-    Returns
-    -------
-    Path
-        The file.
-    """
+    """Return the path of a file that can be written."""
     other: object = path
     if not isinstance(other, (str, os.PathLike)):
         raise InvalidValueError(f"path must be the path of a file, got {path!r:.60}")
@@ -394,18 +253,7 @@ def target_of(path: str | os.PathLike[str]) -> Path:
 
 
 def text_array(values: Sequence[Any]) -> np.ndarray:
-    """Return text as an array.
-
-    Parameters
-    ----------
-    values : sequence of str
-        The text.
-
-    Returns
-    -------
-    ndarray of object
-        The same.
-    """
+    """Return text as an array."""
     array = np.empty(len(values), dtype=object)
     array[:] = values
     return array
