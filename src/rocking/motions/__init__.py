@@ -39,7 +39,7 @@ from rocking.motions.processing import (
     trimmed_to_significant,
 )
 from rocking.motions.pulse import Pulse
-from rocking.motions.segments import Segments
+from rocking.motions.segments import Segments as Segments  # what engines integrate
 from rocking.motions.spectrum import ResponseSpectrum, response_spectrum
 
 __all__ = [
@@ -49,7 +49,6 @@ __all__ = [
     "Pulse",
     "ResponseSpectrum",
     "RockingScale",
-    "Segments",
     "arias_intensity",
     "bandpassed",
     "cumulative_absolute_velocity",

@@ -17,81 +17,28 @@ SMOOTH_DEGREE = 7
 class Segments:
     """Acceleration of the ground as polynomials of the time within each stretch.
 
-    Parameters
-    ----------
-    step : float
-        Duration of a stretch [s].
-    horizontal : ndarray, shape (n, degree + 1)
-        Coefficients of ``a(tau) = c[0] + c[1] tau + ...`` with ``tau`` from 0 to 1 over the stretch [m/s2].
-    vertical : ndarray, shape (n, degree + 1), optional
-        The same for the vertical acceleration [m/s2].
-
-    Examples
-    --------
     >>> Segments.between_samples(0.1, np.array([0.0, 1.0, -2.0])).horizontal.tolist()
     [[0.0, 1.0], [1.0, -3.0]]
     """
 
-    step: float
+    step: float  # duration of a stretch [s]
+    # coefficients of ``a(tau) = c[0] + c[1] tau + ...`` with ``tau`` from 0 to 1 over the stretch [m/s2]
     horizontal: FloatArray
-    vertical: FloatArray | None = None
+    vertical: FloatArray | None = None  # the same for the vertical acceleration [m/s2]
 
     @classmethod
     def between_samples(cls, step: float, horizontal: FloatArray, vertical: FloatArray | None = None) -> "Segments":
-        """Return the straight lines between samples.
-
-        Parameters
-        ----------
-        step : float
-            Step between samples [s].
-        horizontal : ndarray, shape (n + 1,)
-            Samples [m/s2].
-        vertical : ndarray, shape (n + 1,), optional
-            Samples [m/s2].
-
-        Returns
-        -------
-        Segments
-            Of degree 1.
-        """
+        """Return the straight lines between samples."""
         return cls(step, _lines(horizontal), None if vertical is None else _lines(vertical))
 
     @classmethod
     def still(cls, step: float, count: int) -> "Segments":
-        """Return ground at rest.
-
-        Parameters
-        ----------
-        step : float
-            Duration of a stretch [s].
-        count : int
-            Number of stretches.
-
-        Returns
-        -------
-        Segments
-            Of degree 1.
-        """
+        """Return ground at rest."""
         return cls(step, np.zeros((count, 2)))
 
     @classmethod
     def of_function(cls, acceleration: Callable[[FloatArray], FloatArray], duration: float, count: int) -> "Segments":
-        """Return polynomials that agree with a smooth function to rounding, if there are enough of them.
-
-        Parameters
-        ----------
-        acceleration : callable
-            Acceleration at times from 0 to `duration` [m/s2].
-        duration : float
-            Duration [s].
-        count : int
-            Number of stretches.
-
-        Returns
-        -------
-        Segments
-            Of degree 7: interpolation in Chebyshev points.
-        """
+        """Return polynomials that agree with a smooth function to rounding, if there are enough of them."""
         n = SMOOTH_DEGREE + 1
         angles = np.pi * (np.arange(n) + 0.5) / n
         nodes = each(math.cos, angles)
@@ -103,18 +50,7 @@ class Segments:
         return cls(step, times(times(values, weights), _SHIFTED))  # Eq. 162
 
     def refined(self, parts: int) -> "Segments":
-        """Return the same polynomials on shorter stretches.
-
-        Parameters
-        ----------
-        parts : int
-            Stretches that each one is cut into.
-
-        Returns
-        -------
-        Segments
-            The same motion.
-        """
+        """Return the same polynomials on shorter stretches."""
         if parts <= 1:
             return self
         cut = _cutting(self.degree, parts)
@@ -126,18 +62,7 @@ class Segments:
         return Segments(self.step / parts, pieces[0], pieces[1])
 
     def extended(self, duration: float) -> "Segments":
-        """Return the motion with rest of the ground after it, up to a duration.
-
-        Parameters
-        ----------
-        duration : float
-            Duration of all, at least [s].
-
-        Returns
-        -------
-        Segments
-            The longer motion; itself if it is long enough.
-        """
+        """Return the motion with rest of the ground after it, up to a duration."""
         more = int(np.ceil((duration - self.duration) / self.step - 1e-9))
         if more <= 0:
             return self

@@ -6,6 +6,7 @@ Corrected files (Volume 2 and up) have another layout, of which no file was at h
 """
 
 import re
+from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
@@ -13,7 +14,7 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
 from rocking.motions.formats import headers, numbers
-from rocking.motions.formats.record import Component, Record, RecordFormat, Source
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
 
 _TEXTS, _WHOLES, _REALS = 13, 7, 7
 _PER_LINE, _WIDTH = 10, 13
@@ -32,14 +33,10 @@ class Bhrc(RecordFormat):
         "Accelerations are in g/10 and uncorrected: remove their mean and correct the baseline. The file states no "
         "peak, so a damaged sample can pass. Volume 2 is refused: its layout was not verified."
     )
-
-    def recognises(self, source: Source) -> bool:
-        """Return whether the text of a BHRC component stands at the top."""
-        if not source.is_text:
-            return False
-        top = source.lines[: _TEXTS + 3]
-        marks = (r"\* VOL\dDS FILE", "COMP [LVT]", r"NO\. OF POINTS =", "UNITS ARE SECONDS AND G/10", "INSTR PERIOD =")
-        return sum(any(re.match(mark, line) for line in top) for mark in marks) >= 4
+    marks: ClassVar[tuple[str, ...]] = (
+        r"\* VOL\dDS FILE", "COMP [LVT]", r"NO\. OF POINTS =", "UNITS ARE SECONDS AND G/10", "INSTR PERIOD =",
+    )  # fmt: skip
+    top: ClassVar[int] = _TEXTS + 3
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return up to three components: L, V and T."""
@@ -54,15 +51,15 @@ class Bhrc(RecordFormat):
                 raise source.error(None, f"component {component.name} is there twice")
             components.append(component)
         lines = source.lines[:_TEXTS]
-        metadata = {
-            "file": lines[0].partition(":")[2].strip(),
-            "instrument": lines[1].partition("=")[2].strip(),
-            "event": " ".join([lines[2].strip(), *lines[8].split()]),
-            "station": lines[7].partition("Station")[0].strip(),
-            "processing": "uncorrected (Volume 1)",
-        }
+        metadata = metadata_of(
+            file=lines[0].partition(":")[2],
+            instrument=lines[1].partition("=")[2],
+            event=" ".join([lines[2].strip(), *lines[8].split()]),
+            station=lines[7].partition("Station")[0],
+            processing="uncorrected (Volume 1)",
+        )
         header = "\n".join(source.lines[: _TEXTS + _WHOLES + _REALS])
-        return Record(self.name, tuple(components), header, {key: text for key, text in metadata.items() if text})
+        return Record(self.name, tuple(components), header, metadata)
 
     def write(self, record: Record) -> bytes:
         """Return a Volume 1 file."""
@@ -78,9 +75,8 @@ class Bhrc(RecordFormat):
 
 def _component(source: Source, top: int, units: str | None, asked: float | None) -> tuple[Component, int]:
     if len(source.lines) < top + _TEXTS + _WHOLES + _REALS:
-        raise source.error(
-            None, f"the header of a component has {_TEXTS + _WHOLES + _REALS} lines, the file ends in it"
-        )
+        lines = _TEXTS + _WHOLES + _REALS
+        raise source.error(None, f"the header of a component has {lines} lines, the file ends in it")
     volume = numbers.matched(source, top, _VOLUME)
     if volume[1] != "1":
         raise source.error(top, f"Volume {volume[1]}: only Volume 1 is read, the layout of others was not verified")
@@ -110,29 +106,21 @@ def _written(record: Record, part: Component, values: FloatArray) -> list[str]:
     count = values.size
     if count > 99_999 or np.abs(values).max() >= 1e9:
         raise RecordError(f"BHRC holds up to 99999 samples below 1e9 g/10, got {count}")
-    known = {key: numbers.one_line(record.metadata.get(key, ""), 40) for key in ("file", "instrument", "station")}
-    azimuth = numbers.one_line(part.metadata.get("azimuth", "0"), 3)
-    lines = [f"* VOL1DS FILE:  {known['file']}", f"Inst Type = {known['instrument']}", "", "", part.name, ""]
-    lines += [f"COMP {part.name}1", f"{known['station']}  Station   Azimuth {part.name} {azimuth}", "Epicenter"]
-    lines += ["INSTR PERIOD =  .000 SEC   DAMPING =  .000", ""]
+    file, instrument, station = (record.text(key, 40) for key in ("file", "instrument", "station"))
+    azimuth = one_line(part.metadata.get("azimuth", "0"), 3)
     duration = count * part.time_step
-    lines[-1] = f"NO. OF POINTS = {count:6d}      DURATION = {duration:9.4f}"
-    lines += ["UNITS ARE SECONDS AND G/10", ""]
-    wholes = [0] * 88
-    wholes[25] = count
+    lines = [f"* VOL1DS FILE:  {file}", f"Inst Type = {instrument}", "", "", part.name, "", f"COMP {part.name}1"]
+    lines += [f"{station}  Station   Azimuth {part.name} {azimuth}", "Epicenter"]
+    lines += ["INSTR PERIOD =  .000 SEC   DAMPING =  .000"]
+    lines += [f"NO. OF POINTS = {count:6d}      DURATION = {duration:9.4f}", "UNITS ARE SECONDS AND G/10", ""]
+    wholes, reals = [0] * 88, [0.0] * 38
+    wholes[25], reals[2], reals[6] = count, duration, 1.0 / part.time_step
     lines += numbers.in_columns(wholes, 14, "{:5d}")
-    reals = [0.0] * 38
-    reals[2], reals[6] = duration, 1.0 / part.time_step
-    lines += ["".join(_fortran(value) for value in reals[k : k + 6])[:70] for k in range(0, 38, 6)]
-    words = [_fortran(value) for value in values.tolist()]
-    lines += ["".join(words[k : k + _PER_LINE]) for k in range(0, count, _PER_LINE)]
-    return [*lines, _END]
+    lines += [text[:70] for text in _in_lines(reals, 6)]
+    return [*lines, *_in_lines(values.tolist(), _PER_LINE), _END]
 
 
-def _fortran(value: float) -> str:
-    """Return a number as Fortran's E13.6 prints it, without the zero before the point."""
-    if abs(value) < 1e-90:
-        return ".000000E+00".rjust(_WIDTH)
-    mantissa, exponent = f"{value:.5E}".split("E")
-    sign, digits = ("-", mantissa[1:]) if mantissa.startswith("-") else ("", mantissa)
-    return f"{sign}.{digits.replace('.', '')}E{int(exponent) + 1:+03d}".rjust(_WIDTH)
+def _in_lines(values: Sequence[float], per_line: int) -> list[str]:
+    # exponents have two digits
+    words = [numbers.fortran_e(value if abs(value) >= 1e-90 else 0.0, 6, _WIDTH) for value in values]
+    return ["".join(words[k : k + per_line]) for k in range(0, len(words), per_line)]

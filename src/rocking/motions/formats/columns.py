@@ -9,8 +9,8 @@ from rocking.conventions import FloatArray
 from rocking.errors import RecordError
 from rocking.motions.formats.column_text import MARK, MOST_NAMED, ColumnName, ColumnText, NamedColumns, states_sampling
 from rocking.motions.formats.headers import in_unit, step_between_samples, step_of_times
-from rocking.motions.formats.numbers import number, one_line
-from rocking.motions.formats.record import Component, Record, RecordFormat, Source
+from rocking.motions.formats.numbers import number
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
 
 _MOST_COLUMNS = 4
 _LOOK = 5

@@ -1,25 +1,22 @@
 """COSMOS v1.20: headers of text, whole numbers, reals and comments, and the samples, one channel after another."""
 
 import re
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.motions.formats import headers
 from rocking.motions.formats.headers import (
+    LONGEST_LINE,
     Channel,
-    acceleration_unit,
     check_count,
     check_duration,
-    check_end,
     check_peak,
     check_peak_time,
-    distinct_names,
-    in_unit,
-    step_between_samples,
 )
-from rocking.motions.formats.numbers import fixed, fortran_form, in_width, one_line, whole
-from rocking.motions.formats.record import Component, Record, RecordFormat, Source
+from rocking.motions.formats.numbers import fixed, fortran_form, in_width, whole
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
 
 _TITLE = re.compile(r".*\(Format v\s*0*1\.[12]0? with\s+(\d+) text lines\).*", re.IGNORECASE)
 _TABLE = re.compile(
@@ -30,72 +27,15 @@ _DATA = re.compile(
     r"\s*(\d+)\s+(\w+)\s+pts,\s*approx\s+(\S+)\s+secs?,\s*units\s*=\s*([^,(]+)\(\s*(\d+)\s*\),\s*Format\s*=\s*(\(.*?\))\s*",
     re.IGNORECASE,
 )
-UNKNOWN = -999.0
+_UNKNOWN = -999.0
 _MOST_TEXT = 200
 # places in the headers, counted from 0: what is measured, its unit, azimuth, count; step [ms], length, peak, its time
-QUANTITY, UNIT, CHANNEL, AZIMUTH, COUNT = 1, 2, 49, 53, 69
-STEP, LENGTH, PEAK, PEAK_TIME = 61, 62, 63, 64
+_QUANTITY, _UNIT, _CHANNEL, _AZIMUTH, _COUNT = 1, 2, 49, 53, 69
+_STEP, _LENGTH, _PEAK, _PEAK_TIME = 61, 62, 63, 64
 # codes of the units that are accelerations; what the line before the data may call them
 _UNITS = {2: ("g", {"g"}), 4: ("cm/s2", {"cm/sec2", "cm/sec/sec", "cm/s2", "cm/s/s", "cm/sec^2", "gal"})}
 # header and data round apart: the peak is written in fewer digits than the samples
 _ROUNDING = {"cm/s2": 6e-4, "g": 1e-5}
-
-
-class DataLine(NamedTuple):
-    """What the line before the samples states."""
-
-    samples: int  # number of samples
-    seconds: str  # duration as it is printed there [s]
-    unit: str  # A key of `rocking.conventions.ACCELERATION_UNITS`
-    code: int  # code of the unit
-    per_line: int  # per_line, width: numbers on a line and characters of each
-    width: int
-
-
-class Header(NamedTuple):
-    """The header of one channel."""
-
-    lines: list[str]  # all its lines, as they stand
-    texts: int  # how many of them are text
-    wholes: FloatArray  # wholes, figures: the whole numbers and the reals
-    figures: FloatArray
-    data: DataLine  # the line before the samples
-    first_sample: int  # line of the first sample
-
-    @property
-    def channel(self) -> str:
-        """Number and direction, as ``CHAN 1: 90``: the azimuth if it is known, else what the text says."""
-        label = next((text[:200] for text in self.lines[: self.texts] if text.startswith("Sta Cha")), "")
-        number = re.match(r"Sta Cha\w*\s*:?\s*(\d+)", label)
-        said = re.search(r":\s*([\w-]+)(?:\s+deg\b|\s+\()", label)
-        azimuth = self.wholes[AZIMUTH]
-        direction = (said[1] if said else "") if azimuth == UNKNOWN else f"{azimuth:.0f}"
-        return f"CHAN {number[1] if number else 1}: {direction}"
-
-
-def begins_channel(source: Source, line: int) -> bool:
-    """Return whether a line states the format and the number of text lines."""
-    return line < len(source.lines) and _TITLE.fullmatch(source.lines[line][:200]) is not None
-
-
-def read_header(source: Source, first: int) -> Header:
-    """Return the header of the channel that begins at a line."""
-    title = _TITLE.fullmatch(source.lines[first][:200])
-    texts = whole(source, first, title[1], "number of text lines") if title else 0
-    if not 12 <= texts <= _MOST_TEXT or first + texts + 1 >= len(source.lines):
-        raise source.error(first, f"12 to {_MOST_TEXT} text lines expected, and as many lines after this one")
-    wholes, line = _table(source, first + texts, "integer", 100)
-    figures, line = _table(source, line, "real", 100)
-    line = _after_comments(source, line)
-    data = _data_line(source, line)
-    if (int(wholes[QUANTITY]), int(wholes[UNIT])) != (1, data.code):
-        raise source.error(line, "the header of whole numbers must state acceleration (1) and the unit of this line")
-    return Header(source.lines[first : line + 1], texts, wholes, figures, data, line + 1)
-
-
-def known(value: float, unknown: float = UNKNOWN) -> float | None:
-    """Return a number of the header, or none where it is the one that means unknown."""
-    return None if value == unknown else float(value)
 
 
 class Cosmos(RecordFormat):
@@ -111,30 +51,109 @@ class Cosmos(RecordFormat):
 
     def recognises(self, source: Source) -> bool:
         """Return whether the first line states the format and its number of text lines."""
-        return source.is_text and begins_channel(source, 0)
+        return source.is_text and _title(source.lines[0]) is not None
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the record, with a component for each channel, named by its azimuth, or CHAN 1 where these repeat."""
-        first = 0
-        channels: list[Channel] = []
-        while not channels or begins_channel(source, first):
-            channel, first = _channel(source, first, units, time_step)
-            channels.append(channel)
-        check_end(source, first)
-        header = "\n".join("\n".join(lines) for lines, _, _ in channels)
+        channels = headers.read_channels(source, _title, lambda line: _channel(source, line, units, time_step))
         texts = channels[0][0]
         station = re.match(r"Statn No:\s*(\S+)\s+Code:\s*(\S+)\s+(.*)", texts[4])
-        metadata = {"event": texts[1][:39].strip(), "date": texts[1][39:].strip()}
-        if station:
-            metadata |= {"station number": station[1], "station code": station[2], "station": station[3].strip()}
-        return Record(self.name, distinct_names(channels), header, {k: v for k, v in metadata.items() if v})
+        number, code, name = station.groups() if station else ("", "", "")
+        metadata = metadata_of(
+            event=texts[1][:39], date=texts[1][39:], station_number=number, station_code=code, station=name
+        )
+        return headers.record_of_channels(self.name, channels, metadata)
 
     def write(self, record: Record) -> bytes:
         """Return the content of a COSMOS file, in cm/sec2 with 5 decimals."""
         lines: list[str] = []
-        for row, values in enumerate(in_unit(record, self.name, "cm/s2", 99)):
+        for row, values in enumerate(headers.in_unit(record, self.name, "cm/s2", 99)):
             lines += _lines(record, row, values.round(5))
         return ("\n".join(lines) + "\n").encode("latin-1")
+
+
+def _title(text: str) -> re.Match[str] | None:
+    return _TITLE.fullmatch(text[:LONGEST_LINE])
+
+
+def _table(source: Source, line: int, kind: str, least: int) -> tuple[FloatArray, int]:
+    found = _TABLE.fullmatch(source.lines[line][:LONGEST_LINE]) if line < len(source.lines) else None
+    if found is None or found[2].lower() != kind:
+        raise source.expected(line, f"{kind.title()}-header values follow on ... lines")
+    count, lines = whole(source, line, found[1], "count", least), whole(source, line, found[3], "number of lines")
+    per_line, width = fortran_form(source, line, found[4])
+    if lines != -(-count // per_line):
+        raise source.error(line, f"{count} values, {per_line} a line, do not make {lines} lines")
+    values, after = fixed(source, line + 1, count, per_line, width)
+    if kind == "integer" and (values != values.round()).any():
+        raise source.error(line, "whole numbers expected in this header")
+    return values, after
+
+
+def _channel(source: Source, first: int, units: str | None, time_step: float | None) -> tuple[Channel, int]:
+    title = _title(source.lines[first])
+    texts = whole(source, first, title[1], "number of text lines") if title else 0
+    if not 12 <= texts <= _MOST_TEXT or first + texts + 1 >= len(source.lines):
+        raise source.error(first, f"12 to {_MOST_TEXT} text lines expected, and as many lines after this one")
+    wholes, line = _table(source, first + texts, "integer", 100)
+    figures, line = _table(source, line, "real", 100)
+    line = _after_comments(source, line)
+    data, code = _data_line(source, line)
+    if (int(wholes[_QUANTITY]), int(wholes[_UNIT])) != (1, code):
+        raise source.error(line, "the header of whole numbers must state acceleration (1) and the unit of this line")
+    stated = _UNITS[code][0]
+    unit = headers.acceleration_unit(source, stated, units)
+    known = None if figures[_STEP] == _UNKNOWN else float(figures[_STEP] / 1000.0)
+    step = headers.step_between_samples(source, known, time_step)
+    form = fortran_form(source, line, data[6])
+    values, after = fixed(source, line + 1, whole(source, line, data[1], "count", 2), *form)
+    peak = _check(source, wholes, figures, values, step, _ROUNDING[stated])
+    if re.fullmatch(r"\d{1,6}\.?\d{0,6}", data[3]):
+        check_duration(source, float(data[3]), values.size, step, 1.0)
+    if not source.begins(after, "/&"):
+        raise source.expected(after, "End of data for channel")
+    header = source.lines[first : line + 1]
+    return (header, _label(header[:texts], wholes[_AZIMUTH]), Component("", values, unit, step, peak)), after + 1
+
+
+def _label(texts: list[str], azimuth: float) -> str:
+    """Return number and direction, as ``CHAN 1: 90``: the azimuth if it is known, else what the text says."""
+    label = next((text[:LONGEST_LINE] for text in texts if text.startswith("Sta Cha")), "")
+    number = re.match(r"Sta Cha\w*\s*:?\s*(\d+)", label)
+    word = re.search(r":\s*([\w-]+)(?:\s+deg\b|\s+\()", label)
+    direction = (word[1] if word else "") if azimuth == _UNKNOWN else f"{azimuth:.0f}"
+    return f"CHAN {number[1] if number else 1}: {direction}"
+
+
+def _data_line(source: Source, line: int) -> tuple[re.Match[str], int]:
+    """Return the line before the samples, and the code of its unit."""
+    found = _DATA.fullmatch(source.lines[line][:LONGEST_LINE]) if line < len(source.lines) else None
+    if found is None:
+        raise source.expected(line, "... pts, approx ... secs, units=...,Format=...")
+    code = int(found[5][:4])
+    if not found[2].lower().startswith("accel") or code not in _UNITS:
+        raise source.error(
+            line, f"acceleration in g (02) or cm/sec2 (04) expected, found {found[2]} in {found[4].strip()}"
+        )
+    if found[4].strip().lower() not in _UNITS[code][1]:
+        raise source.error(line, f"unit {found[4].strip()!r} contradicts its code {code:02d}")
+    return found, code
+
+
+def _check(
+    source: Source, wholes: FloatArray, figures: FloatArray, values: FloatArray, step: float, rounding: float
+) -> float | None:
+    if wholes[_COUNT] != _UNKNOWN:
+        check_count(source, int(wholes[_COUNT]), values.size)
+    length, peak, at = (float(figures[place]) for place in (_LENGTH, _PEAK, _PEAK_TIME))
+    if length != _UNKNOWN:
+        check_duration(source, length, values.size, step, 0.005)
+    if peak == _UNKNOWN:
+        return None
+    check_peak(source, peak, values, rounding)
+    if at != _UNKNOWN:
+        check_peak_time(source, at, values, step, rounding)
+    return abs(peak)
 
 
 def _after_comments(source: Source, line: int) -> int:
@@ -148,82 +167,20 @@ def _after_comments(source: Source, line: int) -> int:
     return until
 
 
-def _table(source: Source, line: int, kind: str, least: int) -> tuple[FloatArray, int]:
-    found = _TABLE.fullmatch(source.lines[line][:200]) if line < len(source.lines) else None
-    if found is None or found[2].lower() != kind:
-        raise source.error(
-            min(line, len(source.lines) - 1), f"{kind.title()}-header values follow on ... lines expected"
-        )
-    count, lines = whole(source, line, found[1], "count", least), whole(source, line, found[3], "number of lines")
-    per_line, width = fortran_form(source, line, found[4])
-    if lines != -(-count // per_line):
-        raise source.error(line, f"{count} values, {per_line} a line, do not make {lines} lines")
-    values, after = fixed(source, line + 1, count, per_line, width)
-    if kind == "integer" and (values != values.round()).any():
-        raise source.error(line, "whole numbers expected in this header")
-    return values, after
-
-
-def _data_line(source: Source, line: int) -> DataLine:
-    found = _DATA.fullmatch(source.lines[line][:200]) if line < len(source.lines) else None
-    if found is None:
-        raise source.error(min(line, len(source.lines) - 1), "... pts, approx ... secs, units=...,Format=... expected")
-    code = int(found[5][:4])
-    if not found[2].lower().startswith("accel") or code not in _UNITS:
-        raise source.error(
-            line, f"acceleration in g (02) or cm/sec2 (04) expected, found {found[2]} in {found[4].strip()}"
-        )
-    unit, words = _UNITS[code]
-    if found[4].strip().lower() not in words:
-        raise source.error(line, f"unit {found[4].strip()!r} contradicts its code {code:02d}")
-    return DataLine(
-        whole(source, line, found[1], "count", 2), found[3], unit, code, *fortran_form(source, line, found[6])
-    )
-
-
-def _channel(source: Source, first: int, units: str | None, time_step: float | None) -> tuple[Channel, int]:
-    header = read_header(source, first)
-    data = header.data
-    unit = acceleration_unit(source, data.unit, units)
-    step = step_between_samples(source, known(header.figures[STEP] / 1000.0, UNKNOWN / 1000.0), time_step)
-    values, after = fixed(source, header.first_sample, data.samples, data.per_line, data.width)
-    peak = _check(source, header, values, step)
-    if after >= len(source.lines) or not source.lines[after].startswith("/&"):
-        raise source.error(min(after, len(source.lines) - 1), "End of data for channel expected")
-    return (header.lines, header.channel, Component("", values, unit, step, peak)), after + 1
-
-
-def _check(source: Source, header: Header, values: FloatArray, step: float) -> float | None:
-    wholes, figures, data = header.wholes, header.figures, header.data
-    if wholes[COUNT] != UNKNOWN:
-        check_count(source, int(wholes[COUNT]), values.size)
-    length, peak, at = (known(figures[place]) for place in (LENGTH, PEAK, PEAK_TIME))
-    if length is not None:
-        check_duration(source, length, values.size, step, 0.005)
-    if re.fullmatch(r"\d{1,6}\.?\d{0,6}", data.seconds):
-        check_duration(source, float(data.seconds), values.size, step, 1.0)
-    if peak is None:
-        return None
-    check_peak(source, peak, values, _ROUNDING[data.unit])
-    if at is not None:
-        check_peak_time(source, at, values, step, _ROUNDING[data.unit])
-    return abs(peak)
-
-
 def _lines(record: Record, row: int, values: FloatArray) -> list[str]:
     part = record.components[row]
     step, largest = part.time_step, int(np.abs(values).argmax())
-    wholes, figures = np.full(100, UNKNOWN), np.full(100, UNKNOWN)
-    wholes[[QUANTITY, UNIT, CHANNEL, COUNT]] = 1, 4, row + 1, values.size
+    wholes, figures = np.full(100, _UNKNOWN), np.full(100, _UNKNOWN)
+    wholes[[_QUANTITY, _UNIT, _CHANNEL, _COUNT]] = 1, 4, row + 1, values.size
     azimuth = re.fullmatch(r"\d{1,3}", part.name)
-    wholes[AZIMUTH] = int(part.name) if azimuth else UNKNOWN
-    figures[[STEP, LENGTH, PEAK, PEAK_TIME]] = 1000.0 * step, values.size * step, values[largest], largest * step
-    known = {key: one_line(record.metadata.get(key, ""), 40) for key in ("event", "date", "station")}
+    wholes[_AZIMUTH] = int(part.name) if azimuth else _UNKNOWN
+    figures[[_STEP, _LENGTH, _PEAK, _PEAK_TIME]] = 1000.0 * step, values.size * step, values[largest], largest * step
+    event, date, station = (record.text(key, 40) for key in ("event", "date", "station"))
     texts = [
         "Corrected acceleration    (Format v01.20 with 13 text lines)",
-        f"{known['event'][:39]:<39} {known['date']}",
+        f"{event[:39]:<39} {date}",
         *["", ""],
-        f"Statn No: {one_line(record.metadata.get('station number', 'unknown'), 8)}  Code:unknown  {known['station']}",
+        f"Statn No: {record.text('station number', 8, 'unknown')}  Code:unknown  {station}",
         *["", "", ""],
         f"Sta Cha: {row + 1:2d}: {one_line(part.name, 20)} deg",
         *["", "", ""],

@@ -7,23 +7,10 @@ from typing import ClassVar
 import numpy as np
 
 from rocking.conventions import ACCELERATION_UNITS, FloatArray, g
-from rocking.motions.formats.headers import (
-    LONGEST_LINE,
-    Channel,
-    acceleration_unit,
-    check_count,
-    check_end,
-    check_peak,
-    check_peak_time,
-    distinct_names,
-    half_digit,
-    in_unit,
-    names_in,
-    step_between_samples,
-    uniform_step,
-)
-from rocking.motions.formats.numbers import fixed, fortran_form, in_width, number, one_line, whole
-from rocking.motions.formats.record import Component, Record, RecordFormat, Source
+from rocking.motions.formats import headers
+from rocking.motions.formats.headers import LONGEST_LINE, Channel, check_count, check_peak, check_peak_time
+from rocking.motions.formats.numbers import fixed, fortran_form, in_width, number, whole
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
 
 _TITLE = re.compile(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.IGNORECASE)
 _TEXT_LINES, _WHOLE_LINES, _REAL_LINES = 13, 7, 7
@@ -54,19 +41,13 @@ class CsmipV1(RecordFormat):
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the record, a component for each channel, named by its direction, or CHAN 1 where these repeat."""
-        first = 0
-        channels: list[Channel] = []
-        while not channels or (first < len(source.lines) and _TITLE.match(source.lines[first])):
-            channel, first = _channel(source, first, units, time_step)
-            channels.append(channel)
-        check_end(source, first)
-        header = "\n".join("\n".join(lines) for lines, _, _ in channels)
-        return Record(self.name, distinct_names(channels), header, names_in(channels[0][0][1:]))
+        channels = headers.read_channels(source, _TITLE.match, lambda line: _channel(source, line, units, time_step))
+        return headers.record_of_channels(self.name, channels, headers.names_in(channels[0][0][1:]))
 
     def write(self, record: Record) -> bytes:
         """Return the content of a CSMIP V1 file, in g/10 with 3 decimals."""
         lines: list[str] = []
-        for row, values in enumerate(in_unit(record, self.name, "g/10", 99)):
+        for row, values in enumerate(headers.in_unit(record, self.name, "g/10", 99)):
             lines += _lines(record, row, values.round(3))
         return ("\r\n".join(lines) + "\r\n").encode("latin-1")
 
@@ -82,7 +63,7 @@ def _channel(source: Source, first: int, units: str | None, time_step: float | N
     figures, line = fixed(source, line, 48 + min(8, max(1, last)), 8, 10)
     # newer files state the number of samples at place 33, older ones at 28
     count = whole(source, first + _TEXT_LINES, f"{wholes[32] or wholes[27]:.0f}", "number of samples", 2)
-    unit = acceleration_unit(source, _unit([text[:LONGEST_LINE] for text in header[:_TEXT_LINES]]), units)
+    unit = headers.acceleration_unit(source, _unit([text[:LONGEST_LINE] for text in header[:_TEXT_LINES]]), units)
     even = _EVEN.fullmatch(source.lines[line][:LONGEST_LINE])
     if even:
         check_count(source, count, whole(source, line, even[1], "number of samples", 2))
@@ -92,10 +73,10 @@ def _channel(source: Source, first: int, units: str | None, time_step: float | N
         values, line = fixed(source, line + 1, count, per_line, width)
     else:
         pairs, line = fixed(source, line, 2 * count, 10, 7)
-        step, zero, values = uniform_step(source, pairs[::2], 0.001), float(pairs[0]), pairs[1::2].copy()
-    step = step_between_samples(source, step, time_step)
-    if line >= len(source.lines) or not source.lines[line].startswith("/&"):
-        raise source.error(min(line, len(source.lines) - 1), "END OF DATA FOR CHANNEL expected")
+        step, zero, values = headers.uniform_step(source, pairs[::2], 0.001), float(pairs[0]), pairs[1::2].copy()
+    step = headers.step_between_samples(source, step, time_step)
+    if not source.begins(line, "/&"):
+        raise source.expected(line, "END OF DATA FOR CHANNEL")
     peak = _check_figures(source, figures, values, step, zero, unit)
     told = _check_text(source, first, values * ACCELERATION_UNITS[unit])
     if peak is None and told is not None:
@@ -137,7 +118,7 @@ def _check_text(source: Source, first: int, values: FloatArray) -> float | None:
             raise source.error(line, "MAX = a number and its unit expected; damaged?")
         factor = ACCELERATION_UNITS[_UNITS[found[2]]]
         # the samples are printed to 0.001 g/10, the peak to its last digit
-        check_peak(source, float(found[1]), values / factor, half_digit(found[1]) + 1.1e-4 * g / factor, "MAX")
+        check_peak(source, float(found[1]), values / factor, headers.half_digit(found[1]) + 1.1e-4 * g / factor, "MAX")
         return abs(float(found[1])) * factor
     return None
 
@@ -151,9 +132,9 @@ def _lines(record: Record, row: int, values: FloatArray) -> list[str]:
     wholes[27] = values.size
     texts = [""] * _TEXT_LINES
     texts[0] = "UNCORRECTED ACCELEROGRAM DATA"
-    texts[1] = one_line(record.metadata.get("event", ""), 70)
-    texts[4] = f"STATION NO. {one_line(record.metadata.get('station number', ''), 8)}"
-    texts[5] = one_line(record.metadata.get("station", ""), 70)
+    texts[1] = record.text("event", 70)
+    texts[4] = f"STATION NO. {record.text('station number', 8)}"
+    texts[5] = record.text("station", 70)
     texts[6] = f"CHAN {row + 1:2d}: {one_line(part.name, 20)}"
     texts[11] = f"UNITS OF UNCOR ACCEL ARE SEC AND G/10.     MAX  = {figures[_PEAK]:.3f} G"
     lines = texts + in_width(wholes, 16, 5, 0) + in_width(figures, 8, 10, 3)

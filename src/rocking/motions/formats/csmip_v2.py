@@ -6,20 +6,10 @@ from typing import ClassVar
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.motions.formats.headers import (
-    Channel,
-    acceleration_unit,
-    check_count,
-    check_end,
-    check_peak,
-    check_peak_time,
-    distinct_names,
-    in_unit,
-    names_in,
-    step_between_samples,
-)
-from rocking.motions.formats.numbers import fixed, fortran_form, in_width, number, one_line, whole
-from rocking.motions.formats.record import Component, Record, RecordFormat, Source
+from rocking.motions.formats import headers
+from rocking.motions.formats.headers import Channel, check_count, check_peak, check_peak_time
+from rocking.motions.formats.numbers import fixed, fortran_form, in_width, number, whole
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
 
 _TITLE = re.compile(r"\s*CORRECTED ACCELEROGRAM\b", re.IGNORECASE)
 _BLOCK = re.compile(
@@ -54,20 +44,14 @@ class CsmipV2(RecordFormat):
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the record, a component for each channel, named by its direction, or CHAN 1 where these repeat."""
-        unit = acceleration_unit(source, "cm/s2", units)
-        first = 0
-        channels: list[Channel] = []
-        while not channels or (first < len(source.lines) and _TITLE.match(source.lines[first])):
-            channel, first = _channel(source, first, unit, time_step)
-            channels.append(channel)
-        check_end(source, first)
-        header = "\n".join("\n".join(lines) for lines, _, _ in channels)
-        return Record(self.name, distinct_names(channels), header, names_in(channels[0][0][2:]))
+        unit = headers.acceleration_unit(source, "cm/s2", units)
+        channels = headers.read_channels(source, _TITLE.match, lambda line: _channel(source, line, unit, time_step))
+        return headers.record_of_channels(self.name, channels, headers.names_in(channels[0][0][2:]))
 
     def write(self, record: Record) -> bytes:
         """Return a CSMIP V2 file in cm/s2 with 3 decimals; velocity and displacement are integrated from rest."""
         lines: list[str] = []
-        for row, values in enumerate(in_unit(record, self.name, "cm/s2", 99)):
+        for row, values in enumerate(headers.in_unit(record, self.name, "cm/s2", 99)):
             lines += _lines(record, row, values.round(3))
         return ("\r\n".join(lines) + "\r\n").encode("latin-1")
 
@@ -85,14 +69,21 @@ def _channel(source: Source, first: int, unit: str, time_step: float | None) -> 
         if kind in blocks or (step is not None and own != step):
             raise source.error(line, f"{kind} stated twice, or with another step than before")
         if not blocks:
-            step = step_between_samples(source, own, time_step)
-        _check_block(source, kind, values, own, wholes, figures)
+            step = headers.step_between_samples(source, own, time_step)
+        check_count(source, int(wholes[_COUNTS[kind]]), values.size)
+        # the header has the step in three decimals
+        if abs(figures[_STEP] - own) > 5.1e-4:
+            stated = f"the header states a step of {figures[_STEP]:g} s, the {kind} data one of {own:g} s"
+            raise source.error(None, stated)
+        at, peak = (float(figures[place]) for place in _PEAKS[kind])
+        check_peak(source, peak, values, _ROUNDING, f"{kind} peak")
+        check_peak_time(source, at, values, own, _ROUNDING)
         blocks[kind] = values
     if "ACCEL" not in blocks or step is None:
         raise source.error(line, "POINTS OF ACCEL DATA EQUALLY SPACED AT ... SEC expected")
     _check_texts(source, first, header[:_TEXT_LINES], blocks["ACCEL"], step)
-    if line >= len(source.lines) or not source.lines[line].startswith("/&"):
-        raise source.error(min(line, len(source.lines) - 1), "END OF DATA FOR CHANNEL expected")
+    if not source.begins(line, "/&"):
+        raise source.expected(line, "END OF DATA FOR CHANNEL")
     part = Component("", blocks["ACCEL"], unit, step, abs(float(figures[_PEAKS["ACCEL"][1]])))
     return (header, header[7][:200], part), line + 1
 
@@ -111,18 +102,6 @@ def _block(source: Source, line: int) -> tuple[str, FloatArray, float, int]:
     step = number(source, line, found[3], "time step")
     values, after = fixed(source, line + 1, count, per_line, width)
     return kind, values, step, after
-
-
-def _check_block(
-    source: Source, kind: str, values: FloatArray, step: float, wholes: FloatArray, figures: FloatArray
-) -> None:
-    check_count(source, int(wholes[_COUNTS[kind]]), values.size)
-    # the header has the step in three decimals
-    if abs(figures[_STEP] - step) > 5.1e-4:
-        raise source.error(None, f"the header states a step of {figures[_STEP]:g} s, the {kind} data one of {step:g} s")
-    at, peak = _PEAKS[kind]
-    check_peak(source, float(figures[peak]), values, _ROUNDING, f"{kind} peak")
-    check_peak_time(source, float(figures[at]), values, step, _ROUNDING)
 
 
 def _check_texts(source: Source, first: int, texts: list[str], values: FloatArray, step: float) -> None:
@@ -154,9 +133,9 @@ def _lines(record: Record, row: int, values: FloatArray) -> list[str]:
     texts = [""] * _TEXT_LINES
     texts[0] = f"CORRECTED ACCELEROGRAM                            {chan}"
     texts[1] = "UNCORRECTED ACCELEROGRAM DATA"
-    texts[2] = one_line(record.metadata.get("event", ""), 70)
-    texts[5] = f"STATION NO. {one_line(record.metadata.get('station number', ''), 8)}"
-    texts[6] = one_line(record.metadata.get("station", ""), 70)
+    texts[2] = record.text("event", 70)
+    texts[5] = f"STATION NO. {record.text('station number', 8)}"
+    texts[6] = record.text("station", 70)
     texts[7] = chan
     texts[17] = f"PEAK ACCELERATION = {peak:.3f} CM/SEC/SEC AT {at:.3f} SEC."
     lines = texts + in_width(wholes, 16, 5, 0) + in_width(figures, 8, 10, 3)

@@ -29,14 +29,10 @@ class Cwa(RecordFormat):
         "The header's DCoffset(corr) says that the recorder's offset was removed by the publisher. Both extremes of "
         "each component are checked."
     )
-
-    def recognises(self, source: Source) -> bool:
-        """Return whether the file begins with the words of this header."""
-        if not source.is_text:
-            return False
-        top = source.lines[:40]
-        marks = ("#Earthquake Information", "#RecordLength(sec)", "#SampleRate(Hz)", "#AmplitudeMAX.", "#DataSequence:")
-        return sum(any(line.startswith(mark) for line in top) for mark in marks) >= 4
+    marks: ClassVar[tuple[str, ...]] = (
+        "#Earthquake Information", r"#RecordLength\(sec\)", r"#SampleRate\(Hz\)", r"#AmplitudeMAX\.", "#DataSequence:",
+    )  # fmt: skip
+    top: ClassVar[int] = 40
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the three components."""
@@ -52,23 +48,21 @@ class Cwa(RecordFormat):
         rate = numbers.number(source, 0, said["SampleRate(Hz)"], "sample rate")
         seconds = numbers.number(source, 0, said["RecordLength(sec)"], "record length")
         step = headers.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, time_step)
-        wanted = rate * seconds
-        if not 2 <= wanted < 1e9 or abs(wanted - round(wanted)) > 1e-6:
-            raise source.error(None, f"record length times rate must be a whole number of samples, found {wanted:g}")
+        count = headers.samples_of(source, None, rate, seconds, "record length")
         last = len(source.lines)
         while not source.lines[last - 1].strip():
             last -= 1
-        headers.check_count(source, round(wanted), last - first - 1)
-        values, _ = numbers.fixed(source, first + 1, 4 * round(wanted), 4, _WIDTH)
+        headers.check_count(source, count, last - first - 1)
+        values, _ = numbers.fixed(source, first + 1, 4 * count, 4, _WIDTH)
         table = values.reshape(-1, 4)
         late = np.flatnonzero(np.abs(table[:, 0] - table[0, 0] - np.arange(len(table)) * step) > 1.02e-3)
         if late.size:
             raise source.error(first + 1 + int(late[0]), f"time {table[late[0], 0]:g} s is off the step of {step:g} s")
         peaks = _check_amplitudes(source, first, table)
-        components = tuple(
-            Component(name, table[:, k + 1].copy(), unit, step, peaks[name]) for k, name in enumerate(_COMPONENTS)
+        components = (
+            Component(name, table[:, k].copy(), unit, step, peaks[name]) for k, name in enumerate(_COMPONENTS, 1)
         )
-        return Record(self.name, components, "\n".join(source.lines[: first + 1]), said)
+        return Record(self.name, tuple(components), "\n".join(source.lines[: first + 1]), said)
 
     def write(self, record: Record) -> bytes:
         """Return a file of three components."""
@@ -81,11 +75,8 @@ class Cwa(RecordFormat):
         table = np.round(np.column_stack([rows[name] for name in _COMPONENTS]), _DECIMALS) + 0.0
         if np.abs(table).max() >= 1e5 or len(table) * step >= 1e5:
             raise RecordError("CWA holds accelerations below 1e5 gal and times below 1e5 s; wrong unit?")
-        lines = ["#Earthquake Information"]
-        lines += [
-            f"#{key}: {numbers.one_line(record.metadata.get(key, '0'), 60)}"
-            for key in ("Origin Time(GMT+08)", "Magnitude(Ml)", "StationCode", "StationName")
-        ]
+        stated = ("Origin Time(GMT+08)", "Magnitude(Ml)", "StationCode", "StationName")
+        lines = ["#Earthquake Information", *(f"#{key}: {record.text(key, 60, '0')}" for key in stated)]
         lines += [f"#RecordLength(sec): {len(table) * step:.12g}", f"#SampleRate(Hz): {1.0 / step:.12g}"]
         lines.append("#AmplitudeUnit:  gal. DCoffset(corr)")
         for name, row in zip(_COMPONENTS, table.T, strict=True):

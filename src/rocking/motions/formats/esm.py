@@ -4,28 +4,16 @@ import re
 from typing import ClassVar
 
 from rocking.conventions import FloatArray
-from rocking.motions.formats.headers import (
-    acceleration_unit,
-    check_count,
-    check_duration,
-    check_peak,
-    check_peak_time,
-    in_unit,
-    step_between_samples,
-)
-from rocking.motions.formats.numbers import free, number, one_line, whole
-from rocking.motions.formats.record import Component, Record, RecordFormat, Source
+from rocking.motions.formats import headers
+from rocking.motions.formats.numbers import free, number, whole
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
 
 _KEY = re.compile(r"([A-Z][A-Z0-9_/^]*):(?:\s(.*))?")
 _MOST_KEYS = 200
 _UNITS = {"cm/s^2": "cm/s2", "cm/s2": "cm/s2", "m/s^2": "m/s2", "mm/s^2": "mm/s2", "g": "g", "mg": "mg", "gal": "gal"}
 _PEAKS = {
-    "cm/s2": "PGA_CM/S^2",
-    "gal": "PGA_CM/S^2",
-    "m/s2": "PGA_M/S^2",
-    "mm/s2": "PGA_MM/S^2",
-    "g": "PGA_G",
-    "mg": "PGA_MG",
+    "cm/s2": "PGA_CM/S^2", "gal": "PGA_CM/S^2", "m/s2": "PGA_M/S^2", "mm/s2": "PGA_MM/S^2",
+    "g": "PGA_G", "mg": "PGA_MG",
 }
 _KEPT = {
     "event": "EVENT_NAME",
@@ -86,29 +74,31 @@ class Esm(RecordFormat):
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the record, of one component, named by its stream, such as HNN."""
         keys = _header(source)
-        _check_kind(source, keys)
-        step = step_between_samples(source, _number(source, keys, "SAMPLING_INTERVAL_S"), time_step)
+        line, kind = _value(source, keys, "DATA_TYPE")
+        if kind.upper() != "ACCELERATION":
+            raise source.error(line, f"only ACCELERATION can be read, DATA_TYPE is {kind[:40]!r}; take the .ACC. file")
+        step = headers.step_between_samples(source, _number(source, keys, "SAMPLING_INTERVAL_S"), time_step)
         at, word = _value(source, keys, "NDATA")
         count = whole(source, at, word, "number of samples", 2)
         at, word = _value(source, keys, "UNITS")
         if word.lower() not in _UNITS:
             raise source.error(at, f"UNITS must be one of {', '.join(_UNITS)}, found {word[:40]!r}")
-        unit = acceleration_unit(source, _UNITS[word.lower()], units)
+        unit = headers.acceleration_unit(source, _UNITS[word.lower()], units)
         values = free(source, len(keys), len(source.lines), 1)[:, 0]
-        check_count(source, count, values.size)
+        headers.check_count(source, count, values.size)
         peak = _check_peaks(source, keys, values, step, unit)
-        metadata = {name: keys[key][1] for name, key in _KEPT.items() if key in keys and keys[key][1]}
+        metadata = metadata_of(**{name: keys[key][1] for name, key in _KEPT.items() if key in keys})
         part = Component(metadata.get("channel", "acceleration"), values, unit, step, peak)
         return Record(self.name, (part,), "\n".join(source.lines[: len(keys)]), metadata)
 
     def write(self, record: Record) -> bytes:
         """Return the content of an ESM file, in cm/s^2 with 6 decimals."""
-        (values,) = in_unit(record, self.name, "cm/s2", 1)
+        (values,) = headers.in_unit(record, self.name, "cm/s2", 1)
         values = values.round(6)
         part = record.components[0]
         largest = int(abs(values).argmax())
         stated = {
-            **{key: one_line(record.metadata.get(name, ""), 200) for name, key in _KEPT.items()},
+            **{key: record.text(name, 200) for name, key in _KEPT.items()},
             "SAMPLING_INTERVAL_S": f"{part.time_step:.9f}",
             "NDATA": str(values.size),
             "DURATION_S": f"{values.size * part.time_step:.6f}",
@@ -150,17 +140,11 @@ def _number(source: Source, keys: dict[str, tuple[int, str]], key: str) -> float
     return number(source, line, word, key) if word else None
 
 
-def _check_kind(source: Source, keys: dict[str, tuple[int, str]]) -> None:
-    line, kind = _value(source, keys, "DATA_TYPE")
-    if kind.upper() != "ACCELERATION":
-        raise source.error(line, f"only ACCELERATION can be read, DATA_TYPE is {kind[:40]!r}; take the .ACC. file")
-
-
 def _check_peaks(source: Source, keys: dict[str, tuple[int, str]], values: FloatArray, step: float, unit: str) -> float:
     duration = _number(source, keys, "DURATION_S")
     if duration is not None:
         digits = len(keys["DURATION_S"][1].partition(".")[2])
-        check_duration(source, duration, values.size, step, min(0.005, 0.5 * 10.0**-digits))
+        headers.check_duration(source, duration, values.size, step, min(0.005, 0.5 * 10.0**-digits))
     # the one line that a wrong unit contradicts: a file without it cannot be trusted
     label = _PEAKS[unit]
     _, word = _value(source, keys, label)
@@ -169,8 +153,8 @@ def _check_peaks(source: Source, keys: dict[str, tuple[int, str]], values: Float
         raise source.error(keys[label][0], f"{label} states no number, and nothing else confirms unit and data")
     # the peak has the 6 decimals of the data; one with fewer than 3 would check nothing
     rounding = min(1.1e-3, 1.1 * 10.0 ** -len(word.partition(".")[2]))
-    check_peak(source, peak, values, rounding, label)
+    headers.check_peak(source, peak, values, rounding, label)
     at = _number(source, keys, "TIME_PGA_S")
     if at is not None:
-        check_peak_time(source, at, values, step, rounding)
+        headers.check_peak_time(source, at, values, step, rounding)
     return abs(peak)

@@ -15,7 +15,7 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
 from rocking.motions.formats import headers, numbers
-from rocking.motions.formats.record import Component, Record, RecordFormat, Source
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
 
 _TEXTS, _WHOLES, _REALS = 16, 4, 6
 _PER_LINE, _WIDTH = 10, 8
@@ -37,14 +37,10 @@ class GeonetV2A(RecordFormat):
         "In mm/s2. Velocities and displacements are not kept, but their counts and peaks are checked. "
         "Volume 1 is refused."
     )
-
-    def recognises(self, source: Source) -> bool:
-        """Return whether the text of a corrected GeoNet component stands at the top."""
-        if not source.is_text:
-            return False
-        top = source.lines[: _TEXTS + 3]
-        marks = (_TITLE, "Number of points", "Instrument corrected data at", "Acceleration:", "Displacement:")
-        return sum(any(line.startswith(mark) for line in top) for mark in marks) >= 4
+    marks: ClassVar[tuple[str, ...]] = (
+        _TITLE, "Number of points", "Instrument corrected data at", "Acceleration:", "Displacement:",
+    )  # fmt: skip
+    top: ClassVar[int] = _TEXTS + 3
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the components."""
@@ -59,18 +55,18 @@ class GeonetV2A(RecordFormat):
         headers.check_end(source, line)
         header = "\n".join(source.lines[: _TEXTS + _WHOLES + _REALS])
         station = re.match(r"Site +(\S+)", source.lines[1])
-        metadata = {
-            "station": station[1] if station else "",
-            "event": source.lines[7].strip(),
-            "epicentre": source.lines[8].strip(),
-            "filter": source.lines[11].strip(),
-        }
-        return Record(self.name, tuple(components), header, {key: text for key, text in metadata.items() if text})
+        metadata = metadata_of(
+            station=station[1] if station else "",
+            event=source.lines[7],
+            epicentre=source.lines[8],
+            filter=source.lines[11],
+        )
+        return Record(self.name, tuple(components), header, metadata)
 
     def write(self, record: Record) -> bytes:
         """Return a file of three components; velocity and displacement are sums of trapezia, as text only."""
         rows = headers.in_unit(record, self.name, "mm/s2", 3)
-        names = [numbers.one_line(part.name, 8).partition(" ")[0] or "?" for part in record.components]
+        names = [one_line(part.name, 8).partition(" ")[0] or "?" for part in record.components]
         if len(rows) != 3 or len(set(names)) != 3:
             raise RecordError(f"GeoNet holds three components of different names, got {', '.join(names)}")
         lines: list[str] = []
@@ -107,20 +103,22 @@ def _component(source: Source, top: int, unit: str, asked: float | None) -> tupl
         headers.check_peak(source, float(peak[1]), values, rounding, f"peak of {what.lower()}, {name}")
         headers.check_peak_time(source, float(peak[2]) + float(reals[21]), values, step, rounding)
         peaks.append(abs(float(peak[1])))
-    about = {"axis": " ".join(text[12].split()[2:]), "filter": text[11].strip()}
-    return Component(name, series[0], unit, step, peaks[0], {key: said for key, said in about.items() if said}), line
+    about = metadata_of(axis=" ".join(text[12].split()[2:]), filter=text[11])
+    return Component(name, series[0], unit, step, peaks[0], about), line
 
 
 def _written(record: Record, name: str, values: FloatArray, step: float) -> list[str]:
     velocity = np.concatenate([[0.0], np.cumsum(0.5 * step * (values[1:] + values[:-1]))])
     displacement = np.concatenate([[0.0], np.cumsum(0.5 * step * (velocity[1:] + velocity[:-1]))])
     count = values.size
-    said = {key: numbers.one_line(record.metadata.get(key, "unknown"), 60) for key in ("station", "event", "filter")}
-    lines = [f"{_TITLE} unknown", f"Site {said['station'].partition(' ')[0]}", "unknown", "Instrument unknown"]
-    lines += ["Resolution: unknown", "Accelerogram unknown", "unknown", said["event"], "Epicentre unknown"]
-    lines.append(f"Number of points {count:5d}    Duration {(count - 1) * step:.4f} sec")
-    lines.append(f"Instrument corrected data at {step:.9g} sec intervals".replace(" 1 sec", " 1.0 sec"))
-    lines += [said["filter"], f"Component {name}"]
+    station, event, filtered = (record.text(key, 60, "unknown") for key in ("station", "event", "filter"))
+    lines = [
+        *[f"{_TITLE} unknown", f"Site {station.partition(' ')[0]}", "unknown", "Instrument unknown"],
+        *["Resolution: unknown", "Accelerogram unknown", "unknown", event, "Epicentre unknown"],
+        f"Number of points {count:5d}    Duration {(count - 1) * step:.4f} sec",
+        f"Instrument corrected data at {step:.9g} sec intervals".replace(" 1 sec", " 1.0 sec"),
+        *[filtered, f"Component {name}"],
+    ]
     blocks: list[str] = []
     for (what, of, decimals), row in zip(_SERIES, (values, velocity, displacement), strict=True):
         rounded = np.round(row, decimals)
@@ -130,7 +128,5 @@ def _written(record: Record, name: str, values: FloatArray, step: float) -> list
         at = int(np.abs(rounded).argmax())
         lines.append(f"{what + ':':<14} peak {rounded[at]:8.{decimals}f} {of:<6} at {at * step:.4f} sec")
         blocks += ["".join(words[k : k + _PER_LINE]) for k in range(0, count, _PER_LINE)]
-    wholes = [0] * 33 + [count] * 3 + [0] * 4
-    lines += numbers.in_columns(wholes, _PER_LINE, "{:8d}")
-    lines += numbers.in_columns([0.0] * 60, _PER_LINE, "{:8.2f}")
-    return lines + blocks
+    wholes = numbers.in_columns([0] * 33 + [count] * 3 + [0] * 4, _PER_LINE, "{:8d}")
+    return [*lines, *wholes, *numbers.in_columns([0.0] * 60, _PER_LINE, "{:8.2f}"), *blocks]

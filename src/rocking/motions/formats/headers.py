@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import ACCELERATION_UNITS, FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats.record import Component, Record, Source
+from rocking.motions.formats.record import Component, Record, Source, metadata_of
 
 Channel = tuple[list[str], str, Component]
 """Header lines of a channel, the one with its number and direction, and its samples."""
@@ -62,7 +62,14 @@ def in_unit(record: Record, title: str, unit: str | None, most: int) -> list[Flo
 
 def step_of_times(source: Source, times: FloatArray, words: list[str], told: float | None) -> float:
     """Return the step of a column of times [s]; the user's where it is the same to the digits of the column."""
-    digit = _last_digit(words)
+    plain: list[int] = []
+    powers: list[int] = []
+    for word in words:
+        digits, _, power = word.lower().replace("d", "e").replace(",", ".").partition("e")
+        (powers if power else plain).append(len(digits.partition(".")[2]) - int(power or 0))
+    # plain numbers may have lost zeros at their end, numbers with an exponent lose digits as they grow
+    places = min(powers) if powers else max(plain)
+    digit = float(10.0 ** -min(15, max(-3, places)))
     step = uniform_step(source, times, digit)
     if told is not None and abs(step - told) * times.size <= 2.0 * digit:
         return told
@@ -154,38 +161,45 @@ def check_stated(source: Source, stated: float, found: float, rounding: float, w
         raise source.error(None, f"the header states a {what} of {stated:g}, the data have {found:g}")
 
 
-def distinct_names(channels: Sequence[Channel]) -> tuple[Component, ...]:
-    """Return the components named by direction, or by channel number where directions repeat."""
+def samples_of(source: Source, line: int | None, rate: float, seconds: float, what: str) -> int:
+    """Return the number of samples that a stated rate [Hz] and duration [s] make, which must be whole."""
+    wanted = rate * seconds
+    if not 2 <= wanted < 1e9 or abs(wanted - round(wanted)) > 1e-6:
+        raise source.error(line, f"{what} times rate must be a whole number of samples, found {wanted:g}")
+    return round(wanted)
+
+
+def read_channels(
+    source: Source, begins: Callable[[str], object], read: Callable[[int], tuple[Channel, int]]
+) -> list[Channel]:
+    """Return the channels that follow one another to the end of a file; `read` returns one and the line after it."""
+    channel, line = read(0)
+    channels = [channel]
+    while line < len(source.lines) and begins(source.lines[line]):
+        channel, line = read(line)
+        channels.append(channel)
+    check_end(source, line)
+    return channels
+
+
+def record_of_channels(format: str, channels: Sequence[Channel], metadata: dict[str, str]) -> Record:
+    """Return a record whose components are named by direction, or by channel number where directions repeat."""
+    header = "\n".join("\n".join(lines) for lines, _, _ in channels)
     found = [re.search(r"CHAN\s*(\d+)\s*:\s*(.*?)\s*(?:DEG\b.*)?$", label, re.IGNORECASE) for _, label, _ in channels]
     numbers = [one[1] if one else str(place) for place, one in enumerate(found, 1)]
     names = directions = [one[2].strip() if one else "" for one in found]
     if len({name.casefold() for name in directions}) < len(channels) or "" in directions:
         unique = len(set(numbers)) == len(channels)
         names = [f"CHAN {n}" for n in (numbers if unique else range(1, len(channels) + 1))]
-    return tuple(
+    parts = (
         replace(part, name=name, metadata={"channel": chan, "direction": direction})
         for (_, _, part), name, chan, direction in zip(channels, names, numbers, directions, strict=True)
     )
+    return Record(format, tuple(parts), header, metadata)
 
 
 def names_in(texts: Sequence[str]) -> dict[str, str]:
     """Return event and station from the text lines after the titles."""
     station = re.search(r"STATION NO\.?\s*(\w+)", texts[3][:LONGEST_LINE], re.IGNORECASE)
-    found = {
-        "event": texts[0].strip(),
-        "date": texts[1].split("(")[0].strip(),
-        "station number": station[1] if station else "",
-        "station": texts[4].strip(),
-    }
-    return {key: value for key, value in found.items() if value}
-
-
-def _last_digit(words: list[str]) -> float:
-    plain: list[int] = []
-    powers: list[int] = []
-    for word in words:
-        digits, _, power = word.lower().replace("d", "e").replace(",", ".").partition("e")
-        (powers if power else plain).append(len(digits.partition(".")[2]) - int(power or 0))
-    # plain numbers may have lost zeros at their end, numbers with an exponent lose digits as they grow
-    places = min(powers) if powers else max(plain)
-    return float(10.0 ** -min(15, max(-3, places)))
+    number = station[1] if station else ""
+    return metadata_of(event=texts[0], date=texts[1].split("(")[0], station_number=number, station=texts[4])

@@ -15,26 +15,12 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
 from rocking.motions.formats import headers, numbers
-from rocking.motions.formats.record import Component, Record, RecordFormat, Source
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
 
 _KEYS = (
-    "Origin Time",
-    "Lat.",
-    "Long.",
-    "Depth. (km)",
-    "Mag.",
-    "Station Code",
-    "Station Lat.",
-    "Station Long.",
-    "Station Height(m)",
-    "Record Time",
-    "Sampling Freq(Hz)",
-    "Duration Time(s)",
-    "Dir.",
-    "Scale Factor",
-    "Max. Acc. (gal)",
-    "Last Correction",
-    "Memo.",
+    *("Origin Time", "Lat.", "Long.", "Depth. (km)", "Mag.", "Station Code", "Station Lat.", "Station Long."),
+    *("Station Height(m)", "Record Time", "Sampling Freq(Hz)", "Duration Time(s)", "Dir.", "Scale Factor"),
+    *("Max. Acc. (gal)", "Last Correction", "Memo."),
 )
 _PER_LINE = 8
 _FULL_SCALE = 8_388_608  # counts of a 24-bit recorder
@@ -52,14 +38,8 @@ class Knet(RecordFormat):
         "The mean of the whole record is removed, as for the header's largest acceleration; nothing is filtered or "
         "corrected otherwise. KiK-net directions 1 to 3 are in the borehole, 4 to 6 at the surface."
     )
-
-    def recognises(self, source: Source) -> bool:
-        """Return whether most of the words of the K-NET header stand at the top."""
-        if not source.is_text:
-            return False
-        top = source.lines[: len(_KEYS) + 3]
-        # a damaged header must not turn the file into a nameless table of numbers
-        return sum(any(line.startswith(_KEYS[k]) for line in top) for k in (0, 10, 13, 14)) >= 3
+    marks: ClassVar[tuple[str, ...]] = tuple(re.escape(_KEYS[k]) for k in (0, 10, 13, 14))
+    top: ClassVar[int] = len(_KEYS) + 3
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the accelerogram without its mean."""
@@ -72,10 +52,7 @@ class Knet(RecordFormat):
         if not gal or not counts_per_gal:
             raise source.error(13, f"scale factor must be above zero, found {said[13][:40]!r}")
         counts = _counts(source)
-        wanted = rate * seconds
-        if not 2 <= wanted < 1e9 or abs(wanted - round(wanted)) > 1e-6:
-            raise source.error(11, f"duration times rate must be a whole number of samples, found {wanted:g}")
-        headers.check_count(source, round(wanted), counts.size)
+        headers.check_count(source, headers.samples_of(source, 11, rate, seconds, "duration"), counts.size)
         raw = counts * (gal / counts_per_gal)
         values = raw - raw.mean()
         peak = numbers.number(source, 14, said[14], "largest acceleration")
@@ -104,10 +81,10 @@ class Knet(RecordFormat):
         if abs(counts.mean()) > 0.5:
             raise RecordError(f"K-NET records lose their mean when read, got a mean of {given.mean():g} gal; remove it")
         peak = float(np.abs(counts - counts.mean()).max()) * gal / _FULL_SCALE
-        known = {key: numbers.one_line(record.metadata.get(key.strip(". "), ""), 60) for key in _KEYS}
+        known = {key: record.text(key.strip(". "), 60) for key in _KEYS}
         known |= {"Sampling Freq(Hz)": f"{rate}Hz", "Duration Time(s)": str(given.size // rate)}
         known |= {"Scale Factor": f"{gal}(gal)/{_FULL_SCALE}", "Max. Acc. (gal)": f"{peak:.3f}"}
-        known["Dir."] = numbers.one_line(part.name, 20)
+        known["Dir."] = one_line(part.name, 20)
         lines = [f"{key:<18}{known[key]}" for key in _KEYS]
         lines += numbers.in_columns(counts, _PER_LINE, "{:8.0f} ")
         return ("\n".join(lines) + "\n").encode("latin-1")

@@ -101,11 +101,12 @@ def in_width(values: Sequence[float] | FloatArray, per_line: int, width: int, de
     return lines
 
 
-def one_line(text: object, width: int) -> str:
-    r"""Return Latin-1 text that fits on one line of a header, for writers; other letters become question marks.
+def fortran_e(value: float, digits: int, width: int, before: str = "") -> str:
+    """Return a number as Fortran's E format prints it, with or without the zero before the point, for writers.
 
-    >>> one_line("El Centro\r\n 1940", 12)
-    'El Centro 19'
+    >>> fortran_e(-0.0123, 4, 11), fortran_e(12.5, 4, 11, "0")
+    (' -.1230E-01', ' 0.1250E+02')
     """
-    plain = " ".join(str(text).split()).encode("latin-1", "replace").decode("latin-1")
-    return "".join(mark if mark.isprintable() else "?" for mark in plain)[:width].strip()
+    mantissa, exponent = f"{abs(value):.{digits - 1}E}".split("E")
+    power = int(exponent) + 1 if value else 0
+    return f"{'-' if value < 0.0 else ''}{before}.{mantissa.replace('.', '')}E{power:+03d}".rjust(width)

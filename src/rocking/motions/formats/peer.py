@@ -5,8 +5,8 @@ from typing import ClassVar
 
 from rocking.conventions import FloatArray
 from rocking.motions.formats.headers import acceleration_unit, check_count, check_end, in_unit, step_between_samples
-from rocking.motions.formats.numbers import free, in_columns, number, one_line, whole
-from rocking.motions.formats.record import Component, Record, RecordFormat, Source
+from rocking.motions.formats.numbers import free, in_columns, number, whole
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
 
 _LONGEST_HEADER, _LONGEST_LINE = 60, 400
 _KEYED = re.compile(r"\bNPTS\s*=.*\bDT\s*=|\bDT\s*=.*\bNPTS\s*=", re.IGNORECASE)
@@ -55,7 +55,10 @@ class Peer(RecordFormat):
         count, stated = _size(source, line)
         step = step_between_samples(source, stated, time_step)
         unit = acceleration_unit(source, _unit(source, header), units)
-        _check_words(source, header, count, step)
+        for at, text in enumerate(header):
+            for points, spacing in _IN_WORDS.findall(text):
+                if whole(source, at, points, "number of points") != count or abs(float(spacing) - step) > 1e-9:
+                    raise source.error(at, f"{points} points at {spacing} s stated here, {count} at {step:g} s below")
         values = _values(source, line + 1)
         check_count(source, count, values.size)
         metadata, name = _who(header)
@@ -111,13 +114,6 @@ def _unit(source: Source, header: list[str]) -> str | None:
                 raise source.error(line, f"PEER accelerations are in g, the header states {stated[:20]!r}")
             found = "g"
     return found
-
-
-def _check_words(source: Source, header: list[str], count: int, step: float) -> None:
-    for line, text in enumerate(header):
-        for points, spacing in _IN_WORDS.findall(text):
-            if whole(source, line, points, "number of points") != count or abs(float(spacing) - step) > 1e-9:
-                raise source.error(line, f"{points} points at {spacing} s stated here, {count} at {step:g} s below")
 
 
 def _values(source: Source, first: int) -> FloatArray:

@@ -1,5 +1,6 @@
 """A record file: its bytes and lines, what it holds, and what every format of such files is."""
 
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -18,33 +19,14 @@ LARGEST_FILE = 256 * 1024 * 1024
 
 @dataclass(frozen=True)
 class Source:
-    """The file that a reader looks at.
+    """The file that a reader looks at."""
 
-    Parameters
-    ----------
-    name : str
-        Its name, for messages.
-    content : bytes
-        What is in it.
-    """
-
-    name: str
-    content: bytes
+    name: str  # its name, for messages
+    content: bytes  # what is in it
 
     @classmethod
     def of_path(cls, path: Path) -> "Source":
-        """Read a file, within limits.
-
-        Parameters
-        ----------
-        path : Path
-            The file.
-
-        Returns
-        -------
-        Source
-            Its name and content.
-        """
+        """Read a file, within limits."""
         if not path.is_file():
             raise RecordError(f"{path}: {'not a plain file' if path.exists() else 'no such file'}")
         try:
@@ -70,21 +52,16 @@ class Source:
         return text.replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
     def error(self, line: int | None, cause: str) -> RecordError:
-        """Return the error for a line, to be raised.
-
-        Parameters
-        ----------
-        line : int or None
-            Index of the line; None for the whole file.
-        cause : str
-            What is wrong.
-
-        Returns
-        -------
-        RecordError
-            It names file and line.
-        """
+        """Return the error for a line, to be raised."""
         return RecordError(f"{self.name}{'' if line is None else f', line {line + 1}'}: {cause}")
+
+    def begins(self, line: int, mark: str) -> bool:
+        """Return whether there is such a line and it begins with a mark."""
+        return line < len(self.lines) and self.lines[line].startswith(mark)
+
+    def expected(self, line: int, what: str) -> RecordError:
+        """Return the error for a line that should say something else, or of which the file ends too early."""
+        return self.error(min(line, len(self.lines) - 1), f"{what} expected")
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,96 +118,75 @@ class Record:
     header: str = ""
     metadata: Mapping[str, str] = field(default_factory=dict)
 
+    def text(self, key: str, width: int, default: str = "") -> str:
+        """Return what is known of the record on one line of a header, for writers.
+
+        Parameters
+        ----------
+        key : str
+            A key of the metadata.
+        width : int
+            Most characters.
+        default : str
+            What a header says where nothing is known.
+
+        Returns
+        -------
+        str
+            Latin-1 text.
+        """
+        return one_line(self.metadata.get(key, default), width)
+
 
 class RecordFormat(ABC):
-    """One format of ground-motion files; a new one is a subclass in a file of its own and a line in `reader`.
+    """One format of ground-motion files; a new one is a subclass in a file of its own and a line in `reader`."""
 
-    Attributes
-    ----------
-    name : str
-        Name for `format=` and on the command line.
-    title : str
-        Who publishes such files, in one line.
-    suffixes : tuple of str
-        Usual endings, lower case, for people only: content decides.
-    states_unit, states_time_step : bool
-        Whether the file itself says so; where not, the user must.
-    notes : str
-        What to know before trusting it.
-    """
+    name: ClassVar[str]  # name for `format=` and on the command line
+    title: ClassVar[str]  # who publishes such files, in one line
+    suffixes: ClassVar[tuple[str, ...]] = ()  # usual endings, lower case, for people only: content decides
+    states_unit: ClassVar[bool] = True  # whether the file itself says so; where not, the user must
+    states_time_step: ClassVar[bool] = True  # whether the file itself says so; where not, the user must
+    notes: ClassVar[str] = ""  # what to know before trusting it
+    marks: ClassVar[tuple[str, ...]] = ()  # patterns of text with which lines near the top begin
+    top: ClassVar[int] = 0  # how many lines are looked at for them
 
-    name: ClassVar[str]
-    title: ClassVar[str]
-    suffixes: ClassVar[tuple[str, ...]] = ()
-    states_unit: ClassVar[bool] = True
-    states_time_step: ClassVar[bool] = True
-    notes: ClassVar[str] = ""
-
-    @abstractmethod
     def recognises(self, source: Source) -> bool:
-        """Return whether the content looks like this format; never raises.
+        """Return whether the content looks like this format: all marks but one are there; never raises.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        bool
-            True if this format should read it.
+        A damaged header must not turn a file into a nameless table of numbers.
         """
+        if not source.is_text or not self.marks:
+            return False
+        top = source.lines[: self.top]
+        return sum(any(re.match(mark, line) for line in top) for mark in self.marks) >= len(self.marks) - 1
 
     def refusal(self, source: Source) -> RecordError | None:
-        """Return why a file that no format recognises would be of this one but for a damage that can be named.
-
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        RecordError or None
-            The error to raise, with its line; None if the format has nothing to say.
-        """
+        """Return why a file that no format recognises would be of this one but for a damage that can be named."""
         return None
 
     @abstractmethod
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record.
-
-        Parameters
-        ----------
-        source : Source
-            The file.
-        units : str, optional
-            Unit of acceleration, where the file does not say; one that contradicts the file is refused.
-        time_step : float, optional
-            Step between samples, where the file does not say; one that contradicts the file is refused [s].
-
-        Returns
-        -------
-        Record
-            Components and header.
-
-        Raises
-        ------
-        RecordError
-            If it is damaged, at odds with its own header, or a unit or step is missing.
-        """
+        """Return the record."""
 
     @abstractmethod
     def write(self, record: Record) -> bytes:
-        """Return the content of a file that `read` reads back, to the digits that the format can hold.
+        """Return the content of a file that `read` reads back, to the digits that the format can hold."""
 
-        Parameters
-        ----------
-        record : Record
-            What to write; what the format cannot hold raises a `RecordError`.
 
-        Returns
-        -------
-        bytes
-            The content.
-        """
+def one_line(text: object, width: int) -> str:
+    r"""Return Latin-1 text that fits on one line of a header, for writers; other letters become question marks.
+
+    >>> one_line("El Centro\r\n 1940", 12)
+    'El Centro 19'
+    """
+    plain = " ".join(str(text).split()).encode("latin-1", "replace").decode("latin-1")
+    return "".join(mark if mark.isprintable() else "?" for mark in plain)[:width].strip()
+
+
+def metadata_of(**texts: str) -> dict[str, str]:
+    """Return what a header says, without what it leaves empty; an underscore is a blank.
+
+    >>> metadata_of(event="Kobe", station_name=" ")
+    {'event': 'Kobe'}
+    """
+    return {key.replace("_", " "): text.strip() for key, text in texts.items() if text.strip()}

@@ -11,13 +11,14 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
 from rocking.motions.formats import headers, numbers
-from rocking.motions.formats.record import Component, Record, RecordFormat, Source
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
 
 TEXTS, WHOLES, REALS = 11, 6, 10
 _NO_REAL = 1.7e38
 _NO_WHOLE = -32768
 _HIGH_PRECISION = 8
 _WHOLES, _REALS = r"[ \d-]{80}", r"( *[+-]?\d*\.\d+E[+-]\d\d){5}"
+_UPRIGHT: dict[int | None, str] = {0: "up", 180: "down"}
 _KINDS = {0: "unknown", 1: "uncorrected accelerogram", 2: "corrected accelerogram"}
 _OTHER = {3: "velocity", 4: "displacement", 5: "response spectra", 6: "Fourier amplitude spectra"}
 
@@ -77,9 +78,20 @@ class SmcUsgs(RecordFormat):
         values, after = numbers.fixed(source, header.first, count, self._per_line, self._width)
         headers.check_end(source, after)
         stated = self._check_peaks(source, header, values, rate)
-        component = Component(_orientation(source, header), values, unit, step, stated)
+        upwards, azimuth = header.whole[12:14]
+        printed = re.search(r"component= *(\S+)", source.lines[5])
+        level = str(azimuth) if azimuth is not None else printed[1] if printed else "unnamed"
+        name = _UPRIGHT.get(upwards, level)
+        texts = {
+            "kind": _KINDS[header.kind],
+            "event": source.lines[3],
+            "station": re.sub(r"component=.*", "", source.lines[5]),
+            "instrument": source.lines[7],
+            "azimuth": "" if azimuth is None else str(azimuth),
+        }
+        metadata = metadata_of(**{key: " ".join(text.split()) for key, text in texts.items() if text.strip(" *")})
         raw = "\n".join(source.lines[: header.first])
-        return Record(self.name, (component,), raw, _metadata(source, header))
+        return Record(self.name, (Component(name, values, unit, step, stated),), raw, metadata)
 
     def write(self, record: Record) -> bytes:
         """Return an SMC file."""
@@ -97,12 +109,13 @@ class SmcUsgs(RecordFormat):
         text = ["*"] * TEXTS
         kind = next((code for code, name in _KINDS.items() if name == record.metadata.get("kind")), 2)
         text[0] = f"{kind} {_KINDS[kind].upper()}"
-        text[3] = numbers.one_line(record.metadata.get("event", "*"), 79) or "*"
-        station = numbers.one_line(record.metadata.get("station", "station = unknown"), 50)
-        text[5] = f"{station} component= {numbers.one_line(component.name, 15).replace(' ', '_')}"
+        text[3] = record.text("event", 79) or "*"
+        station = record.text("station", 50, "station = unknown")
+        text[5] = f"{station} component= {one_line(component.name, 15).replace(' ', '_')}"
         lines = [line.ljust(80) for line in text]
         lines += numbers.in_columns(whole, 8, "{:10d}")
-        lines += ["".join(_fortran(value) for value in real[k : k + 5]) for k in range(0, 50, 5)]
+        words_of_real = [numbers.fortran_e(value, 7, 15, "0") for value in real]
+        lines += ["".join(words_of_real[k : k + 5]) for k in range(0, 50, 5)]
         lines.append("|")
         lines += ["".join(words[k : k + self._per_line]) for k in range(0, len(words), self._per_line)]
         return ("\n".join(lines) + "\n").encode("ascii", "replace")
@@ -165,35 +178,6 @@ def _header(source: Source) -> _Header:
 
 def _grid(lines: Sequence[str], per_line: int, width: int) -> list[str]:
     return [line[k * width : (k + 1) * width] for line in lines for k in range(per_line)]
-
-
-def _orientation(source: Source, header: _Header) -> str:
-    if header.whole[12] in {0, 180}:
-        return "up" if header.whole[12] == 0 else "down"
-    if header.whole[13] is not None:
-        return str(header.whole[13])
-    printed = re.search(r"component= *(\S+)", source.lines[5])
-    return printed[1] if printed else "unnamed"
-
-
-def _metadata(source: Source, header: _Header) -> dict[str, str]:
-    stated = {
-        "kind": _KINDS[header.kind],
-        "event": source.lines[3],
-        "station": re.sub(r"component=.*", "", source.lines[5]),
-        "instrument": source.lines[7],
-        "azimuth": "" if header.whole[13] is None else str(header.whole[13]),
-    }
-    return {key: " ".join(text.split()) for key, text in stated.items() if text.strip(" *")}
-
-
-def _fortran(value: float) -> str:
-    """Return a number as Fortran's E15.7 prints it."""
-    if value == 0.0:
-        return "0.0000000E+00".rjust(15)
-    mantissa, exponent = f"{value:.6E}".split("E")
-    sign, digits = ("-", mantissa[1:]) if mantissa.startswith("-") else ("", mantissa)
-    return f"{sign}0.{digits.replace('.', '')}E{int(exponent) + 1:+03d}".rjust(15)
 
 
 class SmcBoore(SmcUsgs):
