@@ -133,7 +133,11 @@ class NamedColumns:
     def of(cls, source: Source, texts: tuple[str, ...]) -> "NamedColumns":
         """Tell columns apart by their names."""
         named = tuple(ColumnName.of(place, text) for place, text in enumerate(texts))
-        _check_names(source, named)
+        for one in named:
+            if not one.text:
+                raise source.error(None, f"column {one.place + 1} has no name; name it, or remove it")
+            if one.name.casefold() in {other.name.casefold() for other in named[: one.place]}:
+                raise source.error(None, f"two columns are called {one.name!r:.60}; rename or remove one")
         times = [one for one in named if one.is_time]
         found = tuple(one for one in named if one.is_acceleration)
         if len(times) > 1:
@@ -148,7 +152,11 @@ class NamedColumns:
                 None, f"{_listed(spectral)} may be periods of a spectrum: call it time [s] if it is that"
             )
         if not times and len(found) > 1 and any(one.unit is None for one in found):
-            raise source.error(None, _which_is_the_time(found))
+            raise source.error(
+                None,
+                f"which of {_listed(found)} is the time? Name it time [s], or write the unit behind every "
+                "acceleration, or remove all columns but one acceleration",
+            )
         if times and times[0].behind not in {"", *_SECONDS}:
             raise source.error(None, f"{_listed(times)}: the times must be in seconds; convert them, or remove them")
         left_out = tuple(one.text for one in named if one not in found and one not in times)
@@ -158,7 +166,8 @@ class NamedColumns:
         """Return the same with a unit for every acceleration."""
         silent = [one for one in self.accelerations if one.unit is None]
         if silent and asked is None and len(silent) < len(self.accelerations):
-            raise source.error(None, f"{_silent(silent)}; say units= one of {_UNITS}")
+            states = f"{_listed(silent)} state{'s' if len(silent) == 1 else ''} no unit"
+            raise source.error(None, f"{states}: write one behind, or remove the column; say units= one of {_UNITS}")
         said = (replace(one, unit=acceleration_unit(source, one.unit, asked)) for one in self.accelerations)
         return replace(self, accelerations=tuple(said))
 
@@ -225,27 +234,6 @@ def _cells(text: str, separator: str, names: tuple[str, ...] | None) -> list[str
 def _plain(unit: str) -> str:
     bare = re.sub(r"[\s^]|\*\*", "", unit.replace("\xb2", "2").replace("\xb7", "."))
     return re.sub(r"sec(?=\d|$|/)", "s", bare)
-
-
-def _check_names(source: Source, named: tuple[ColumnName, ...]) -> None:
-    seen: set[str] = set()
-    for one in named:
-        if not one.text:
-            raise source.error(None, f"column {one.place + 1} has no name; name it, or remove it")
-        if one.name.casefold() in seen:
-            raise source.error(None, f"two columns are called {one.name!r:.60}; rename or remove one")
-        seen.add(one.name.casefold())
-
-
-def _which_is_the_time(found: tuple[ColumnName, ...]) -> str:
-    return (
-        f"which of {_listed(found)} is the time? Name it time [s], or write the unit behind every acceleration, or "
-        "remove all columns but one acceleration"
-    )
-
-
-def _silent(columns: list[ColumnName]) -> str:
-    return f"{_listed(columns)} state{'s' if len(columns) == 1 else ''} no unit: write one behind, or remove the column"
 
 
 def _listed(columns: "list[ColumnName] | tuple[ColumnName, ...]") -> str:

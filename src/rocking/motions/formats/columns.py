@@ -157,12 +157,20 @@ def _by_place(source: Source, text: ColumnText) -> NamedColumns:
 
 
 def _table(source: Source, text: ColumnText) -> FloatArray:
-    columns = len(text.rows[0][1] if text.names is None else text.names)
-    _refuse_unclear_commas(source, text)
+    commas = [line for line, _ in text.rows if "," in source.lines[line]]
+    points = [line for line, cells in text.rows if any("." in cell for cell in cells)]
+    if commas and text.separator == "" and not points:
+        raise source.error(commas[0], "commas but no decimal point: write decimal commas as points")
+    if commas and points and text.separator not in {"", ","}:
+        raise source.error(commas[0], f"decimal commas here and decimal points on line {points[0] + 1}: write one kind")
+    hint = "; where commas part the columns, decimals need a point" if text.separator == "," else ""
+    columns, like = len(text.rows[0][1]), " as on the first line, found {}"
+    if text.names is not None:
+        columns, like = len(text.names), f", as many as there are names, found {{}}{hint}"
     values = np.empty((len(text.rows), columns))
     for row, (line, cells) in enumerate(text.rows):
         if len(cells) != columns:
-            raise _ragged(source, line, text, len(cells), columns)
+            raise source.error(line, f"{columns} numbers expected{like.format(len(cells))}")
         values[row] = [_value(source, line, cell) for cell in cells]
     if len(text.rows) < 2:
         raise source.error(None, "at least 2 samples are needed, found 1")
@@ -171,21 +179,3 @@ def _table(source: Source, text: ColumnText) -> FloatArray:
 
 def _value(source: Source, line: int, cell: str) -> float:
     return number(source, line, cell.replace(",", "."))
-
-
-def _ragged(source: Source, line: int, text: ColumnText, found: int, columns: int) -> RecordError:
-    if text.names is None:
-        return source.error(line, f"{columns} numbers expected as on the first line, found {found}")
-    hint = "; where commas part the columns, decimals need a point" if text.separator == "," else ""
-    return source.error(line, f"{columns} numbers expected, as many as there are names, found {found}{hint}")
-
-
-def _refuse_unclear_commas(source: Source, text: ColumnText) -> None:
-    commas = [line for line, _ in text.rows if "," in source.lines[line]]
-    points = [line for line, cells in text.rows if any("." in cell for cell in cells)]
-    if not commas or text.separator == ",":
-        return
-    if text.separator == "" and not points:
-        raise source.error(commas[0], "commas but no decimal point: write decimal commas as points")
-    if text.separator and points:
-        raise source.error(commas[0], f"decimal commas here and decimal points on line {points[0] + 1}: write one kind")

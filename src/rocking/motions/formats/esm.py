@@ -12,8 +12,12 @@ _KEY = re.compile(r"([A-Z][A-Z0-9_/^]*):(?:\s(.*))?")
 _MOST_KEYS = 200
 _UNITS = {"cm/s^2": "cm/s2", "cm/s2": "cm/s2", "m/s^2": "m/s2", "mm/s^2": "mm/s2", "g": "g", "mg": "mg", "gal": "gal"}
 _PEAKS = {
-    "cm/s2": "PGA_CM/S^2", "gal": "PGA_CM/S^2", "m/s2": "PGA_M/S^2", "mm/s2": "PGA_MM/S^2",
-    "g": "PGA_G", "mg": "PGA_MG",
+    "cm/s2": "PGA_CM/S^2",
+    "gal": "PGA_CM/S^2",
+    "m/s2": "PGA_M/S^2",
+    "mm/s2": "PGA_MM/S^2",
+    "g": "PGA_G",
+    "mg": "PGA_MG",
 }
 _KEPT = {
     "event": "EVENT_NAME",

@@ -158,7 +158,10 @@ def read_motion(
     level = _chosen(record, "component", component, upright)
     if upright.time_step != level.time_step:
         raise source.error(None, f"steps of {level.time_step:g} s and {upright.time_step:g} s; resample one first")
-    return _with_component(_motion(source, record, level), upright)
+    told = f"component {upright.name}, unit {upright.unit}"
+    acceleration = upright.acceleration * ACCELERATION_UNITS[upright.unit]
+    part = GroundMotion(acceleration, upright.time_step, None, "", {"component": upright.name}, (told,))
+    return with_vertical(_motion(source, record, level), part)
 
 
 def write_record(record: Record, path: str | PathLike[str], format: str) -> None:
@@ -235,26 +238,13 @@ def _read(source: Source, format: str | None, units: str | None, time_step: floa
 
 
 def _motion(source: Source, record: Record, part: Component) -> GroundMotion:
-    metadata = {
-        **record.metadata,
-        **part.metadata,
-        "format": record.format,
-        "unit": part.unit,
-        "component": part.name,
-        "header": record.header,
-    }
+    own = {"format": record.format, "unit": part.unit, "component": part.name, "header": record.header}
+    metadata = {**record.metadata, **part.metadata, **own}
     digest = hashlib.sha256(source.content).hexdigest()
     told = f"read from {source.name}, SHA-256 {digest}, format {record.format}, component {part.name}, unit {part.unit}"
     name = " ".join(metadata[key] for key in ("event", "station") if metadata.get(key)) or Path(source.name).stem
     acceleration = part.acceleration * ACCELERATION_UNITS[part.unit]
     return GroundMotion(acceleration, part.time_step, None, name, metadata, (told,))
-
-
-def _with_component(motion: GroundMotion, upright: Component) -> GroundMotion:
-    told = f"component {upright.name}, unit {upright.unit}"
-    acceleration = upright.acceleration * ACCELERATION_UNITS[upright.unit]
-    metadata = {"component": upright.name}
-    return with_vertical(motion, GroundMotion(acceleration, motion.time_step, None, "", metadata, (told,)))
 
 
 def _joined(motion: GroundMotion, upright: GroundMotion, beside: Source, *, same_file: bool) -> GroundMotion:

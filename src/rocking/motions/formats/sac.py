@@ -46,7 +46,11 @@ class Sac(RecordFormat):
         order = _byte_order(source)
         if order is None:
             raise source.error(None, "no SAC file of version 6 or 7")
-        _check_places(source, order)
+        # ObsPy turns longitudes back by 360 degrees at a time, however large
+        for place, (offset, most) in _PLACES.items():
+            value = struct.unpack_from(order + "f", source.content, offset)[0]
+            if value != _UNDEFINED and not abs(value) <= most:
+                raise source.error(None, f"the header's {place} must be within {most:g} degrees of 0, found {value:g}")
         unit = headers.acceleration_unit(source, None, units)
         trace = read_traces(source, "SAC", checksize=True)[0]
         said = trace.sac
@@ -90,18 +94,10 @@ def _byte_order(source: Source) -> str | None:
     if len(source.content) < _HEADER:
         return None
     for order in "<>":
-        version, even = struct.unpack_from(order + "i", source.content, 304)[0], _field(source, order, 420)
-        if version in _VERSIONS and even in {0, 1} and _field(source, order, 432) in {0, 1, int(_UNDEFINED)}:
+        version, even, own = (struct.unpack_from(order + "i", source.content, at)[0] for at in (304, 420, 432))
+        if version in _VERSIONS and even in {0, 1} and own in {0, 1, int(_UNDEFINED)}:
             return order
     return None
-
-
-def _check_places(source: Source, order: str) -> None:
-    """Refuse places that are not on Earth: ObsPy turns longitudes back by 360 degrees at a time, however large."""
-    for name, (offset, most) in _PLACES.items():
-        value = struct.unpack_from(order + "f", source.content, offset)[0]
-        if value != _UNDEFINED and not abs(value) <= most:
-            raise source.error(None, f"the header's {name} must be within {most:g} degrees of 0, found {value:g}")
 
 
 @dataclass(frozen=True)
@@ -157,7 +153,3 @@ def trace_of(values: Any, part: Component, record: Record) -> Any:
     trace.stats.station = str(record.metadata.get("station", ""))[:5]
     trace.stats.channel = part.name[:3]
     return trace
-
-
-def _field(source: Source, order: str, at: int) -> int:
-    return int(struct.unpack_from(order + "i", source.content, at)[0])
