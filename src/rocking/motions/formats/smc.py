@@ -81,7 +81,7 @@ class SmcUsgs(RecordFormat):
         upwards, azimuth = header.whole[12:14]
         printed = re.search(r"component= *(\S+)", source.lines[5])
         level = str(azimuth) if azimuth is not None else printed[1] if printed else "unnamed"
-        name = _UPRIGHT.get(upwards, level)
+        name = _UPRIGHT.get(upwards) or level
         texts = {
             "kind": _KINDS[header.kind],
             "event": source.lines[3],
