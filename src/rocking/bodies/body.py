@@ -4,7 +4,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 from rocking import checks, conventions, plausibility
 from rocking.bodies.moments import PlaneMoments
@@ -285,6 +285,15 @@ class Body(ABC):
                 "a body like this falls over by itself"
             )
         plausibility.warn(self.doubts)
+
+
+def feet_of(feet: Any) -> Interval:
+    """Return two positions of feet [m] as numbers."""
+    try:
+        left, right = feet
+    except (TypeError, ValueError) as error:
+        raise GeometryError("feet must be a pair (x_left, x_right) in m") from error
+    return checks.number("left foot", left, "m"), checks.number("right foot", right, "m")
 
 
 def assumed_density(densities: Sequence[float]) -> tuple[str, ...]:

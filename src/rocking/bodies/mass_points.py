@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.bodies.body import Body, Interval
+from rocking.bodies.body import Body, Interval, feet_of
 from rocking.bodies.moments import PlaneMoments
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError, InvalidValueError
@@ -61,11 +61,7 @@ class MassPoints(Body):
         if self.masses.ndim != 1:
             raise GeometryError(f"masses must be a list of numbers, got an array of shape {self.masses.shape}")
         self.points = _points(points, len(self.masses))
-        try:
-            left, right = feet
-        except (TypeError, ValueError) as error:
-            raise GeometryError("feet must be a pair (x_left, x_right) in m") from error
-        self._feet = checks.number("left foot", left, "m"), checks.number("right foot", right, "m")
+        self._feet = feet_of(feet)
         self._contact = None if contact is None else _stretches(contact)
         self._check_support()
 

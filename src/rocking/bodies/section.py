@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import _rings, shapes
-from rocking.bodies.body import DEFAULT_DENSITY, Body, Interval
+from rocking.bodies.body import DEFAULT_DENSITY, Body, Interval, feet_of
 from rocking.bodies.moments import PlaneMoments, combined_plane, ring_moments
 from rocking.bodies.region import Region
 from rocking.conventions import FloatArray
@@ -67,7 +67,12 @@ class Section(Body):
         high = np.max([region.outline.max(axis=0) for region in regions], axis=0)
         self._origin_x = 0.5 * float(low[0] + high[0])
         self._size = float((high - low).max())
-        self._check_ground(float(low[1]))
+        if abs(float(low[1]) - self._ground) > GROUND_TOLERANCE * self._size:
+            verb, lowest = "floats above" if low[1] > self._ground else "reaches below", float(low[1])
+            raise GeometryError(
+                f"the body {verb} the ground: its lowest point is y = {lowest:.9g} m, the ground {self._ground:.9g} m; "
+                f"pass ground={lowest:.9g} or move the outline"
+            )
         self.regions = tuple(region.moved(-self._origin_x, -self._ground) for region in regions)
         _rings.check_disjoint([(region.outline, region.holes) for region in self.regions])
         self._local_feet = self._placed(feet)
@@ -230,7 +235,16 @@ class Section(Body):
     @cached_property
     def local_contact(self) -> tuple[Interval, ...]:
         """Flat stretches of the base between the feet, local frame [m]; none if it stands on points."""
-        return flat_stretches(self.regions, self._size, self._local_feet)
+        (left, right), slack = self._local_feet, GROUND_TOLERANCE * self._size
+        ends = np.sort(np.concatenate([_level_edges(region.outline, slack) for region in self.regions]), axis=1)
+        a, b = ends[np.lexsort(ends.T[::-1])].T.clip(left, right)
+        a, b = a[b > a], b[b > a]
+        if not a.size:
+            return ()
+        reach = np.maximum.accumulate(b)
+        apart = np.flatnonzero(a[1:] > reach[:-1] + slack)
+        starts, stops = a[np.append(0, apart + 1)], reach[np.append(apart, -1)]
+        return tuple(zip(starts.tolist(), stops.tolist(), strict=True))
 
     @property
     def local_box(self) -> tuple[float, float, float, float]:
@@ -253,23 +267,16 @@ class Section(Body):
     def mirrored(self) -> "Section":
         """Return the section seen in a vertical mirror."""
         left, right = self._local_feet
-        return self._copy(lambda ring: ring * np.array([-1.0, 1.0]), feet=(-right, -left))
+        return self._copy(lambda ring: ring * np.array([-1.0, 1.0]), (-right, -left))
 
     def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "Section":
         size, density = checks.positive("size", size), checks.positive("density", density)
         checks.length("size of the scaled body", self._size * size)
         left, right = self._local_feet
-        return self._copy(
-            lambda ring: ring * size,
-            feet=(left * size, right * size),
-            density=density,
-            size=size,
-        )
+        return self._copy(lambda ring: ring * size, (left * size, right * size), density, size)
 
     def with_feet(self, left: float, right: float) -> "Section":
-        section = self._copy(lambda ring: ring, feet=self._local_feet)
-        section._local_feet = section._placed((left, right))
-        section.__dict__.pop("local_contact", None)
+        section = self._copy(lambda ring: ring, self._placed((left, right)))
         section._check_support()
         return section
 
@@ -282,73 +289,36 @@ class Section(Body):
         section._origin_x, section._ground, section._local_feet = self._origin_x, self._ground, feet
         return section
 
-    def _check_ground(self, lowest: float) -> None:
-        if abs(lowest - self._ground) > GROUND_TOLERANCE * self._size:
-            verb = "floats above" if lowest > self._ground else "reaches below"
-            raise GeometryError(
-                f"the body {verb} the ground: its lowest point is y = {lowest:.9g} m, the ground {self._ground:.9g} m; "
-                f"pass ground={lowest:.9g} or move the outline"
-            )
-
     def _placed(self, feet: tuple[float, float] | None) -> Interval:
-        return placed_feet(extent_on_ground(self.regions, self._size), self._size, self._origin_x, feet)
+        """Return the feet in the local frame, by default the ends of the base."""
+        slack, origin = GROUND_TOLERANCE * self._size, self._origin_x
+        touching = np.concatenate([r.outline[np.abs(r.outline[:, 1]) <= slack, 0] for r in self.regions])
+        base = float(touching.min()), float(touching.max())
+        if feet is None:
+            if base[1] - base[0] <= slack:
+                raise GeometryError("the body touches the ground in one point only; it needs two feet to rock")
+            return base
+        left, right = feet_of(feet)
+        left, right = left - origin, right - origin
+        if not left < right:
+            raise GeometryError(f"the left foot must lie left of the right one, got {feet[0]:g} and {feet[1]:g} m")
+        slack += 4.0 * math.ulp(abs(origin))
+        for name, x in (("left", left), ("right", right)):
+            if not base[0] - slack <= x <= base[1] + slack:
+                a, b = base[0] + origin, base[1] + origin
+                raise GeometryError(
+                    f"the {name} foot must lie on the base, x in [{a:.9g}, {b:.9g}] m, got {x + origin:.9g}"
+                )
+        return max(left, base[0]), min(right, base[1])
 
 
 GROUND_TOLERANCE = 1e-9
 """Vertices this close to the ground, relative to the body's size, stand on it."""
 
 
-def extent_on_ground(regions: Sequence[Region], size: float) -> Interval:
-    """Return the ends of the base: the outermost vertices on y = 0."""
-    tolerance = GROUND_TOLERANCE * size
-    touching = np.concatenate([r.outline[np.abs(r.outline[:, 1]) <= tolerance, 0] for r in regions])
-    return float(touching.min()), float(touching.max())
-
-
-def flat_stretches(regions: Sequence[Region], size: float, feet: Interval) -> tuple[Interval, ...]:
-    """Return the stretches of the ground that edges lie on, cut at the feet and merged."""
-    left, right = feet
-    merged: list[Interval] = []
-    for a, b in ((max(a, left), min(b, right)) for a, b in sorted(_edges(regions, GROUND_TOLERANCE * size))):
-        if b <= a:
-            continue
-        if merged and a <= merged[-1][1] + GROUND_TOLERANCE * size:
-            merged[-1] = (merged[-1][0], max(b, merged[-1][1]))
-        else:
-            merged.append((a, b))
-    return tuple(merged)
-
-
-def _edges(regions: Sequence[Region], tolerance: float) -> list[Interval]:
-    found: list[Interval] = []
-    for region in regions:
-        x, y = region.outline.T
-        low = np.abs(y) <= tolerance
-        both = low & np.roll(low, -1)
-        ends = zip(x[both].tolist(), np.roll(x, -1)[both].tolist(), strict=True)
-        found += [(min(a, b), max(a, b)) for a, b in ends]
-    return found
-
-
-def placed_feet(base: Interval, size: float, origin: float, feet: tuple[float, float] | None) -> Interval:
-    """Return the feet in the local frame, by default the ends of the base."""
-    if feet is None:
-        if base[1] - base[0] <= GROUND_TOLERANCE * size:
-            raise GeometryError("the body touches the ground in one point only; it needs two feet to rock")
-        return base
-    try:
-        left, right = feet
-    except (TypeError, ValueError) as error:
-        raise GeometryError("feet must be a pair (x_left, x_right) in m") from error
-    left = checks.number("left foot", left, "m") - origin
-    right = checks.number("right foot", right, "m") - origin
-    if not left < right:
-        raise GeometryError(f"the left foot must lie left of the right one, got {feet[0]:g} and {feet[1]:g} m")
-    slack = GROUND_TOLERANCE * size + 4.0 * math.ulp(abs(origin))
-    for name, x in (("left", left), ("right", right)):
-        if not base[0] - slack <= x <= base[1] + slack:
-            a, b = base[0] + origin, base[1] + origin
-            raise GeometryError(
-                f"the {name} foot must lie on the base, x in [{a:.9g}, {b:.9g}] m, got {x + origin:.9g}"
-            )
-    return max(left, base[0]), min(right, base[1])
+def _level_edges(outline: FloatArray, tolerance: float) -> FloatArray:
+    """Return both ends of every edge that lies on the ground; shape (n, 2)."""
+    x, y = outline.T
+    low = np.abs(y) <= tolerance
+    both = low & np.roll(low, -1)
+    return np.stack([x[both], np.roll(x, -1)[both]], axis=1)

@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking.conventions import FloatArray
 from rocking.evidence._league import LeagueRow
 from rocking.evidence.bed_fit import bed_coefficients
 from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration, calibrate
@@ -39,17 +38,16 @@ def curve(axes: "Axes", name: str, low: float = _LOW, high: float = _HIGH) -> No
     axes.plot(ratio, model(name).of_slenderness(ratio), **model_styles()[name])
 
 
-def measured(axes: "Axes") -> None:
-    """Draw all measured coefficients over slenderness, with the intervals that rounding leaves open."""
-    for group in GROUPS:
-        data = datasets()[group]
-        reach = np.array([data.coefficient - data.low, data.high - data.coefficient])
-        _points(axes, data.slenderness, data.coefficient, reach, **GROUP_STYLE[group])
-    axes.set(xlabel=SLENDERNESS, ylabel=R)
-
-
-def _points(axes: "Axes", x: FloatArray, y: FloatArray, reach: FloatArray, **look: Any) -> None:
-    axes.errorbar(x, y, yerr=reach, markeredgewidth=0.7, elinewidth=0.6, **HOLLOW, **look)
+def measured(axes: "Axes", *, loss: bool = False) -> None:
+    """Draw all measured coefficients, or losses of energy, over slenderness, with what rounding leaves open."""
+    for group, style in GROUP_STYLE.items():
+        data, look = datasets()[group], {"marker": style["marker"]} if loss else style
+        low, value, high = data.low, data.coefficient, data.high
+        if loss:
+            low, value, high = 1.0 - high**2, 1.0 - value**2, 1.0 - low**2
+        bar: dict[str, Any] = {"yerr": np.array([value - low, high - value]), "markeredgewidth": 0.7}
+        axes.errorbar(data.slenderness, value, elinewidth=0.6, **bar, **HOLLOW, **look)
+    axes.set(xlabel=SLENDERNESS, ylabel="energy loss $1 - r^2$ [-]" if loss else R)
 
 
 def predicted(axes: "Axes", calibration: Calibration | None = None, low: float = _LOW, high: float = _HIGH) -> None:
@@ -74,13 +72,8 @@ def models_and_measurements(calibration: Calibration) -> "Figure":
     ratio = np.linspace(_LOW, _HIGH, 400)
     for name, look in model_styles().items():
         right.plot(ratio, 1.0 - model(name).of_slenderness(ratio) ** 2, **{**look, "label": None})
-    for group in GROUPS:
-        data = datasets()[group]
-        loss = 1.0 - data.coefficient**2
-        reach = np.array([loss - (1.0 - data.high**2), (1.0 - data.low**2) - loss])
-        _points(right, data.slenderness, loss, reach, marker=GROUP_STYLE[group]["marker"])
+    measured(right, loss=True)
     right.set_yscale("log")
-    right.set(xlabel=SLENDERNESS, ylabel="energy loss $1 - r^2$ [-]")
     return figure
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking import checks
-from rocking.conventions import FloatArray, g
+from rocking.conventions import g
 from rocking.errors import InvalidValueError
 from rocking.motions import peak_ground_acceleration, peak_ground_velocity
 from rocking.motions.motion import GroundMotion
@@ -15,6 +15,7 @@ from rocking.motions.pulse import Pulse
 from rocking.motions.spectrum import response_spectrum
 from rocking.plots.labels import plain, plain_log
 from rocking.plots.style import (
+    COLORS,
     DASHED,
     DOUBLE,
     GREY,
@@ -36,14 +37,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DAMPING = 0.05
-_PERIODS = 120
-_SHORTEST, _LONGEST = 0.02, 5.0
-_SHORTEST_IN_STEPS = 0.2
 _LONGEST_TITLE = 70
 _SET_PERIODS = np.geomspace(0.05, 4.0, 60)
 """Periods of the spectra of sets, unless others are given [s]."""
-
-_ACCELERATION, _VELOCITY, _DISPLACEMENT, _SPECTRUM = "#222222", "#0072B2", "#009E73", "#D55E00"
 
 
 @in_journal_style
@@ -90,41 +86,38 @@ def _histories(stack: "list[Axes]", motion: GroundMotion | Pulse, curves: Traces
     top, middle, bottom = stack
     if isinstance(motion, GroundMotion) and motion.vertical is not None:
         top.plot(motion.time, motion.vertical, color=GREY, linewidth=0.5, label="vertical", zorder=1)
-        top.plot([], [], color=_ACCELERATION, linewidth=0.8, label="horizontal")
+        top.plot([], [], color=INK, linewidth=0.8, label="horizontal")
         legend_above(top, 2)
     rows = (
-        (top, "acceleration", curves.acceleration, "[m/s$^2$]", "PGA", "m/s$^2$", _ACCELERATION),
-        (middle, "velocity", curves.velocity, "[m/s]", "PGV", "m/s", _VELOCITY),
-        (bottom, "displacement", curves.displacement, "[m]", "PGD", "m", _DISPLACEMENT),
+        (top, "acceleration", "m/s$^2$", "PGA", INK),
+        (middle, "velocity", "m/s", "PGV", COLORS[0]),
+        (bottom, "displacement", "m", "PGD", COLORS[2]),
     )
-    for axes, name, values, unit, short, drawn_unit, color in rows:
+    for axes, name, unit, short, color in rows:
+        time, values = curves.time, getattr(curves, name)
+        if name == "acceleration":  # before and after the motion there is none
+            time, values = np.pad(time, 1, "edge"), np.pad(values, 1)
         axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
-        axes.plot(*_with_ends(curves.time, values, name), color=color, linewidth=0.8)
+        axes.plot(time, values, color=color, linewidth=0.8)
         at, peak = curves.peaks[name]
         axes.plot([at], [peak], marker="o", markersize=4, markerfacecolor="white", color=color, linestyle="none")
         in_g = f" = {abs(peak) / g:.3g} g" if name == "acceleration" else ""
-        axes.set_title(f"{short} {abs(peak):.3g} {drawn_unit}{in_g} at {at:.4g} s", loc="right", fontsize=7)
-        axes.set_ylabel(f"{name}\n{unit}")
+        axes.set_title(f"{short} {abs(peak):.3g} {unit}{in_g} at {at:.4g} s", loc="right", fontsize=7)
+        axes.set_ylabel(f"{name}\n[{unit}]")
         axes.margins(x=0.01)
         axes.locator_params(axis="y", nbins=5)
     bottom.set_xlabel("time [s]")
 
 
-def _with_ends(time: FloatArray, values: FloatArray, name: str) -> tuple[FloatArray, FloatArray]:
-    """Let an acceleration rise from zero and fall to it: before and after the motion there is none."""
-    if name != "acceleration":
-        return time, values
-    return np.concatenate([time[:1], time, time[-1:]]), np.concatenate([[0.0], values, [0.0]])
-
-
 def _spectrum(axes: "Axes", motion: GroundMotion, peak: float) -> None:
-    low = max(_SHORTEST, _SHORTEST_IN_STEPS * motion.time_step)
-    # what is slower than the usual range is shown up to periods well beyond its own
-    high = max(_LONGEST, 2.0 * _slowest(motion), 10.0 * low)
-    periods = np.geomspace(low, high, _PERIODS)
+    low, peaks = max(0.02, 0.2 * motion.time_step), traces(motion).peaks
+    # what is slower than the usual range is shown up to periods well beyond its own, which its peaks tell
+    own = 2.0 * math.pi * abs(peaks["velocity"][1]) / (abs(peaks["acceleration"][1]) or math.inf)
+    high = max(5.0, 2.0 * own, 10.0 * low)
+    periods = np.geomspace(low, high, 120)
     values = response_spectrum(motion, periods, _DAMPING).pseudo_acceleration / g
     axes.axhline(peak / g, color=GREY, linewidth=0.8, linestyle=DASHED, label=f"PGA {peak / g:.3g} g")
-    axes.plot(periods, values, color=_SPECTRUM, label=f"PSA, {100.0 * _DAMPING:g} % damping")
+    axes.plot(periods, values, color=COLORS[1], label=f"PSA, {100.0 * _DAMPING:g} % damping")
     axes.set_xscale("log")
     axes.set_xlim(low, high)
     axes.set_ylim(0.0, 1.08 * max(float(values.max()), peak / g) or 1.0)
@@ -136,12 +129,6 @@ def _spectrum(axes: "Axes", motion: GroundMotion, peak: float) -> None:
     axes.set_xlabel("period T [s]")
     axes.set_ylabel("pseudo-spectral acceleration PSA [g]", color=INK)
     legend_above(axes, 2)
-
-
-def _slowest(motion: GroundMotion) -> float:
-    """Return a period that the motion is about as slow as, from its peaks; zero if it does not move [s]."""
-    peaks = traces(motion).peaks
-    return 2.0 * math.pi * abs(peaks["velocity"][1]) / (abs(peaks["acceleration"][1]) or math.inf)
 
 
 @in_journal_style
@@ -183,8 +170,14 @@ def record_set_picture(sets: Mapping[str, Any], periods: Any = _SET_PERIODS) -> 
         records = [motions[k] for k in range(len(motions))]
         if len(records) < 2 or not all(isinstance(each, GroundMotion) for each in records):
             raise InvalidValueError(f"set {name!r:.60} must have two ground motions or more, got {records!r:.60}")
-        _peaks(left, records, number)
-        _set_spectra(right, records, places, number)
+        pga = [peak_ground_acceleration(each) for each in records]
+        pgv = [peak_ground_velocity(each) for each in records]
+        mark: dict[str, Any] = {"marker": MARKS[number], "markersize": 3.0, "alpha": 0.7, "markeredgewidth": 0}
+        left.plot(pga, pgv, linestyle="none", color=look(number)["color"], **mark)
+        values = np.array([response_spectrum(each, places).pseudo_acceleration for each in records])
+        low, middle, high = np.quantile(values, [0.16, 0.5, 0.84], axis=0)
+        right.fill_between(places, low, high, color=look(number)["color"], alpha=0.15, linewidth=0)
+        right.plot(places, middle, linewidth=1.2, **look(number))
     left.set(xlabel="peak ground acceleration [m/s$^2$]", ylabel="peak ground velocity [m/s]")
     right.set(xlabel="period [s]", ylabel="spectral acceleration, 5 % [m/s$^2$]")
     for panel in (left, right):
@@ -196,17 +189,3 @@ def record_set_picture(sets: Mapping[str, Any], periods: Any = _SET_PERIODS) -> 
     ]
     legend_below(figure, handles, 3, fontsize=7, handlelength=3.6)
     return figure
-
-
-def _peaks(axes: "Axes", records: list[GroundMotion], number: int) -> None:
-    pga = [peak_ground_acceleration(each) for each in records]
-    pgv = [peak_ground_velocity(each) for each in records]
-    mark: dict[str, Any] = {"marker": MARKS[number], "markersize": 3.0, "alpha": 0.7, "markeredgewidth": 0}
-    axes.plot(pga, pgv, linestyle="none", color=look(number)["color"], **mark)
-
-
-def _set_spectra(axes: "Axes", records: list[GroundMotion], periods: FloatArray, number: int) -> None:
-    values = np.array([response_spectrum(each, periods).pseudo_acceleration for each in records])
-    low, middle, high = np.quantile(values, [0.16, 0.5, 0.84], axis=0)
-    axes.fill_between(periods, low, high, color=look(number)["color"], alpha=0.15, linewidth=0)
-    axes.plot(periods, middle, linewidth=1.2, **look(number))

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _CROSS, _FALLEN, _AGAIN = "#7A2E00", "#DDB7A0", "#0072B2"
+_FRACTION: dict[str, Any] = {"color": INK, "linewidth": 1.2}
+_PASSED: dict[str, Any] = {"color": _CROSS, "linewidth": 1.0, "linestyle": "--"}
 WIDE = 0.01
 """Survivals of less width over their level are not counted: in them the body balances on its corner [-]."""
 
@@ -66,7 +68,13 @@ def incremental_dynamic_analysis_picture(analysis: IncrementalDynamicAnalysis) -
     for curve in analysis.curves:
         _curve(left, analysis.levels, curve)
     _crossings(left, analysis)
-    _fractions(right, analysis)
+    known = np.sort(analysis.first_crossings[analysis.complete])
+    if known.size:
+        passed = np.searchsorted(known, analysis.levels, side="right") / known.size
+        right.plot(passed, analysis.levels, **_PASSED)
+    right.plot(analysis.fractions, analysis.levels, **_FRACTION)
+    right.set(xlim=(-0.03, 1.03), xlabel="share\noverturned [-]")
+    right.set_xticks([0.0, 0.5, 1.0], ["0", "0.5", "1"])
     measure = analysis.subject.measure
     left.set_ylabel(axis_label(measure.name, measure.unit, linear=analysis.subject.settings.linear))
     left.set_xlabel(PEAK, x=0.55 / (_LAST + 0.06))
@@ -74,19 +82,13 @@ def incremental_dynamic_analysis_picture(analysis: IncrementalDynamicAnalysis) -
     left.axvline(1.0, color=GREY, linewidth=0.6, linestyle=DASHED, zorder=0)
     below: dict[str, Any] = {"transform": left.get_xaxis_transform(), "ha": "center", "va": "top", "fontsize": 7}
     left.text(0.5 * (_FIRST + _LAST), -0.045, "by motion", **below)
-    left.set_ylim(*_limits(analysis))
-    if geometric(analysis.levels) and analysis.levels[-1] / analysis.levels[0] > 3.0:
+    low, high = float(analysis.levels[0]), float(analysis.levels[-1])
+    left.set_ylim(low - 0.03 * (high - low), high + 0.03 * (high - low) or 1.1 * high)
+    if geometric(analysis.levels) and high / low > 3.0:
+        left.set_ylim(low / 1.04, 1.04 * high)
         plain_log(left, "y")
     _legend(figure, analysis)
     return figure
-
-
-def _limits(analysis: IncrementalDynamicAnalysis) -> tuple[float, float]:
-    levels = analysis.levels
-    low, high = float(levels[0]), float(levels[-1])
-    if geometric(levels) and high / low > 3.0:
-        return low / 1.04, 1.04 * high
-    return low - 0.03 * (high - low), high + 0.03 * (high - low) or 1.1 * high
 
 
 def _curve(axes: "Axes", levels: FloatArray, curve: FloatArray) -> None:
@@ -115,17 +117,6 @@ def _crossings(axes: "Axes", analysis: IncrementalDynamicAnalysis) -> None:
     axes.plot(places, starts[order], linestyle="none", marker="x", markersize=2.6, color=_CROSS, zorder=4)
 
 
-def _fractions(axes: "Axes", analysis: IncrementalDynamicAnalysis) -> None:
-    known = np.sort(analysis.first_crossings[analysis.complete])
-    if known.size:
-        passed = np.searchsorted(known, analysis.levels, side="right") / known.size
-        axes.plot(passed, analysis.levels, color=_CROSS, linewidth=1.0, linestyle="--")
-    axes.plot(analysis.fractions, analysis.levels, color=INK, linewidth=1.2)
-    axes.set_xlim(-0.03, 1.03)
-    axes.set_xticks([0.0, 0.5, 1.0], ["0", "0.5", "1"])
-    axes.set_xlabel("share\noverturned [-]")
-
-
 def _legend(figure: "Figure", analysis: IncrementalDynamicAnalysis) -> None:
     count, again = int(analysis.complete.sum()), len(analysis.resurrected(WIDE))
     lane: dict[str, Any] = {"color": _FALLEN, "linewidth": 2.5, "markersize": 3.5, "markeredgecolor": _CROSS}
@@ -135,7 +126,7 @@ def _legend(figure: "Figure", analysis: IncrementalDynamicAnalysis) -> None:
         stroke(f"{count} motion{'s' * (count != 1)}", color=GREY, linewidth=0.8),
         stroke("overturns, x: first", marker="x", **lane),
         *([stroke(words, marker="o", **ring)] if again else []),
-        stroke("fraction at the level", color=INK, linewidth=1.2),
-        stroke("first crossing passed", color=_CROSS, linewidth=1.0, linestyle="--"),
+        stroke("fraction at the level", **_FRACTION),
+        stroke("first crossing passed", **_PASSED),
     ]
     legend_below(figure, rows, 2, handlelength=1.8)

@@ -11,6 +11,7 @@ from rocking.plots.style import INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
 
 SYMBOLS = {
     "frequency_ratio": r"$\omega_p\,/\,p$ [-]",
@@ -103,7 +104,7 @@ def geometric(values: FloatArray) -> bool:
 
 def plain_log(axes: "Axes", which: str) -> None:
     """Make an axis logarithmic, with plain numbers at a few ticks."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+    from matplotlib.ticker import LogLocator
 
     getattr(axes, f"set_{which}scale")("log")
     axis = axes.xaxis if which == "x" else axes.yaxis
@@ -112,6 +113,13 @@ def plain_log(axes: "Axes", which: str) -> None:
     if high / low < 4.0:
         steps = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)
     axis.set_major_locator(LogLocator(subs=steps))
+    plain_numbers(axis)
+
+
+def plain_numbers(axis: "Axis") -> None:
+    """Write plain numbers at the ticks of an axis that stand out, none at the others."""
+    from matplotlib.ticker import FuncFormatter, NullFormatter
+
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
 

@@ -1,6 +1,6 @@
 """Regimes in pictures: Shenton's map, and a planar response with its regimes coloured."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -36,13 +36,6 @@ COLOURS = {
 }
 """One pale colour a regime, after Okabe and Ito."""
 
-_NAMES = {
-    Regime.REST: "rest",
-    Regime.SLIDE: "slide",
-    Regime.ROCK: "rock",
-    Regime.SLIDE_ROCK: "slide and rock",
-    Regime.FLIGHT: "flight",
-}
 _LINE, _IMPACT = "#0072B2", "#D55E00"
 
 
@@ -83,11 +76,19 @@ def regime_map_picture(body: Body, largest: float = 1.5, cells: int = 40) -> "Fi
     figure, (axes,) = new_figure(SINGLE, 0.95 * SINGLE)
     middles = (np.arange(cells) + 0.5) * largest / cells
     _cells(axes, regime_map(body, middles, middles), largest)
-    _boundaries(axes, body, slender, largest)
+    line: dict[str, Any] = {"color": INK, "linewidth": 1.0}
+    axes.plot([0.0, slender, slender], [0.0, slender, largest], **line)
+    axes.plot([slender, largest], [slender, slender], **line)
+    pushes = np.linspace(slender * (1.0 + 1e-12), largest, 200)
+    axes.plot(pushes, [friction_demand(body, push) for push in pushes.tolist()], **line)
     axes.set(xlim=(0.0, largest), ylim=(0.0, largest))
     axes.set(xlabel="ground acceleration over gravity [-]", ylabel="coefficient of friction [-]")
     axes.set_title("cells: complementarity;  lines: closed form", loc="left", fontsize=7)
     return figure
+
+
+def _name(regime: Regime) -> str:
+    return regime.name.lower().replace("_", " and ")
 
 
 def _cells(axes: "Axes", codes: np.ndarray, largest: float) -> None:
@@ -106,14 +107,7 @@ def _cells(axes: "Axes", codes: np.ndarray, largest: float) -> None:
             near = np.argmin((places - middle[0]) ** 2 + (rows - middle[1]) ** 2)
             x, y = (places[near] + 0.5) * step, (rows[near] + 0.5) * step
             upright = 90.0 if np.ptp(places) < 0.35 * len(codes) < np.ptp(rows) else 0.0
-            axes.text(x, y, _NAMES[regime], ha="center", va="center", fontsize=7, color=INK, rotation=upright)
-
-
-def _boundaries(axes: "Axes", body: Body, slender: float, largest: float) -> None:
-    axes.plot([0.0, slender, slender], [0.0, slender, largest], color=INK, linewidth=1.0)
-    axes.plot([slender, largest], [slender, slender], color=INK, linewidth=1.0)
-    pushes = np.linspace(slender * (1.0 + 1e-12), largest, 200)
-    axes.plot(pushes, [friction_demand(body, push) for push in pushes.tolist()], color=INK, linewidth=1.0)
+            axes.text(x, y, _name(regime), ha="center", va="center", fontsize=7, color=INK, rotation=upright)
 
 
 @in_journal_style
@@ -183,4 +177,4 @@ def _bands(axes: list["Axes"], response: ContactResponse) -> None:
                 spans, (0.0, 1.0), transform=panel.get_xaxis_transform(), color=COLOURS[regime], linewidth=0.0, zorder=0
             )
     seen = [regime for regime in Regime if regime.name in set(regimes["regime"])]
-    legend_above(axes[0], 5, handles=[patch(COLOURS[r], _NAMES[r], edgecolor=GREY, linewidth=0.4) for r in seen])
+    legend_above(axes[0], 5, handles=[patch(COLOURS[r], _name(r), edgecolor=GREY, linewidth=0.4) for r in seen])

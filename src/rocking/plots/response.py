@@ -110,18 +110,14 @@ def _rotation(axes: "Axes", response: Response, time: FloatArray, values: FloatA
     else:
         for level in (-1.0, 1.0):
             axes.axhline(level, color=GREY, linewidth=0.8, linestyle=DASHED, zorder=1)
-        axes.set_ylim(*_reach(values, response.outcome is Outcome.OVERTURNED))
+        most = _BEYOND if response.outcome is Outcome.OVERTURNED else np.inf
+        low, high = max(float(values.min(initial=-1.0)), -most), min(float(values.max(initial=1.0)), most)
+        axes.set_ylim(1.15 * low, 1.15 * high)
     if response.outcome is Outcome.OVERTURNED:
         axes.plot([], [], color=_FALL, linewidth=0.9, linestyle=DASHED, label="past the point of no return")
     if times.size or response.outcome is Outcome.OVERTURNED:
         legend_above(axes, 2)
     axes.set_ylabel("rotation /\nslenderness\nangle [-]")
-
-
-def _reach(values: FloatArray, falls: bool) -> tuple[float, float]:
-    most = _BEYOND if falls else np.inf
-    low, high = max(float(values.min(initial=-1.0)), -most), min(float(values.max(initial=1.0)), most)
-    return 1.15 * low, 1.15 * high
 
 
 def _velocity(axes: "Axes", response: Response, time: FloatArray, velocity: FloatArray) -> None:
@@ -212,17 +208,13 @@ def over_slenderness(response: Response, rotation: FloatArray) -> FloatArray:
 def shown_until(response: Response) -> float:
     """Return the time up to which there is something to see: the motion, the last event, and a little rest [s]."""
     end = float(response.time[-1]) or float(response.dense_output.end[-1])  # it may lie before the second sample
+    motion = float(response.time[-1]) if response.motion is None else response.motion.duration
     if response.outcome is Outcome.OVERTURNED or not response.trajectory.events:
-        return end if response.outcome is not Outcome.NO_UPLIFT else min(end, _quiet_end(response))
+        return min(end, motion) if response.outcome is Outcome.NO_UPLIFT else end
     last = max(event.time for event in response.trajectory.events)
     if np.any(response.rotation[response.time > last] != 0.0):
         return end
-    motion = 0.0 if response.motion is None else response.motion.duration
-    return min(end, (1.0 + _REST) * max(last, motion))
-
-
-def _quiet_end(response: Response) -> float:
-    return float(response.time[-1]) if response.motion is None else response.motion.duration
+    return min(end, (1.0 + _REST) * max(last, 0.0 if response.motion is None else motion))
 
 
 def ground_curve(response: Response) -> tuple[FloatArray, FloatArray]:
@@ -233,8 +225,7 @@ def ground_curve(response: Response) -> tuple[FloatArray, FloatArray]:
     powers = tau[None, :] ** np.arange(segments.degree + 1)[:, None]
     time = (np.arange(segments.count)[:, None] + tau) * segments.step
     values = response.scale * (segments.horizontal @ powers)
-    rise = [0.0]
-    return np.concatenate([rise, time.ravel()]), np.concatenate([rise, values.ravel()])
+    return np.append(0.0, time), np.append(0.0, values)
 
 
 def ground_place(response: Response, time: FloatArray) -> FloatArray:

@@ -1,14 +1,14 @@
 """Rocking spectra: peak rotation over the size of blocks, a curve for each slenderness, and what overturns."""
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rocking import conventions
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.plots.labels import PEAK, geometric, plain, plain_log
+from rocking.plots.labels import PEAK, geometric, plain, plain_log, plain_numbers
 from rocking.plots.style import PALE, SINGLE, in_journal_style, look, new_figure
 
 if TYPE_CHECKING:
@@ -55,7 +55,10 @@ def rocking_spectrum_picture(found: "xr.Dataset") -> "Figure":
     for place, alpha in enumerate(found["slenderness_angle"].values.tolist()):
         _curve(upper, found, place, float(alpha))
     upper.set_ylabel(PEAK)
-    upper.set_ylim(0.0, 1.08 * _highest(found))
+    # the highest point of the curves and of what is known of the bands
+    parts = [part for place in range(found.sizes["slenderness_angle"]) for part in fractiles(found, place)]
+    highest = max([0.05, *(float(np.nanmax(part)) for part in parts if np.isfinite(part).any())])
+    upper.set_ylim(0.0, 1.08 * highest)
     upper.legend(loc="upper right", title=r"$\alpha$ [rad]", title_fontsize=7, handlelength=2.4)
     _overturning(lower, found)
     lower.set_xlabel(r"$2\pi\,/\,p$ [s]")
@@ -70,13 +73,6 @@ def _words(found: "xr.Dataset") -> str:
     scale = float(found.attrs.get("scale", 1.0))
     factor = "" if scale == 1.0 else f"{scale:g} times "
     return f"{factor}{what}; restitution {plain(found.attrs.get('restitution', ''))}"
-
-
-def _highest(found: "xr.Dataset") -> float:
-    """Return the highest point of the curves and of what is known of the bands."""
-    parts = [part for place in range(found.sizes["slenderness_angle"]) for part in fractiles(found, place)]
-    known = [float(np.nanmax(part)) for part in parts if np.isfinite(part).any()]
-    return max([0.05, *known])
 
 
 def _curve(axes: "Axes", found: "xr.Dataset", place: int, alpha: float) -> None:
@@ -114,8 +110,12 @@ def _overturning(axes: "Axes", found: "xr.Dataset") -> None:
     mode = np.asarray(found["mode"].values)
     angles = found["slenderness_angle"].values
     if found.sizes["motion"] == 1:
+        edges = np.concatenate([period[:1], np.sqrt(period[1:] * period[:-1]), period[-1:]])
+        bars = np.column_stack([edges[:-1], np.diff(edges)])
         for place in range(angles.size):
-            _bar(axes, period, mode[0, place] >= 0, place)
+            axes.axhline(place, color=PALE, linewidth=0.6, zorder=0)
+            spans = bars[mode[0, place] >= 0].tolist()
+            axes.broken_barh(spans, (place - 0.3, 0.6), facecolor=look(place)["color"], linewidth=0)
         axes.set_ylim(angles.size - 0.4, -0.6)
         axes.set_yticks(range(angles.size), [f"{alpha:.3g}" for alpha in angles])
         axes.set_ylabel("overturns,\n" + r"$\alpha$ [rad]")
@@ -128,15 +128,6 @@ def _overturning(axes: "Axes", found: "xr.Dataset") -> None:
     axes.set_ylabel("share over-\nturned [-]")
 
 
-def _bar(axes: "Axes", period: FloatArray, over: Any, place: int) -> None:
-    from itertools import pairwise
-
-    edges = np.concatenate([period[:1], np.sqrt(period[1:] * period[:-1]), period[-1:]])
-    axes.axhline(place, color=PALE, linewidth=0.6, zorder=0)
-    spans = [(a, b - a) for (a, b), falls in zip(pairwise(edges.tolist()), over.tolist(), strict=True) if falls]
-    axes.broken_barh(spans, (place - 0.3, 0.6), facecolor=look(place)["color"], linewidth=0)
-
-
 def _sizes(axes: "Axes", found: "xr.Dataset") -> None:
     """Scale the axes, and show the semi-diagonal above."""
     period = np.asarray(found["period"].values)
@@ -145,13 +136,11 @@ def _sizes(axes: "Axes", found: "xr.Dataset") -> None:
     gravity = float(found.attrs.get("setting_gravity", conventions.g))
     per = 0.75 * gravity / (4.0 * math.pi**2)
     pair = (lambda t: per * np.square(t), lambda size: np.sqrt(np.maximum(size, 0.0) / per))
-    if geometric(period):
-        plain_log(axes, "x")
     above = axes.secondary_xaxis("top", functions=pair)
     above.set_xlabel("semi-diagonal R [m]")
     if geometric(period):
-        from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+        from matplotlib.ticker import LogLocator
 
+        plain_log(axes, "x")
         above.xaxis.set_major_locator(LogLocator(subs=(1.0,) if period[-1] / period[0] > 8.0 else (1.0, 2.0, 5.0)))
-        above.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        above.xaxis.set_minor_formatter(NullFormatter())
+        plain_numbers(above.xaxis)

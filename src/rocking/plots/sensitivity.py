@@ -141,7 +141,11 @@ def _of_spectra(found: Sensitivity) -> "Figure":
             period, middle = base["period"].values, fractiles(found.datasets[label], place)[1]
             panel.plot(period, middle, label=plain(label), linewidth=1.0, **look(number))
         panel.set_ylim(bottom=0.0)
-        panel.set_title(rf"$\alpha$ = {alpha:.3g} rad; {_flipped(found, place)}", loc="left", fontsize=7)
+        verdict: xr.DataArray = found.differences("verdict").isel(slenderness_angle=place)
+        counts = (np.abs(verdict) == 1).sum([name for name in verdict.dims if name != "restitution"])
+        flips = ", ".join(f"{int(n):,}" for n in counts.values)
+        words = rf"$\alpha$ = {alpha:.3g} rad; flips {flips} of {verdict[0].size:,}"
+        panel.set_title(words, loc="left", fontsize=7)
     figure.supylabel(PEAK if base.sizes["motion"] == 1 else f"median {PEAK}", fontsize=8)
     axes[-1].set_xlabel(r"$2\pi\,/\,p$ [s]")
     if geometric(np.asarray(base["period"].values)):
@@ -150,19 +154,12 @@ def _of_spectra(found: Sensitivity) -> "Figure":
     return figure
 
 
-def _flipped(found: Sensitivity, place: int) -> str:
-    """Return how many verdicts of one slenderness flip with each choice."""
-    verdict: xr.DataArray = found.differences("verdict").isel(slenderness_angle=place)
-    counts = (np.abs(verdict) == 1).sum([name for name in verdict.dims if name != "restitution"])
-    total = verdict[0].size
-    return "flips " + ", ".join(f"{int(n):,}" for n in counts.values) + f" of {total:,}"
-
-
 def _of_fragility(found: Sensitivity, unit: tuple[str, float] | None) -> "Figure":
     states = found.states
     figure, axes = new_figure(SINGLE, 1.1 + 1.55 * len(states), rows=len(states), sharex=True)
     results = [found.results[label] for label in found.labels]
-    levels = np.asarray(results[0].levels)
+    levels, measure = np.asarray(results[0].levels), results[0].subject.measure
+    name, size = unit or (measure.unit, 1.0)
     fine = np.linspace(levels[0], levels[-1], 160)
     for panel, state in zip(axes, states, strict=True):
         for number, (label, result) in enumerate(zip(found.labels, results, strict=True)):
@@ -174,20 +171,15 @@ def _of_fragility(found: Sensitivity, unit: tuple[str, float] | None) -> "Figure
             panel.plot(levels, share, MARKS[number], markersize=2.6, color=look(number)["color"], alpha=0.8)
             panel.plot([], [], marker=MARKS[number], markersize=2.6, label=words, **look(number))
         panel.set_ylim(-0.03, 1.03)
-        panel.set_title(f"{symbol(state)}: {_medians(found, state, unit)}", loc="left", fontsize=7)
+        # in the order of the legend
+        medians = [result.fits[state].median for result in results]
+        words = ", ".join("none" if value is None else f"{value / size:.3g}" for value in medians)
+        title = f"medians {words} {name}".removesuffix(" -").replace("m/s2", "m/s$^2$")
+        panel.set_title(f"{symbol(state)}: {title}", loc="left", fontsize=7)
     figure.supylabel("probability [-]", fontsize=8)
-    measure = results[0].subject.measure
     axes[-1].set_xlabel(axis_label(measure.name, measure.unit, linear=results[0].subject.settings.linear))
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=7)
     return figure
-
-
-def _medians(found: Sensitivity, state: str, unit: tuple[str, float] | None) -> str:
-    """Return the medians of all choices in words, in the order of the legend."""
-    medians = [found.results[label].fits[state].median for label in found.labels]
-    name, size = unit or (found.results[found.baseline].subject.measure.unit, 1.0)
-    words = ", ".join("none" if value is None else f"{value / size:.3g}" for value in medians)
-    return f"medians {words} {name}".removesuffix(" -").replace("m/s2", "m/s$^2$")
 
 
 @in_journal_style

@@ -4,7 +4,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rocking.conventions import FloatArray
 from rocking.dynamics.space.response import SpatialResponse
 from rocking.outcome import ContactMode, Outcome
 from rocking.plots.style import DASHED, DOUBLE, GREY, INK, PALE, headline, in_journal_style, legend_above, new_figure
@@ -65,7 +64,11 @@ def spatial_picture(response: SpatialResponse) -> "Figure":
 
 
 def _plan(axes: "Axes", response: SpatialResponse) -> None:
-    outline = _outline(response)
+    body, states = response.body, response.at([0.0])
+    angle = np.linspace(0.0, 2.0 * np.pi, 73)
+    circle = np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
+    corners = body.radius * circle if body.round else body.vertices
+    outline = np.array([states.point(corner)[0, :2] for corner in corners])
     axes.fill(outline[:, 0], outline[:, 1], facecolor="none", edgecolor=GREY, linewidth=0.8, label="base at the start")
     top = response.top
     axes.plot(top[:, 0], top[:, 1], color=_TOP, linewidth=0.8, label="path of the top")
@@ -74,16 +77,6 @@ def _plan(axes: "Axes", response: SpatialResponse) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     axes.set(xlabel="x [m]", ylabel="y [m]")
     legend_above(axes, 2)
-
-
-def _outline(response: SpatialResponse) -> FloatArray:
-    body, states = response.body, response.at([0.0])
-    if body.round:
-        angle = np.linspace(0.0, 2.0 * np.pi, 73)
-        corners = body.radius * np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
-    else:
-        corners = body.vertices
-    return np.array([states.point(corner)[0, :2] for corner in corners])
 
 
 def _tilt(axes: "Axes", response: SpatialResponse) -> None:

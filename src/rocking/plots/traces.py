@@ -101,10 +101,19 @@ def _of_samples(motion: GroundMotion) -> Traces:
     time, acceleration, v_fine, u_fine = (
         np.append(values.T.ravel(), end) for values, end in zip(columns, ends, strict=True)
     )
+    # velocity turns where the acceleration passes zero, displacement where the velocity does
+    turns = (a[:-1] < 0.0) != (a[1:] < 0.0)
+    turn = np.where(turns, a[:-1] / np.where(turns, a[:-1] - a[1:], 1.0), 0.0)
+    speeds = _inside(motion, v, u, turn)[0]
+    roots = quadratic_roots(0.5 * h * np.diff(a), h * a[:-1], v[:-1])
+    rests = [np.where((root > 0.0) & (root < 1.0), root, 0.0) for root in roots]
     peaks = {
         "acceleration": _largest(motion.time, a),
-        "velocity": _largest(*_turns_of_velocity(motion, v, u)),
-        "displacement": _largest(*_turns_of_displacement(motion, v, u)),
+        "velocity": _largest(np.append(_times(motion, turn), motion.duration), np.append(speeds, v[-1])),
+        "displacement": _largest(
+            np.concatenate([motion.time, *(_times(motion, tau) for tau in rests)]),
+            np.concatenate([u, *(_inside(motion, v, u, tau)[1] for tau in rests)]),
+        ),
     }
     return Traces(time, acceleration, v_fine, u_fine, peaks)
 
@@ -116,23 +125,8 @@ def _inside(motion: GroundMotion, v: FloatArray, u: FloatArray, tau: FloatArray)
     return speed, u[:-1] + h * tau * (v[:-1] + h * tau * (0.5 * a + rise * tau / 6.0))
 
 
-def _turns_of_velocity(motion: GroundMotion, v: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
-    a, b = motion.acceleration[:-1], motion.acceleration[1:]
-    turns = (a < 0.0) != (b < 0.0)
-    tau = np.where(turns, a / np.where(turns, a - b, 1.0), 0.0)
-    times = (np.arange(tau.size) + tau) * motion.time_step
-    return np.append(times, motion.duration), np.append(_inside(motion, v, u, tau)[0], v[-1])
-
-
-def _turns_of_displacement(motion: GroundMotion, v: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
-    a, rise, h = motion.acceleration[:-1], np.diff(motion.acceleration), motion.time_step
-    times: list[FloatArray] = [motion.time]
-    places = [u]
-    for root in quadratic_roots(0.5 * h * rise, h * a, v[:-1]):
-        tau = np.where((root > 0.0) & (root < 1.0), root, 0.0)
-        times.append(np.asarray((np.arange(tau.size) + tau) * h, dtype=np.float64))
-        places.append(_inside(motion, v, u, tau)[1])
-    return np.concatenate(times), np.concatenate(places)
+def _times(motion: GroundMotion, tau: FloatArray) -> FloatArray:
+    return np.asarray((np.arange(tau.size) + tau) * motion.time_step, dtype=np.float64)
 
 
 def _largest(times: FloatArray, values: FloatArray) -> Peak:

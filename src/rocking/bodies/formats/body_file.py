@@ -11,6 +11,7 @@
 """
 
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
 
@@ -120,22 +121,20 @@ def _block(table: "schema.BlockTable", scale: float) -> Body:
 
 
 def _shape(document: "schema.BodyFile", scale: float) -> Section:
-    if trapezoid := document.trapezoid:
-        with blamed("trapezoid"):
-            sizes = (trapezoid.base, trapezoid.top, trapezoid.height, trapezoid.lean)
-            return _standing(shapes.trapezoid(*(size * scale for size in sizes)), trapezoid, scale)
-    if ellipse := document.ellipse:
-        with blamed("ellipse"):
-            outline = shapes.ellipse(ellipse.width * scale, ellipse.height * scale, ellipse.sides)
-            return _standing(outline, ellipse, scale)
-    polygon = document.regular_polygon
-    assert polygon is not None  # the schema lets exactly one table through
-    with blamed("regular_polygon"):
-        return _standing(shapes.regular_polygon(polygon.sides, polygon.radius * scale), polygon, scale)
+    kind = next(each for each in _OUTLINES if getattr(document, each))  # the schema lets exactly one table through
+    table: schema.ShapeTable = getattr(document, kind)
+    sizes = table.model_dump(exclude={"density", "depth", "feet"})
+    with blamed(kind):
+        outline = _OUTLINES[kind](**{key: value * (1 if key == "sides" else scale) for key, value in sizes.items()})
+        return Section.from_points(outline, feet=_pair(table.feet, scale), **_options(table, scale))
 
 
-def _standing(outline: FloatArray, table: "schema.ShapeTable", scale: float) -> Section:
-    return Section.from_points(outline, feet=_pair(table.feet, scale), **_options(table, scale))
+_OUTLINES: dict[str, Callable[..., FloatArray]] = {
+    "trapezoid": shapes.trapezoid,
+    "ellipse": shapes.ellipse,
+    "regular_polygon": shapes.regular_polygon,
+}
+"""Shapes of which the keys of their tables are the arguments: lengths, and `sides`."""
 
 
 def _options(table: "schema.ShapeTable", scale: float) -> "_Options":

@@ -13,6 +13,7 @@ from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.formats.source import MOST_VERTICES, blamed, checked_file
 from rocking.bodies.solid._repair import Repaired, repaired
+from rocking.bodies.solid._self_crossing import in_words
 from rocking.bodies.solid.polyhedron import Polyhedron
 from rocking.bodies.solid.solid import Solid
 from rocking.conventions import FloatArray, IntArray
@@ -47,10 +48,14 @@ def mesh_from_file(
         kind = path.suffix[1:].lower()
         if kind not in MESH_FORMATS:
             raise BodyFileError(f"is no mesh that is read here: {', '.join(MESH_FORMATS)}")
-        vertices, faces = _loaded(_content(path), kind)
+        try:
+            content = checked_file(path).read_bytes()
+        except OSError as error:
+            raise BodyFileError(f"cannot be opened ({error.strerror})") from error
+        vertices, faces = _loaded(content, kind)
         done = repaired(
             vertices * scale @ _UP[up].T, faces, weld_tolerance=weld_tolerance, fill_holes=fill_holes,
-            place=lambda where: _in_file(where @ _UP[up] / scale, units),
+            place=lambda where: in_words(where @ _UP[up] / scale, units),
         )  # fmt: skip
         doubts = [*_size_doubts(done.shape, units), *_precision_doubts(vertices, kind)]
         if kind == "glb" and units != "m":
@@ -79,17 +84,6 @@ def solid_from_mesh(
         solid = Solid(part, base=base, ground=float(part.box()[0, 2]), base_tolerance=base_tolerance)
     solid.name, solid.repairs = path.name, mesh.repairs
     return solid
-
-
-def _in_file(place: FloatArray, units: str) -> str:
-    return f"({', '.join(f'{round(x, 9) + 0.0:.4g}' for x in place.tolist())}) {units}"
-
-
-def _content(path: Path) -> bytes:
-    try:
-        return checked_file(path).read_bytes()
-    except OSError as error:
-        raise BodyFileError(f"cannot be opened ({error.strerror})") from error
 
 
 def _loaded(content: bytes, kind: str) -> tuple[FloatArray, IntArray]:

@@ -3,6 +3,7 @@
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, TypedDict, TypeVar, Unpack
 
@@ -49,12 +50,6 @@ class Request:
     def some_density(self) -> float:
         """The density, by default that of plain concrete [kg/m3]."""
         return DEFAULT_DENSITY if self.density is None else self.density
-
-    def needed_units(self) -> str:
-        """Return the unit of a file whose format has no place for one."""
-        if self.units is None:
-            raise BodyFileError(f"does not state its unit; give units=, one of {', '.join(LENGTH_UNITS)}")
-        return self.units
 
     def given(self, names: Iterable[str]) -> str:
         """Return which of some options were given, in words."""
@@ -193,10 +188,6 @@ def _toml(request: Request) -> Body | Solid:
     return _stated(request, solid_from_toml) if solid else _stated(request, body_from_toml)
 
 
-def _plane_toml(request: Request) -> Body:
-    return _stated(request, body_from_toml)
-
-
 def _stated(request: Request, read: Callable[[str, str, Path], T]) -> T:
     path = request.path
     with blamed(path.name):
@@ -210,22 +201,13 @@ def _stated(request: Request, read: Callable[[str, str, Path], T]) -> T:
     return body
 
 
-def _wkt(request: Request) -> Body:
+def _text(request: Request, read: Callable[..., list[Region]]) -> Section:
     name = request.path.name
     with blamed(name):
-        units, text = request.needed_units(), read_text(request.path)
-    return _standing(regions_from_wkt(text, request.some_density, units=units, name=name), request)
-
-
-def _geojson(request: Request) -> Body:
-    name = request.path.name
-    with blamed(name):
-        units, text = request.needed_units(), read_text(request.path)
-    return _standing(regions_from_geojson(text, request.some_density, units=units, name=name), request)
-
-
-def _dxf(request: Request) -> Body:
-    return _standing(regions_from_dxf(request.path, request.some_density, units=request.units), request)
+        if request.units is None:
+            raise BodyFileError(f"does not state its unit; give units=, one of {', '.join(LENGTH_UNITS)}")
+        text = read_text(request.path)
+    return _standing(read(text, request.some_density, units=request.units, name=name), request)
 
 
 def _standing(regions: list[Region], request: Request) -> Section:
@@ -259,17 +241,16 @@ def _mesh(request: Request) -> Solid:
 
 
 PLANE: dict[str, Callable[[Request], Body]] = {
-    ".toml": _plane_toml,
-    ".wkt": _wkt,
-    ".geojson": _geojson,
-    ".json": _geojson,
-    ".dxf": _dxf,
+    ".toml": partial(_stated, read=body_from_toml),
+    ".wkt": partial(_text, read=regions_from_wkt),
+    **dict.fromkeys((".geojson", ".json"), partial(_text, read=regions_from_geojson)),
+    ".dxf": lambda asked: _standing(regions_from_dxf(asked.path, asked.some_density, units=asked.units), asked),
 }
 """Suffix and reader of plane bodies: a new format is one line here, or in `FORMATS` for a body in space."""
 
 FORMATS: dict[str, Callable[[Request], Body | Solid]] = {
     **PLANE,
     ".toml": _toml,
-    **{f".{kind}": _mesh for kind in MESH_FORMATS},
+    **dict.fromkeys([f".{kind}" for kind in MESH_FORMATS], _mesh),
 }
 """Suffix and reader of every body."""

@@ -124,12 +124,7 @@ class BodyFile(StrictTable):
 
     @model_validator(mode="after")
     def _one_body(self) -> "BodyFile":
-        found = [f"[{key}]" for key in BODIES if getattr(self, key) is not None]
-        if len(found) != 1:
-            choice = ", ".join(f"[{key}]" for key in BODIES)
-            raise _refused(
-                "contradiction", f"a body file has exactly one of {choice}, got {' and '.join(found) or 'none'}"
-            )
+        _check_one(self, "a body file", BODIES, "[{}]")
         return self
 
 
@@ -139,6 +134,13 @@ BODIES = ("block", "trapezoid", "ellipse", "regular_polygon", "section", "mass_p
 
 def _refused(kind: Literal["unknown_key", "contradiction"], words: str) -> PydanticCustomError:
     return PydanticCustomError(kind, "{words}", {"words": words})
+
+
+def _check_one(table: StrictTable, owner: str, keys: tuple[str, ...], shown: str = "{}") -> None:
+    present = " and ".join(shown.format(key) for key in keys if getattr(table, key) is not None) or "none"
+    if present == "none" or " and " in present:
+        choice = ", ".join(map(shown.format, keys))
+        raise _refused("contradiction", f"{owner} has exactly one of {choice}, got {present}")
 
 
 Cut = Annotated[float, Field(ge=0.0)]
@@ -155,15 +157,8 @@ class BoxTable(StrictTable):
     height: Positive
 
 
-class CylinderTable(StrictTable):
-    """An upright cylinder on z = 0, its axis through the origin."""
-
-    diameter: Positive
-    height: Positive
-
-
-class ConeTable(StrictTable):
-    """An upright cone on z = 0."""
+class UprightTable(StrictTable):
+    """A cylinder or a cone on z = 0, its axis through the origin."""
 
     diameter: Positive
     height: Positive
@@ -185,12 +180,9 @@ class SphereTable(StrictTable):
     cut_above: Cut = 0.0
 
 
-class EllipsoidTable(StrictTable):
+class EllipsoidTable(BoxTable):
     """An ellipsoid, or what level cuts leave of it, its lowest point on z = 0."""
 
-    width: Positive
-    depth: Positive
-    height: Positive
     cut_below: Cut = 0.0
     cut_above: Cut = 0.0
 
@@ -230,8 +222,8 @@ class PartTable(StrictTable):
     """One shape of one material: turned, in the order that is written, then moved."""
 
     box: BoxTable | None = None
-    cylinder: CylinderTable | None = None
-    cone: ConeTable | None = None
+    cylinder: UprightTable | None = None
+    cone: UprightTable | None = None
     frustum: FrustumTable | None = None
     sphere: SphereTable | None = None
     ellipsoid: EllipsoidTable | None = None
@@ -244,10 +236,7 @@ class PartTable(StrictTable):
 
     @model_validator(mode="after")
     def _one_shape(self) -> "PartTable":
-        found = [name for name in SHAPES if getattr(self, name) is not None]
-        if len(found) != 1:
-            words = f"a part has exactly one of {', '.join(SHAPES)}, got {' and '.join(found) or 'none'}"
-            raise PydanticCustomError("contradiction", "{words}", {"words": words})
+        _check_one(self, "a part", SHAPES)
         return self
 
 

@@ -13,7 +13,7 @@ from rocking.errors import GeometryError
 GRID = 20
 """Points along each side of the box that two parts share; smaller overlaps than its cells may pass."""
 
-_SLACK = 1e-9
+_SHARED = 1e-9
 
 
 def check_disjoint(parts: Sequence[Part]) -> None:
@@ -25,7 +25,7 @@ def check_disjoint(parts: Sequence[Part]) -> None:
     for i in range(len(parts)):
         for j in range(i + 1, len(parts)):
             low, high = np.maximum(boxes[i, 0], boxes[j, 0]), np.minimum(boxes[i, 1], boxes[j, 1])
-            if (high - low > _SLACK * np.ptp(boxes[[i, j]], axis=(0, 1)).max()).all():
+            if (high - low > _SHARED * np.ptp(boxes[[i, j]], axis=(0, 1)).max()).all():
                 _check_pair(parts, (i, j), low, high)
 
 

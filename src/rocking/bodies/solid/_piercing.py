@@ -40,7 +40,8 @@ def pierced(triangles: FloatArray) -> Piercing:
     broad = length > _THINNEST * size * longest
     kept, normals = triangles[broad], doubled[broad] / length[broad, None]
     best, place, count, tried = 0.0, np.zeros(3), 0, 0
-    for one, two in _pairs(kept):
+    pairs = meeting_boxes(kept.min(axis=1), kept.max(axis=1)) if len(kept) > 1 else ()
+    for one, two in pairs:
         tried += len(one)
         if tried > MOST_PAIRS:
             break
@@ -51,21 +52,13 @@ def pierced(triangles: FloatArray) -> Piercing:
     return Piercing(count, place, tried <= MOST_PAIRS)
 
 
-def _pairs(triangles: FloatArray) -> Iterator[tuple[IntArray, IntArray]]:
-    if len(triangles) < 2:
-        return iter(())
-    return meeting_boxes(triangles.min(axis=1), triangles.max(axis=1))
-
-
 def _lines(
     triangles: FloatArray, normals: FloatArray, one: IntArray, two: IntArray, slack: float
 ) -> tuple[FloatArray, FloatArray]:
     """Lengths and middles of the lines in which pairs cross; zero where they cross by less than `slack`."""
-    first = _heights(triangles[one], triangles[two, 0], normals[two])
-    keep = _both_sides(first, slack)
+    first, keep = _heights(triangles[one], triangles[two, 0], normals[two], slack)
     one, two, first = one[keep], two[keep], first[keep]
-    second = _heights(triangles[two], triangles[one, 0], normals[one])
-    keep = _both_sides(second, slack)
+    second, keep = _heights(triangles[two], triangles[one, 0], normals[one], slack)
     one, two, first, second = one[keep], two[keep], first[keep], second[keep]
     along = np.cross(normals[one], normals[two])
     along /= np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
@@ -76,14 +69,10 @@ def _lines(
     return np.where(finish - begin > slack, finish - begin, 0.0), place
 
 
-def _heights(corners: FloatArray, point: FloatArray, normal: FloatArray) -> FloatArray:
-    heights: FloatArray = np.einsum("kci,ki->kc", corners - point[:, None], normal)
-    return heights
-
-
-def _both_sides(heights: FloatArray, slack: float) -> BoolArray:
-    found: BoolArray = (heights.max(axis=1) > slack) & (heights.min(axis=1) < -slack)
-    return found
+def _heights(corners: FloatArray, point: FloatArray, normal: FloatArray, slack: float) -> tuple[FloatArray, BoolArray]:
+    """Heights of corners over a plane, and of which triangles they lie on both sides of it."""
+    heights = np.einsum("kci,ki->kc", corners - point[:, None], normal)
+    return heights, (heights.max(axis=1) > slack) & (heights.min(axis=1) < -slack)
 
 
 def _within(corners: FloatArray, heights: FloatArray, along: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -117,8 +106,14 @@ def meeting_boxes(low: FloatArray, high: FloatArray) -> Iterator[tuple[IntArray,
             apart = one != two
             yield order[one[apart]], order[two[apart]]
             continue
-        one, two = _below(one, two)
-        keep = _meet(layers[depth + 1], one, two)
+        left = np.concatenate([2 * one, 2 * one, 2 * one + 1, 2 * one + 1])
+        right = np.concatenate([2 * two, 2 * two + 1, 2 * two, 2 * two + 1])
+        one, two = left[left <= right], right[left <= right]
+        bottom, top = layers[depth + 1]
+        # an axis at a time: that is what is quick
+        keep = np.ones(len(one), dtype=bool)
+        for low_, high_ in zip(bottom.T, top.T, strict=True):
+            keep &= (low_[one] <= high_[two]) & (low_[two] <= high_[one])
         one, two = one[keep], two[keep]
         stack += [(depth + 1, one[i : i + _CHUNK], two[i : i + _CHUNK]) for i in range(0, len(one), _CHUNK)]
 
@@ -146,19 +141,3 @@ def _layers(order: IntArray, low: FloatArray, high: FloatArray) -> list[tuple[Fl
         below = layers[-1]
         layers.append((below[0].reshape(-1, 2, 3).min(axis=1), below[1].reshape(-1, 2, 3).max(axis=1)))
     return layers[::-1]
-
-
-def _below(one: IntArray, two: IntArray) -> tuple[IntArray, IntArray]:
-    left = np.concatenate([2 * one, 2 * one, 2 * one + 1, 2 * one + 1])
-    right = np.concatenate([2 * two, 2 * two + 1, 2 * two, 2 * two + 1])
-    keep = left <= right
-    return left[keep], right[keep]
-
-
-def _meet(layer: tuple[FloatArray, FloatArray], one: IntArray, two: IntArray) -> BoolArray:
-    low, high = layer
-    found = np.ones(len(one), dtype=bool)
-    for axis in range(3):
-        bottom, top = low[:, axis], high[:, axis]
-        found &= (bottom[one] <= top[two]) & (bottom[two] <= top[one])
-    return found

@@ -11,7 +11,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
-from rocking.bodies.solid._self_crossing import check_crossings, in_metres
+from rocking.bodies.solid._self_crossing import check_crossings, in_words
 from rocking.bodies.solid._shells import connected, oriented_shells, turned_consistently
 from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.polyhedron import Polyhedron, directed_edges, open_edges
@@ -42,7 +42,7 @@ def repaired(
     *,
     weld_tolerance: float | None = None,
     fill_holes: bool = False,
-    place: Callable[[FloatArray], str] = in_metres,
+    place: Callable[[FloatArray], str] = in_words,
 ) -> Repaired:
     """Return the closed surface that triangles describe, with a sentence for every change."""
     vertices, faces = _triangles(vertices, faces)

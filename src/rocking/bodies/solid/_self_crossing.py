@@ -38,16 +38,10 @@ def winding(points: FloatArray, triangles: FloatArray) -> FloatArray:
     for members in np.split(order, cuts):
         corner = start + tile[members[0]] * width
         near = ((low <= corner + width) & (high >= corner)).all(axis=1)
-        result[members] = _counted(nudged[members], triangles[near])
+        step = max(1, _MOST_PAIRS // max(1, int(near.sum())))
+        for some in np.split(members, range(step, len(members), step)):
+            result[some] = _plumbed(nudged[some], triangles[near])
     return result
-
-
-def _counted(points: FloatArray, triangles: FloatArray) -> FloatArray:
-    if not len(triangles):
-        return np.zeros(len(points))
-    step = max(1, _MOST_PAIRS // len(triangles))
-    pieces = [_plumbed(points[i : i + step], triangles) for i in range(0, len(points), step)]
-    return np.concatenate(pieces)
 
 
 def _plumbed(points: FloatArray, triangles: FloatArray) -> FloatArray:
@@ -73,12 +67,12 @@ _REPAIR = (
 )
 
 
-def in_metres(place: FloatArray) -> str:
+def in_words(place: FloatArray, unit: str = "m") -> str:
     """Return a place in words."""
-    return f"({', '.join(f'{round(x, 9) + 0.0:.4g}' for x in place.tolist())}) m"
+    return f"({', '.join(f'{round(x, 9) + 0.0:.4g}' for x in place.tolist())}) {unit}"
 
 
-def check_crossings(triangles: FloatArray, said: Callable[[FloatArray], str] = in_metres) -> bool:
+def check_crossings(triangles: FloatArray, said: Callable[[FloatArray], str] = in_words) -> bool:
     """Refuse a surface that passes through itself.
 
     Every pair of faces is tried, to a millionth of the size. Beside 500 faces, chosen by their area, the surface must
@@ -101,31 +95,20 @@ def check_crossings(triangles: FloatArray, said: Callable[[FloatArray], str] = i
             f"the surface passes through itself, most plainly near {said(middle + found.place)}; {found.pairs} pair(s) "
             f"of faces cross; {_REPAIR}"
         )
-    wrong = _wrongly_wound(centred)
-    if wrong is not None:
-        place, times = wrong
-        raise GeometryError(
-            f"the surface passes through itself or is inside out in part: it winds {times} times round the point near "
-            f"{said(middle + place)}, where a body has 1 and its surroundings 0; {_REPAIR}"
-        )
-    return found.complete
-
-
-def _wrongly_wound(triangles: FloatArray) -> tuple[FloatArray, int] | None:
-    points = _beside(triangles)
-    times = winding(points, triangles)
-    suspects = np.flatnonzero(_impossible(times))
+    points = _beside(centred)
+    times = winding(points, centred)
+    suspects = np.flatnonzero((times != 0.0) & (times != 1.0))
     # a plumb line through an edge may miscount: only what all three axes say is believed
     for axes in ([1, 2, 0], [2, 0, 1]):
-        if not len(suspects):
-            return None
-        suspects = suspects[_impossible(winding(points[suspects][:, axes], triangles[..., axes]))]
-    return None if not len(suspects) else (points[suspects[0]], int(times[suspects[0]]))
-
-
-def _impossible(times: FloatArray) -> BoolArray:
-    found: BoolArray = (times != 0.0) & (times != 1.0)
-    return found
+        again = winding(points[suspects][:, axes], centred[..., axes])
+        suspects = suspects[(again != 0.0) & (again != 1.0)]
+    if len(suspects):
+        worst = suspects[0]
+        raise GeometryError(
+            f"the surface passes through itself or is inside out in part: it winds {int(times[worst])} times round the "
+            f"point near {said(middle + points[worst])}, where a body has 1 and its surroundings 0; {_REPAIR}"
+        )
+    return found.complete
 
 
 def _beside(triangles: FloatArray) -> FloatArray:

@@ -77,8 +77,15 @@ class Solid:
         boxes = np.array([part.box() for part in listed])
         low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
         self._size = checks.length("largest dimension of the body", float((high - low).max()))
-        tolerance = self._tolerance(base_tolerance)
-        self._check_ground(float(low[2]), tolerance)
+        tolerance = BASE_TOLERANCE * self._size
+        if base_tolerance is not None:
+            tolerance = checks.positive("base_tolerance", base_tolerance, "m")
+        if abs(low[2] - self._ground) > max(tolerance, 8.0 * np.spacing(abs(self._ground))):
+            verb, lowest = "floats above" if low[2] > self._ground else "reaches below", float(low[2])
+            raise GeometryError(
+                f"the body {verb} the ground: its lowest point is z = {lowest:.9g} m, the ground {self._ground:.9g} m; "
+                f"pass ground={lowest:.9g} or move the parts"
+            )
         middle = 0.5 * (low + high)
         self.origin: FloatArray = np.array([middle[0], middle[1], self._ground])
         self.local_parts = tuple(part.moved(*(-self.origin).tolist()) for part in listed)
@@ -235,18 +242,6 @@ class Solid:
         result._ground, result._size, result.origin = self._ground, self._size * size, self.origin
         result.local_parts, result.local_base = tuple(parts), self.local_base.changed(matrix, np.zeros(3))
         return result
-
-    def _tolerance(self, given: float | None) -> float:
-        return BASE_TOLERANCE * self._size if given is None else checks.positive("base_tolerance", given, "m")
-
-    def _check_ground(self, lowest: float, tolerance: float) -> None:
-        slack = max(tolerance, 8.0 * np.spacing(abs(self._ground)))
-        if abs(lowest - self._ground) > slack:
-            verb = "floats above" if lowest > self._ground else "reaches below"
-            raise GeometryError(
-                f"the body {verb} the ground: its lowest point is z = {lowest:.9g} m, the ground {self._ground:.9g} m; "
-                f"pass ground={lowest:.9g} or move the parts"
-            )
 
     def _placed_base(self, base: Base | ArrayLike | None, tolerance: float) -> Base:
         if isinstance(base, Base):

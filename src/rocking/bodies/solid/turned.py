@@ -67,7 +67,10 @@ class Turned(Shape):
         for piece in self.meridians:
             (_, z0), (_, z1) = (tuple(float(v[0]) for v in piece.at(np.array([end]))) for end in (0.0, 1.0))
             z = z0 + (z1 - z0) * nodes
-            squared = self._squared(piece, z, nodes)
+            squared = piece.at(nodes)[0] ** 2
+            if piece.arc:
+                centre, half = piece.data[1]
+                squared = 1.0 - ((z - centre) / half) ** 2
             up = z - middle
             sums += (weights * (z1 - z0) * np.array([squared, squared * up, squared * up * up, squared**2])).sum(axis=1)
         volume = math.pi * a * b * float(sums[0])
@@ -76,15 +79,6 @@ class Turned(Shape):
         vertical = math.pi * a * b * float(sums[2] - sums[0] * height**2)
         second = np.diag([around * a * a, around * b * b, vertical])
         return SolidMoments(volume, np.array([0.0, 0.0, middle + height]), second)
-
-    @staticmethod
-    def _squared(piece: Meridian, z: FloatArray, share: FloatArray) -> FloatArray:
-        if piece.arc:
-            centre, half = piece.data[1]
-            arc: FloatArray = 1.0 - ((z - centre) / half) ** 2
-            return arc
-        straight: FloatArray = piece.at(share)[0] ** 2
-        return straight
 
     def surfaces(self, rotation: FloatArray | None = None, translation: FloatArray | None = None) -> list[Surface]:
         """Return the placed surface, one piece for each piece of the profile."""
@@ -151,7 +145,9 @@ class Turned(Shape):
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray]:
         """Return rings of the profile cut into sectors, with their own centres."""
-        flat = _refined(triangulated(np.stack(self.profile(4 * divisions), axis=1)), divisions)
+        flat = triangulated(np.stack(self.profile(4 * divisions), axis=1))
+        lifted = np.concatenate([flat, np.zeros((*flat.shape[:2], 1))], axis=2)
+        flat = TriangleSurface(lifted).triangles(divisions)[..., :2]
         side, other = flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
         area = 0.5 * np.abs(side[:, 0] * other[:, 1] - side[:, 1] * other[:, 0])
         radius, total = flat[..., 0], flat.sum(axis=1)
@@ -168,12 +164,6 @@ class Turned(Shape):
         return volumes, np.stack(
             [a * chord * reach * np.cos(around), b * chord * reach * np.sin(around), height], axis=1
         )
-
-
-def _refined(triangles: FloatArray, divisions: int) -> FloatArray:
-    lifted = np.concatenate([triangles, np.zeros((*triangles.shape[:2], 1))], axis=2)
-    flat: FloatArray = TriangleSurface(lifted).triangles(divisions)[..., :2]
-    return flat
 
 
 def revolution(profile: ArrayLike) -> Turned:

@@ -74,7 +74,14 @@ def divided(solid: Solid, divisions: int) -> Units:
     64
     """
     count = _whole(divisions)
-    return _assembled(solid, [_of_part(part, count) for part in solid.local_parts])
+    pieces = []
+    for part in solid.local_parts:
+        cells = part.shape.cells(count)
+        if cells is None:
+            pieces.append(_voxels_of(part, float(np.ptp(part.box(), axis=0).max()) / count))
+        else:
+            pieces.append((part.density * cells[0], placed_points(cells[1], part.rotation, part.translation), 2))
+    return _assembled(solid, pieces)
 
 
 def voxels(solid: Solid, divisions: int) -> Units:
@@ -111,14 +118,6 @@ def _whole(divisions: int) -> int:
     if int(divisions) ** 3 > MOST_UNITS:
         raise InvalidValueError(f"divisions must be at most {round(MOST_UNITS ** (1 / 3))}, got {divisions}")
     return int(divisions)
-
-
-def _of_part(part: Part, count: int) -> _Pieces:
-    cells = part.shape.cells(count)
-    if cells is None:
-        return _voxels_of(part, float(np.ptp(part.box(), axis=0).max()) / count)
-    volume, centre = cells
-    return part.density * volume, placed_points(centre, part.rotation, part.translation), 2
 
 
 def _voxels_of(part: Part, step: float) -> _Pieces:
