@@ -34,7 +34,7 @@ from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
 from rocking.motions import GroundMotion
 from rocking.motions.formats import read_motion
-from rocking.reports.document import Document, Listing, Pair, Paragraph, Picture, ReportSection, ReportTable, cell
+from rocking.reports.document import Cell, Document, Listing, Pair, Paragraph, Picture, ReportSection, ReportTable
 from rocking.reports.render import response_pdf
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -239,7 +239,7 @@ def test_names_of_files_are_harmless(name):
 def test_the_report_sets_a_name_as_it_is(name):
     """In the report a name is text wherever it stands: title, line, cell, caption, listing."""
     shown = plain_line(name, 60)
-    table = ReportTable(shown, [shown, "v"], [[cell(shown), cell("1.0")]], shown)
+    table = ReportTable(shown, [shown, "v"], [[Cell(shown), Cell("1.0")]], shown)
     picture = Picture("body", shown)
     blocks = [Paragraph(shown, shown, "fair"), table, picture, Pair(picture, table), Listing(shown, shown)]
     sections = [ReportSection(shown or "-", blocks)]

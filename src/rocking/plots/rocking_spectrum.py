@@ -136,11 +136,12 @@ def _sizes(axes: "Axes", found: "xr.Dataset") -> None:
     gravity = float(found.attrs.get("setting_gravity", conventions.g))
     per = 0.75 * gravity / (4.0 * math.pi**2)
     pair = (lambda t: per * np.square(t), lambda size: np.sqrt(np.maximum(size, 0.0) / per))
+    if geometric(period):
+        plain_log(axes, "x")  # before the axis above is made, which takes its scale from here
     above = axes.secondary_xaxis("top", functions=pair)
     above.set_xlabel("semi-diagonal R [m]")
     if geometric(period):
         from matplotlib.ticker import LogLocator
 
-        plain_log(axes, "x")
         above.xaxis.set_major_locator(LogLocator(subs=(1.0,) if period[-1] / period[0] > 8.0 else (1.0, 2.0, 5.0)))
         plain_numbers(above.xaxis)

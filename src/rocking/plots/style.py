@@ -92,8 +92,8 @@ def _fit_labels(figure: "Figure") -> None:
     shown = [axes for axes in figure.axes if axes.get_visible()]
     both = [(axes.bbox, axes.xaxis.label, "width") for axes in shown]
     both += [(axes.bbox, axes.yaxis.label, "height") for axes in shown]
-    # what was broken by hand stays so
-    labels = [(box, label, side) for box, label, side in both if "\n" not in label.get_text()]
+    # what was broken by hand stays so, and a single word cannot be broken
+    labels = [one for one in both if " " in (words := one[1].get_text()) and "\n" not in words]
     # panels are laid out, which takes its time, only where a label may be too long
     if any(_excess(*one) > -0.15 * getattr(one[0], one[2]) for one in labels):
         figure.draw_without_rendering()

@@ -2,7 +2,7 @@
 
 import hashlib
 import platform
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from importlib.resources import files
@@ -140,19 +140,23 @@ def _plain(block: Block) -> dict[str, Any]:
     if isinstance(block, Picture):
         return {"kind": "picture", "file": f"{block.stem}.svg", **asdict(block)}
     if isinstance(block, ReportTable):
-        numbers = [_numeric([row[k] for row in block.rows]) for k in range(len(block.header))]
+        # columns of numbers are set flush right
+        texts = [[row[k].text for row in block.rows] for k in range(len(block.header))]
+        numbers = [bool(column) and all(not text or text[0] in _NUMBER for text in column) for column in texts]
         return {"kind": "table", "numbers": numbers, **asdict(block)}
     return {"kind": type(block).__name__.lower(), **asdict(block)}
 
 
-def _numeric(cells: Sequence[Cell]) -> bool:
-    """Tell whether a column holds numbers, which are set flush right."""
-    return bool(cells) and all(not each.text or each.text[0] in _NUMBER for each in cells)
+def table(
+    caption: str, header: Sequence[str], rows: Iterable[Iterable[object]], note: str = "", stem: str = ""
+) -> ReportTable:
+    """Return a table from cells and anything that prints.
 
-
-def cell(text: object, mark: str = "plain") -> Cell:
-    """Return a cell from anything that prints."""
-    return Cell(str(text), mark)
+    >>> table("", ["r [-]"], [[0.5]]).rows
+    [[Cell(text='0.5', mark='plain')]]
+    """
+    cells = [[each if isinstance(each, Cell) else Cell(str(each)) for each in row] for row in rows]
+    return ReportTable(caption, header, cells, note, stem)
 
 
 def made_with() -> dict[str, str]:

@@ -1,7 +1,7 @@
 """The report of an inventory: the ranked table with its lights, and what they do and do not say."""
 
 from rocking.conventions import g
-from rocking.reports.document import Cell, Document, Paragraph, ReportSection, ReportTable, cell, made_with
+from rocking.reports.document import Cell, Document, Paragraph, ReportSection, made_with, table
 from rocking.statistics.counts import share_interval
 from rocking.studies.inventory.assessment import Assessment, DirectionResult, Verdict
 from rocking.studies.inventory.lights import Light, percent
@@ -58,28 +58,30 @@ def _look_at(assessment: Assessment) -> list[tuple[str, str]]:
 def _ranking(assessment: Assessment) -> ReportSection:
     rows = [_ranked(rank, verdict, assessment) for rank, verdict in enumerate(assessment.verdicts, start=1)]
     header = ["", "light", "object", "what it does", "what to do"]
-    table = ReportTable("The worst first", header, rows, stem="ranking")
-    return ReportSection("The objects", [table] if rows else [Paragraph("No row could be assessed.", mark="bad")])
+    nothing = Paragraph("No row could be assessed.", mark="bad")
+    return ReportSection("The objects", [table("The worst first", header, rows, stem="ranking") if rows else nothing])
 
 
-def _ranked(rank: int, verdict: Verdict, assessment: Assessment) -> list[Cell]:
+def _ranked(rank: int, verdict: Verdict, assessment: Assessment) -> list[object]:
     item = verdict.item
     name = item.name + (f" (x {item.count})" if item.count > 1 else "") + (f", {item.note}" if item.note else "")
     what_to_do = f"{advice(verdict, assessment)} {model_note(verdict, assessment)}".strip()
-    light = cell(light_words(verdict.light), MARKS[verdict.light])
-    return [cell(rank), light, cell(name), cell(sentence(verdict, assessment)), cell(what_to_do)]
+    return [rank, _light(verdict.light), name, sentence(verdict, assessment), what_to_do]
+
+
+def _light(light: Light, mark: str | None = None) -> Cell:
+    return Cell(light_words(light), MARKS[light] if mark is None else mark)
 
 
 def _not_assessed(assessment: Assessment) -> ReportSection:
-    rows = [[cell(each.row or ""), cell(each.name), cell(each.reason)] for each in assessment.not_assessed]
+    rows = [(each.row or "", each.name, each.reason) for each in assessment.not_assessed]
     count = len(rows)
     lead = Paragraph(
         f"{count} row{'' if count == 1 else 's'} of the list could not be assessed; the others are not affected.",
         mark="bad",
     )
-    return ReportSection(
-        "Not assessed", [lead, ReportTable("Rows and reasons", ["line", "object", "why"], rows, stem="not_assessed")]
-    )
+    reasons = table("Rows and reasons", ["line", "object", "why"], rows, stem="not_assessed")
+    return ReportSection("Not assessed", [lead, reasons])
 
 
 def _numbers(assessment: Assessment) -> ReportSection:
@@ -87,35 +89,29 @@ def _numbers(assessment: Assessment) -> ReportSection:
         "object", "along", "light", "stays still up to [g]", "lifted [%]", "overturned",
         f"{percent(assessment.thresholds.level)} interval [%]", "median", "84 %", f"light by {assessment.comparison}",
     ]  # fmt: skip
-    pairs = [
-        (each, one, two) for each in assessment.verdicts for one, two in zip(each.results, each.compared, strict=True)
+    rows = [
+        _numbered(each, one, two, assessment)
+        for each in assessment.verdicts
+        for one, two in zip(each.results, each.compared, strict=True)
     ]
-    rows = [_numbered(*pair, assessment) for pair in pairs]
     note = (
         "Stays still: horizontal acceleration g b/h below which nothing moves. Median, 84 %: quantiles of the peak "
         "rotation over the slenderness angle; beyond 1 the centre of mass has passed the foot. Interval: Clopper and "
         f"Pearson's, of the share that overturns. Impacts by {assessment.restitution}; both directions are given."
     )
-    return ReportSection(
-        "The numbers", [ReportTable("Every object in both directions", header, rows, note, "numbers")] if rows else []
-    )
+    numbers = table("Every object in both directions", header, rows, note, "numbers")
+    return ReportSection("The numbers", [numbers] if rows else [])
 
 
-def _numbered(verdict: Verdict, one: DirectionResult, two: DirectionResult, assessment: Assessment) -> list[Cell]:
+def _numbered(verdict: Verdict, one: DirectionResult, two: DirectionResult, assessment: Assessment) -> list[object]:
     low, high = share_interval(one.overturned, one.count, assessment.thresholds.level)
     worse = " (worse)" if one is verdict.worse else ""
-    return [
-        cell(verdict.item.name),
-        cell(f"{one.direction}{worse}"),
-        cell(light_words(one.light), MARKS[one.light]),
-        cell(rounded_down(one.uplift_acceleration / g, 3)),
-        cell(f"{100.0 * one.lifted_share:.0f}"),
-        cell(f"{one.overturned} of {one.count}"),
-        cell(f"{100.0 * low:.1f} to {100.0 * high:.1f}"),
-        cell(rotation_words(one.median_rotation)),
-        cell(rotation_words(one.high_rotation)),
-        cell(light_words(two.light), MARKS[two.light] if two.light is not one.light else "plain"),
-    ]
+    still, lifted = rounded_down(one.uplift_acceleration / g, 3), f"{100.0 * one.lifted_share:.0f}"
+    shares = f"{one.overturned} of {one.count}", f"{100.0 * low:.1f} to {100.0 * high:.1f}"
+    rotations = rotation_words(one.median_rotation), rotation_words(one.high_rotation)
+    other = _light(two.light, "plain" if two.light is one.light else None)
+    name, along = verdict.item.name, f"{one.direction}{worse}"
+    return [name, along, _light(one.light), still, lifted, *shares, *rotations, other]
 
 
 def _meaning(assessment: Assessment) -> ReportSection:

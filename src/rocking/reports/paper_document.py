@@ -1,7 +1,9 @@
 """The report of `rocking paper`: what is recomputed, and what stands in the report, section by section."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import repeat
 
 from rocking.evidence._claims import claims
 from rocking.evidence._errata import Entry, Erratum, TableRow, errata, recomputed
@@ -11,17 +13,8 @@ from rocking.evidence.claim import FAILS, HOLDS, IN_PART, UNRESOLVED, Claim
 from rocking.evidence.comparison import concordance, correlation, relative_error, zone
 from rocking.evidence.explanation import Explanation, Ranked, explanation
 from rocking.evidence.measurements import BANDS, GROUPS, datasets
-from rocking.reports.document import (
-    Block,
-    Cell,
-    Document,
-    Paragraph,
-    Picture,
-    ReportSection,
-    ReportTable,
-    cell,
-    made_with,
-)  # fmt: skip
+from rocking.reports.document import Block, Cell, Document, Paragraph, Picture, ReportSection, ReportTable, made_with
+from rocking.reports.document import table as report_table
 from rocking.restitution import Housner, Ked
 
 MARK = {HOLDS: "good", IN_PART: "fair", FAILS: "bad"}
@@ -99,7 +92,7 @@ def paper_document(result: Reproduction) -> Document:
         "Calibrated default": _calibration(result),
         "Tables": [_paper_table(title, rows) for title, rows in result.tables.items()],
         "Figures": [Paragraph(NO_FIGURE_4), *(Picture(*figure) for figure in FIGURES)],
-        "Correlations and error zones": error_blocks(),
+        "Correlations and error zones": _correlations(),
         "Errata": _errata(result.errata),
     }
     return Document(
@@ -114,7 +107,7 @@ def paper_document(result: Reproduction) -> Document:
 
 def look_at(result: Reproduction) -> list[tuple[str, str]]:
     """Say what to look at first."""
-    counts = {one: sum(c.verdict == one for c in result.claims) for one in (HOLDS, IN_PART, FAILS, UNRESOLVED)}
+    counts = Counter(claim.verdict for claim in result.claims)
     found = sum(erratum.found for erratum in result.errata)
     best = result.league[0]
     return [
@@ -137,51 +130,42 @@ def look_at(result: Reproduction) -> list[tuple[str, str]]:
 
 def _claims(judged: Sequence[Claim]) -> list[Block]:
     rows = [
-        [cell(one.section), cell(one.quote), cell(one.verdict, MARK.get(one.verdict, "plain")), cell(one.evidence),
-         cell(one.test)]
+        (one.section, one.quote, Cell(one.verdict, MARK.get(one.verdict, "plain")), one.evidence, one.test)
         for one in judged
-    ]  # fmt: skip
+    ]
     header = ["section", "claim", "verdict", "number", "test"]
-    return [ReportTable("Claims of sections 3 and 4", header, rows, stem="claims")]
+    return [report_table("Claims of sections 3 and 4", header, rows, stem="claims")]
 
 
 def _errata(checked: Sequence[Erratum]) -> list[Block]:
-    rows = [
-        [cell(one.name), cell(one.statement), cell(one.evidence),
-         cell("found" if one.found else "not found", "plain" if one.found else "bad")]
-        for one in checked
-    ]  # fmt: skip
+    verdicts = {True: Cell("found"), False: Cell("not found", "bad")}
+    rows = [(one.name, one.statement, one.evidence, verdicts[bool(one.found)]) for one in checked]
     return [
         Paragraph("Each was found by computation on the printed tables; nothing is corrected in the data."),
-        ReportTable("Errata", ["where", "what", "numbers", ""], rows, stem="errata"),
+        report_table("Errata", ["where", "what", "numbers", ""], rows, stem="errata"),
     ]
 
 
 def _paper_table(title: str, rows: Sequence[TableRow]) -> ReportTable:
     keys = list(rows[0].entries)
+    columns = [f"{_COLUMNS[key]} {which}" for key in keys for which in ("printed", "recomputed")]
     header = ["block or interface", "h/b", "r_e"]
-    for key in keys:
-        header += [f"{_COLUMNS[key]} printed", f"{_COLUMNS[key]} recomputed", "difference"]
-    cells = []
-    for row in rows:
-        line = [cell(row.label), cell(f"{row.slenderness:g}"), cell(f"{row.measured:g}")]
-        for key in keys:
-            line += _pair(row.entries[key])
-        cells.append(line)
+    for printed, recomputed_ in zip(columns[::2], columns[1::2], strict=True):
+        header += [printed, recomputed_, "difference"]
+    cells = [
+        [row.label, f"{row.slenderness:g}", f"{row.measured:g}", *(x for key in keys for x in _pair(row.entries[key]))]
+        for row in rows
+    ]
     differing = sum(not entry.agrees for row in rows for entry in row.entries.values())
     total = len(rows) * len(keys)
     note = f"{total - differing} of {total} printed values agree in all their digits; the others are marked."
-    return ReportTable(f"{title}, printed beside recomputed", header, cells, note, title.lower().replace(" ", "_"))
+    return report_table(f"{title}, printed beside recomputed", header, cells, note, title.lower().replace(" ", "_"))
 
 
 def _pair(entry: Entry) -> list[Cell]:
-    mark = "plain" if entry.agrees else "bad"
-    digits = max(entry.digits, 4)
-    return [
-        cell(f"{entry.printed:.{entry.digits}f}", mark),
-        cell(f"{entry.recomputed:.{digits}f}", mark),
-        cell("" if entry.agrees else f"{entry.difference:+.1e}", mark),
-    ]
+    numbers = f"{entry.printed:.{entry.digits}f}", f"{entry.recomputed:.{max(entry.digits, 4)}f}"
+    difference = "" if entry.agrees else f"{entry.difference:+.1e}"
+    return [Cell(text, "plain" if entry.agrees else "bad") for text in (*numbers, difference)]
 
 
 def _league(rows: Sequence[LeagueRow]) -> list[Block]:
@@ -194,46 +178,34 @@ def _league(rows: Sequence[LeagueRow]) -> list[Block]:
             "Lin's concordance; leave-one-out (LOO) and leave-one-data-set-out (LOG) RMSE; BIC with the rounding in "
             "the likelihood and a scatter that grows with the loss (lower is better)."
         ),
-        ReportTable(
+        report_table(
             "All models, all 39 measurements",
             whole,
-            [_league_row(row) for row in rows],
+            [
+                (row.name, row.fitted, f"{row.rmse:.4f}", f"{row.rmse_low:.4f} - {row.rmse_high:.4f}",
+                 f"{row.bias:+.4f}", f"{row.loss_rmse:.4f}", f"{row.log_loss_rmse:.3f}", f"{row.concordance:.3f}",
+                 f"{row.leave_one_out:.4f}", f"{row.leave_group_out:.4f}", f"{row.bic:.1f}")
+                for row in rows
+            ],
             "Bootstrap: 4000 resamples of specimens within their data sets, fixed seed; fitted values are kept.",
             "league",
         ),
-        ReportTable(
-            "RMSE of r by data set and slenderness band",
-            split,
-            [_split_row(row) for row in rows],
-            stem="league_by_band",
+        report_table(
+            "RMSE of r by data set and slenderness band", split, map(_split_row, rows), stem="league_by_band"
         ),
         Picture("league", "Error of every model with its bootstrap interval."),
         Picture("models_and_measurements", "All models against all measurements, in r and in energy loss."),
-    ]
+    ]  # fmt: skip
 
 
-def _league_row(row: LeagueRow) -> list[Cell]:
-    numbers = (row.loss_rmse, row.log_loss_rmse, row.concordance, row.leave_one_out, row.leave_group_out)
-    return [
-        cell(row.name),
-        cell(row.fitted),
-        cell(f"{row.rmse:.4f}"),
-        cell(f"{row.rmse_low:.4f} - {row.rmse_high:.4f}"),
-        cell(f"{row.bias:+.4f}"),
-        *(cell(f"{number:.{digits}f}") for number, digits in zip(numbers, (4, 3, 3, 4, 4), strict=True)),
-        cell(f"{row.bic:.1f}"),
-    ]
-
-
-def _split_row(row: LeagueRow) -> list[Cell]:
+def _split_row(row: LeagueRow) -> list[object]:
     low, high = row.ahead_of_ked
     mark = "good" if high < 0.0 else "bad" if low > 0.0 else "plain"
     values = [*row.by_group.values(), *row.by_band.values()]
-    return [cell(row.name), *(cell(f"{value:.4f}") for value in values), cell(f"{low:+.4f} to {high:+.4f}", mark)]
+    return [row.name, *(f"{value:.4f}" for value in values), Cell(f"{low:+.4f} to {high:+.4f}", mark)]
 
 
 def _calibration(result: Reproduction) -> list[Block]:
-    summary = result.calibration.summary
     words = {
         "eta": "interface factor",
         "k": "impulse position over half base",
@@ -241,8 +213,8 @@ def _calibration(result: Reproduction) -> list[Block]:
         "gamma": "power of the loss in the scatter",
     }
     rows = [
-        [cell(name), cell(words[name]), *(cell(f"{fact[key]:.4f}") for key in ("mean", "sd", "low", "high"))]
-        for name, fact in summary.items()
+        (name, words[name], *(f"{fact[key]:.4f}" for key in ("mean", "sd", "low", "high")))
+        for name, fact in result.calibration.summary.items()
     ]
     return [
         Paragraph(
@@ -250,25 +222,25 @@ def _calibration(result: Reproduction) -> list[Block]:
             "interval is the posterior predictive one for a single measured body, with a scatter s (1 - r)^gamma. "
             f"{result.coverage.sentence}"
         ),
-        ReportTable("Posterior", ["parameter", "meaning", "mean", "sd", "2.5 %", "97.5 %"], rows, stem="calibration"),
+        report_table("Posterior", ["parameter", "meaning", "mean", "sd", "2.5 %", "97.5 %"], rows, stem="calibration"),
         Picture("calibration", "Posterior of eta and k, and the predictive band with all measurements."),
     ]
 
 
-def error_blocks() -> list[Block]:
+def _correlations() -> list[Block]:
     """Return correlations, concordances and zones of both models, data set by data set."""
     return [
         Paragraph(
             "Relative errors are |r_e - r| / r_e, as in the paper; zone I is below 1 %, II from 1 to 5 %, III above. "
             "The true r_H are used. Pearson's correlation hardly tells the models apart; Lin's concordance does."
         ),
-        ReportTable(
+        report_table(
             "Correlation, concordance and zones",
             ["data", "model", "correlation printed", "correlation", "Lin", "zone I", "zone II", "zone III", "largest"],
             [_measures(name, word, model) for name in _TITLES for word, model in _MODELS],
             stem="correlations_and_zones",
         ),
-        ReportTable(
+        report_table(
             "Relative errors and zones of Figures 6 and 7",
             ["data", "block or interface", "h/b", "Housner", "zone", "KED", "zone"],
             [row for name in _TITLES for row in _errors(name)],
@@ -277,32 +249,26 @@ def error_blocks() -> list[Block]:
     ]
 
 
-def _measures(name: str, word: str, model: Housner | Ked) -> list[Cell]:
+def _measures(name: str, word: str, model: Housner | Ked) -> list[object]:
     data = datasets()[name]
     r = model.of_slenderness(data.slenderness)
     error = relative_error(r, data.coefficient)
-    zones = zone(error)
-    return [
-        cell(_TITLES[name]),
-        cell(word),
-        cell(PRINTED_CORRELATION[name] if word == "KED" else ""),
-        cell(f"{correlation(r, data.coefficient):.4f}"),
-        cell(f"{concordance(r, data.coefficient):.4f}"),
-        *(cell(zones.count(each)) for each in ("I", "II", "III")),
-        cell(f"{100.0 * float(error.max()):.1f} %"),
-    ]
+    zones, printed = zone(error), PRINTED_CORRELATION[name] if word == "KED" else ""
+    alike = f"{correlation(r, data.coefficient):.4f}", f"{concordance(r, data.coefficient):.4f}"
+    largest = f"{100.0 * float(error.max()):.1f} %"
+    return [_TITLES[name], word, printed, *alike, *(zones.count(each) for each in ("I", "II", "III")), largest]
 
 
-def _errors(name: str) -> list[list[Cell]]:
+def _errors(name: str) -> list[list[object]]:
     data = datasets()[name]
     errors = [relative_error(model.of_slenderness(data.slenderness), data.coefficient) for _, model in _MODELS]
-    rows = []
+    rows: list[list[object]] = []
     for i in range(len(data)):
-        line = [cell(_TITLES[name]), cell(data.labels[i]), cell(f"{data.slenderness[i]:g}")]
+        row: list[object] = [_TITLES[name], data.labels[i], f"{data.slenderness[i]:g}"]
         for error in errors:
             where = zone(error)[i]
-            line += [cell(f"{100.0 * float(error[i]):.2f} %"), cell(where, "bad" if where == "III" else "plain")]
-        rows.append(line)
+            row += [f"{100.0 * float(error[i]):.2f} %", Cell(where, "bad" if where == "III" else "plain")]
+        rows.append(row)
     return rows
 
 
@@ -320,10 +286,10 @@ def explanation_blocks(compared: Explanation) -> list[Block]:
             "left-out score is the sum over the measurements of the logarithm of the probability of each by a fit that "
             "has not seen it."
         ),
-        ReportTable(
+        report_table(
             "Explanations of the measurements by the contact bed",
             header,
-            [_explanation(each, compared.unresolved) for each in compared.ranked],
+            map(_explanation, compared.ranked, repeat(compared.unresolved)),
             "Over one bed: with its standard error over the measurements.",
             "explanations",
         ),
@@ -336,17 +302,9 @@ def explanation_blocks(compared: Explanation) -> list[Block]:
     ]
 
 
-def _explanation(each: Ranked, best: tuple[str, ...]) -> list[Cell]:
+def _explanation(each: Ranked, best: tuple[str, ...]) -> list[object]:
     fit = each.fit
     fitted = ", ".join(f"{name} = {value:.4g}" for name, value in fit.values.items())
-    return [
-        cell(each.name, "good" if each.name in best else "plain"),
-        cell(fit.physics.sentence),
-        cell(str(fit.points)),
-        cell(fitted),
-        cell(f"{fit.rmse:.4f}"),
-        cell(f"{fit.bic:.1f}"),
-        cell(f"{each.behind:.1f}"),
-        cell(f"{each.score:.1f}"),
-        cell(f"{each.gain:+.1f} +- {each.gain_error:.1f}"),
-    ]
+    scores = f"{fit.rmse:.4f}", f"{fit.bic:.1f}", f"{each.behind:.1f}", f"{each.score:.1f}"
+    name = Cell(each.name, "good" if each.name in best else "plain")
+    return [name, fit.physics.sentence, fit.points, fitted, *scores, f"{each.gain:+.1f} +- {each.gain_error:.1f}"]

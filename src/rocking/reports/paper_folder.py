@@ -11,7 +11,7 @@ from rocking.errors import MissingExtraError, RockingError
 from rocking.evidence._errata import TableRow
 from rocking.reports.document import Document, ReportTable, made_with
 from rocking.reports.paper_document import Reproduction, paper_document
-from rocking.reports.render import render_html, render_pdf
+from rocking.reports.render import render_pdf, write_html
 
 Step = Callable[[str], None]
 
@@ -37,7 +37,7 @@ def write_folder(result: Reproduction, folder: Path, step: Step) -> tuple[list[P
     step("tables")
     for table in document.tables:
         _write_table(table, tables / f"{table.stem}.csv")
-    reports = {"report.html": _write_html, "report.pdf": render_pdf}
+    reports = {"report.html": write_html, "report.pdf": render_pdf}
     for name, write in reports.items() if not left_out else []:
         step(name)
         try:
@@ -85,10 +85,6 @@ def _row(row: TableRow) -> dict[str, Any]:
         for which in ("printed", "recomputed", "agrees")
     }
     return {"label": row.label, "slenderness_ratio": row.slenderness, "r_experiment": row.measured, **values}
-
-
-def _write_html(document: Document, pictures: Path, path: Path) -> None:
-    path.write_text(render_html(document, pictures), encoding="utf-8")
 
 
 def _draw(folder: Path, step: Step) -> None:

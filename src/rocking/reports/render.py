@@ -18,14 +18,12 @@ def render_html(document: Document, pictures: Path) -> str:
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     kinds = {"table": ReportTable, "pair": Pair, "listing": Listing, "paragraph": Paragraph}
-    environment.tests |= {name: partial(_is, kind) for name, kind in kinds.items()}
+    environment.tests |= {
+        name: partial(lambda kind, block: isinstance(block, kind), kind) for name, kind in kinds.items()
+    }
     template = environment.from_string(_template("report.html.jinja").decode())
     html: str = template.render(document=document, svg=lambda stem: _inline(pictures, stem))
     return html
-
-
-def _is(kind: type, block: object) -> bool:
-    return isinstance(block, kind)
 
 
 def _inline(folder: Path, stem: str) -> object:
@@ -37,6 +35,11 @@ def _inline(folder: Path, stem: str) -> object:
     for attribute in ('id="', 'href="#', "url(#"):
         body = body.replace(attribute, f"{attribute}{stem}-")
     return Markup(body)
+
+
+def write_html(document: Document, pictures: Path, path: Path) -> None:
+    """Write a report as HTML."""
+    path.write_text(render_html(document, pictures), encoding="utf-8")
 
 
 def render_pdf(document: Document, pictures: Path, path: Path) -> None:

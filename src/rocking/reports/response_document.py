@@ -22,8 +22,8 @@ from rocking.reports.document import (
     Picture,
     ReportSection,
     ReportTable,
-    cell,
-)  # fmt: skip
+)
+from rocking.reports.document import table as report_table
 from rocking.reports.response_facts import OUTCOME_WORDS, ModelAgreement, outcome_facts, restitution_words
 from rocking.version import SOFTWARE
 
@@ -64,24 +64,21 @@ PICTURES = ("body", "coefficients", "motion", "response")
 def response_document(subject: ReportSubject, results: ReportResults) -> Document:
     """Return the report."""
     title = subject.name or _KINDS.get(type(results.impact.body).__name__, "A rocking body")
+    first = next(iter(results.responses.values()))
     body = Picture("body", "The body on its feet O and O', with its centre of mass C")
     sections = [
         ReportSection("The body", [Pair(body, _body(results))]),
         ReportSection("What an impact costs", _impact(results)),
         ReportSection("The ground", _ground(results)),
         ReportSection("The response", _response(results)),
-        ReportSection("To do it again", _again(subject, next(iter(results.responses.values())))),
+        ReportSection("To do it again", _again(subject, first)),
     ]
     about = ", ".join([subject.software, *([f"inputs {subject.fingerprint[:16]}"] if subject.fingerprint else [])])
-    return Document(title, _subtitle(subject, results), sections, verdict=_verdict(results), footer=about)
-
-
-def _subtitle(subject: ReportSubject, results: ReportResults) -> str:
-    first = next(iter(results.responses.values()))
     ground = "let go, the ground at rest" if results.motion is None else f"under {results.motion.name}"
     if first.scale != 1.0:
         ground = f"{ground}, scaled by {first.scale:g}"
-    return ground[:1].upper() + ground[1:] + (f". {subject.date}" if subject.date else "")
+    subtitle = ground[:1].upper() + ground[1:] + (f". {subject.date}" if subject.date else "")
+    return Document(title, subtitle, sections, verdict=_verdict(results), footer=about)
 
 
 def _verdict(results: ReportResults) -> list[Paragraph]:
@@ -106,7 +103,7 @@ def _body(results: ReportResults) -> ReportTable:
         *_sides(body, gravity),
         ("gravity", f"{gravity:.6g} m/s\N{SUPERSCRIPT TWO}"),
     ]
-    return ReportTable("", ["quantity", "value"], [[cell(name), cell(value)] for name, value in rows])
+    return report_table("", ["quantity", "value"], rows)
 
 
 def _sides(body: Body, gravity: float) -> list[tuple[str, str]]:
@@ -174,18 +171,21 @@ def _how(first: Response) -> str:
 
 def _coefficients(answer: ImpactAnswer, foot: Foot) -> ReportTable:
     header = ["model", "r [-]", "95 % interval", "impulse k [-]", "energy lost", "friction needed [-]", "notes"]
-    rows = [_coefficient(row) for row in answer.tables[foot]]
+    rows = map(_coefficient, answer.tables[foot])
     note = (
         "r: velocity after the impact over velocity before. The interval is that of one measured body, from each "
         "model's misfit to the published measurements. k: place of the impulse over half the base."
     )
     where = f", landing on the {foot} foot" if len(answer.tables) > 1 else ""
-    return ReportTable(f"Coefficient of restitution{where}", header, rows, note)
+    return report_table(f"Coefficient of restitution{where}", header, rows, note)
 
 
 def _measures(measures: Mapping[str, Measure]) -> ReportTable:
-    rows = [[cell(one.name), cell(f"{one.value:.5g}"), cell(one.unit), cell(_in_g(one))] for one in measures.values()]
-    return ReportTable("Intensity of the motion", ["measure", "value", "unit", "in g"], rows)
+    rows = [
+        (one.name, f"{one.value:.5g}", one.unit, f"{one.value / g:.4g}" if one.unit == "m/s2" else "")
+        for one in measures.values()
+    ]
+    return report_table("Intensity of the motion", ["measure", "value", "unit", "in g"], rows)
 
 
 def _outcomes(responses: Mapping[str, Response], friction: float) -> ReportTable:
@@ -199,59 +199,47 @@ def _outcomes(responses: Mapping[str, Response], friction: float) -> ReportTable
         "horizontal to vertical force while the body stands on one foot; "
         f"{friction:g} was {given_or_assumed(friction)}."
     )
-    return ReportTable("How it ends", header, rows, note)
+    return report_table("How it ends", header, rows, note)
 
 
 def _impacts(label: str, response: Response) -> ReportTable:
     header = ["impact", "time [s]", "velocity before [rad/s]", "after [rad/s]", "r [-]", "onto"]
     shown = response.impacts[:_MOST_IMPACTS].tolist()
     rows = [
-        [cell(k), cell(f"{time:.6f}"), cell(_signed(before)), cell(_signed(after)), cell(f"{r:.6f}"), cell(onto)]
+        (k, f"{time:.6f}", _signed(before), _signed(after), f"{r:.6f}", onto)
         for k, (time, before, after, r, onto) in enumerate(shown, start=1)
     ]
     rest = response.impacts.size - len(shown)
     note = f"{rest} more, smaller and smaller; the table of impacts has them all." if rest > 0 else ""
-    return ReportTable(f"Impacts with {restitution_words(label)}", header, rows, note)
+    return report_table(f"Impacts with {restitution_words(label)}", header, rows, note)
 
 
-def _coefficient(row: CoefficientRow) -> list[Cell]:
-    fact = row.implication
-    return [
-        cell(restitution_words(row.name)),
-        cell(f"{row.coefficient:.5f}"),
-        cell(f"{row.low:.3f} to {row.high:.3f}"),
-        cell(f"{fact.impulse_ratio:.3f}"),
-        cell(f"{100.0 * fact.energy_loss:.2f} %"),
-        cell(f"{fact.friction_demand:.3f}"),
-        cell("see below" if row.warnings else ("fitted" if row.name == CALIBRATED else ""), "fair"),
-    ]
+def _coefficient(row: CoefficientRow) -> list[object]:
+    fact, note = row.implication, "see below" if row.warnings else "fitted" if row.name == CALIBRATED else ""
+    implied = f"{fact.impulse_ratio:.3f}", f"{100.0 * fact.energy_loss:.2f} %", f"{fact.friction_demand:.3f}"
+    interval = f"{row.low:.3f} to {row.high:.3f}"
+    return [restitution_words(row.name), f"{row.coefficient:.5f}", interval, *implied, Cell(note, "fair")]
 
 
-def _outcome(label: str, response: Response, friction: float) -> list[Cell]:
+def _outcome(label: str, response: Response, friction: float) -> list[object]:
     facts, contact = outcome_facts(response), response.contact
     fell = response.outcome is Outcome.OVERTURNED
     word = OUTCOME_WORDS[response.outcome] + (f" to the {facts['overturned_to']}" if fell else "")
+    peaks = math.degrees(response.peak_rotation), facts["peak_rotation_over_alpha"]
     return [
-        cell(restitution_words(label)),
-        cell(f"{response.parameters.left.coefficient:.4f}"),
-        cell(f"{response.parameters.right.coefficient:.4f}"),
-        cell(word, _MARKS.get(response.outcome, "plain")),
-        cell("-" if fell else f"{math.degrees(response.peak_rotation):.4g}"),
-        cell("-" if fell else f"{facts['peak_rotation_over_alpha']:.4g}"),
-        cell(response.impacts.size),
-        _friction(contact.friction_of_motion, friction),
-        _friction(contact.friction_of_impacts, friction),
+        restitution_words(label),
+        *(f"{side.coefficient:.4f}" for side in (response.parameters.left, response.parameters.right)),
+        Cell(word, _MARKS.get(response.outcome, "plain")),
+        *("-" if fell else f"{peak:.4g}" for peak in peaks),
+        response.impacts.size,
+        *(_friction(value, friction) for value in (contact.friction_of_motion, contact.friction_of_impacts)),
     ]
 
 
 def _friction(value: float, given: float) -> Cell:
     words = f"{value:.3f}" if math.isfinite(value) else "no surface has it"
-    return cell(words, "bad" if value > given else "plain")
+    return Cell(words, "bad" if value > given else "plain")
 
 
 def _signed(value: float) -> str:
     return f"{value:+.6f}".replace("-", "\N{MINUS SIGN}")
-
-
-def _in_g(measure: Measure) -> str:
-    return f"{measure.value / g:.4g}" if measure.unit == "m/s2" else ""

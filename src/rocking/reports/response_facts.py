@@ -27,7 +27,6 @@ from typing import Any
 from rocking import plausibility
 from rocking.conventions import FEET, Assumed
 from rocking.dynamics.contact import ContactResponse
-from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.response import Response
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion
@@ -44,6 +43,7 @@ _EQUALS = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
 
 def response_facts(response: Response, friction: float, *, error_estimate: bool = True) -> dict[str, Any]:
     """Return everything that is said of a response on a ground of a coefficient of friction [-]."""
+    keys = ("time_s", "velocity_before_rad_s", "velocity_after_rad_s", "coefficient", "onto")
     facts = {
         "body": rocker_facts(response),
         "motion": moved_facts(response.motion, response.scale),
@@ -54,7 +54,7 @@ def response_facts(response: Response, friction: float, *, error_estimate: bool 
         "linear": response.settings.linear,
         **outcome_facts(response),
         "uplifts_s": response.uplifts.tolist(),
-        "impacts": impacts_facts(response),
+        "impacts": [dict(zip(keys, row, strict=True)) for row in response.impacts.tolist()],
         "energy_closure": response.energy.closure,
     }
     if error_estimate:
@@ -80,7 +80,7 @@ def credibility_facts(response: Response, friction: float) -> dict[str, Any]:
 def rocker_facts(response: Response) -> dict[str, Any]:
     """Return the body as its equations of motion see it."""
     body, parameters = response.body, response.parameters
-    sides = {foot: parameters.right if foot == "right" else parameters.left for foot in FEET}
+    sides = {foot: getattr(parameters, foot) for foot in FEET}
     return {
         "kind": type(body).__name__,
         "mass_kg": body.mass,
@@ -140,23 +140,12 @@ def still_rocking_facts(response: Response | ContactResponse) -> dict[str, float
     }
 
 
-def impacts_facts(response: Response) -> list[dict[str, Any]]:
-    """Return the impacts of a response."""
-    keys = ("time_s", "velocity_before_rad_s", "velocity_after_rad_s", "coefficient", "onto")
-    return [dict(zip(keys, row, strict=True)) for row in response.impacts.tolist()]
-
-
 def other_facts(found: Response | str) -> dict[str, Any]:
     """Return what another model says, in short."""
     if isinstance(found, str):
         return {"error": found}
-    coefficients = coefficients_facts(found.parameters)
+    coefficients = {foot: getattr(found.parameters, foot).coefficient for foot in FEET}
     return {**outcome_facts(found), "impact_count": int(found.impacts.size), "coefficients": coefficients}
-
-
-def coefficients_facts(parameters: RockingParameters) -> dict[str, float]:
-    """Return the coefficients of restitution of a body by the foot on which it lands [-]."""
-    return {"left": parameters.left.coefficient, "right": parameters.right.coefficient}
 
 
 def finite(value: float) -> float | None:
@@ -208,12 +197,8 @@ def restitution_words(label: str) -> str:
         return times + ", ".join(named)
     if label.startswith("left "):
         return f"r: {label}"
-    return f"r = {label}" if _is_number(label) else label
-
-
-def _is_number(text: str) -> bool:
     try:
-        float(text)
+        float(label)
     except ValueError:
-        return False
-    return True
+        return label
+    return f"r = {label}"

@@ -11,9 +11,9 @@ from rocking import Block
 from rocking.evidence.explanation import explanation
 from rocking.plots import body_picture, paper_figure
 from rocking.reports import paper_folder
-from rocking.reports.document import Document, Paragraph, Picture, ReportSection, ReportTable, cell
+from rocking.reports.document import Cell, Document, Paragraph, Picture, ReportSection, ReportTable
 from rocking.reports.paper_document import explanation_blocks
-from rocking.reports.render import render_html, render_pdf
+from rocking.reports.render import render_html, render_pdf, write_html
 
 SVG = (
     '<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg" width="10" height="10">'
@@ -26,7 +26,7 @@ def document():
     """A report with every kind of block and hostile words."""
     blocks = [
         Paragraph(WORDS, WORDS, "bad"),
-        ReportTable(WORDS, [WORDS, "b"], [[cell(WORDS, "good"), cell(1)]], WORDS, "t"),
+        ReportTable(WORDS, [WORDS, "b"], [[Cell(WORDS, "good"), Cell("1")]], WORDS, "t"),
         Picture("one", WORDS),
         Picture("two", WORDS, width=62),
     ]
@@ -77,7 +77,7 @@ def test_a_missing_package_costs_its_part_alone(missing, kept, said, folder, mon
     """Without an optional package the folder of `rocking paper` has everything else, and says what it has not."""
     monkeypatch.setattr(paper_folder, "paper_document", lambda _: document())
     monkeypatch.setattr(paper_folder, "as_plain", lambda *_: {})
-    monkeypatch.setattr(paper_folder, "render_html", lambda content, _: render_html(content, folder))
+    monkeypatch.setattr(paper_folder, "write_html", lambda content, _, path: write_html(content, folder, path))
     monkeypatch.setattr(paper_folder, "render_pdf", lambda content, _, path: render_pdf(content, folder, path))
     figures = SimpleNamespace(paper_figures=dict)
     monkeypatch.setitem(sys.modules, "rocking.plots.paper_figures", figures)
