@@ -1,6 +1,7 @@
 """What is kept of a history while it runs: pieces, events, the largest tilt, and whether the body has fallen."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude, contact_mode
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.contact_mode import ContactSet
-from rocking.dynamics.space.trajectory import SpatialEvent, SpatialEventKind, SpatialTrajectory, StepPiece
+from rocking.dynamics.space.trajectory import SpatialEvent, SpatialTrajectory, StepPiece
 from rocking.dynamics.taylor import slope, turning_points
 from rocking.outcome import Outcome, Status
 from rocking.portable import dot
@@ -29,20 +30,6 @@ class IntegrationState:
         self.over_time = math.nan
         self.over: ContactSet | None = None
 
-    def note(
-        self,
-        time: float,
-        kind: SpatialEventKind,
-        contact: ContactSet,
-        before: float,
-        after: float,
-        impulses: FloatArray | None = None,
-    ) -> None:
-        """Keep an event (before, after: kinetic energies [J]; impulses: of an impact [N s])."""
-        self.events.append(
-            SpatialEvent(time, kind, contact, before, after, np.zeros(0) if impulses is None else impulses)
-        )
-
     def add(
         self, piece: StepPiece, until: float, up: FloatArray, pivot: FloatArray, vertical: FloatArray | None = None
     ) -> None:
@@ -52,22 +39,11 @@ class IntegrationState:
         end [-], [m]; vertical: series of the cosine of the tilt; None for a body at rest [-].
         """
         if until > 0.0 or not self.pieces:
-            self.pieces.append(
-                StepPiece(
-                    piece.start,
-                    piece.length,
-                    until,
-                    piece.quaternions,
-                    piece.velocities,
-                    piece.places,
-                    piece.contact,
-                )
-            )
+            self.pieces.append(replace(piece, until=until))
         if vertical is None:
             return
         self._raise_peak(piece, until, vertical)
-        beyond = _leaning_over(self.body, up, pivot)
-        if not beyond > 0.0:
+        if not _leaning_over(self.body, up, pivot) > 0.0:
             self.over_time, self.over = math.nan, None
         elif math.isnan(self.over_time):
             self.over_time, self.over = self._passing(piece, until), piece.contact
@@ -100,10 +76,6 @@ class IntegrationState:
         pivot, up: point of contact and vertical in body axes [m], [-].
         """
         return Outcome.OVERTURNED if _leaning_over(self.body, up, pivot) > 0.0 else Outcome.FAILED
-
-    def calm(self) -> Outcome:
-        """Return how a history ends at rest."""
-        return Outcome.ROCKED if self.events else Outcome.NO_UPLIFT
 
     def trajectory(self, outcome: Outcome, status: Status) -> SpatialTrajectory:
         """Return what was kept."""

@@ -1,6 +1,7 @@
 """The reference engine in space: Taylor steps, events located to rounding, contact by complementarity."""
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -17,13 +18,17 @@ from rocking.dynamics.space.impact_laws import SpatialImpactLaw
 from rocking.dynamics.space.impact_resolution import CLOSED, laid_down, landed, rim_landed, settled, started, stuck
 from rocking.dynamics.space.integration_state import IntegrationState
 from rocking.dynamics.space.rolling import RollingFlow
-from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajectory, StepPiece
+from rocking.dynamics.space.trajectory import SpatialEvent, SpatialEventKind, SpatialTrajectory, StepPiece
 from rocking.outcome import ContactMode, Outcome, Status
 from rocking.portable import applied, norm
 
 _PULL = 1e-9
 _STUCK, _PILED = 100, 60
 _PATIENCE, _MOST_LATE = 300.0, 10_000  # time over 1 / p, and steps, after the end
+
+
+Ending = tuple[Outcome, Status] | None
+"""How a history has ended; None while it goes on."""
 
 
 class SpatialReference:
@@ -55,26 +60,27 @@ class SpatialReference:
         self.horizon = horizon
         self.integration_state = IntegrationState(self.body, self.settings)
         self.quaternion, self.velocity = attitude.normalised(quaternion), velocity
-        ended = self._start()
+        self._start()
+        ended: Ending = None
         while ended is None:
             ended = self._rest() if self.contact.mode is ContactMode.REST else self._move()
         return self.integration_state.trajectory(*ended)
 
-    def _start(self) -> tuple[Outcome, Status] | None:
-        contact, touching = started(self.body, self.velocity, self._up)
-        self.contact = contact
+    def _start(self) -> None:
+        self.contact, touching = contact, _ = started(self.body, self.velocity, self._up)
         # the base lies with its origin at the origin of the ground, and the body leans from there
         self.place = applied(attitude.matrix(attitude.flat(self.quaternion)), contact.pivot)[:2]
         if contact.mode is ContactMode.REST or len(touching) == len(self.body.vertices) > 0:
             self.quaternion = attitude.flat(self.quaternion)
         self.touching = tuple(i for i in touching if i not in contact.points)
         if self.touching and not np.any(self.velocity):
-            self._decide(touching)
+            found = of_forces(self.body, self._state(), touching, self.contact)
+            if found:
+                self._stand(found[0].contact, touching)
         if self.contact.mode is not ContactMode.REST:
-            self.integration_state.note(self.time, SpatialEventKind.UPLIFT, self.contact, 0.0, self._kinetic())
-        return None
+            self._note(SpatialEventKind.UPLIFT, 0.0, self._kinetic())
 
-    def _rest(self) -> tuple[Outcome, Status] | None:
+    def _rest(self) -> Ending:
         """Rest until the ground lifts the body, or to the end."""
         self.velocity = np.zeros(3)
         rotation = attitude.matrix(self.quaternion)
@@ -86,19 +92,18 @@ class SpatialReference:
         found = loss_of_contact.next_uplift(self.body, self.ground, rotation, self.settings.gravity, since)
         if found is None:
             self._add_rest(max(self.horizon, self.ground.end, self.time))
-            return self.integration_state.calm(), Status.GOOD
+            return Outcome.ROCKED if self.integration_state.events else Outcome.NO_UPLIFT, Status.GOOD
         self.stretch, tau, edges = found
         begin, end = self.ground.times[self.stretch : self.stretch + 2]
         self._add_rest(max(float(begin + tau * (end - begin)), self.time))
         lifted = loss_of_contact.lifted(self.body, self._state(), edges)
         if lifted is None:
             return Outcome.FAILED, Status.LOST_CONTACT
-        self._stand(lifted)
-        self.touching = tuple(i for i in range(len(self.body.vertices)) if i not in lifted.points)
-        self.integration_state.note(self.time, SpatialEventKind.UPLIFT, lifted, 0.0, 0.0)
+        self._stand(lifted, range(len(self.body.vertices)))
+        self._note(SpatialEventKind.UPLIFT, 0.0, 0.0)
         return self._guard()
 
-    def _move(self) -> tuple[Outcome, Status] | None:
+    def _move(self) -> Ending:
         """Advance to the end of the step, or to the first event before it."""
         step, piece, whole = self._step()
         self.late += self._final is not False
@@ -107,13 +112,16 @@ class SpatialReference:
         landing = event_functions.first_contact(self.body, self.contact, step, self.touching)
         letting = loss_of_contact.first_release(self.body, self.contact, step)
         rim = event_functions.rim_events(self.body, self.contact, step) if self.body.round else None
-        held = letting is not None and self._held_down(letting, step)
+        held = False  # whether contact stays although the ground would let go
+        if letting is not None:
+            nearly_flat = event_functions.nearly_flat(self.body, pivot_motion.value(step.up, letting[0]))
+            held = self.sticks if letting[1] >= 0 else nearly_flat
         letting = None if held else letting
         self.sticks &= held
         at = min([1.0, *(e[0] for e in (landing, letting) if e is not None), *([] if rim is None else [rim])])
         self._arrive(piece, at, step.up[:, 2], whole=whole and at == 1.0)
         if self._up[2] <= 0.0:  # it lies before anything else happens
-            return self.integration_state.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
+            return self._ended()
         if landing is not None and landing[0] == at:
             return self._impact(landing[1])
         if rim is not None and rim == at:
@@ -122,7 +130,7 @@ class SpatialReference:
             return self._released(letting[1])
         return self._stepped(step, at, held=held)
 
-    def _stepped(self, step: Step, at: float, *, held: bool) -> tuple[Outcome, Status] | None:
+    def _stepped(self, step: Step, at: float, *, held: bool) -> Ending:
         """Look at where a step without event has led."""
         pulls = self.contact.mode is ContactMode.EDGE
         pulls = pulls and min(loss_of_contact.end_forces(self.body, self.contact, step, at)) < -self.pull
@@ -132,7 +140,7 @@ class SpatialReference:
             flat = laid_down(self.body, self._state())
             if flat is not None:
                 return self._land(flat, ())
-        return self.integration_state.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
+        return self._ended()
 
     # ---- a step -----------------------------------------------------------------------------------------------------
 
@@ -195,7 +203,7 @@ class SpatialReference:
 
     # ---- events -----------------------------------------------------------------------------------------------------
 
-    def _impact(self, vertex: int) -> tuple[Outcome, Status] | None:
+    def _impact(self, vertex: int) -> Ending:
         body = self.body
         gaps = applied(body.vertices - self.contact.pivot, self._up)
         closed = {vertex, *self.contact.points, *np.flatnonzero(gaps <= CLOSED * body.size).tolist()}
@@ -204,26 +212,11 @@ class SpatialReference:
         touching = tuple(sorted(closed))
         if len(touching) == len(body.vertices):
             self.quaternion = attitude.flat(self.quaternion)
-        if self.at_once > _PILED:
-            return self._stick(touching)
-        return self._land(landed(body, self._state(), touching, self.law), touching)
+        piled = self.at_once > _PILED
+        choice = stuck(body, self._state(), touching) if piled else landed(body, self._state(), touching, self.law)
+        return self._land(choice, touching, piled=piled)
 
-    def _stick(self, touching: tuple[int, ...]) -> tuple[Outcome, Status] | None:
-        before, choice = self._kinetic(), stuck(self.body, self._state(), touching)
-        self._stand(choice.contact)
-        self.velocity, self.touching = choice.velocity, ()
-        self.sticks = choice.contact.mode is ContactMode.EDGE
-        kind = SpatialEventKind.IMPACT
-        self.integration_state.note(self.time, kind, choice.contact, before, self._kinetic(), choice.supports)
-        return self._guard()
-
-    def _held_down(self, letting: tuple[float, int], step: Step) -> bool:
-        """Whether contact stays although the ground would let go there."""
-        if letting[1] >= 0:
-            return self.sticks
-        return event_functions.nearly_flat(self.body, pivot_motion.value(step.up, letting[0]))
-
-    def _rim(self) -> tuple[Outcome, Status] | None:
+    def _rim(self) -> Ending:
         up = self._up
         if (
             self.contact.mode is not ContactMode.ROLLING
@@ -238,39 +231,35 @@ class SpatialReference:
         self.quaternion = attitude.flat(self.quaternion)
         return self._land(rim_landed(self.body, state, self.law), ())
 
-    def _land(self, choice: Continuation, touching: tuple[int, ...]) -> tuple[Outcome, Status] | None:
+    def _land(self, choice: Continuation, touching: tuple[int, ...], *, piled: bool = False) -> Ending:
         before = self._kinetic() + (self._potential() if self.contact.mode is ContactMode.ROLLING else 0.0)
         self._stand(choice.contact)
         self.velocity = choice.velocity
-        weak = self._weak
-        choice = settled(self.body, self._state(), choice, touching, self.slow, weak=weak)
-        self._stand(choice.contact)
+        if piled:
+            self.sticks, touching = choice.contact.mode is ContactMode.EDGE, ()
+        else:
+            choice = settled(self.body, self._state(), choice, touching, self.slow, weak=self._weak)
+        self._stand(choice.contact, touching)
         self.velocity = choice.velocity
-        self.touching = tuple(i for i in touching if i not in choice.contact.points)
-        kind = SpatialEventKind.IMPACT
-        self.integration_state.note(self.time, kind, choice.contact, before, self._kinetic(), choice.supports)
-        if choice.contact.mode is ContactMode.REST:
-            self.integration_state.note(self.time, SpatialEventKind.REST, choice.contact, 0.0, 0.0)
+        self._note(SpatialEventKind.IMPACT, before, self._kinetic(), choice.supports)
+        if choice.contact.mode is ContactMode.REST and not piled:
+            self._note(SpatialEventKind.REST, 0.0, 0.0)
         return self._guard()
 
-    def _released(self, which: int) -> tuple[Outcome, Status] | None:
+    def _released(self, which: int) -> Ending:
         if which < 0:
             return self.integration_state.falls(self._pivot, self._up), Status.LOST_CONTACT
         stays, leaves = self.contact.points[1 - which], self.contact.points[which]
-        self._stand(contact_mode.vertex(self.body, stays))
-        self.touching = (leaves,)
+        self._stand(contact_mode.vertex(self.body, stays), (leaves,))
         energy = self._kinetic()
-        self.integration_state.note(self.time, SpatialEventKind.CHANGE, self.contact, energy, energy)
+        self._note(SpatialEventKind.CHANGE, energy, energy)
         return self._guard()
 
-    def _decide(self, touching: tuple[int, ...]) -> None:
-        """Let forces decide on what a body stands that is let go."""
-        found = of_forces(self.body, self._state(), touching, self.contact)
-        if found:
-            self._stand(found[0].contact)
-            self.touching = tuple(i for i in touching if i not in self.contact.points)
+    def _note(self, kind: SpatialEventKind, before: float, after: float, impulses: FloatArray | None = None) -> None:
+        pushes = np.zeros(0) if impulses is None else impulses
+        self.integration_state.events.append(SpatialEvent(self.time, kind, self.contact, before, after, pushes))
 
-    def _guard(self) -> tuple[Outcome, Status] | None:
+    def _guard(self) -> Ending:
         self.at_once = self.at_once + 1 if self.time <= self.moment else 0
         self.moment = self.time
         if self.at_once > _STUCK or len(self.integration_state.events) > self.settings.most_events:
@@ -278,12 +267,15 @@ class SpatialReference:
         # a base of many corners may have no step without an impact; whether it still can fall is asked here too
         if self._final is False or self.contact.mode is ContactMode.REST:
             return None
+        return self._ended()
+
+    def _ended(self) -> Ending:
         return self.integration_state.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
 
     # ---- small parts ------------------------------------------------------------------------------------------------
 
-    def _stand(self, contact: ContactSet) -> None:
-        """Move the pivot, and take rounding out of the attitude."""
+    def _stand(self, contact: ContactSet, touching: Iterable[int] = ()) -> None:
+        """Move the pivot, take rounding out of the attitude, and keep which other points touch."""
         rotation = attitude.matrix(self.quaternion)
         self.place = self.place + applied(rotation, contact.pivot - self._pivot)[:2]
         if contact.mode is ContactMode.REST:
@@ -291,6 +283,7 @@ class SpatialReference:
         elif contact.axis is not None:
             self.quaternion = attitude.levelled(self.quaternion, contact.axis)
         self.contact = contact
+        self.touching = tuple(i for i in touching if i not in contact.points)
 
     @property
     def _up(self) -> FloatArray:
@@ -308,15 +301,12 @@ class SpatialReference:
             return None
         return self.time >= end
 
-    def _field_now(self) -> FloatArray:
+    def _state(self) -> SpatialState:
         field = -self.ground.part(self.stretch, self.time, 1.0)[:, 0]
         field[2] -= self.settings.gravity
-        return applied(attitude.matrix(self.quaternion).T, field)
-
-    def _state(self) -> SpatialState:
-        axis = self.contact.axis
+        axis, rotation = self.contact.axis, attitude.matrix(self.quaternion)
         along = np.zeros(3) if axis is None else self.contact.length * axis
-        return SpatialState(self._pivot, self.velocity, self._up, self._field_now(), along)
+        return SpatialState(self._pivot, self.velocity, self._up, applied(rotation.T, field), along)
 
     def _kinetic(self) -> float:
         return self.body.kinetic(self._pivot, self.velocity)
