@@ -85,7 +85,7 @@ def test_no_history_on_polygons_ends_in_piled_impacts():
         for body, motion, scale in map(_case, range(200))
     ]
     status, outcome = (np.concatenate([one[name].ravel() for one in found]) for name in ("status", "outcome"))
-    peak = np.concatenate([one.peak_tilt.ravel() for one in found])
+    peak = np.concatenate([one["peak_tilt"].ravel() for one in found])
     assert len(status) == 1800
     assert not (status == Status.TOO_MANY_EVENTS.code).any()
     assert not (status == Status.NOT_FINITE.code).any()

@@ -6,7 +6,7 @@ from rocking.lazy import exports
 from rocking.restitution.impact import ImpactGeometry
 from rocking.restitution.implied import Implication, implied
 from rocking.restitution.model import Flag, InertiaModel, Restitution, RestitutionModel
-from rocking.restitution.registry import coefficient_of_restitution, model, models, register
+from rocking.restitution.registry import coefficient_of_restitution, homes, model, models, register
 
 if TYPE_CHECKING:
     from rocking.restitution.contact_bed import ContactBedModel
@@ -50,24 +50,17 @@ __all__ = [
 ]
 
 _HOME = {
-    "ContactBedModel": "contact_bed",
-    "DistributedImpulse": "distributed_impulse",
     "EnergyBalance": "ked_stages",
-    "Fixed": "fixed",
-    "HorizontalMomentum": "horizontal_momentum",
-    "Housner": "housner",
     "IdentityCheck": "identities",
     "Interface": "interface",
-    "Ked": "ked",
-    "PlasticWinkler": "plastic_winkler",
-    "ShiftedImpulse": "shifted_impulse",
     "energy_balance": "ked_stages",
     "identity_report": "identities",
     "projected_moment": "ked",
 }
 
 # a model is imported when it is first asked for: a response needs one of them, not all
-__getattr__, _ = exports("rocking.restitution", {name: f"rocking.restitution.{home}" for name, home in _HOME.items()})
+_HOMES = {name: f"rocking.restitution.{home}" for name, home in _HOME.items()} | homes
+__getattr__, _ = exports("rocking.restitution", _HOMES)
 
 
 def __dir__() -> list[str]:

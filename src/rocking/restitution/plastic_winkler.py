@@ -78,9 +78,9 @@ def _impact(kappa: float, back: float, edges: tuple[float, ...]) -> float:
     if float((stretches[:, 1] - stretches[:, 0]).sum()) <= 1e-9 * (1.0 + back):
         # feet without area: the whole impulse acts at the new one (Housner)
         return (1.0 - kappa * back) / (1.0 + kappa)  # Eq. 2
-    left = land(kappa, back, stretches)
+    end, velocity = land(kappa, back, stretches)
     # the bed leaves the body turning about its end; from there it steps onto the foot (Housner)
-    return left.velocity * (1.0 + kappa * left.end) / (1.0 + kappa)  # Eq. 110
+    return velocity * (1.0 + kappa * end) / (1.0 + kappa)  # Eq. 110
 
 
 @lru_cache(maxsize=1)
@@ -103,31 +103,23 @@ _STEPS = 100_000
 _State = tuple[float, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Landing:
-    """How a body leaves a bed."""
-
-    # end of the base that leaves the bed last, or the foot if that is nearer, over the lever of the new foot [-]
-    end: float
-    velocity: float  # angular velocity then, over the one before; zero where the body stops [-]
-
-
-def land(kappa: float, back: float, stretches: FloatArray) -> Landing:
+def land(kappa: float, back: float, stretches: FloatArray) -> tuple[float, float]:
     """Return how a body leaves the bed, for levers in units of the new one.
 
     The state is (v, omega, Int v dt, Int omega dt): a point x of the base descends while omega x > v, and is pushed
     with k_w times its indentation as long. Where the edge v / omega of the pressure passes an end of a stretch, the
     equations have a kink: there the integration stops and begins anew.
+
+    Returns the end of the base that leaves the bed last, or the foot if that is nearer, over the lever of the new foot
+    [-]; and the angular velocity then, over the one before; zero where the body stops [-].
     """
     bed = _Bed(kappa, stretches)
     state: _State = (-back, 1.0, 0.0, 0.0)
-    part = bed.first_part(-back)
-    while True:
-        path = _Path(bed, part)
-        state = path.follow(state)
-        if path.towards == 0:
-            return Landing(bed.end, 0.0 if state[1] < _STOPPED else state[1])
-        part += path.towards
+    part, towards = bed.first_part(-back), 1
+    while towards:
+        state, towards = bed.follow(state, part)
+        part += towards
+    return bed.end, 0.0 if state[1] < _STOPPED else state[1]
 
 
 class _Bed:
@@ -136,7 +128,6 @@ class _Bed:
     def __init__(self, kappa: float, stretches: FloatArray) -> None:
         self.stretches: list[list[float]] = stretches.tolist()
         self.edges = [edge for stretch in self.stretches for edge in stretch]
-        self.last = len(self.edges) - 1
         self.end = min(self.edges[-1], 1.0)
         # the stiffness of the bed only scales time: a contact of any size then takes about as long
         self.push = 1.0 / sum(far - near for near, far in self.stretches)
@@ -156,73 +147,59 @@ class _Bed:
         length, first, second = self.whole(part - 1)
         return part if self.push * (first - edge * length) >= edge * self.turn * (second - edge * first) else part - 1
 
-
-class _Path:
-    """The motion as long as the pressure ends in one part of the base, by Taylor series."""
-
-    def __init__(self, bed: _Bed, part: int) -> None:
-        self._bed = bed
-        self._inside = part % 2 == 1
-        self._far = bed.edges[part] if self._inside else 0.0
-        self._whole = bed.whole(part)
-        self._lower = bed.edges[part - 1] if part > 0 else None
-        self._upper = bed.edges[part] if part < bed.last else None
-        self.towards = 0
-
-    def follow(self, state: _State) -> _State:
-        """Return the state where the edge of the pressure leaves the part, or where the contact ends."""
+    def follow(self, state: _State, part: int) -> tuple[_State, int]:
+        """Return the state where the edge of the pressure leaves a part, or where the contact ends, and the way on."""
+        ends = [(self.edges[part], 1)] if part < len(self.edges) - 1 else []
+        if part > 0:
+            ends.append((self.edges[part - 1], -1))
         for _ in range(_STEPS):
-            series = self._series(state)
+            series = self._series(state, part)
             step = _step(series)
-            v, omega, *_ = after = _at(series, step)
-            for edge, sign in ((self._upper, 1), (self._lower, -1)):
-                if edge is not None and sign * (v - edge * omega) > 0.0:
-                    passing = self._at_edge(series, step, edge, sign)
-                    self.towards = sign if passing[1] >= _STOPPED else 0  # a body that stops there goes nowhere
-                    return passing
-            if omega < _STOPPED or self._bed.end * omega - v <= _AT_REST:
-                return after
-            state = after
+            state = v, omega, *_ = _at(series, step)
+            for edge, sign in ends:
+                if sign * (v - edge * omega) > 0.0:
+                    passing = _at_edge(series, step, edge, sign)
+                    return passing, sign if passing[1] >= _STOPPED else 0  # a body that stops there goes nowhere
+            if omega < _STOPPED or self.end * omega - v <= _AT_REST:
+                return state, 0
         raise RockingError(f"a landing on a bed of plastic springs did not end within {_STEPS} steps")
 
-    def _series(self, state: _State) -> list[list[float]]:
-        """Return the Taylor coefficients of v, omega and their integrals."""
-        push, turn = self._bed.push, self._bed.turn
-        length, first, second = self._whole
+    def _series(self, state: _State, part: int) -> list[list[float]]:
+        """Return the Taylor coefficients of v, omega and their integrals, while the pressure ends in a part."""
+        length, first, second = self.whole(part)
         v, omega, y, theta = series = [[value] for value in state]
         edge: list[float] = []
         square: list[float] = []
         cube: list[float] = []
-        end = self._far  # zero where the pressure ends between two stretches
+        inside = part % 2 == 1
+        end = self.edges[part] if inside else 0.0  # zero where the pressure ends between two stretches
         reach, lever, inertia = [length + end], [first + 0.5 * end * end], [second + end**3 / 3.0]
         for k in range(_ORDER):
             if k:
                 for one in (reach, lever, inertia):
                     one.append(0.0)
-            if self._inside:
+            if inside:
                 edge.append((v[k] - _product(omega[1:], edge)) / omega[0])
                 square.append(_product(edge, edge))
                 cube.append(_product(edge, square))
                 reach[k] -= edge[k]
                 lever[k] -= 0.5 * square[k]
                 inertia[k] -= cube[k] / 3.0
-            v.append(push * (_product(theta, lever) - _product(y, reach)) / (k + 1))  # Eq. 13
-            omega.append(turn * (_product(theta, inertia) - _product(y, lever)) / (k + 1))  # Eq. 13
+            v.append(self.push * (_product(theta, lever) - _product(y, reach)) / (k + 1))  # Eq. 13
+            omega.append(self.turn * (_product(theta, inertia) - _product(y, lever)) / (k + 1))  # Eq. 13
             y.append(v[k] / (k + 1))
             theta.append(omega[k] / (k + 1))
         return series
 
-    @staticmethod
-    def _at_edge(series: list[list[float]], step: float, edge: float, sign: int) -> _State:
-        """Return the state at an edge that was passed in a step: by halving, to the last bit."""
-        start, stop = 0.0, step
-        while start < (middle := 0.5 * (start + stop)) < stop:
-            v, omega, *_ = _at(series, middle)
-            if sign * (v - edge * omega) > 0.0:
-                stop = middle
-            else:
-                start = middle
-        return _at(series, start)
+
+def _at_edge(series: list[list[float]], step: float, edge: float, sign: int) -> _State:
+    """Return the state at an edge that was passed in a step: by halving, to the last bit."""
+    start, stop = 0.0, step
+    while start < (middle := 0.5 * (start + stop)) < stop:
+        v, omega, *_ = _at(series, middle)
+        passed = sign * (v - edge * omega) > 0.0
+        start, stop = (start, middle) if passed else (middle, stop)
+    return _at(series, start)
 
 
 def _product(one: list[float], other: list[float]) -> float:

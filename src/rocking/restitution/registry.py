@@ -10,17 +10,25 @@ from rocking.conventions import Foot
 from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.restitution.model import RestitutionModel
 
-# the class, or where it is: those of this package are imported when first asked for
-_MODELS: dict[str, type[RestitutionModel] | tuple[str, str]] = {
-    "housner": ("rocking.restitution.housner", "Housner"),
-    "ked": ("rocking.restitution.ked", "Ked"),
-    "horizontal-momentum": ("rocking.restitution.horizontal_momentum", "HorizontalMomentum"),
-    "shifted-impulse": ("rocking.restitution.shifted_impulse", "ShiftedImpulse"),
-    "distributed-impulse": ("rocking.restitution.distributed_impulse", "DistributedImpulse"),
-    "plastic-winkler": ("rocking.restitution.plastic_winkler", "PlasticWinkler"),
-    "contact-bed": ("rocking.restitution.contact_bed", "ContactBedModel"),
-    "fixed": ("rocking.restitution.fixed", "Fixed"),
+# the class, or its name in the module of the model's name: those of this package are imported when first asked for
+_MODELS: dict[str, type[RestitutionModel] | str] = {
+    "housner": "Housner",
+    "ked": "Ked",
+    "horizontal-momentum": "HorizontalMomentum",
+    "shifted-impulse": "ShiftedImpulse",
+    "distributed-impulse": "DistributedImpulse",
+    "plastic-winkler": "PlasticWinkler",
+    "contact-bed": "ContactBedModel",
+    "fixed": "Fixed",
 }
+
+
+def _home(name: str) -> str:
+    return f"{__package__}.{name.replace('-', '_')}"
+
+
+homes = {kind: _home(name) for name, kind in _MODELS.items() if isinstance(kind, str)}
+"""Modules of the classes of this package."""
 
 
 def models() -> dict[str, type[RestitutionModel]]:
@@ -118,9 +126,9 @@ def model(which: str | RestitutionModel, *, eta: float = 1.0, **parameters: Any)
 
 def _kind(name: str) -> type[RestitutionModel]:
     found = _MODELS[name]
-    if isinstance(found, tuple):
-        where, word = found
-        found = _MODELS[name] = getattr(import_module(where), word)
+    if isinstance(found, str):
+        kind: type[RestitutionModel] = getattr(import_module(_home(name)), found)
+        _MODELS[name] = found = kind
     return found
 
 
@@ -148,12 +156,9 @@ def _parsed(words: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, f
     try:
         return kind(**given), eta
     except TypeError as error:
-        raise UnknownModelError(f"model {name!r} {_takes(kind)}, got {', '.join(given) or 'none'}") from error
-
-
-def _takes(kind: type[RestitutionModel]) -> str:
-    names = list(getattr(kind, "__dataclass_fields__", {}))
-    return f"takes the parameter {', '.join(names)}" if names else "takes no parameters"
+        names = ", ".join(getattr(kind, "__dataclass_fields__", {}))
+        takes = f"takes the parameter {names}" if names else "takes no parameters"
+        raise UnknownModelError(f"model {name!r} {takes}, got {', '.join(given) or 'none'}") from error
 
 
 def _value(name: str, words: str) -> float:

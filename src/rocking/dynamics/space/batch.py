@@ -11,7 +11,7 @@ import numpy as np
 
 from rocking import checks, plausibility
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.response_base import Exportable, motion_provenance
+from rocking.dynamics.response_base import motion_provenance
 from rocking.dynamics.settings import Settings, check_progress
 from rocking.dynamics.space import fast_engine
 from rocking.dynamics.space.attitude import SpatialStart
@@ -24,7 +24,6 @@ from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajector
 from rocking.errors import InvalidValueError, RockingError, extra
 from rocking.outcome import ContactMode, Outcome, Status, of_results, overturned
 from rocking.quantities import attributes
-from rocking.tables import Column, Table
 from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
@@ -38,7 +37,7 @@ _FEW = 100  # up to so many bodies are spelled out; of more of them the digest a
 
 
 @dataclass(frozen=True, eq=False)
-class SpatialBatch(Exportable):
+class SpatialBatch:
     """The results of a batch; every array has the shape (body, motion, scale, restitution, start).
 
     >>> batch = SpatialBatch((1, 1, 1, 1, 1), {"outcome": np.array([2]), "status": np.array([0])}, "none")
@@ -87,41 +86,16 @@ class SpatialBatch(Exportable):
         flags = {"overturned": self.overturned, "still_rocking": self.still_rocking}
         return self.values | {name: flag.ravel() for name, flag in flags.items()}
 
-    @property
-    def peak_tilt(self) -> FloatArray:
-        """Largest tilt; a quarter turn if it overturned, NaN without result [rad]."""
-        return self["peak_tilt"]
-
-    @property
-    def direction(self) -> FloatArray:
-        """Direction in which it lies, from x towards y; NaN if it does not [rad]."""
-        return self["direction"]
-
-    @property
-    def _stated(self) -> dict[str, Any]:
-        refused = json.dumps({str(number): reason for number, reason in self.refused.items()})
-        return {"software": SOFTWARE, "engine": self.engine, "refused": refused, **self.provenance}
-
-    def exported(self) -> Table:
-        """Return what the tables and files of this batch hold: one row a history, with units and provenance."""
-        places = dict(zip(DIMENSIONS, np.unravel_index(np.arange(len(self)), self.shape), strict=True))
-        rows = {name: Column(places[name], "1", f"number of the {name}") for name in ("body", "motion", "start")}
-        for column, name in (("motion_name", "motion"), ("restitution", "restitution")):
-            labels = np.array([str(label) for label in self.labels[name]])
-            rows[column] = Column(labels[places[name]], "", f"name of the {name}")
-        rows["scale"] = Column(np.array(self.labels["scale"], dtype=np.float64)[places["scale"]], "1", "factor")
-        rows |= {name: Column.of(name, values) for name, values in self.results.items()}
-        return Table("history", rows, self._stated, no_unit="-")
-
     def to_xarray(self) -> "xr.Dataset":
         """Return the results over body, motion, scale, restitution and start, with units and provenance."""
         xarray = extra("xarray", "a labelled dataset")
         data = {
             name: (DIMENSIONS, values.reshape(self.shape), attributes(name)) for name, values in self.results.items()
         }
-        dataset: xr.Dataset = xarray.Dataset(
-            data, coords={name: (name, row) for name, row in self.labels.items()}, attrs=self._stated
-        )
+        coordinates = {name: (name, row) for name, row in self.labels.items()}
+        refused = json.dumps({str(number): reason for number, reason in self.refused.items()})
+        stated = {"software": SOFTWARE, "engine": self.engine, "refused": refused, **self.provenance}
+        dataset: xr.Dataset = xarray.Dataset(data, coordinates, stated)
         return dataset
 
 

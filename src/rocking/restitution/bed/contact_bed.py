@@ -72,7 +72,7 @@ class Coulomb(BaseFriction):
 
 
 @dataclass(frozen=True)
-class RegularisedCoulomb(BaseFriction):
+class RegularisedCoulomb(Coulomb):
     """Smooth friction: T = -mu N u / sqrt(u^2 + v^2).
 
     Where Coulomb's law sticks, this one creeps at u = v / sqrt((mu N / T)^2 - 1), less than v while T is below
@@ -91,11 +91,10 @@ class RegularisedCoulomb(BaseFriction):
         If a value is outside its range.
     """
 
-    coefficient: float
     creep: float = 1e-4
 
     def __post_init__(self) -> None:
-        checks.within("coefficient of friction", self.coefficient, 0.0, 100.0)
+        super().__post_init__()
         checks.positive("creep", self.creep, "m/s")
 
     @property

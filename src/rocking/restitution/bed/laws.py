@@ -1,5 +1,6 @@
 """What a contact point is made of: a force for a depth, its speed and its past."""
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from enum import IntEnum
@@ -53,11 +54,6 @@ class ContactLaw(ABC):
             Stiffness, damping and the rest in SI.
         """
 
-    @property
-    @abstractmethod
-    def label(self) -> str:
-        """The law with its parameters, in one line."""
-
 
 def force(law: LawNumbers, depth: FloatArray, speed: FloatArray, deepest: FloatArray) -> FloatArray:
     """Return the force of one copy of a law, written without its branches.
@@ -96,22 +92,11 @@ def stored(law: LawNumbers, depth: FloatArray, deepest: FloatArray) -> FloatArra
     return np.asarray(law.stiffness * pressed ** (law.exponent + 1.0) / (law.exponent + 1.0))  # Eq. 121
 
 
-def depth_under(law: LawNumbers, load: float) -> float:
-    """Return how deep a static load presses one copy of a law."""
-    if law.stiffness == 0.0:
-        return 0.0
-    return float((max(load, 0.0) / law.stiffness) ** (1.0 / law.exponent))
-
-
 def depth_absorbing(law: LawNumbers, copies: float, energy: float, speed: float) -> float:
     """Return how deep the law goes to take up an energy at a steady speed: the scale of depths of an impact."""
     order = law.exponent + 1.0
-    candidates = []
-    if law.stiffness > 0.0:
-        candidates.append(float((order * energy / (copies * law.stiffness)) ** (1.0 / order)))
-    if law.damping > 0.0:
-        candidates.append(energy / (copies * law.damping * speed))
-    return min(candidates)
+    spring = float((order * energy / (copies * law.stiffness)) ** (1.0 / order)) if law.stiffness > 0.0 else math.inf
+    return min(spring, energy / (copies * law.damping * speed)) if law.damping > 0.0 else spring
 
 
 @dataclass(frozen=True)
@@ -194,11 +179,6 @@ class KelvinVoigt(ContactLaw):
         damping = 2.0 * ratio * (self.stiffness * mass) ** 0.5 if self.damping is None else self.damping  # Eq. 116
         return LawNumbers(LawKind.KELVIN_VOIGT, float(self.stiffness), float(damping))
 
-    @property
-    def label(self) -> str:
-        loss = f"c={self.damping:.4g} N s/m" if self.damping is not None else f"zeta={self.damping_ratio or 0.0:.4g}"
-        return f"Kelvin-Voigt, k={self.stiffness:.4g} N/m, {loss}"
-
 
 @dataclass(frozen=True)
 class HuntCrossley(ContactLaw):
@@ -220,10 +200,6 @@ class HuntCrossley(ContactLaw):
     InvalidValueError
         If a value is outside its range.
 
-    Examples
-    --------
-    >>> HuntCrossley(1e9, viscosity=0.2).label
-    'Hunt-Crossley, k=1e+09 N/m^1.5, chi=0.2 s/m'
     """
 
     stiffness: float
@@ -239,10 +215,6 @@ class HuntCrossley(ContactLaw):
         return LawNumbers(
             LawKind.HUNT_CROSSLEY, float(self.stiffness), exponent=float(self.exponent), viscosity=float(self.viscosity)
         )
-
-    @property
-    def label(self) -> str:
-        return f"Hunt-Crossley, k={self.stiffness:.4g} N/m^{self.exponent:.4g}, chi={self.viscosity:.4g} s/m"
 
 
 @dataclass(frozen=True)
@@ -277,10 +249,6 @@ class Hertz(ContactLaw):
     def numbers(self, mass: float) -> LawNumbers:
         return LawNumbers(LawKind.HUNT_CROSSLEY, 4.0 / 3.0 * self.modulus * self.radius**0.5, exponent=1.5)  # Eq. 119
 
-    @property
-    def label(self) -> str:
-        return f"Hertz, E*={self.modulus:.4g} Pa, R={self.radius:.4g} m"
-
 
 @dataclass(frozen=True)
 class PlasticUnloading(ContactLaw):
@@ -302,10 +270,6 @@ class PlasticUnloading(ContactLaw):
     InvalidValueError
         If a value is outside its range.
 
-    Examples
-    --------
-    >>> PlasticUnloading(1e7, rebound=0.1).label
-    'plastic unloading, k=1e+07 N/m, e=0.1'
     """
 
     stiffness: float
@@ -317,7 +281,3 @@ class PlasticUnloading(ContactLaw):
 
     def numbers(self, mass: float) -> LawNumbers:
         return LawNumbers(LawKind.PLASTIC, float(self.stiffness), rebound=float(self.rebound))
-
-    @property
-    def label(self) -> str:
-        return f"plastic unloading, k={self.stiffness:.4g} N/m, e={self.rebound:.4g}"

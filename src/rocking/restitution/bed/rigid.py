@@ -9,7 +9,7 @@ from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.portable import dot
 from rocking.restitution.bed.contact_bed import ContactBed
-from rocking.restitution.bed.laws import LawNumbers, depth_under, stored
+from rocking.restitution.bed.laws import LawNumbers, stored
 
 
 @dataclass(frozen=True)
@@ -93,8 +93,8 @@ def settlement(rigid: RigidRocking, law: LawNumbers, rotation: float, load: floa
     tilt = rotation if bed.kinematics == "small" else math.sin(rotation)
     turned = 1.0 if bed.kinematics == "small" else math.cos(rotation)
     above = rigid.lift(rotation) - (bed.positions * tilt - bed.heights * turned)
-    deepest = depth_under(law, load / float(bed.shares[pivot]))
-    depth = deepest
+    alone = max(load / float(bed.shares[pivot]), 0.0)
+    depth = deepest = float((alone / law.stiffness) ** (1.0 / law.exponent)) if law.stiffness else 0.0
     shallow = np.delete(above, pivot).min() >= deepest
     # the load carried grows with the depth and curves upwards: Newton's method comes down from one foot alone
     for _ in range(0 if shallow else 60):

@@ -25,7 +25,7 @@ from rocking.restitution.bed import (
 )
 from rocking.restitution.bed.laws import LawKind, LawNumbers, force, stored
 from rocking.restitution.bed.reference import Field
-from rocking.restitution.bed.rigid import RigidRocking
+from rocking.restitution.bed.rigid import RigidRocking, settlement
 
 BLOCK = Block(width=0.2, height=0.4)
 LAW = KelvinVoigt(1e8, damping_ratio=0.5)
@@ -43,10 +43,10 @@ def test_plastic_unloading_returns_its_share() -> None:
 
 
 def test_depth_under_a_load() -> None:
-    """The static depth carries the load, for every law with stiffness."""
+    """The static depth carries the load on one foot of two, for every law with stiffness."""
     for law in (LAW, HuntCrossley(1e9), Hertz(1e9, 0.01)):
-        numbers = law.numbers(10.0)
-        depth = laws.depth_under(numbers, 500.0)
+        numbers, rigid = law.numbers(10.0), RigidRocking.of_body(BLOCK, ContactBed.uniform(BLOCK, 2, law), G)
+        depth, _ = settlement(rigid, numbers, 0.3, 250.0)
         assert laws.force(numbers, np.array([depth]), ZERO, ZERO)[0] == pytest.approx(500.0, rel=1e-12)
 
 
