@@ -188,7 +188,7 @@ def test_a_prism_in_a_plane_is_the_plane_solution(axis, space, plane):
     count = min(10, np.sum(wanted < along.duration))
     assert count > 3
     np.testing.assert_allclose(hits["time"][:count], wanted[:count], atol=1e-9)
-    peaks = batch_in_space(TOWER, parts, space, scales=[1.0, 1.001]).peak_tilt.ravel()
+    peaks = batch_in_space(TOWER, parts, space, scales=[1.0, 1.001])["peak_tilt"].ravel()
     assert peaks[0] == pytest.approx(expected.peak_rotation, abs=1e-9)
     assert abs(peaks[1] - expected.peak_rotation) > 1e-7  # negative control
     other = steps_of(TOWER, ground_of(*parts), along.duration, 0.8)  # negative control
