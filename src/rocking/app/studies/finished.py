@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from rocking.campaigns.jobs import JobFolder
+    from rocking.campaigns.jobs import Job, JobFolder
     from rocking.campaigns.jobs.adaptive import AdaptiveResult
 
 
@@ -30,7 +30,7 @@ class OpenStudy:
 
     id: str  # its name in addresses
     folder: StudyFolder  # where it is
-    job: "JobFolder"  # the campaign with its job
+    opened: "JobFolder"  # the campaign with its job
 
     @classmethod
     def of(cls, folder: StudyFolder) -> "OpenStudy":
@@ -43,34 +43,39 @@ class OpenStudy:
             raise type(error)(folder.without_paths(str(error))) from error
 
     @property
+    def job(self) -> "Job":
+        """What was computed."""
+        return self.opened.job
+
+    @property
     def axes(self) -> tuple[str, ...]:
         """Dimensions beside the restitutions that are compared: it may be an axis, too."""
-        study = self.job.job.study
-        if self.job.job.document.map is not None:
+        study = self.job.study
+        if self.job.document.map is not None:
             return tuple(study.dims)[-2:]
         return tuple(name for name in study.dims if name != "restitution")
 
     @cached_property
     def raw(self) -> Arrays:
         """Results as the engine gave them, one entry a history."""
-        return self.job.campaign.results()
+        return self.opened.campaign.results()
 
     @cached_property
     def results(self) -> Arrays:
         """Results as users know them, over the dimensions of the study."""
-        study = self.job.job.study
+        study = self.job.study
         derived = study.derived(0, study.histories.count, self.raw)
         return {name: values.reshape(study.shape) for name, values in derived.items()}
 
     def history(self, number: int) -> dict[str, Any]:
         """Return the results of one history."""
         alone = {name: values[number : number + 1] for name, values in self.raw.items()}
-        return {name: values[0] for name, values in self.job.job.study.derived(number, number + 1, alone).items()}
+        return {name: values[0] for name, values in self.job.study.derived(number, number + 1, alone).items()}
 
     @cached_property
     def analyses(self) -> dict[str, Any]:
         """Fragility analyses by restitution."""
-        finish = self.job.job.study.finish
+        finish = self.job.study.finish
         return {} if finish is None else finish(self.raw)
 
     @cached_property
@@ -78,34 +83,34 @@ class OpenStudy:
         """What an adaptive study has found, from all of its rounds."""
         from rocking.campaigns.jobs import answer
 
-        return answer(self.job)
+        return answer(self.opened)
 
     def dataset(self, restitution: int = 0) -> "xr.Dataset":
         """Return the results with one restitution as the pictures take them."""
         import xarray as xr
 
-        study = self.job.job.study
+        study = self.job.study
         several = len(self.axes) < len(study.dims)
-        label = list(self.job.job.problem.restitutions)[restitution]
+        label = list(self.job.problem.restitutions)[restitution]
         arrays = {name: (tuple(study.dims), values) for name, values in self.results.items()}
         coordinates = {
             name: (one.dims, one.values, {"units": one.unit, "long_name": one.meaning})
             for name, one in study.coordinates.items()
         }
-        made = xr.Dataset(arrays, coords=coordinates, attrs={**study.attributes, "restitution": label})
-        return made.isel(restitution=restitution) if several else made
+        dataset = xr.Dataset(arrays, coords=coordinates, attrs={**study.attributes, "restitution": label})
+        return dataset.isel(restitution=restitution) if several else dataset
 
     @property
     def size(self) -> int:
         """Memory of the results, roughly [byte]."""
-        return 170 * int(self.job.job.study.histories.count) + (1 << 20)
+        return 170 * int(self.job.study.histories.count) + (1 << 20)
 
 
 def written(
     study: OpenStudy, kind: Kind, target: Path, what: str | None, restitution: int, crossing: Crossing | None = None
 ) -> None:
     """Write a finished study into a file."""
-    labels = list(study.job.job.problem.restitutions)
+    labels = list(study.job.problem.restitutions)
     if not 0 <= restitution < len(labels):
         raise NotFound(f"restitution must be a number from 0 to {len(labels) - 1}, got {restitution}")
     if kind == "toml":
@@ -120,7 +125,9 @@ def written(
         what = what or ("fragility" if kind == "xml" else None)
         of_curves = what in {"fragility", "fema-p58"}
         try:
-            export(study.job, target, what, restitution=labels[restitution] if of_curves else None, crossing=crossing)
+            export(
+                study.opened, target, what, restitution=labels[restitution] if of_curves else None, crossing=crossing
+            )
         except RockingError as error:
             raise Refused(study.folder.without_paths(str(error)).replace(f"{target.parent}/", "")) from error
 
@@ -131,7 +138,7 @@ def _picture(study: OpenStudy, restitution: int) -> "Callable[[], Figure]":
     from rocking.plots.overturning_map import overturning_map_picture
     from rocking.plots.rocking_spectrum import rocking_spectrum_picture
 
-    kind = str(study.job.job.document.campaign.kind)
+    kind = str(study.job.document.campaign.kind)
     of_data = {"overturning-map": overturning_map_picture, "rocking-spectrum": rocking_spectrum_picture}
     of_analysis: dict[str, Callable[[Any], Figure]] = {
         "stripes": fragility_picture, "cloud": fragility_picture, "incremental": incremental_dynamic_analysis_picture,

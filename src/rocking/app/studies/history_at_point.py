@@ -70,8 +70,8 @@ class HistoryPlace:
     @classmethod
     def of(cls, study: OpenStudy, x: int, y: int, restitution: int = 0, motion: int = 0) -> "HistoryPlace":
         """Return the history at a point of a picture."""
-        dims, choices = study.job.job.study.dims, len(study.job.job.problem.restitutions)
-        across = _ACROSS.get(str(study.job.job.document.campaign.kind), study.axes[::-1])
+        dims, choices = study.job.study.dims, len(study.job.problem.restitutions)
+        across = _ACROSS.get(str(study.job.document.campaign.kind), study.axes[::-1])
         index = {"motion": motion} | dict(zip(across, (x, y), strict=True))
         sizes = {name: dims[name] for name in study.axes} | {"the restitution": choices}
         at = {name: index.get(name, 0) for name in study.axes} | {"the restitution": restitution}
@@ -79,7 +79,7 @@ class HistoryPlace:
             if not 0 <= at[name] < size:
                 raise NotFound(f"{name} must be a number from 0 to {size - 1}, got {at[name]}")
         places = [at[name] if name in study.axes else restitution for name in dims]
-        number = int(np.ravel_multi_index(tuple(places), study.job.job.study.shape))
+        number = int(np.ravel_multi_index(tuple(places), study.job.study.shape))
         return cls(number, {"motion": 0} | {name: at[name] for name in study.axes}, restitution)
 
 
@@ -98,7 +98,7 @@ class Variation:
     @classmethod
     def of(cls, study: OpenStudy, place: HistoryPlace) -> "Variation":
         """Return what a history is made of."""
-        job = study.job.job
+        job = study.job
         label, restitution, choice = _choice(study, place)
         rows = job.study.histories.rows(place.number, place.number + 1)
         scale = float(rows.values["scale"][0])
@@ -106,8 +106,8 @@ class Variation:
             restitution = {side: float(rows.values[f"r_{side}"][0]) for side in ("left", "right")}
             choice = dict(restitution)
         if job.document.map is not None:
-            body = job.problem.bodies[0]
-            return _on_map(cls(body, _body_in_job(study, 0), label, restitution, choice, scale), study, place)
+            body, table = job.problem.bodies[0], dict((job.document.body or [])[0])
+            return _on_map(cls(body, table, label, restitution, choice, scale), study, place)
         if job.document.spectrum is not None:
             angle, period = (job.study.coordinates[name].values for name in ("slenderness_angle", "semi_diagonal"))
             body = Block.from_angle(
@@ -115,25 +115,23 @@ class Variation:
             )
             return cls(body, body_table(body), label, restitution, choice, scale)
         number = place.index.get("body", 0)
-        return cls(job.problem.bodies[number], _body_in_job(study, number), label, restitution, choice, scale)
+        body, table = job.problem.bodies[number], dict((job.document.body or [])[number])
+        return cls(body, table, label, restitution, choice, scale)
 
 
 def _on_map(variation: Variation, study: OpenStudy, place: HistoryPlace) -> Variation:
     """Return the variation of a cell of a map: its axes change it."""
-    job = study.job.job
+    job = study.job
     assert job.document.map is not None  # asked before
-    axes = {side: axis_of((table.axis, table.numbers())) for side, table in (
-        ("x", job.document.map.x), ("y", job.document.map.y),
-    )}  # fmt: skip
+    x, y = (axis_of((table.axis, table.numbers())) for table in (job.document.map.x, job.document.map.y))
     question = Question(variation.body, job.problem.motions[0], variation.restitution, job.problem.settings)
-    at = {side: axis.values[place.index[axis.name]][None] for side, axis in axes.items()}
-    case = Plane(question, axes["x"], axes["y"]).case(at["x"], at["y"])
+    case = Plane(question, x, y).case(*(axis.values[place.index[axis.name]][None] for axis in (x, y)))
     geometry = {name: float(values[0]) for name, values in case.geometry.items()}
     body = changed_body(variation.body, geometry)
     variation = replace(variation, scale=float(case.scale[0]), stretch=float(case.stretch[0]))
     if geometry:
         variation = replace(variation, body=body, table=body_table(body))
-    if any(isinstance(axis, RestitutionAxis) for axis in axes.values()):
+    if isinstance(x, RestitutionAxis) or isinstance(y, RestitutionAxis):
         value = float(case.sides["r_right"][0])
         variation = replace(variation, label=f"{value!r}", restitution=value, choice={"value": value})
     return variation
@@ -145,14 +143,10 @@ def body_table(body: Body) -> dict[str, Any]:
     return {"units": table["units"], **table["block"]} if "block" in table else table
 
 
-def _body_in_job(study: OpenStudy, number: int) -> dict[str, Any]:
-    return dict((study.job.job.document.body or [])[number])
-
-
 def _choice(study: OpenStudy, place: HistoryPlace) -> tuple[str, Any, dict[str, Any] | None]:
     """Return label, restitution, and what inputs say of it."""
-    table, number = study.job.job.document.restitution, place.restitution
-    label, restitution = list(study.job.job.problem.restitutions.items())[number]
+    table, number = study.job.document.restitution, place.restitution
+    label, restitution = list(study.job.problem.restitutions.items())[number]
     tables: list[dict[str, Any] | None] = [{"model": table.model}] if table.model else []
     tables += [{"model": word} for word in table.models or []]
     tables += [{"value": value} for value in ([] if table.value is None else [table.value]) + (table.values or [])]
@@ -164,9 +158,11 @@ def _choice(study: OpenStudy, place: HistoryPlace) -> tuple[str, Any, dict[str, 
 
 def _motion_at(study: OpenStudy, number: int, stretch: float) -> tuple[Motion, dict[str, Any] | None, float]:
     """Return a motion of a study, its time stretched; how inputs name it, None where they cannot; its table's scale."""
-    place, tables = number, iter(study.job.job.document.motions)
-    while place >= (size := motions_in(table := next(tables))):
-        place -= size
+    place = number
+    for table in study.job.document.motions:
+        if place < motions_in(table):
+            break
+        place -= motions_in(table)
     if table.pulse is not None:
         words = stretched_words(table.pulse[place], stretch)
         return pulse(words), {"pulse": words}, table.scale
@@ -178,7 +174,7 @@ def _motion_at(study: OpenStudy, number: int, stretch: float) -> tuple[Motion, d
         keys: tuple[str, ...] = _OF_RECORDS
         scale = table.scale
     else:
-        motion = study.job.job.problem.motions[number]
+        motion = study.job.problem.motions[number]
         source = {"synthetic": table.synthetic, "seed": table.seed or 0, "member": place}
         keys, scale = _OF_FAMILIES, 1.0
     source |= {key: getattr(table, key) for key in keys if getattr(table, key) is not None}
@@ -223,7 +219,7 @@ def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict
         return cell | {"note": str(error)}
     note = _why_not(variation, source)
     if not note:
-        settings = study.job.job.document.settings.model_dump(exclude_unset=True, exclude_none=True)
+        settings = study.job.document.settings.model_dump(exclude_unset=True, exclude_none=True)
         moved = {**(source or {}), "scale": variation.scale * scale}
         inputs = {"body": variation.table, "motion": moved, "restitution": variation.choice}
         cell["inputs"] = inputs | ({"settings": settings} if settings else {})
@@ -245,7 +241,7 @@ def stored(study: OpenStudy, place: HistoryPlace) -> dict[str, Any]:
 def _responded(
     study: OpenStudy, place: HistoryPlace, variation: Variation, motion: Motion, scale: float
 ) -> tuple[ResponseProblem, Response]:
-    job, engine = study.job.job, study.job.job.document.settings.engine
+    job, engine = study.job, study.job.document.settings.engine
     problem = ResponseProblem(
         variation.body, motion, {variation.label: variation.restitution}, job.problem.settings, engine, scale=scale
     )

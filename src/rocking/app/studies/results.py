@@ -61,7 +61,7 @@ def shares(modes: np.ndarray) -> list[dict[str, Any]]:
 
 def coordinate(study: OpenStudy, name: str) -> dict[str, Any]:
     """Return what is known of a dimension of a study."""
-    axis = study.job.job.study.coordinates[name]
+    axis = study.job.study.coordinates[name]
     return {"name": name, "values": axis.values, "unit": axis.unit, "words": axis.meaning}
 
 
@@ -72,7 +72,7 @@ def coordinates(study: OpenStudy, **names: str) -> dict[str, Any]:
 
 def by_restitution(study: OpenStudy, name: str) -> np.ndarray:
     """Return a result with the restitution as its first dimension, also where there is only one."""
-    values, dims = study.results[name], list(study.job.job.study.dims)
+    values, dims = study.results[name], list(study.job.study.dims)
     several = len(study.axes) < len(dims)
     return np.moveaxis(values, dims.index("restitution"), 0) if several else values[None]
 
@@ -132,7 +132,7 @@ def spectrum_result(study: OpenStudy) -> dict[str, Any]:
     """Return rocking spectra."""
     from rocking.plots.rocking_spectrum import fractiles
 
-    job = study.job.job
+    job = study.job
     modes, coefficient = by_restitution(study, "mode"), job.study.coordinates["coefficient"].values
     curves = []
     for k, label in enumerate(job.problem.restitutions):
@@ -157,7 +157,7 @@ def map_result(study: OpenStudy) -> dict[str, Any]:
     """Return an overturning map."""
     axes = coordinates(study, y=study.axes[0], x=study.axes[1])
     x, y = (np.asarray(axes[side]["values"], dtype=np.float64) for side in ("x", "y"))
-    modes, about = by_restitution(study, "mode"), study.job.job.study.attributes
+    modes, about = by_restitution(study, "mode"), study.job.study.attributes
     return {
         **axes,
         "outcome": by_restitution(study, "outcome"),
@@ -169,7 +169,7 @@ def map_result(study: OpenStudy) -> dict[str, Any]:
         "contours": [contours_of(each >= 0, x, y, known=each != -3) for each in modes],
         "body": str(about.get("body", "")),
         "motion": str(about.get("motion", "")),
-        "tables": {} if study.job.job.study.search is None else tables_of(study),
+        "tables": {} if study.job.study.search is None else tables_of(study),
     }
 
 
@@ -310,7 +310,7 @@ _BY_KIND: dict[str, Callable[[OpenStudy], dict[str, Any]]] = {
 
 def result_of(study: OpenStudy) -> dict[str, Any]:
     """Return the result of a finished study."""
-    document = study.job.job.document
+    document = study.job.document
     kind = str(document.campaign.kind)
     if kind == "minimum-acceleration":
         lost = [np.empty(0), *(each.lost_contact for each in study.answer.value if each is not None)]
@@ -319,6 +319,6 @@ def result_of(study: OpenStudy) -> dict[str, Any]:
         contact = contact_words(lost_contact(study.raw))
     head = {"id": study.id, "kind": kind, "name": str(document.campaign.name), "contact": contact}
     result: dict[str, Any] = plain(
-        {**head, "restitutions": list(study.job.job.problem.restitutions), **_BY_KIND[kind](study)}
+        {**head, "restitutions": list(study.job.problem.restitutions), **_BY_KIND[kind](study)}
     )
     return result

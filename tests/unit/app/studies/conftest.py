@@ -1,6 +1,7 @@
 """Studies that are computed here, without a server and its processes."""
 
 import json
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -79,3 +80,25 @@ def manager(tmp_path: Path, records: RecordStore) -> Iterator[StudyManager]:
     made = StudyManager(tmp_path, Limits(), records, workers=1)
     yield made
     made.close()
+
+
+@pytest.fixture
+def idle(tmp_path: Path, records: RecordStore) -> Callable[..., StudyManager]:
+    """Return a function that makes a manager which runs nothing, with some limits replaced."""
+    return lambda **limits: StudyManager(tmp_path, Limits(**limits), records, workers=1, at_once=0)
+
+
+@pytest.fixture(scope="session")
+def until() -> Callable[..., Tables]:
+    """Return a function that waits for a state of a study, with some histories finished, and returns its facts."""
+
+    def wait(manager: StudyManager, study: str, *states: str, done: int = 0) -> Tables:
+        deadline = time.monotonic() + 60.0
+        while True:
+            facts = manager.get(study)
+            if facts["state"] in states and facts["histories_done"] >= done:
+                return facts
+            assert time.monotonic() < deadline, facts
+            time.sleep(0.02)
+
+    return wait

@@ -32,8 +32,8 @@ def _map(x, y, count=4):
 
 
 def _cells(study):
-    sizes = [size for name, size in study.job.job.study.dims.items() if name != "restitution"]
-    count = len(study.job.job.problem.restitutions)
+    sizes = [size for name, size in study.job.study.dims.items() if name != "restitution"]
+    count = len(study.job.problem.restitutions)
     places = [HistoryPlace.of(study, x, y, r) for x in range(sizes[-1]) for y in range(sizes[0]) for r in range(count)]
     return [(place, cell_of(study, place, 50)) for place in places]
 
@@ -60,8 +60,8 @@ def test_cells_of_every_axis_are_what_the_map_has(name, computed, map_job, recor
     study = computed(map_job(**_map(name, other), restitution=many))
     ends = set()
     for place, cell in _cells(study):
-        alone = study.job.job.study.histories.run(place.number, place.number + 1, threads=1)
-        again = study.job.job.study.derived(place.number, place.number + 1, alone)
+        alone = study.job.study.histories.run(place.number, place.number + 1, threads=1)
+        again = study.job.study.derived(place.number, place.number + 1, alone)
         stored = cell["stored"]
         assert (stored["outcome"], stored["peak_rotation_rad"]) == (alone["outcome"][0], alone["peak_rotation"][0])
         assert (stored["mode"], stored["peak_rotation_over_alpha"]) == (again["mode"][0], again["peak_ratio"][0])

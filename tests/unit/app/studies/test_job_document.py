@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from rocking.app.errors import TooLarge
 from rocking.app.inputs import MOTION_KEYS
-from rocking.app.plain_text import record_file_name, shown
+from rocking.app.plain_text import shown
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
 from rocking.app.studies import job_document
@@ -270,24 +270,6 @@ def test_the_jobs_themselves_are_launched(tmp_path):
     assert len({manager.create(None, job) for job in JOBS}) == 3
     assert len(PLACES) == sum(1 for job in JOBS for _ in itertools.islice(_places(job), 1000)) > 60
     manager.close()
-
-
-NAMES = [
-    "../../etc/passwd", "..", ".", "", " ", "a/b\\c", "CON", "nul.txt", "a\x00b", "a\nb", "a\u202etxt.exe", "x" * 5000,
-    "*?[ab]", "-rf", "'; DROP TABLE", "<script>", "\ud800", "\u200b", ".hidden", "~root",
-    "%2e%2e%2f", "a:b", "LPT1.AT2",
-]  # fmt: skip
-
-
-@pytest.mark.parametrize("text", NAMES)
-def test_no_name_becomes_more_than_one_plain_file(text):
-    """A file name of a user has no path, no pattern, no reserved word, and no leading dot or dash left in it."""
-    made = record_file_name(text)
-    assert made
-    assert len(made) <= 90
-    assert set(made) <= set("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-")
-    assert made[0] not in ".-"
-    assert made.partition(".")[0].lower() not in {"con", "nul", "lpt1"}
 
 
 @given(st.text())

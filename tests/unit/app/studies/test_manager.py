@@ -23,37 +23,21 @@ pytestmark = pytest.mark.timed
 Tables = dict[str, Any]
 
 
-def _wait(manager, study, *states, done=0):
-    """Return the facts of a study once it is in one of the states, with some histories finished."""
-    deadline = time.monotonic() + 60.0
-    while True:
-        facts = manager.get(study)
-        if facts["state"] in states and facts["histories_done"] >= done:
-            return facts
-        assert time.monotonic() < deadline, facts
-        time.sleep(0.02)
-
-
-def _idle(tmp_path, records, **limits):
-    """Return a manager that runs nothing."""
-    return StudyManager(tmp_path, Limits(**limits), records, workers=1, at_once=0)
-
-
-def test_a_study_is_computed_in_a_process(manager, map_job):
+def test_a_study_is_computed_in_a_process(manager, map_job, until):
     """It is launched, runs, is done, and says how many histories it has."""
     study = manager.create("  My\n study ", map_job())
     assert manager.get(study)["name"] == "My study"
-    facts = _wait(manager, study, "done")
+    facts = until(manager, study, "done")
     assert facts["histories"] == facts["histories_done"] == 72
     assert facts["message"] == ""
     folder = manager.finished(study)
     assert kept_result(folder) == bytes(JsonAnswer(result_of(OpenStudy.of(folder))).body)
 
 
-def test_cancel_takes_less_than_a_second_and_resume_goes_on(manager, long_job):
+def test_cancel_takes_less_than_a_second_and_resume_goes_on(manager, long_job, until):
     """What was finished when it was cancelled is not computed again; no process is left."""
     study = manager.create(None, long_job)
-    _wait(manager, study, "running", done=1)
+    until(manager, study, "running", done=1)
     child = manager.queue.study(study).process
     assert child is not None
     begun = time.monotonic()
@@ -68,7 +52,7 @@ def test_cancel_takes_less_than_a_second_and_resume_goes_on(manager, long_job):
         path.name: path.stat().st_mtime_ns for path in manager.queue.study(study).folder.path.rglob("shards/*.shard")
     }
     manager.resume(study)
-    _wait(manager, study, "running", done=facts["histories_done"] + 1)
+    until(manager, study, "running", done=facts["histories_done"] + 1)
     manager.cancel(study)
     after = {
         path.name: path.stat().st_mtime_ns for path in manager.queue.study(study).folder.path.rglob("shards/*.shard")
@@ -77,10 +61,10 @@ def test_cancel_takes_less_than_a_second_and_resume_goes_on(manager, long_job):
     assert manager.get(study)["histories_done"] > facts["histories_done"]
 
 
-def test_a_study_that_does_not_listen_is_killed(manager, long_job, monkeypatch):
+def test_a_study_that_does_not_listen_is_killed(manager, long_job, monkeypatch, until):
     """Where the signal is lost the group is killed soon after, and nothing that was finished is lost."""
     study = manager.create(None, long_job)
-    done = _wait(manager, study, "running", done=1)["histories_done"]
+    done = until(manager, study, "running", done=1)["histories_done"]
     monkeypatch.setattr(subprocess.Popen, "send_signal", lambda *_: None)
     begun = time.monotonic()
     manager.cancel(study)
@@ -88,26 +72,26 @@ def test_a_study_that_does_not_listen_is_killed(manager, long_job, monkeypatch):
     assert manager.get(study)["histories_done"] >= done
 
 
-def test_one_runs_and_the_others_wait(manager, long_job, map_job):
+def test_one_runs_and_the_othersuntil(manager, long_job, map_job, until):
     """The second begins when the first is out of the way; one that waits is cancelled at once."""
     first, second, third = (manager.create(None, job) for job in (long_job, map_job(), map_job()))
-    _wait(manager, first, "running")
+    until(manager, first, "running")
     assert [manager.get(each)["state"] for each in (second, third)] == ["waiting", "waiting"]
     manager.cancel(second)
     assert manager.get(second)["state"] == "cancelled"
     manager.delete(first)
-    _wait(manager, third, "done")
+    until(manager, third, "done")
     with pytest.raises(NotFound):
         manager.get(first)
     assert not (manager._folder / first).exists()
 
 
-def test_studies_of_a_closed_server_go_on_by_themselves(tmp_path, records, long_job, map_job):
+def test_studies_of_a_closed_server_go_on_by_themselves(tmp_path, records, long_job, map_job, until):
     """What ran and what waited goes on with the next start, in the order it was launched; what was cancelled stays."""
     manager = StudyManager(tmp_path, Limits(), records, workers=1)
     studies = [manager.create(None, job) for job in (long_job, map_job(), map_job())]
     manager.cancel(studies[2])
-    done = _wait(manager, studies[0], "running", done=1)["histories_done"]
+    done = until(manager, studies[0], "running", done=1)["histories_done"]
     manager.close()
     told = [json.loads((tmp_path / "studies" / study / "meta.json").read_text()) for study in studies]
     assert [each["state"] for each in told] == ["interrupted", "interrupted", "cancelled"]
@@ -116,16 +100,16 @@ def test_studies_of_a_closed_server_go_on_by_themselves(tmp_path, records, long_
     assert [again.get(study)["state"] for study in studies] in (
         ["waiting", "waiting", "cancelled"], ["running", "waiting", "cancelled"],
     )  # fmt: skip
-    assert _wait(again, studies[0], "running", done=done + 1)["message"] == ""
+    assert until(again, studies[0], "running", done=done + 1)["message"] == ""
     again.cancel(studies[0])
-    assert _wait(again, studies[1], "done")["histories_done"] == 72
+    assert until(again, studies[1], "done")["histories_done"] == 72
     assert again.get(studies[2])["state"] == "cancelled"
     again.close()
 
 
-def test_a_server_that_was_killed_finds_its_studies(tmp_path, records, map_job):
+def test_a_server_that_was_killed_finds_its_studies(tmp_path, map_job, idle):
     """Running waits again at the next start, but is done where all is finished; what was half made or deleted goes."""
-    manager = _idle(tmp_path, records)
+    manager = idle()
     running, complete, torn = (manager.create(None, map_job()) for _ in range(3))
     for study in (running, complete):
         path = tmp_path / "studies" / study / "meta.json"
@@ -134,13 +118,13 @@ def test_a_server_that_was_killed_finds_its_studies(tmp_path, records, map_job):
     JobFolder.create(folder.campaign, Job.read(folder.path / "job.toml")).run(workers=1)
     (tmp_path / "studies" / torn / "meta.json").unlink()
     (tmp_path / "studies" / ".deleted-x").mkdir()
-    again = _idle(tmp_path, records)
+    again = idle()
     assert {each["id"]: each["state"] for each in again.overview()} == {running: "waiting", complete: "done"}
     assert again.get(complete)["histories_done"] == 72
     assert sorted(path.name for path in (tmp_path / "studies").iterdir()) == sorted([running, complete])
 
 
-def test_links_and_strange_names_are_no_studies(tmp_path, records):
+def test_links_and_strange_names_are_no_studies(tmp_path, idle):
     """A link in the folder of studies is not followed, nor removed with what it points to."""
     outside = tmp_path / "outside"
     outside.mkdir()
@@ -149,13 +133,13 @@ def test_links_and_strange_names_are_no_studies(tmp_path, records):
     studies.mkdir()
     (studies / ("0" * 16)).symlink_to(outside)
     (studies / "something").mkdir()
-    assert _idle(tmp_path, records).overview() == []
+    assert idle().overview() == []
     assert (outside / "kept").exists()
 
 
-def test_too_many_histories_are_refused_with_the_number(tmp_path, records, map_job):
+def test_too_many_histories_are_refused_with_the_number(tmp_path, map_job, idle):
     """The limit itself is allowed, one more is not; refinement counts, and nothing is made of what is refused."""
-    manager = _idle(tmp_path, records, histories=72)
+    manager = idle(histories=72)
     manager.create(None, map_job())
     with pytest.raises(TooLarge, match="98 histories; this server takes up to 72"):
         manager.create(None, map_job(7))
@@ -172,9 +156,9 @@ def test_too_many_histories_are_refused_with_the_number(tmp_path, records, map_j
     assert len(list((tmp_path / "studies").iterdir())) == 1
 
 
-def test_only_so_many_wait(tmp_path, records, map_job):
+def test_only_so_manyuntil(map_job, idle):
     """The line has an end; a place that is given up can be taken."""
-    manager = _idle(tmp_path, records, studies_waiting=2)
+    manager = idle(studies_waiting=2)
     first, _ = manager.create(None, map_job()), manager.create(None, map_job())
     with pytest.raises(Busy) as caught:
         manager.create(None, map_job())
@@ -185,18 +169,18 @@ def test_only_so_many_wait(tmp_path, records, map_job):
         manager.resume(first)
 
 
-def test_the_disk_has_a_limit(tmp_path, records, map_job):
+def test_the_disk_has_a_limit(tmp_path, map_job, idle):
     """A study whose results do not fit is refused with both sizes, before anything is written."""
-    manager = _idle(tmp_path, records, studies_bytes=20_000)
+    manager = idle(studies_bytes=20_000)
     manager.create(None, map_job())
     with pytest.raises(TooLarge, match=r"0\.2 MB, and there is room for 0\.0 MB"):
         manager.create(None, map_job(30))
     assert len(list((tmp_path / "studies").iterdir())) == 1
 
 
-def test_what_is_refused_leaves_nothing(tmp_path, records, map_job):
+def test_what_is_refused_leaves_nothing(tmp_path, records, map_job, idle):
     """A job whose axes do not fit, or whose record is unknown, is refused without a path, and its folder is gone."""
-    manager = _idle(tmp_path, records)
+    manager = idle()
     both = {"axis": "pga", "values": [1.0, 2.0]}
     with pytest.raises(InvalidValueError, match="map: x and y must set different things") as caught:
         manager.create(None, map_job(map={"x": both, "y": both}))
@@ -207,7 +191,7 @@ def test_what_is_refused_leaves_nothing(tmp_path, records, map_job):
     assert manager.create(None, map_job())
 
 
-def test_a_study_needs_nobody_elses_files(manager, records, map_job):
+def test_a_study_needs_nobody_elses_files(manager, records, map_job, until):
     """A record may be deleted from the store once a study has it."""
     text = "\n".join(f"{0.01 * k:.2f} {(-1) ** (k // 20) * 3.0}" for k in range(200)).encode()
     record = records.add(text, "a b?.txt").record
@@ -215,25 +199,25 @@ def test_a_study_needs_nobody_elses_files(manager, records, map_job):
     axes = {"x": {"axis": "width", "values": [0.3, 0.6]}, "y": {"axis": "scale", "values": [0.5, 2.0]}}
     study = manager.create(None, map_job(motions=motions, map=axes))
     records.delete(record)
-    assert _wait(manager, study, "done", "failed")["state"] == "done"
+    assert until(manager, study, "done", "failed")["state"] == "done"
 
 
-def test_a_failure_is_told_in_a_sentence(tmp_path, records, map_job):
+def test_a_failure_is_told_in_a_sentence(tmp_path, records, map_job, idle, until):
     """Where a process ends on its own, its sentence is told without a path; once it is mended, a resume goes on."""
-    idle = _idle(tmp_path, records)
+    idle = idle()
     study = idle.create(None, map_job())
     idle.close()
     job = tmp_path / "studies" / study / "job.toml"
     whole = job.read_text()
     job.write_text(whole.replace("0.5", "-0.5"))
     manager = StudyManager(tmp_path, Limits(), records, workers=1)  # it begins by itself
-    message = _wait(manager, study, "failed", "done")["message"]
+    message = until(manager, study, "failed", "done")["message"]
     assert message.startswith("body: ")
     assert "-0.5" in message
     assert str(tmp_path) not in message
     job.write_text(whole)
     manager.resume(study)
-    assert _wait(manager, study, "failed", "done")["message"] == ""
+    assert until(manager, study, "failed", "done")["message"] == ""
     manager.close()
 
 
@@ -245,20 +229,19 @@ def test_unknown_studies_are_not_there(act, manager):
             getattr(manager, act)(name)
 
 
-def test_what_is_over_cannot_be_cancelled(manager, map_job):
+def test_what_is_over_cannot_be_cancelled(manager, map_job, until):
     """A study that is done is neither cancelled nor resumed; one that runs has no results yet."""
     study = manager.create(None, map_job())
-    _wait(manager, study, "done")
+    until(manager, study, "done")
     with pytest.raises(Refused, match="done"):
         manager.cancel(study)
     with pytest.raises(Refused, match="nothing to resume"):
         manager.resume(study)
 
 
-def test_listeners_are_told_until_they_leave(tmp_path, records,
-                                             map_job):  # fmt: skip
+def test_listeners_are_told_until_they_leave(map_job, idle):
     """A change is told once to everybody who still listens."""
-    manager, told = _idle(tmp_path, records), []
+    manager, told = idle(), []
     leave = manager.queue.subscribe(lambda: told.append(1))
     study = manager.create(None, map_job())
     manager.queue.publish()
@@ -270,17 +253,17 @@ def test_listeners_are_told_until_they_leave(tmp_path, records,
     manager.close()
 
 
-def test_nothing_is_finished_that_is_not(tmp_path, records, map_job):
+def test_nothing_is_finished_that_is_not(map_job, idle):
     """Results of a study that waits are refused with how far it is."""
-    manager = _idle(tmp_path, records)
+    manager = idle()
     study = manager.create(None, map_job())
     with pytest.raises(Refused, match="waiting, not done: 0 of 72 histories"):
         manager.finished(study)
 
 
-def test_folders_are_private(tmp_path, records, map_job):
+def test_folders_are_private(tmp_path, map_job, idle):
     """Nobody else on this machine reads studies."""
-    manager = _idle(tmp_path, records)
+    manager = idle()
     study = manager.create(None, map_job())
     assert (tmp_path / "studies").stat().st_mode & 0o077 == 0
     assert (tmp_path / "studies" / study).stat().st_mode & 0o077 == 0

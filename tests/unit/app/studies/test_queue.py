@@ -14,10 +14,8 @@ from typing import Any
 import pytest
 
 from rocking.app.errors import NoRoom, NotFound, Refused
-from rocking.app.settings import Limits
 from rocking.app.studies import queue as line
 from rocking.app.studies import router
-from rocking.app.studies.manager import StudyManager
 from rocking.app.studies.study import HostedStudy
 from rocking.app.studies.study_folder import StudyFolder
 from rocking.errors import RockingError
@@ -35,14 +33,6 @@ time.sleep(30.0)
 """
 
 
-def _until(manager, study, *states):
-    deadline = time.monotonic() + 30.0
-    while (facts := manager.get(study))["state"] not in states:
-        assert time.monotonic() < deadline, facts
-        time.sleep(0.02)
-    return facts
-
-
 def _full(*_):
     raise OSError(errno.ENOSPC, "No space left on device")
 
@@ -51,7 +41,7 @@ def _told(manager, study):
     return dict(json.loads((manager._folder / study / "meta.json").read_text()))
 
 
-def test_a_full_disk_stops_no_other_study(manager, map_job, monkeypatch):
+def test_a_full_disk_stops_no_other_study(manager, map_job, monkeypatch, until):
     """States that cannot be written are known all the same, and written once there is room; the next study runs."""
     monkeypatch.setattr(line, "SAVE_AGAIN", 0.1)
     manager.queue._at_once = 0
@@ -61,7 +51,7 @@ def test_a_full_disk_stops_no_other_study(manager, map_job, monkeypatch):
         manager.queue._at_once = 1
         manager.queue.changed()
         for study in (first, second):
-            assert _until(manager, study, "done", "failed")["state"] == "done"
+            assert until(manager, study, "done", "failed")["state"] == "done"
         assert _told(manager, first)["state"] == "waiting"
     deadline = time.monotonic() + 5.0
     while _told(manager, first)["state"] != "done":
@@ -69,30 +59,30 @@ def test_a_full_disk_stops_no_other_study(manager, map_job, monkeypatch):
         time.sleep(0.02)
 
 
-def test_a_study_for_which_the_disk_is_full_is_refused(tmp_path, records, map_job, monkeypatch):
+def test_a_study_for_which_the_disk_is_full_is_refused(tmp_path, map_job, monkeypatch, idle):
     """In a sentence, and nothing is left of it."""
-    manager = StudyManager(tmp_path, Limits(), records, workers=1, at_once=0)
+    manager = idle()
     monkeypatch.setattr(StudyFolder, "write", _full)
     with pytest.raises(NoRoom, match="full"):
         manager.create(None, map_job())
     assert list((tmp_path / "studies").iterdir()) == []
 
 
-def test_a_folder_that_is_gone_stops_no_other_study(manager, map_job):
+def test_a_folder_that_is_gone_stops_no_other_study(manager, map_job, until):
     """The study whose folder somebody removed fails, the one behind it is computed."""
     manager.queue._at_once = 0
     first, second = manager.create(None, map_job()), manager.create(None, map_job())
     shutil.rmtree(manager._folder / first)
     manager.queue._at_once = 1
     manager.queue.changed()
-    assert _until(manager, second, "done", "failed")["state"] == "done"
-    assert "could not be started" in _until(manager, first, "failed")["message"]
+    assert until(manager, second, "done", "failed")["state"] == "done"
+    assert "could not be started" in until(manager, first, "failed")["message"]
     manager.delete(first)
     with pytest.raises(NotFound):
         manager.get(first)
 
 
-def test_a_study_that_cannot_be_looked_at_stops_no_other(manager, map_job, monkeypatch):
+def test_a_study_that_cannot_be_looked_at_stops_no_other(manager, map_job, monkeypatch, until):
     """Whatever is raised: it fails, the next one is computed."""
     manager.queue._at_once = 0
     first, second = manager.create(None, map_job()), manager.create(None, map_job())
@@ -106,23 +96,23 @@ def test_a_study_that_cannot_be_looked_at_stops_no_other(manager, map_job, monke
     monkeypatch.setattr(HostedStudy, "look", refuse)
     manager.queue._at_once = 1
     manager.queue.changed()
-    assert "ZeroDivisionError" in _until(manager, first, "failed")["message"]
-    assert _until(manager, second, "done", "failed")["state"] == "done"
+    assert "ZeroDivisionError" in until(manager, first, "failed")["message"]
+    assert until(manager, second, "done", "failed")["state"] == "done"
 
 
-def test_a_thread_that_died_is_begun_anew(manager, map_job):
+def test_a_thread_that_died_is_begun_anew(manager, map_job, until):
     """The next change finds it dead, and studies run again."""
     dead = threading.Thread(target=lambda: None)
     dead.start()
     dead.join()
     manager.queue._thread = dead
     study = manager.create(None, map_job())
-    assert _until(manager, study, "done", "failed")["state"] == "done"
+    assert until(manager, study, "done", "failed")["state"] == "done"
 
 
-def test_what_was_deleted_does_not_come_back(tmp_path, records, map_job):
+def test_what_was_deleted_does_not_come_back(tmp_path, map_job, idle):
     """A study that is deleted while it is put in line again is not there afterwards."""
-    manager = StudyManager(tmp_path, Limits(), records, workers=1, at_once=0)
+    manager = idle()
     study = manager.create(None, map_job())
     found = manager.queue.study(study)
 
@@ -137,25 +127,25 @@ def test_what_was_deleted_does_not_come_back(tmp_path, records, map_job):
     assert list((tmp_path / "studies").iterdir()) == []
 
 
-def test_a_late_end_does_not_end_the_next_process(manager, long_job):
+def test_a_late_end_does_not_end_the_next_process(manager, long_job, until):
     """Of two requests that cancel one process the slower one does not touch the process of a resume between them."""
     study = manager.create(None, long_job)
-    _until(manager, study, "running")
+    until(manager, study, "running")
     found = manager.queue.study(study)
     before = found.process
     assert before is not None
     manager.cancel(study)
     manager.resume(study)
-    _until(manager, study, "running")
+    until(manager, study, "running")
     manager.queue.end(found, before)
     assert found.process is not None
     assert manager.get(study)["state"] == "running"
 
 
-def test_a_study_deleted_while_it_is_read_is_not_there(manager, map_job, monkeypatch):
+def test_a_study_deleted_while_it_is_read_is_not_there(manager, map_job, monkeypatch, until):
     """Whoever reads its results is told that it is not there, not of a file that is missing."""
     study = manager.create(None, map_job())
-    _until(manager, study, "done")
+    until(manager, study, "done")
     monkeypatch.setattr(manager.answers, "get", lambda *_: manager.delete(study) or _gone())
     with pytest.raises(NotFound):
         router._result(manager, study)
@@ -165,7 +155,7 @@ def _gone():
     raise FileNotFoundError(errno.ENOENT, "No such file or directory")
 
 
-def test_requests_that_cross_are_refused_in_words(manager, map_job):
+def test_requests_that_cross_are_refused_in_words(manager, map_job, until):
     """Eight at once create, cancel, resume and delete what they find: nothing but refusals, and the line goes on."""
     wrong = []
     until = time.monotonic() + 4.0
@@ -194,17 +184,17 @@ def test_requests_that_cross_are_refused_in_words(manager, map_job):
     assert not wrong, wrong[:3]
     for facts in manager.overview():
         manager.delete(facts["id"])
-    assert _until(manager, manager.create(None, map_job(2)), "done", "failed")["state"] == "done"
+    assert until(manager, manager.create(None, map_job(2)), "done", "failed")["state"] == "done"
 
 
 @pytest.mark.parametrize("told", ["{", '{"name": "x"}', "", '{"state": "archived"}'])
-def test_a_study_that_is_not_understood_is_left_as_it_is(told, tmp_path, records, map_job):
+def test_a_study_that_is_not_understood_is_left_as_it_is(told, map_job, idle):
     """It is listed with the reason and neither resumed nor changed; it goes when the user says so."""
-    manager = StudyManager(tmp_path, Limits(), records, workers=1, at_once=0)
+    manager = idle()
     study = manager.create(None, map_job())
     (manager._folder / study / "meta.json").write_text(told)
     before = sorted(path.name for path in (manager._folder / study).iterdir())
-    again = StudyManager(tmp_path, Limits(), records, workers=1, at_once=0)
+    again = idle()
     facts = again.get(study)
     assert facts["state"] == "failed"
     assert "cannot be read" in facts["message"]
@@ -216,21 +206,21 @@ def test_a_study_that_is_not_understood_is_left_as_it_is(told, tmp_path, records
     assert not (manager._folder / study).exists()
 
 
-def test_a_campaign_without_its_words_is_kept(tmp_path, records, map_job):
+def test_a_campaign_without_its_words_is_kept(map_job, idle):
     """Results are not removed because `meta.json` is not there."""
-    manager = StudyManager(tmp_path, Limits(), records, workers=1, at_once=0)
+    manager = idle()
     study = manager.create(None, map_job())
     (manager._folder / study / "meta.json").unlink()
     (manager._folder / study / "campaign").mkdir()
-    assert StudyManager(tmp_path, Limits(), records, workers=1, at_once=0).get(study)["state"] == "failed"
+    assert idle().get(study)["state"] == "failed"
     assert (manager._folder / study / "campaign").is_dir()
 
 
-def test_a_server_starts_on_a_full_disk(tmp_path, records, map_job, monkeypatch):
+def test_a_server_starts_on_a_full_disk(map_job, monkeypatch, idle):
     """A study that was waiting waits again, though nothing can be written."""
-    study = StudyManager(tmp_path, Limits(), records, workers=1, at_once=0).create(None, map_job())
+    study = idle().create(None, map_job())
     monkeypatch.setattr(StudyFolder, "write", _full)
-    again = StudyManager(tmp_path, Limits(), records, workers=1, at_once=0)
+    again = idle()
     assert again.get(study)["state"] == "waiting"
 
 
