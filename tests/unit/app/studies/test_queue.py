@@ -158,11 +158,11 @@ def _gone():
 def test_requests_that_cross_are_refused_in_words(manager, map_job, until):
     """Eight at once create, cancel, resume and delete what they find: nothing but refusals, and the line goes on."""
     wrong = []
-    until = time.monotonic() + 4.0
+    end = time.monotonic() + 4.0
 
     def user(seed):
         draw = random.Random(seed)
-        while time.monotonic() < until:
+        while time.monotonic() < end:
             names = [each["id"] for each in manager.overview()] or [""]
             acts = {
                 "create": (None, map_job(2)),
