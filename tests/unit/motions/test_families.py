@@ -157,6 +157,16 @@ def test_every_family_says_where_it_comes_from():
         json.dumps([str(each) for each in one.distributions.values()])
 
 
+STEP = 0.005
+PULSE = pulses.mavroeidis_papageorgiou(velocity=0.7, period=1.2, cycles=2.0, phase=0.0)
+
+
+def residual(count=2000):
+    """Small noise with a vertical part."""
+    noise = np.random.default_rng(2).standard_normal((2, count))
+    return GroundMotion(0.1 * noise[0], STEP, 0.05 * noise[1], name="noise")
+
+
 @pytest.mark.parametrize(
     ("call", "words"),
     [
@@ -175,22 +185,16 @@ def test_every_family_says_where_it_comes_from():
         (lambda: Lognormal(1.0, 2.0, median=1.5, deviation=0.0), "deviation must be > 0"),
         (lambda: Uniform(0.0, 1.0).quantile(1.5), "share must be in"),
         (lambda: Uniform(0.0, 1.0).quantile(-0.5), "share must be in"),
+        (lambda: with_pulse(residual(), PULSE, 0.5), "begin before the motion"),
+        (lambda: with_pulse(residual(), PULSE, math.nan), "arrival must be finite"),
+        (lambda: with_pulse(residual(), PULSE, 1e9), "arrival must be in"),
+        (lambda: with_pulse(residual(), residual(), 3.0), "pulse must be a pulse"),
     ],
 )
 def test_refusals(call, words):
-    """What is no family, seed, number or distribution is refused with the value and the range."""
+    """What is no family, seed, number, distribution or pulse, or comes too early or late, is refused by value."""
     with pytest.raises(InvalidValueError, match=words):
         call()
-
-
-STEP = 0.005
-PULSE = pulses.mavroeidis_papageorgiou(velocity=0.7, period=1.2, cycles=2.0, phase=0.0)
-
-
-def residual(count=2000):
-    """Small noise with a vertical part."""
-    noise = np.random.default_rng(2).standard_normal((2, count))
-    return GroundMotion(0.1 * noise[0], STEP, 0.05 * noise[1], name="noise")
 
 
 def test_periods_of_pulses_are_those_of_strong_earthquakes():
@@ -217,6 +221,10 @@ def test_pulse_is_added_whole_and_in_place():
     assert motion.acceleration - bare.acceleration == pytest.approx(expected, abs=1e-9)
     assert np.array_equal(motion.vertical, bare.vertical)
     assert motion.provenance[-1].startswith("Mavroeidis-Papageorgiou pulse")
+    # a pulse that ends after the residual lengthens the vertical part with stillness
+    longer = with_pulse(residual(100), PULSE, 2.0)
+    assert longer.vertical.size == len(longer)
+    assert not longer.vertical[100:].any()
 
 
 def test_velocity_of_the_pulse_appears():
@@ -237,25 +245,3 @@ def test_velocity_of_the_family_is_that_of_its_pulse():
         motion = bare.motion(1, number)
         # 2e-3: sampling, and what is left of the residual
         assert peak_ground_velocity(motion) == pytest.approx(float(motion.metadata["pulse_velocity_m_s"]), rel=2e-3)
-
-
-def test_vertical_part_is_as_long_as_the_sum():
-    """A pulse that ends after the residual lengthens the vertical part with stillness."""
-    motion = with_pulse(residual(100), PULSE, 2.0)
-    assert motion.vertical.size == len(motion)
-    assert not motion.vertical[100:].any()
-
-
-@pytest.mark.parametrize(
-    ("pulse", "arrival", "words"),
-    [
-        (PULSE, 0.5, "begin before the motion"),
-        (PULSE, float("nan"), "arrival must be finite"),
-        (PULSE, 1e9, "arrival must be in"),
-        (residual(), 3.0, "pulse must be a pulse"),
-    ],
-)
-def test_what_cannot_be_added(pulse, arrival, words):
-    """A pulse that would begin too early or never, and what is no pulse."""
-    with pytest.raises(InvalidValueError, match=words):
-        with_pulse(residual(), pulse, arrival)
