@@ -1,7 +1,7 @@
 """COSMOS v1.20: headers in stated formats, several channels, and what is refused."""
 
-import numpy as np
 import pytest
+from record_files import read_back, refused
 
 from rocking.errors import RecordError
 from rocking.motions.formats import Source, formats
@@ -59,11 +59,13 @@ def test_hand_made_file() -> None:
 
 
 def test_several_channels_follow_one_another() -> None:
-    """Each channel is a component, named by azimuth, or by number where azimuths repeat."""
+    """Each channel is a component, named by azimuth, or by number where these repeat; nothing follows the last."""
     record = COSMOS.read(_source([*_channel(1, 340), *_channel(2, 70), ""]))
     assert [part.name for part in record.components] == ["340", "70"]
     record = COSMOS.read(_source([*_channel(3, 90), *_channel(4, 90)]))
     assert [part.name for part in record.components] == ["CHAN 3", "CHAN 4"]
+    with pytest.raises(RecordError, match="nothing may follow"):
+        COSMOS.read(_source([*_channel(), "", "0.1"]))
 
 
 def test_unknown_values_are_passed_over() -> None:
@@ -80,62 +82,42 @@ def test_unknown_values_are_passed_over() -> None:
     assert part.stated_peak is None
     with pytest.raises(RecordError, match="say time_step="):
         COSMOS.read(_source([text.replace("    10.000000", blank)]))
-
-
-def test_data_in_g() -> None:
-    """Unit 02 is g."""
     assert COSMOS.read(_source(_channel(unit="g(02)", code=2))).components[0].unit == "g"
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ("     10  acc", "     11  acc", "columns of 10 characters expected|11 samples"),
-        ("     10  acc", "999999999  acc", "columns of 10 characters expected"),
-        ("    -999      10\n", "    -999      12\n", "states 12 samples, the file holds 10"),
-        ("  -12.345000", "  -12.355000", "peak of 12.355, the data have 12.345"),
-        ("     0.030000", "     0.080000", "states the peak at 0.08 s, the data have it at 0.03 s"),
-        ("    10.000000     0.100000", "    20.000000     0.100000", "duration of 0.1 s"),
-        ("cm/sec2(04)", "cm/sec(05)", "acceleration in g .02. or cm/sec2 .04. expected"),
-        ("cm/sec2(04)", "counts (50)", "acceleration in g .02. or cm/sec2 .04. expected"),
-        ("cm/sec2(04)", "g(04)", "contradicts its code 04"),
-        ("cm/sec2(04)", "g(02)", "must state acceleration"),
-        ("acceleration pts", "velocity pts", "found velocity"),
-        ("(8F10.5)", "(9F10.5)", "9 columns of 10"),
-        ("(8F10.5)", "(0F10.5)", "a format such as"),
-        ("on  10 lines", "on  11 lines", "do not make 11 lines"),
-        ("on  17 lines", "on  16 lines", "do not make 16 lines"),
-        ("  2 Comment", "  3 Comment", "a comment line that starts with"),
-        ("with 13 text", "with 12 text", "integer-header|Integer-header"),
-        ("with 13 text", "with 999999999 text", "12 to 200 text lines expected"),
-        ("/&  ----------", "   0.00000", "End of data for channel expected"),
-        ("-1.25000", "-1.2500O", "number expected"),
-        ("  -1.25000", "", "8 columns of 10 characters expected"),
-    ],
-)
-def test_damage_is_refused(old: str, new: str, message: str) -> None:
+DAMAGES = [
+    ("     10  acc", "     11  acc", "columns of 10 characters expected|11 samples"),
+    ("     10  acc", "999999999  acc", "columns of 10 characters expected"),
+    ("    -999      10\n", "    -999      12\n", "states 12 samples, the file holds 10"),
+    ("  -12.345000", "  -12.355000", "peak of 12.355, the data have 12.345"),
+    ("     0.030000", "     0.080000", "states the peak at 0.08 s, the data have it at 0.03 s"),
+    ("    10.000000     0.100000", "    20.000000     0.100000", "duration of 0.1 s"),
+    ("cm/sec2(04)", "cm/sec(05)", "acceleration in g .02. or cm/sec2 .04. expected"),
+    ("cm/sec2(04)", "counts (50)", "acceleration in g .02. or cm/sec2 .04. expected"),
+    ("cm/sec2(04)", "g(04)", "contradicts its code 04"),
+    ("cm/sec2(04)", "g(02)", "must state acceleration"),
+    ("acceleration pts", "velocity pts", "found velocity"),
+    ("(8F10.5)", "(9F10.5)", "9 columns of 10"),
+    ("(8F10.5)", "(0F10.5)", "a format such as"),
+    ("on  10 lines", "on  11 lines", "do not make 11 lines"),
+    ("on  17 lines", "on  16 lines", "do not make 16 lines"),
+    ("  2 Comment", "  3 Comment", "a comment line that starts with"),
+    ("with 13 text", "with 12 text", "integer-header|Integer-header"),
+    ("with 13 text", "with 999999999 text", "12 to 200 text lines expected"),
+    ("/&  ----------", "   0.00000", "End of data for channel expected"),
+    ("-1.25000", "-1.2500O", "number expected"),
+    ("  -1.25000", "", "8 columns of 10 characters expected"),
+]
+
+
+def test_damage_is_refused() -> None:
     """Whatever the headers state and the data contradict is refused."""
-    text = "\n".join(_channel())
-    assert text.count(old) == 1
-    with pytest.raises(RecordError, match=message):
-        COSMOS.read(_source([text.replace(old, new)]))
-
-
-def test_lines_after_the_end_are_refused() -> None:
-    """Nothing but blank lines may follow the last channel."""
-    with pytest.raises(RecordError, match="nothing may follow"):
-        COSMOS.read(_source([*_channel(), "", "0.1"]))
+    refused(COSMOS, "\n".join(_channel()), DAMAGES)
 
 
 def test_round_trip(made_up) -> None:
     """Three channels come back to 5 decimals of cm/s2."""
-    record = made_up("0", "90", "270")
-    source = Source("w", COSMOS.write(record))
-    again = COSMOS.read(source)
-    assert COSMOS.recognises(source)
+    again = read_back(COSMOS, made_up("0", "90", "270"), 100.0, atol=5.1e-6)
     assert [part.name for part in again.components] == ["0", "90", "270"]
-    for old, new in zip(record.components, again.components, strict=True):
-        np.testing.assert_allclose(new.acceleration, 100.0 * old.acceleration, atol=5.1e-6, rtol=0.0)
-        assert new.time_step == 0.02
     with pytest.raises(RecordError, match=r"does not fit into 1. characters"):
         COSMOS.write(made_up("0", scale=1e6))

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from record_files import read_back, refused
 
 from rocking.errors import RecordError
 from rocking.motions.formats import Component, Record, RecordFormat, Source, formats
@@ -99,31 +100,27 @@ def test_v2_newer_line_before_the_data() -> None:
     assert V2.read(_source(lines)).components[0].acceleration.tolist() == ACCEL
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ("    10 POINTS OF ACCEL", "    11 POINTS OF ACCEL", "characters|header states"),
-        ("    10 POINTS OF ACCEL", "999999999 POINTS OF ACCEL", "8 columns of 10 characters expected"),
-        ("    10 POINTS OF VELOC", "     9 POINTS OF VELOC", "columns of 10 characters expected"),
-        ("  10 POINTS OF INSTRUMENT", "  12 POINTS OF INSTRUMENT", "states 12 samples, the file holds 10"),
-        ("-23456.789    CM/SEC/SEC", "-23456.889    CM/SEC/SEC", "peak of 23456.9, the data have 23456.8"),
-        ("AT     .080   SEC", "AT     .180   SEC", "states the peak at 0.18 s"),
-        ("      .040    -5.500", "      .040    -5.600", "VELOC peak of 5.6"),
-        ("     7.250      .000", "     7.350      .000", "DISPL peak of 7.35"),
-        ("ACCEL DATA EQUALLY SPACED AT  .020", "ACCEL DATA EQUALLY SPACED AT  .030", "states a step of 0.02 s"),
-        ("(UNITS: CM/SEC/SEC)", "(UNITS: CM/SEC)", "must be in CM/SEC/SEC"),
-        ("(UNITS: CM/SEC/SEC)", "", "must be in CM/SEC/SEC"),
-        ("-1234.567-23456.789", "-1234.567-23456.78B", "number expected, found '-23456.78B'"),
-        ("POINTS OF ACCEL DATA", "POINTS OF DISPL DATA", "DISPL data must be in CM"),
-        ("/&  ------", "   ------", "END OF DATA FOR CHANNEL expected"),
-    ],
-)
-def test_v2_damage_is_refused(old: str, new: str, message: str) -> None:
+V2_DAMAGES = [
+    ("    10 POINTS OF ACCEL", "    11 POINTS OF ACCEL", "characters|header states"),
+    ("    10 POINTS OF ACCEL", "999999999 POINTS OF ACCEL", "8 columns of 10 characters expected"),
+    ("    10 POINTS OF VELOC", "     9 POINTS OF VELOC", "columns of 10 characters expected"),
+    ("  10 POINTS OF INSTRUMENT", "  12 POINTS OF INSTRUMENT", "states 12 samples, the file holds 10"),
+    ("-23456.789    CM/SEC/SEC", "-23456.889    CM/SEC/SEC", "peak of 23456.9, the data have 23456.8"),
+    ("AT     .080   SEC", "AT     .180   SEC", "states the peak at 0.18 s"),
+    ("      .040    -5.500", "      .040    -5.600", "VELOC peak of 5.6"),
+    ("     7.250      .000", "     7.350      .000", "DISPL peak of 7.35"),
+    ("ACCEL DATA EQUALLY SPACED AT  .020", "ACCEL DATA EQUALLY SPACED AT  .030", "states a step of 0.02 s"),
+    ("(UNITS: CM/SEC/SEC)", "(UNITS: CM/SEC)", "must be in CM/SEC/SEC"),
+    ("(UNITS: CM/SEC/SEC)", "", "must be in CM/SEC/SEC"),
+    ("-1234.567-23456.789", "-1234.567-23456.78B", "number expected, found '-23456.78B'"),
+    ("POINTS OF ACCEL DATA", "POINTS OF DISPL DATA", "DISPL data must be in CM"),
+    ("/&  ------", "   ------", "END OF DATA FOR CHANNEL expected"),
+]
+
+
+def test_v2_damage_is_refused() -> None:
     """Counts, peaks, their times, steps and units that header and data do not share are refused."""
-    text = "\n".join(_v2())
-    assert text.count(old) == 1
-    with pytest.raises(RecordError, match=message):
-        V2.read(_source([text.replace(old, new)], "\n"))
+    refused(V2, "\n".join(_v2()), V2_DAMAGES)
 
 
 def test_v1_hand_made_file() -> None:
@@ -140,30 +137,26 @@ def test_v1_hand_made_file() -> None:
     assert record.metadata["station"] == "CELLAR"
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ("   .040  3.500", "   .050  3.500", "not evenly spaced"),
-        ("    0    7    0", "    0    8    0", "columns of 7 characters expected"),
-        ("      .120", "     1.120", "states a record of 1.12 s, the last sample is at 0.12 s"),
-        ("    -1.235", "    -1.335", "peak of 1.335, the data have 1.2345"),
-        ("      .060", "      .100", "states the peak at 0.1 s"),
-        ("-12.345", "-12.34S", "number expected"),
-        ("/&  ------", "   ------", "END OF DATA FOR CHANNEL expected"),
-        ("SEC AND G/10", "SEC AND WHAT", "say units="),
-        ("SEC AND G/10", "SEC AND CM/SEC/SEC", "peak of 1.235"),
-        ("MAX  = -1.235 G", "MAX  = 0.270 G", "MAX of 0.27, the data have 1.2345"),
-        ("MAX  = -1.235 G", "MAX  = -1.236 G", "MAX of 1.236, the data have 1.2345"),
-        ("MAX  = -1.235 G", "MAX  = -1.235 CM/SEC/SEC", "MAX of 1.235, the data have 1210"),
-        ("MAX  = -1.235 G", "MAX  = -1.2B5 G", "line 12: MAX = a number and its unit expected"),
-    ],
-)
-def test_v1_damage_is_refused(old: str, new: str, message: str) -> None:
+V1_DAMAGES = [
+    ("   .040  3.500", "   .050  3.500", "not evenly spaced"),
+    ("    0    7    0", "    0    8    0", "columns of 7 characters expected"),
+    ("      .120", "     1.120", "states a record of 1.12 s, the last sample is at 0.12 s"),
+    ("    -1.235", "    -1.335", "peak of 1.335, the data have 1.2345"),
+    ("      .060", "      .100", "states the peak at 0.1 s"),
+    ("-12.345", "-12.34S", "number expected"),
+    ("/&  ------", "   ------", "END OF DATA FOR CHANNEL expected"),
+    ("SEC AND G/10", "SEC AND WHAT", "say units="),
+    ("SEC AND G/10", "SEC AND CM/SEC/SEC", "peak of 1.235"),
+    ("MAX  = -1.235 G", "MAX  = 0.270 G", "MAX of 0.27, the data have 1.2345"),
+    ("MAX  = -1.235 G", "MAX  = -1.236 G", "MAX of 1.236, the data have 1.2345"),
+    ("MAX  = -1.235 G", "MAX  = -1.235 CM/SEC/SEC", "MAX of 1.235, the data have 1210"),
+    ("MAX  = -1.235 G", "MAX  = -1.2B5 G", "line 12: MAX = a number and its unit expected"),
+]
+
+
+def test_v1_damage_is_refused() -> None:
     """Uneven times, and counts, lengths, peaks and units that contradict the data, are refused."""
-    text = "\n".join(_v1())
-    assert text.count(old) == 1
-    with pytest.raises(RecordError, match=message):
-        V1.read(_source([text.replace(old, new)], "\n"))
+    refused(V1, "\n".join(_v1()), V1_DAMAGES)
 
 
 def test_v1_text_alone_states_the_peak() -> None:
@@ -210,19 +203,15 @@ def test_v1_last_line_of_the_reals(size: int) -> None:
     assert (part.acceleration.tolist(), part.stated_peak) == (TENTHS, pytest.approx(12.35))
 
 
-@pytest.mark.parametrize(("kind", "factor", "digit"), [(V1, 10.0 / 9.80665, 5.1e-4), (V2, 100.0, 5.1e-4)])
-def test_round_trips(kind: RecordFormat, factor: float, digit: float, made_up) -> None:
+@pytest.mark.parametrize(("kind", "factor"), [(V1, 10.0 / 9.80665), (V2, 100.0)])
+def test_round_trips(kind: RecordFormat, factor: float, made_up) -> None:
     """Channels of unequal length come back to 3 decimals of the format's unit."""
     whole = made_up("90", "UP")
     parts = (whole.components[0], Component("UP", whole.components[1].acceleration[:-1], "m/s2", 0.02))
     record = Record("x", parts, metadata=whole.metadata)
-    source = Source("w", kind.write(record))
-    again = kind.read(source)
-    assert kind.recognises(source)
+    again = read_back(kind, record, factor, atol=5.1e-4)
     assert [part.name for part in again.components] == ["90", "UP"]
     assert (again.metadata["event"], again.metadata["station"]) == ("Somewhere", "Cellar")
-    for old, new in zip(parts, again.components, strict=True):
-        np.testing.assert_allclose(new.acceleration, factor * old.acceleration, atol=digit, rtol=0.0)
     with pytest.raises(RecordError, match="does not fit"):
         kind.write(made_up("90", scale=1e6))
 

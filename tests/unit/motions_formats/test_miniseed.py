@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rocking.conventions import g
 from rocking.errors import InvalidValueError, MissingExtraError, RecordError
 from rocking.motions.formats import Component, Record, RecordFormat, Source, formats
 
@@ -200,16 +199,6 @@ def test_damaged_files_give_no_other_error() -> None:
         except RecordError:
             continue
         assert all(np.isfinite(part.acceleration).all() for part in record.components)
-
-
-def test_the_real_file(shared_records: Path) -> None:
-    """2019 Ridgecrest, CI.CLC HNE: 39001 samples at 0.01 s, 0.343 g by 213945 counts/(m/s2)."""
-    pytest.importorskip("obspy")
-    (path,) = (shared_records / "mseed").glob("*.mseed")
-    made = type(MINISEED).with_response(shared_records / "stationxml" / "CI.CLC.xml")
-    (part,) = made.read(Source.of_path(path)).components
-    assert (part.acceleration.size, part.time_step) == (39001, 0.01)
-    assert part.peak / g == pytest.approx(0.343, abs=5e-4)
 
 
 def test_codes_are_cut_to_the_places_that_the_format_has() -> None:

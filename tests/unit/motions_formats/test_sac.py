@@ -4,12 +4,10 @@ import importlib.util
 import os
 import random
 import struct
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from rocking.conventions import g
 from rocking.errors import MissingExtraError, RecordError
 from rocking.motions.formats import Component, Record, Source, formats
 
@@ -149,15 +147,6 @@ def test_what_is_written_is_read_back() -> None:
     assert (part.name, part.time_step) == ("HNE", 0.005)
     with pytest.raises(RecordError, match="wrong unit"):
         SAC.write(Record("", (Component("a", np.array([0.0, 1e38]), "g", 0.1),)))
-
-
-def test_the_real_file(shared_records: Path) -> None:
-    """2019 Ridgecrest, CJ.T001230 HNN: 15001 samples at 0.02 s; 0.00348981 g if it is m/s2."""
-    pytest.importorskip("obspy")
-    (path,) = (shared_records / "sac").glob("*.sac")
-    (part,) = SAC.read(Source.of_path(path), units="m/s2").components
-    assert (part.acceleration.size, part.time_step) == (15001, 0.02)
-    assert part.peak / g == pytest.approx(0.00348981, rel=2e-6)
 
 
 def test_two_samples_are_a_record() -> None:

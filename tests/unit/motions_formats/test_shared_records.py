@@ -55,38 +55,26 @@ def _file(folder: Path, pattern: str) -> Path:
 
 @pytest.mark.parametrize("known", RECORDS, ids=lambda known: known.pattern)
 def test_reads_to_its_listed_peak(shared_records: Path, known: Known) -> None:
-    """Recognised as one format; every component has the listed peak, unit, step and number of samples."""
+    """Recognised as one format; every component has the listed peak, unit, step and samples; a motion is in m/s2."""
     if known.format == "sac":
         pytest.importorskip("obspy")
-    record = read_record(_file(shared_records, known.pattern), units=known.units, time_step=known.time_step)
+    path = _file(shared_records, known.pattern)
+    names = {name for name, one in formats().items() if one.recognises(Source.of_path(path))}
+    assert names - {"columns"} == {known.format} - {"columns"}
+    assert names
+    record = read_record(path, units=known.units, time_step=known.time_step)
     assert record.format == known.format
     assert {part.unit for part in record.components} == {known.unit}
     assert tuple(part.acceleration.size for part in record.components) == known.samples
+    unit = ACCELERATION_UNITS[known.peak_unit]
     for part, peak in zip(record.components, known.peaks, strict=True):
         assert part.time_step == pytest.approx(known.step, rel=1e-12)
-        factor = ACCELERATION_UNITS[known.unit] / ACCELERATION_UNITS[known.peak_unit]
-        assert part.peak * factor == pytest.approx(peak, abs=1.001 * known.digit, rel=0.0)
-
-
-@pytest.mark.parametrize("known", RECORDS, ids=lambda known: known.pattern)
-def test_is_recognised_by_one_format_only(shared_records: Path, known: Known) -> None:
-    """No other format but the last resort takes the file for its own."""
-    source = Source.of_path(_file(shared_records, known.pattern))
-    names = {name for name, one in formats().items() if one.recognises(source)}
-    assert names - {"columns"} == {known.format} - {"columns"}
-    assert names
-
-
-@pytest.mark.parametrize("known", [one for one in RECORDS if one.format != "sac"], ids=lambda known: known.pattern)
-def test_motion_is_in_si(shared_records: Path, known: Known) -> None:
-    """A motion has the listed peak in m/s2, and its raw header."""
-    path = _file(shared_records, known.pattern)
-    names = [part.name for part in read_record(path, units=known.units, time_step=known.time_step).components]
-    motion = read_motion(path, units=known.units, time_step=known.time_step, component=names[0])
-    expected = known.peaks[0] * ACCELERATION_UNITS[known.peak_unit]
-    assert motion.peak == pytest.approx(
-        expected, abs=1.001 * known.digit * ACCELERATION_UNITS[known.peak_unit], rel=0.0
-    )
+        assert part.peak * ACCELERATION_UNITS[known.unit] / unit == pytest.approx(
+            peak, abs=1.001 * known.digit, rel=0.0
+        )
+    first = record.components[0].name
+    motion = read_motion(path, units=known.units, time_step=known.time_step, component=first)
+    assert motion.peak == pytest.approx(known.peaks[0] * unit, abs=1.001 * known.digit * unit, rel=0.0)
     assert bool(motion.metadata["header"]) == (known.format != "columns")
 
 

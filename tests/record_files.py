@@ -1,0 +1,35 @@
+"""Record files typed by hand and damaged, or written and read again: what the tests of every format ask."""
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from rocking.errors import RecordError
+from rocking.motions.formats import Record, RecordFormat, Source
+
+
+def refused(kind: RecordFormat, text: str, damages: Sequence[tuple[str, str, str]]) -> None:
+    """A good file of which the first of some words is replaced by others is refused by a sentence, each damage."""
+    kind.read(Source("good", text.encode("latin-1")))
+    for old, new, message in damages:
+        changed = text.replace(old, new, 1)
+        assert changed != text, f"{old!r} does not stand in the file"
+        with pytest.raises(RecordError) as caught:
+            kind.read(Source("damaged", changed.encode("latin-1")))
+        assert message in str(caught.value) or re.search(message, str(caught.value)), f"{new!r}: {caught.value}"
+
+
+def read_back(kind: RecordFormat, record: Record, factor: float, *, rtol: float = 0.0, atol: float = 0.0) -> Record:
+    """What is written is recognised, and read back to the digits of the format in the order of the file."""
+    source = Source("written", kind.write(record))
+    assert kind.recognises(source)
+    again = kind.read(source)
+    rows = {part.name: part for part in record.components}
+    assert {part.name for part in again.components} == set(rows)
+    for part in again.components:
+        given = rows[part.name]
+        np.testing.assert_allclose(part.acceleration, factor * given.acceleration, rtol=rtol, atol=atol)
+        assert part.time_step == given.time_step
+    return again
