@@ -23,8 +23,7 @@ from rocking.statistics.maximum_likelihood import (
     FittedCurves,
     LogScale,
     find_curves,
-    log_dispersion,
-    log_fractile,
+    log_quantity,
     quadratic_error,
     standard_errors,
     with_cluster_errors,
@@ -115,7 +114,7 @@ class BootstrapSample:
         """
         one, many = (
             (
-                self._quantity(curves, variate)[:, None],
+                log_quantity(curves.theta, self.scale, variate)[:, None],
                 standard_errors(curves.theta, curves.curvature, self.scale, variate)[:, None],
             )
             for curves in (self.original, self.curves)
@@ -149,11 +148,6 @@ class BootstrapSample:
             return low, high
         unit = one[1][0] if chosen == "studentised" else 1.0
         return one[0][0] - high * unit, one[0][0] - low * unit  # Eq. 210
-
-    def _quantity(self, curves: FittedCurves, variate: float | None) -> FloatArray:
-        if variate is None:
-            return log_dispersion(curves.theta, self.scale)
-        return log_fractile(curves.theta, self.scale, variate)
 
 
 def bootstrap(

@@ -103,7 +103,8 @@ class Counts:
         if self.clusters >= LEAST_CLUSTERS and found >= wanted:
             return ""
         if self.clusters < LEAST_CLUSTERS:
-            return f"{self.clusters} distinct {_plural(self.clusters)}, where {LEAST_CLUSTERS} are needed"
+            word = "cluster" if self.clusters == 1 else "clusters"
+            return f"{self.clusters} distinct {word}, where {LEAST_CLUSTERS} are needed"
         return f"{self.clusters} clusters of {found} distinct outcomes, where {wanted} are needed"
 
 
@@ -167,15 +168,17 @@ def count_outcomes(
     _none_above("failures", failed, number)
     distinct, where = np.unique(level, return_inverse=True)
     check_spread(distinct)
-    pooled = [_pool(values, where, distinct.size) for values in (failed, number)]
+    pooled = [np.bincount(where, values, distinct.size).astype(np.float64) for values in (failed, number)]
     if clusters is None:
-        return Counts(distinct, pooled[0], pooled[1])
-    cluster = _cluster_numbers(clusters, level.size)
-    shape = (int(cluster.max()) + 1, distinct.size)
-    tables = [np.zeros(shape), np.zeros(shape)]
+        return Counts(distinct, *pooled)
+    known: dict[Hashable, int] = {}
+    cluster = np.array([known.setdefault(name, len(known)) for name in clusters], dtype=np.int64)
+    if cluster.size != level.size:
+        raise InvalidValueError(f"clusters must name one cluster a level: {level.size}, got {cluster.size}")
+    tables = [np.zeros((len(known), distinct.size)) for _ in pooled]
     for table, values in zip(tables, (failed, number), strict=True):
         np.add.at(table, (cluster, where), values)
-    return Counts(distinct, pooled[0], pooled[1], tables[0], tables[1])
+    return Counts(distinct, *pooled, *tables)
 
 
 def count_states(levels: Any, rocked: Any, overturned: Any, trials: Any = None) -> StateCounts:
@@ -211,14 +214,6 @@ def count_states(levels: Any, rocked: Any, overturned: Any, trials: Any = None) 
     pair = [_whole(name, values, np.size(levels), 0.0) for name, values in (("o", overturned), ("r", rocked))]
     _none_above("overturned", pair[0], pair[1], "rocked")
     return StateCounts(least.levels, least.failures, worst.failures, least.trials)
-
-
-def _plural(count: int) -> str:
-    return "cluster" if count == 1 else "clusters"
-
-
-def _pool(values: FloatArray, where: IntArray, size: int) -> FloatArray:
-    return np.asarray(np.bincount(where, weights=values, minlength=size), dtype=np.float64)
 
 
 def _row(name: str, values: Any) -> FloatArray:
@@ -263,14 +258,6 @@ def check_spread(levels: FloatArray) -> None:
         )
 
 
-def _cluster_numbers(clusters: Iterable[Hashable], size: int) -> IntArray:
-    known: dict[Hashable, int] = {}
-    numbers = [known.setdefault(name, len(known)) for name in clusters]
-    if len(numbers) != size:
-        raise InvalidValueError(f"clusters must name one cluster a level: {size}, got {len(numbers)}")
-    return np.array(numbers, dtype=np.int64)
-
-
 def pooled(levels: FloatArray, good: BoolArray, reached: Sequence[BoolArray], cluster: IntArray) -> list[Counts]:
     """Return the counts of several states of the same histories, as `count_outcomes` would of each.
 
@@ -278,21 +265,17 @@ def pooled(levels: FloatArray, good: BoolArray, reached: Sequence[BoolArray], cl
     histories take no more room than the outcomes they can have; by cluster where one has more than one history.
     """
     size = np.bincount(cluster, good.reshape(cluster.size, -1).sum(axis=1))
-    if good.any() and size.max() <= 1.0:
-        return _single(levels[good], [state[good] for state in reached])
+    if good.any() and size.max() <= 1.0:  # independent: levels and trials are kept once for all states
+        distinct, where = np.unique(levels[good], return_inverse=True)
+        check_spread(distinct)
+        trials, *failures = (
+            np.bincount(where[state[good]], minlength=distinct.size).astype(np.float64) for state in (good, *reached)
+        )
+        return [Counts(distinct, failed, trials) for failed in failures]
     if good.any() and levels.ndim == 2 and levels.strides[0] == 0:
         return [_grid(levels[0], good, state & good, cluster) for state in reached]
     names = np.broadcast_to(cluster.reshape(-1, *[1] * (good.ndim - 1)), good.shape)[good]
     return [count_outcomes(levels[good], state[good], clusters=names.tolist()) for state in reached]
-
-
-def _single(levels: FloatArray, reached: Sequence[BoolArray]) -> list[Counts]:
-    """Return the counts of histories that are independent; levels and trials are kept once for all states."""
-    distinct, where = np.unique(levels, return_inverse=True)
-    check_spread(distinct)
-    trials = np.bincount(where, minlength=distinct.size).astype(np.float64)
-    failures = [np.bincount(where[state], minlength=distinct.size).astype(np.float64) for state in reached]
-    return [Counts(distinct, failed, trials) for failed in failures]
 
 
 def _grid(levels: FloatArray, good: BoolArray, failed: BoolArray, cluster: IntArray) -> Counts:

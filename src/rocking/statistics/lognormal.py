@@ -31,6 +31,7 @@ from rocking.statistics.maximum_likelihood import (
     find_curves,
     log_dispersion,
     log_fractile,
+    log_quantity,
     quadratic_error,
     standard_errors,
 )
@@ -237,19 +238,13 @@ class LognormalFit:
         used, sample = self._how(method, repetitions, seed)
         scale, curves = self._fitted
         quantile, variate = _quantile(level), _parameter(parameter)
+        error = standard_errors(curves.theta, curves.curvature, scale, variate)[0]
         if sample is not None:
             ends = np.array(sample.log_interval(variate, level))
+        elif used == "profile":
+            ends = self._profile(variate, quantile, error)
         else:
-            error = standard_errors(curves.theta, curves.curvature, scale, variate)[0]
-            if used == "profile":
-                ends = self._profile(variate, quantile, error)
-            else:
-                logs = (
-                    log_dispersion(curves.theta, scale)
-                    if variate is None
-                    else log_fractile(curves.theta, scale, variate)
-                )
-                ends = logs[0] + SIDES * quantile * error  # Eq. 206
+            ends = log_quantity(curves.theta, scale, variate)[0] + SIDES * quantile * error  # Eq. 206
         low, high = _exp(ends)
         return float(low), float(high)
 
@@ -294,21 +289,18 @@ class LognormalFit:
         scale, _ = self._fitted
         quantile, (levels, some) = _quantile(level), levels_of(im)
         position = scale.position(levels[some])
-        if sample is not None:
-            ends = sample.variate_band(position, level)
-        else:
-            ends = self._variates(position, quantile, profile=used == "profile")
+        ends = self._variates(position, quantile, used) if sample is None else sample.variate_band(position, level)
         result = np.zeros((2, *levels.shape))
         result[:, some] = ndtr(np.stack(ends))
         return result[0], result[1]
 
-    def _variates(self, position: FloatArray, quantile: float, *, profile: bool) -> tuple[FloatArray, FloatArray]:
+    def _variates(self, position: FloatArray, quantile: float, method: str) -> tuple[FloatArray, FloatArray]:
         _, curves = self._fitted
         count = position.size
         middle = curves.theta[0, 0] + curves.theta[0, 1] * position
         slope = np.stack([np.ones_like(position), position], axis=1)
         error = quadratic_error(slope, np.broadcast_to(curves.curvature, (count, 2, 2)))
-        if not profile or not count:
+        if method != "profile" or not count:
             return middle - quantile * error, middle + quantile * error
         start = Profile(self._model, curves.value, curves.theta, quantile)
         both = ProbabilityConstraint(np.tile(position, 2))
@@ -318,20 +310,18 @@ class LognormalFit:
     def _how(
         self, method: IntervalMethod | None, repetitions: int, seed: int
     ) -> tuple[str, BootstrapSample | CapacitySample | None]:
-        """Return the method of an interval, and the bootstrap that it needs."""
+        """Return the method of an interval, and the bootstrap that it needs: one for both ends of all parameters."""
         used = self.interval_method if method is None else checks.one_of("method", method, get_args(IntervalMethod))
-        return used, self._sample(repetitions, seed) if used == "bootstrap" else None
+        if used != "bootstrap":
+            return used, None
+        key = checks.within("repetitions", repetitions, 1, 10**7), seed
+        if key not in self._samples:
+            self._samples[key] = self.bootstrap(repetitions=repetitions, seed=seed)
+        return used, self._samples[key]
 
     @cached_property
     def _samples(self) -> dict[tuple[float, int], BootstrapSample | CapacitySample]:
         return {}
-
-    def _sample(self, repetitions: int, seed: int) -> BootstrapSample | CapacitySample:
-        """Return a bootstrap, made once: both ends of all parameters come from the same one."""
-        key = checks.within("repetitions", repetitions, 1, 10**7), seed
-        if key not in self._samples:
-            self._samples[key] = self.bootstrap(repetitions=repetitions, seed=seed)
-        return self._samples[key]
 
     def bootstrap(
         self, kind: Resampling | Literal["capacities"] | None = None, *, repetitions: int = 1000, seed: int = 0

@@ -206,6 +206,11 @@ def log_dispersion(theta: FloatArray, scale: LogScale) -> FloatArray:
     return np.log(scale.spread / theta[:, 1])  # Eq. 193
 
 
+def log_quantity(theta: FloatArray, scale: LogScale, variate: float | None) -> FloatArray:
+    """Return a variate's logarithmic fractile of curves; without one the logarithmic dispersion."""
+    return log_dispersion(theta, scale) if variate is None else log_fractile(theta, scale, variate)
+
+
 def standard_errors(theta: FloatArray, curvature: FloatArray, scale: LogScale, variate: float | None) -> FloatArray:
     """Return the standard errors of a variate's logarithmic fractile; without one of the logarithmic dispersion."""
     a, b = theta[:, 0], theta[:, 1]

@@ -7,7 +7,6 @@ D. Firth, Jeffreys-prior penalty, finiteness and shrinkage in binomial-response 
 maximum likelihood away, not exactly its leading term as it does for the logit.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple, Self
 
@@ -100,7 +99,9 @@ class Probit:
     def derivatives(self, theta: FloatArray) -> Derivatives:
         """Return the log likelihood with its gradient and minus its Hessian, the observed information."""
         if self.position.shape[1] > WIDEST:
-            parts = [part.derivatives(theta) for part in self._columns()]
+            pieces = (slice(first, first + WIDEST) for first in range(0, self.position.shape[1], WIDEST))
+            fields = (self.position, self.failures, self.survivals)
+            parts = [type(self)(*(each[:, piece] for each in fields)).derivatives(theta) for piece in pieces]
             return Derivatives(*(np.asarray(np.sum(each, axis=0)) for each in zip(*parts, strict=True)))
         return self._of(tails(self.eta(theta)))
 
@@ -110,12 +111,6 @@ class Probit:
         slope = self.failures * at.failure_rate - self.survivals * at.survival_rate  # Eq. 195
         bend = self.failures * at.failure_bend + self.survivals * at.survival_bend  # Eq. 196
         return Derivatives(value, self._moments(slope, 2), _matrix(self._moments(bend, 3)))
-
-    def _columns(self) -> Iterator[Self]:
-        """Return the same likelihood in parts of the levels."""
-        for first in range(0, self.position.shape[1], WIDEST):
-            part = slice(first, first + WIDEST)
-            yield type(self)(self.position[:, part], self.failures[:, part], self.survivals[:, part])
 
     def information(self, theta: FloatArray) -> FloatArray:
         """Return the expected (Fisher) information, one matrix a row."""

@@ -98,15 +98,6 @@ def _trend(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> tupl
     return np.sum(failures * distance, axis=1), np.sum(trials * np.abs(distance), axis=1)  # Eq. 201
 
 
-def bound_without_failure(trials: float, level: float = LEVEL) -> float:
-    """Return the one-sided Clopper-Pearson bound on a probability of which no trial failed, near 3 / trials for 95 %.
-
-    >>> round(bound_without_failure(40), 4)
-    0.0722
-    """
-    return float(1.0 - (1.0 - level) ** (1.0 / trials))  # Eq. 227
-
-
 def verdict_of(counts: Counts, separation: Separation, curve: tuple[float, float] | None, rise: float | None) -> str:
     """Return what the outcomes allow to be said, in a sentence or two, and what the likelihood does not know.
 
@@ -161,7 +152,9 @@ def _finding(counts: Counts, separation: Separation, curve: tuple[float, float] 
 def _bound(counts: Counts, separation: Separation) -> str:
     none = separation is Separation.NONE_FAILED
     place = -1 if none else 0
-    trials, share = counts.trials[place], bound_without_failure(float(counts.trials[place]))
+    trials = counts.trials[place]
+    # the one-sided Clopper-Pearson bound on a probability of which no trial failed, near 3 / trials for 95 %
+    share = float(1.0 - (1.0 - LEVEL) ** (1.0 / float(trials)))  # Eq. 227
     what, text = ("failed", f"below {share:.3g}") if none else ("survived", f"above {1.0 - share:.3g}")
     return (
         f"At {counts.levels[place]:g} none of {trials:g} {what}: there the probability of failure is {text}"
