@@ -10,7 +10,7 @@ from rocking.dynamics import SpeedRestitution
 from rocking.errors import InvalidValueError
 from rocking.studies import axes
 from rocking.studies.adaptive_grid import Plane
-from rocking.studies.axis import Scale, axis_of, main_period, peak_velocity
+from rocking.studies.axis import axis_of, main_period, peak_velocity
 from rocking.studies.variations import changed_body, reference_side
 
 BLOCK = rk.Block(width=0.6, height=2.4, depth=0.5, density=2000.0)
@@ -196,7 +196,7 @@ def test_speed_laws_do_not_stretch():
 def test_values_cannot_be_changed():
     """The values of an axis are a copy of the user's, and fixed."""
     given = np.array([1.0, 2.0])
-    axis = Scale(given)
+    axis = axis_of(("scale", given))
     given[0] = 5.0
     assert axis.values.tolist() == [1.0, 2.0]
     with pytest.raises(ValueError, match="read-only"):

@@ -26,7 +26,7 @@ from rocking.spec.construction import motions_of
 from rocking.spec.reading import InputFiles
 from rocking.spec.response import ResponseProblem
 from rocking.studies.adaptive_grid import Plane
-from rocking.studies.axis import RestitutionAxis, axis_of
+from rocking.studies.axis import axis_of
 from rocking.studies.question import Question
 from rocking.studies.variations import changed_body
 
@@ -131,7 +131,7 @@ def _on_map(variation: Variation, study: OpenStudy, place: HistoryPlace) -> Vari
     variation = replace(variation, scale=float(case.scale[0]), stretch=float(case.stretch[0]))
     if geometry:
         variation = replace(variation, body=body, table=body_table(body))
-    if isinstance(x, RestitutionAxis) or isinstance(y, RestitutionAxis):
+    if "restitution" in {x.name, y.name}:
         value = float(case.sides["r_right"][0])
         variation = replace(variation, label=f"{value!r}", restitution=value, choice={"value": value})
     return variation

@@ -15,7 +15,7 @@ from rocking.errors import InvalidValueError, extra
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion, Pulse
 from rocking.outcome import Outcome
-from rocking.studies.axis import RestitutionAxis, axis_of
+from rocking.studies.axis import axis_of
 from rocking.studies.fragility._multiple_stripe_analysis import MultipleStripeAnalysis, multiple_stripe_plan
 from rocking.studies.motion_sets import MotionSet
 from rocking.studies.sensitivity.changes import CurveChange, Flips, curve_change, difference_of, flips_of
@@ -388,7 +388,7 @@ def map_sensitivity(
     from rocking.studies._overturning_map import overturning_map
 
     along = axis_of(x), axis_of(y)
-    if any(isinstance(axis, RestitutionAxis) for axis in along):
+    if any(axis.name == "restitution" for axis in along):
         raise InvalidValueError("restitution cannot be an axis where it is what is compared")
     return sensitivity(partial(overturning_map, body, motion, *along, **options), restitutions, baseline)
 

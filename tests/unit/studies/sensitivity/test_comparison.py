@@ -16,7 +16,7 @@ from rocking.studies import (
     map_sensitivity,
     spectrum_sensitivity,
 )
-from rocking.studies.axis import RestitutionAxis
+from rocking.studies.axis import axis_of
 from rocking.studies.sensitivity import sensitivity
 
 xr = pytest.importorskip("xarray")
@@ -101,7 +101,7 @@ def test_cells_of_a_grid_have_no_interval_unless_something_is_drawn():
 def test_the_restitution_is_no_axis_where_it_is_compared():
     """A map over the restitution itself would be the same for all choices: refused before anything is computed."""
     told = []
-    for axes in ((("restitution", [0.8, 0.9]), AXES[1]), (AXES[0], RestitutionAxis([0.8, 0.9]))):
+    for axes in ((("restitution", [0.8, 0.9]), AXES[1]), (AXES[0], axis_of(("restitution", [0.8, 0.9])))):
         with pytest.raises(InvalidValueError, match="restitution cannot be an axis where it is what is compared"):
             map_sensitivity(BLOCK, PULSE, *axes, ["housner", "ked"], progress=told.append)
     assert told == []

@@ -20,7 +20,6 @@ from rocking.spec.document import MapTable
 from rocking.spec.reading import located
 from rocking.spec.study import StudyProblem, axes_of
 from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, RefinedMap, refine
-from rocking.studies.axis import RestitutionAxis
 from rocking.studies.boundaries import Polyline, checked, outlines
 from rocking.studies.histories import Histories
 from rocking.studies.motion_sets import MotionList
@@ -49,7 +48,7 @@ def map_study(problem: StudyProblem) -> Study:
             Question(problem.bodies[0], problem.motions[0], restitution, problem.settings, None, engine)
             for restitution in problem.restitutions.values()
         ]
-        if len(questions) > 1 and any(isinstance(axis, RestitutionAxis) for axis in axes):
+        if len(questions) > 1 and any(axis.name == "restitution" for axis in axes):
             raise InvalidValueError("restitution cannot be an axis where it is what is compared; leave one model")
         planes = [Plane(question, *axes) for question in questions]
         histories = MapHistories.of(planes)
