@@ -51,7 +51,7 @@ class DenseOutput:
     ) -> "DenseOutput":
         """Return the intervals of a trajectory."""
         time, before, after = _nodes(trajectory, segments.step)
-        added = InnerStates(segments, parameters, settings, scale).added(trajectory, time, before, after)
+        added = _inner_states(trajectory, segments, parameters, settings, scale, time, before, after)
         if added:
             rows = np.array(added)
             time = np.concatenate([time, rows[:, 0]])
@@ -152,13 +152,12 @@ def _nodes(trajectory: Trajectory, step: float) -> tuple[FloatArray, FloatArray,
     """Return times, and the states (rotation, velocity) just before and just after each sample and event."""
     finite = np.isfinite(trajectory.rotation)
     samples = np.stack([trajectory.rotation[finite], trajectory.angular_velocity[finite]], axis=1)
+    # others than impacts have no velocities: zero before and after
     events = [e for e in trajectory.events if e.time > 0.0 or e.kind is EventKind.IMPACT]
     times = np.concatenate([np.flatnonzero(finite) * step, [e.time for e in events]])
-    kinds = [e.kind for e in events]
-    before = np.array([[0.0, e.before if e.kind is EventKind.IMPACT else 0.0] for e in events]).reshape(-1, 2)
-    after = np.array([[0.0, e.after if e.kind is EventKind.IMPACT else 0.0] for e in events]).reshape(-1, 2)
+    before, after = (np.array([[0.0, getattr(e, name)] for e in events]).reshape(-1, 2) for name in ("before", "after"))
     # at one instant: impacts first, then rest or uplift, then the sample
-    rank = np.concatenate([np.full(samples.shape[0], 9), [0 if k is EventKind.IMPACT else 1 for k in kinds]])
+    rank = np.concatenate([np.full(len(samples), 2), [int(e.kind is not EventKind.IMPACT) for e in events]])
     order = np.lexsort((rank, times))
     return times[order], np.concatenate([samples, before])[order], np.concatenate([samples, after])[order]
 
@@ -181,52 +180,49 @@ _MOST_PARTS = 100_000
 _ROUNDING = 1e-12
 
 
-@dataclass(frozen=True)
-class InnerStates:
-    """What moves, and on what."""
+def _inner_states(  # noqa: PLR0917 - a history, and what it ran on
+    trajectory: Trajectory,
+    segments: Segments,
+    parameters: RockingParameters,
+    settings: Settings,
+    scale: float,
+    time: FloatArray,
+    before: FloatArray,
+    after: FloatArray,
+) -> list[tuple[float, float, float]]:
+    """Return the states to be added to those at samples and events.
 
-    segments: Segments  # the motion [m/s2]
-    parameters: RockingParameters  # the body
-    settings: Settings  # gravity and equations
-    scale: float  # factor on the motion [-]
+    time: times of samples and events, in order [s]; before, after: theta [rad] and theta' [rad/s] just before and
+    just after each. Returns time [s], theta [rad], theta' [rad/s]: within long intervals; when the body passes over
+    its foot for good; and after the last sample, until it lies.
+    """
+    fall, step, g = trajectory.overturning_time, segments.step, settings.gravity
+    shortest = _ROUNDING * step
 
-    def added(
-        self, trajectory: Trajectory, time: FloatArray, before: FloatArray, after: FloatArray
-    ) -> list[tuple[float, float, float]]:
-        """Return the states to be added to those at samples and events.
+    def coefficients(motion: FloatArray, stretch: int, at: float, width: float) -> list[float]:
+        return shifted((scale / g * motion[stretch]).tolist(), at, width)
 
-        time: times of samples and events, in order [s]; before, after: theta [rad] and theta' [rad/s] just before and
-        just after each. Returns time [s], theta [rad], theta' [rad/s]: within long intervals; when the body passes over
-        its foot for good; and after the last sample, until it lies.
-        """
-        fall, step = trajectory.overturning_time, self.segments.step
-        length, turned = np.diff(time), after[:-1, 0] + before[1:, 0]
-        turned = np.where(turned != 0.0, turned, after[:-1, 1] - before[1:, 1])  # from impact to impact
-        quickest = max(self.parameters.right.frequency_parameter, self.parameters.left.frequency_parameter)
-        falls = (time[:-1] < fall - _ROUNDING * step) & (time[1:] > fall + _ROUNDING * step)
-        found: list[tuple[float, float, float]] = []
-        for i in np.flatnonzero((turned != 0.0) & (falls | (quickest * length > LONG))).tolist():
-            start, side = (float(time[i]), *after[i].tolist()), 1 if turned[i] > 0.0 else -1
-            states = self._states(start, side, float(time[i + 1]), fall, to_the_ground=False)
-            found += [state for state in states if state[0] < time[i + 1] - _ROUNDING * step]
-        if trajectory.outcome is Outcome.OVERTURNED and not np.isfinite(trajectory.rotation[-1]):
-            last = float(time[-1])
-            until = (math.floor(last / step + 1e-9) + 1.0) * step
-            found += self._states((last, *after[-1].tolist()), trajectory.side, until, fall, to_the_ground=True)
-        return found
+    def terms_of(time: float, left: float, side: int, u: float, rate: float) -> list[float]:
+        """Return the series of the motion over what is left of a stretch."""
+        stretch = min(int((time + 0.5 * left) / step), segments.count - 1)
+        at, width = time / step - stretch, left / step
+        push = [side * c for c in coefficients(segments.horizontal, stretch, at, width)]
+        weight = [0.0] if segments.vertical is None else coefficients(segments.vertical, stretch, at, width)
+        weight[0] += 1.0
+        kappa = (parameters.side(side).frequency_parameter * left) ** 2
+        return series(u, rate * left, kappa, push, weight, _ORDER, linear=settings.linear)
 
-    def _states(
-        self, start: tuple[float, float, float], side: int, until: float, fall: float, *, to_the_ground: bool
+    def states(
+        start: tuple[float, float, float], side: int, until: float, *, to_the_ground: bool
     ) -> list[tuple[float, float, float]]:
         """Return states so near to each other that quintics join them, up to the end of the same stretch at most."""
-        alpha = self.parameters.side(side).slenderness_angle
+        alpha = parameters.side(side).slenderness_angle
         time, rotation, velocity = start
         u, rate = alpha - side * rotation, -side * velocity
         found: list[tuple[float, float, float]] = []
-        shortest = _ROUNDING * self.segments.step
         while until - time > shortest and len(found) < _MOST_PARTS:
             left = (fall if time < fall - shortest and fall < until else until) - time
-            terms = self._series(time, left, side, u, rate)
+            terms = terms_of(time, left, side, u, rate)
             part = _part(terms, alpha)
             time += part * left
             u, rate = value(terms, part), slope(terms, part) / left
@@ -235,18 +231,19 @@ class InnerStates:
                 break
         return found
 
-    def _series(self, time: float, left: float, side: int, u: float, rate: float) -> list[float]:
-        segments, g = self.segments, self.settings.gravity
-        stretch = min(int((time + 0.5 * left) / segments.step), segments.count - 1)
-        at, width = time / segments.step - stretch, left / segments.step
-        push = shifted((self.scale / g * segments.horizontal[stretch]).tolist(), at, width)
-        weight = [0.0]
-        if segments.vertical is not None:
-            weight = shifted((self.scale / g * segments.vertical[stretch]).tolist(), at, width)
-        weight[0] += 1.0
-        kappa = (self.parameters.side(side).frequency_parameter * left) ** 2
-        linear = self.settings.linear
-        return series(u, rate * left, kappa, [side * c for c in push], weight, _ORDER, linear=linear)
+    turned = after[:-1, 0] + before[1:, 0]
+    turned = np.where(turned != 0.0, turned, after[:-1, 1] - before[1:, 1])  # from impact to impact
+    quickest = max(parameters.right.frequency_parameter, parameters.left.frequency_parameter)
+    falls = (time[:-1] < fall - shortest) & (time[1:] > fall + shortest)
+    found: list[tuple[float, float, float]] = []
+    for i in np.flatnonzero((turned != 0.0) & (falls | (quickest * np.diff(time) > LONG))).tolist():
+        start, side = (float(time[i]), *after[i].tolist()), 1 if turned[i] > 0.0 else -1
+        inner = states(start, side, float(time[i + 1]), to_the_ground=False)
+        found += [state for state in inner if state[0] < time[i + 1] - shortest]
+    if trajectory.outcome is Outcome.OVERTURNED and not np.isfinite(trajectory.rotation[-1]):
+        until = (math.floor(float(time[-1]) / step + 1e-9) + 1.0) * step
+        found += states((float(time[-1]), *after[-1].tolist()), trajectory.side, until, to_the_ground=True)
+    return found
 
 
 def _part(terms: list[float], alpha: float) -> float:

@@ -42,19 +42,9 @@ def energy_of(dense_output: DenseOutput, time: FloatArray, mass: float, settings
 
     time: times of the samples, the first one zero, and of a fall after the last of them [s].
     """
-    kinetic, potential, work, lost = energies(dense_output, mass, settings)
     place = dense_output.places(time[1:])
-
-    def at_samples(values: FloatArray) -> FloatArray:
-        return np.append(values[0, 0], values[place, 1])
-
-    return ResponseEnergy(
-        time=time,
-        kinetic=at_samples(kinetic),
-        potential=at_samples(potential),
-        work=at_samples(work),
-        lost=at_samples(lost),
-    )
+    both_ends = energies(dense_output, mass, settings)
+    return ResponseEnergy(time, *(np.append(values[0, 0], values[place, 1]) for values in both_ends))
 
 
 def energies(
@@ -72,9 +62,6 @@ def energies(
     lost = np.concatenate([[0.0], np.cumsum(stored[:-1, 1] - stored[1:, 0])])
     work = np.concatenate([[0.0], np.cumsum(mass * dense_output.work(settings))])
     return kinetic, stored - kinetic, np.stack([work[:-1], work[1:]], axis=1), np.stack([lost, lost], axis=1)
-
-
-_ROUNDING = 1e-9
 
 
 LEAVES = "the body would leave the ground, which pure rocking cannot do"
@@ -139,7 +126,7 @@ def contact_of(
     """
     f_x, f_z, demand = forces(dense_output, settings.gravity)
     # a body that falls is past all questions of friction; the start counts even for one that is let go beyond the top
-    late = dense_output.start >= trajectory.overturning_time - _ROUNDING * dense_output.length
+    late = dense_output.start >= trajectory.overturning_time - 1e-9 * dense_output.length
     standing = np.stack([~late, ~late], axis=1)
     standing[0, 0] = True
     place = dense_output.places(time[1:])

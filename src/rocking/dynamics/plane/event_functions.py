@@ -28,18 +28,16 @@ class RestoringMoments:
         alphas = {sign: parameters.side(sign).slenderness_angle for sign in (1, -1)}
         self._sines = {sign: alpha if linear else math.sin(alpha) for sign, alpha in alphas.items()}
         self._cosines = {sign: 1.0 if linear else math.cos(alpha) for sign, alpha in alphas.items()}
-        self.moments = {side: self._holding(side) for side in (1, -1)}
+        self.moments = {}
+        for sign, sine in self._sines.items():
+            moment = push.vertical * sine + push.horizontal * (sign * self._cosines[sign])  # Eq. 24
+            moment[:, 0] += sine
+            self.moments[sign] = moment
         low = {side: m[:, 0] + np.minimum(m[:, 1:], 0.0).sum(axis=1) for side, m in self.moments.items()}
         self._candidates = np.flatnonzero((low[1] <= 0.0) | (low[-1] <= 0.0))
         self._stops = np.append(
             np.flatnonzero(_jumps(push.horizontal) | _jumps(push.vertical)) + 1, len(push.horizontal)
         )
-
-    def _holding(self, sign: int) -> FloatArray:
-        sine, cosine = self._sines[sign], self._cosines[sign]
-        moment = self.push.vertical * sine + self.push.horizontal * (sign * cosine)  # Eq. 24
-        moment[:, 0] += sine
-        return moment
 
     def held(self, sign: int, stretch: int, tau: float) -> float:
         """Return the holding moment on a side, over m g R; above zero where the body is held [-]."""

@@ -61,7 +61,15 @@ class Reference:
         self.peak, self.peak_time, self.fastest, self.truncation = 0.0, 0.0, 0.0, 0.0
         self.forces = self.forces_before = (math.inf, 0.0)  # least normal force over m g, largest friction demand
         self.over_time = math.nan
-        self._set_later_bounds()
+
+        def later(extreme: FloatArray, reduce: np.ufunc) -> FloatArray:
+            return np.append(reduce.accumulate(extreme[::-1])[::-1], 0.0)
+
+        # strongest push either way and weakest gravity from each stretch to the end
+        h, v = self.push.horizontal, self.push.vertical
+        self.later_high = later(np.maximum(h[:, 0] + np.maximum(h[:, 1:], 0.0).sum(axis=1), 0.0), np.maximum)
+        self.later_low = later(np.minimum(h[:, 0] + np.minimum(h[:, 1:], 0.0).sum(axis=1), 0.0), np.minimum)
+        self.later_light = later(np.minimum(v[:, 0] + np.minimum(v[:, 1:], 0.0).sum(axis=1), 0.0), np.minimum)
 
     # ---- the course of a history ------------------------------------------------------------------------------------
 
@@ -88,7 +96,7 @@ class Reference:
             self._note_force(self.u, self.rate, *self._ground_at(0, 0.0))
             self.over_time, self.forces_before = 0.0, self.forces
         self.uplifts = 1
-        self._note(EventKind.UPLIFT, 0.0)
+        self.events.append(Event(0.0, EventKind.UPLIFT, self.side))
         return self._impact(self.rate, 0.0) if upright and self.rate > 0.0 else None
 
     def _step(self) -> _Ended | None:
@@ -109,7 +117,9 @@ class Reference:
         length = left * part
         gap = [self._alpha - self.u, *(-c for c in scaled[1:])]
         at = self._contact(gap)
-        self._note_peak(gap, 1.0 if at is None else at, length)
+        if gap[0] + sum(max(c, 0.0) for c in gap[1:]) > abs(self.peak):
+            for turn in turning_points(gap, 1.0 if at is None else at):
+                self._raise_peak(value(gap, turn), self._now + turn * length)
         if at is not None:
             return self._impact(-slope(gap, at) / length, self.tau + at * part * (1.0 - self.tau))
         return self._advance(scaled, length, 1.0 if part == 1.0 else self.tau + part * (1.0 - self.tau))
@@ -147,10 +157,10 @@ class Reference:
         self.fastest = max(self.fastest, speed)
         self._note_force(self._alpha, speed, *self._ground_at(self.stretch, tau))
         old, self.side = self.side, -self.side
-        r = self._coefficient(speed)
+        r = self.parameters.coefficient(self.side, speed, self.stream, self.impacts)
         after = r * speed  # Eq. 28
         self.impacts += 1
-        self._note(EventKind.IMPACT, time, -old * speed, -old * after, r)
+        self.events.append(Event(time, EventKind.IMPACT, self.side, -old * speed, -old * after, r))
         self.u, self.rate = self._alpha, -after
         self._move(tau)
         if self.impacts >= self.settings.most_events:
@@ -159,7 +169,7 @@ class Reference:
             return self._conclude()
         args = (self.side, after, self.stretch, self.tau, self.settings.rest_speed)
         if comes_to_rest(self.parameters, self.ground, *args):
-            self._note(EventKind.REST, time)
+            self.events.append(Event(time, EventKind.REST, self.side))
             return self._rest()
         return None
 
@@ -200,7 +210,7 @@ class Reference:
         if self.stretch >= self.count:
             return calm
         self.uplifts += 1
-        self._note(EventKind.UPLIFT, self._now)
+        self.events.append(Event(self._now, EventKind.UPLIFT, self.side))
         return None
 
     def _conclude(self) -> _Ended:
@@ -226,7 +236,7 @@ class Reference:
         for _ in range(2):
             self._note_force(self._alpha, speed, 0.0, 1.0)
             self.side = -self.side
-            speed *= self._coefficient(speed)
+            speed *= self.parameters.coefficient(self.side, speed, self.stream, self.impacts)
             self.impacts += 1
             e = 0.5 * (speed / self._p) ** 2
             self._note_force(self._alpha, speed, 0.0, 1.0)
@@ -251,9 +261,6 @@ class Reference:
     def _now(self) -> float:
         return (self.stretch + self.tau) * self.push.step
 
-    def _coefficient(self, speed: float) -> float:
-        return self.parameters.coefficient(self.side, speed, self.stream, self.impacts)
-
     def _ground_at(self, stretch: int, tau: float) -> tuple[float, float]:
         """Push towards the side on which it stands, and weight, over gravity."""
         push, lift = (value(part[stretch].tolist(), tau) for part in (self.push.horizontal, self.push.vertical))
@@ -270,9 +277,6 @@ class Reference:
         least, demand = self.forces
         self.forces = min(least, up), max(demand, abs(along) / up) if up > 0.0 else math.inf  # Eq. 35
 
-    def _note(self, kind: EventKind, time: float, before: float = 0.0, after: float = 0.0, r: float = 0.0) -> None:
-        self.events.append(Event(time, kind, self.side, before, after, r))
-
     def _move(self, tau: float) -> None:
         if tau < _WHOLE:
             self.tau = tau
@@ -281,25 +285,9 @@ class Reference:
         self.rotations[self.stretch] = self.side * (self._alpha - self.u)
         self.velocities[self.stretch] = -self.side * self.rate
 
-    def _note_peak(self, gap: list[float], until: float, length: float) -> None:
-        if gap[0] + sum(max(c, 0.0) for c in gap[1:]) > abs(self.peak):
-            for at in turning_points(gap, until):
-                self._raise_peak(value(gap, at), self._now + at * length)
-
     def _raise_peak(self, size: float, time: float) -> None:
         if size > abs(self.peak):
             self.peak, self.peak_time = self.side * size, time
-
-    def _set_later_bounds(self) -> None:
-        """Strongest push either way and weakest gravity from each stretch to the end."""
-
-        def later(extreme: FloatArray, reduce: np.ufunc) -> FloatArray:
-            return np.append(reduce.accumulate(extreme[::-1])[::-1], 0.0)
-
-        h, v = self.push.horizontal, self.push.vertical
-        self.later_high = later(np.maximum(h[:, 0] + np.maximum(h[:, 1:], 0.0).sum(axis=1), 0.0), np.maximum)
-        self.later_low = later(np.minimum(h[:, 0] + np.minimum(h[:, 1:], 0.0).sum(axis=1), 0.0), np.minimum)
-        self.later_light = later(np.minimum(v[:, 0] + np.minimum(v[:, 1:], 0.0).sum(axis=1), 0.0), np.minimum)
 
     def _beyond_return(self) -> bool:
         if self.rate > 0.0:
@@ -319,11 +307,11 @@ class Reference:
         rocked = good and least < math.inf
         peak, when = (self.side * 0.5 * math.pi, self.over_time) if over else (self.peak, self.peak_time)
         return Trajectory(
-            rotation=self.rotations,
-            angular_velocity=self.velocities,
-            events=self.events,
-            outcome=ended.outcome,
-            status=ended.status,
+            self.rotations,
+            self.velocities,
+            self.events,
+            ended.outcome,
+            ended.status,
             side=self.side if over else 0,
             peak_rotation=peak if good else math.nan,
             peak_time=when if good else math.nan,
