@@ -167,8 +167,11 @@ class SpeedRestitution(ImpactLaw):
         speeds = _row("at", self.at, "rad/s")
         if speeds[0] < 0.0 or np.any(np.diff(speeds) <= 0.0):
             raise InvalidValueError(f"at must be speeds >= 0 that increase [rad/s], got {speeds[:4].tolist()}")
+        factors = _row("factors", self.factors, "-")
+        if factors.size != speeds.size:
+            raise InvalidValueError(f"factors must be as many as the speeds, {speeds.size}, got {factors.size}")
         object.__setattr__(self, "at", speeds)
-        object.__setattr__(self, "factors", _factors(self.factors, speeds.size))
+        object.__setattr__(self, "factors", _factors(factors))
 
     def factor(self, speed: float, stream: int, impact: int) -> float:
         """Return the coefficient at a speed."""
@@ -181,25 +184,8 @@ class DrawnRestitution(ImpactLaw):
 
     Of a body on which the largest draws would create energy, a side draws from what lies within its bound:
     the distribution is truncated, so that the draws are those of r on condition that r is at most the bound. Both
-    sides draw with the same number, so that a large draw on one side is a large one on the other.
-
-    Parameters
-    ----------
-    factors : array_like, or mapping of foot to array_like
-        Quantiles of the distribution at equally spaced probabilities from 0 to 1, for both sides or by
-        ``{"left": .., "right": ..}``, each for landing on that foot [-].
-    seed : int
-        Seed of the draws.
-    times : optional
-        What they multiply: a coefficient, a model or its name; 1 if not given.
-    cut : (float, float)
-        Probability that the quantiles onto the left and the right foot leave out already, which is then said [-].
-
-    Raises
-    ------
-    InvalidValueError
-        If the quantiles decrease or are outside [0, 1], or by side [0, 10], or the seed is not a whole number from 0 to
-        2^64 - 1.
+    sides draw with the same number, so that a large draw on one side is a large one on the other. For the parameters
+    see `RandomRestitution`.
     """
 
     kind: ClassVar[int] = 2
@@ -378,10 +364,8 @@ def _row(name: str, values: Any, unit: str) -> FloatArray:
     return row
 
 
-def _factors(values: Any, size: int | None, most: float = 1.0) -> FloatArray:
+def _factors(values: Any, most: float = 1.0) -> FloatArray:
     row = _row("factors", values, "-")
-    if size is not None and row.size != size:
-        raise InvalidValueError(f"factors must be as many as the speeds, {size}, got {row.size}")
     if row.min() < 0.0 or row.max() > most:
         raise InvalidValueError(f"factors must be in [0, {most:g}], got {row.min():g} to {row.max():g}")
     return row
@@ -389,16 +373,13 @@ def _factors(values: Any, size: int | None, most: float = 1.0) -> FloatArray:
 
 def _by_side(values: Any) -> FloatArray:
     """Quantiles as a row, or as two where the sides differ, that of the right first, of which one may exceed 1."""
-    if not isinstance(values, Mapping):
-        stacked = isinstance(values, np.ndarray) and values.ndim == 2 and len(values) == 2
-        return _two_rows(values) if stacked else _factors(values, None)
-    if set(values) != set(FEET):
-        raise InvalidValueError(f'factors by side are {{"left": .., "right": ..}}, got {values!r:.60}')
-    return _two_rows([values["right"], values["left"]])
-
-
-def _two_rows(values: Any) -> FloatArray:
-    right, left = (_factors(row, None, _MOST_BY_SIDE) for row in values)
+    if isinstance(values, Mapping):
+        if set(values) != set(FEET):
+            raise InvalidValueError(f'factors by side are {{"left": .., "right": ..}}, got {values!r:.60}')
+        values = [values["right"], values["left"]]
+    elif not (isinstance(values, np.ndarray) and values.ndim == 2 and len(values) == 2):
+        return _factors(values)
+    right, left = (_factors(row, _MOST_BY_SIDE) for row in values)
     if right.size != left.size:
         raise InvalidValueError(f"factors must be as many for both sides, got {left.size} left and {right.size} right")
     if np.array_equal(right, left) and right[-1] <= 1.0:

@@ -102,8 +102,8 @@ class RockingParameters:
             Coefficient [-].
         """
         side, law = self.side(sign), self.law
-        if isinstance(law, DrawnRestitution) and law.truncates:
-            return side.coefficient * law.quantile(side.share, _foot(sign))
+        if drawn := _truncated(law):
+            return side.coefficient * drawn.quantile(side.share, _foot(sign))
         return side.coefficient * law.largest
 
     def coefficient(self, sign: float, speed: float, stream: int, impact: int) -> float:
@@ -131,8 +131,8 @@ class RockingParameters:
             If a law of one's own gives a factor outside its range.
         """
         side, law = self.side(sign), self.law
-        if isinstance(law, DrawnRestitution) and law.truncates:
-            return side.coefficient * law.draw(stream, impact, _foot(sign), side.share)
+        if drawn := _truncated(law):
+            return side.coefficient * drawn.draw(stream, impact, _foot(sign), side.share)
         factor = law.factor(speed, stream, impact)
         if not 0.0 <= factor <= law.largest:
             raise InvalidValueError(
@@ -169,24 +169,21 @@ class RockingParameters:
         law = restitution if isinstance(restitution, ImpactLaw) else ConstantRestitution()
         base = getattr(restitution, "times", 1.0) if isinstance(restitution, ImpactLaw) else restitution
         coefficients, label = coefficients_of(base, body)
-        most = {foot: energy_bound(body, foot) for foot in FEET}
-        shares = {foot: _share(law, foot, coefficients[foot], most[foot]) for foot in FEET}
-        for foot, share in shares.items():
+        made: dict[Foot, RockingSide] = {}
+        for foot in FEET:
+            most, side = energy_bound(body, foot), body.side(foot, gravity)
+            share = _share(law, foot, coefficients[foot], most)
             if share < 1.0:
-                plausibility.warn(plausibility.of_truncation(1.0 - share, foot, most[foot]))
-        sides = {foot: body.side(foot, gravity) for foot in FEET}
-        made = {
-            foot: RockingSide(
+                plausibility.warn(plausibility.of_truncation(1.0 - share, foot, most))
+            made[foot] = RockingSide(
                 side.slenderness_angle,
                 side.frequency_parameter,
                 side.semi_diagonal,
                 float(coefficients[foot]),
                 body.mass * side.semi_diagonal**2 / side.moment_of_inertia,  # Eq. 27
-                shares[foot],
+                share,
             )
-            for foot, side in sides.items()
-        }
-        return cls(made["right"], made["left"], law, _label(law, shares, label))
+        return cls(made["right"], made["left"], law, _label(law, {foot: made[foot].share for foot in FEET}, label))
 
 
 def sides_of(bodies: Sequence[RockingParameters | None]) -> dict[str, FloatArray]:
@@ -222,13 +219,17 @@ def _foot(sign: float) -> Foot:
     return "right" if sign > 0.0 else "left"
 
 
+def _truncated(law: ImpactLaw) -> DrawnRestitution | None:
+    return law if isinstance(law, DrawnRestitution) and law.truncates else None
+
+
 def _share(law: ImpactLaw, onto: Foot, r: float, most: float) -> float:
     """Part of a distribution within the energy bound of a side; what cannot be cut there is refused beyond it."""
-    drawn = law if isinstance(law, DrawnRestitution) and law.truncates else None
-    largest = r * (law.largest if drawn is None else drawn.quantile(1.0, onto))
+    drawn = _truncated(law)
+    largest = r * (drawn.quantile(1.0, onto) if drawn else law.largest)
     if largest <= most * (1.0 + _ROUNDING):
         return 1.0
-    if drawn is not None:
+    if drawn:
         share = drawn.share_within(most / r, onto)
         plausibility.of_truncation(1.0 - share, onto, most)  # refuses what next to nothing is left of
         return share

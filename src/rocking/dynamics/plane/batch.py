@@ -175,9 +175,9 @@ def drawn_rows(rows: Rows, law: ImpactLaw) -> Rows:
     Returns the same with the coefficients of the histories.
     """
     draws: Any = law.draws
-    drawn = {}
+    drawn, cut = {}, isinstance(law, DrawnRestitution) and law.truncates
     for foot in FEET:
-        where = (foot, rows.values[f"share_{foot}"]) if isinstance(law, DrawnRestitution) and law.truncates else ()
+        where = (foot, rows.values[f"share_{foot}"]) if cut else ()
         drawn[f"r_{foot}"] = rows.values[f"r_{foot}"] * draws(rows.stream, *where)
     return replace(rows, values=rows.values | drawn)
 
