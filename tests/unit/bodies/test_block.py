@@ -61,34 +61,36 @@ def test_from_angle():
         rk.Block.from_angle(0.3, -1.0)
 
 
-@pytest.mark.parametrize("value", BAD, ids=repr)
-@pytest.mark.parametrize("name", ["width", "height", "depth"])
-def test_bad_sizes(name, value):
-    """Sizes that are no length are refused; the message starts with the name and holds a range or the
-    value."""
-    with pytest.raises(InvalidValueError, match=rf"^{name} must be .*(number|finite|> 0|in \[1e-09, 1e\+09\])"):
+DENSITIES = [0, -5.0, float("nan"), float("inf"), "concrete", None, True, 1e10]
+WORDS = r"(number|finite|> 0|in \[1e-09, 1e\+09\])"
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        *((name, value, f"^{name} must be .*{WORDS}") for name in ("width", "height", "depth") for value in BAD),
+        *(("density", value, "^density must be ") for value in DENSITIES),
+    ],
+    ids=repr,
+)
+def test_what_is_no_block(name, value, words):
+    """No length and no density are refused; the message starts with the name and holds a range or the value."""
+    with pytest.raises(InvalidValueError, match=words):
         rk.Block(**{"width": 1.0, "height": 2.0, name: value})
-
-
-@pytest.mark.parametrize("value", [0, -5.0, float("nan"), float("inf"), "concrete", None, True, 1e10], ids=repr)
-def test_bad_densities(value):
-    """Densities that are none are refused by name."""
-    with pytest.raises(InvalidValueError, match=r"^density must be "):
-        rk.Block(width=1.0, height=2.0, density=value)
 
 
 @pytest.mark.parametrize("value", [0.0, -9.81, float("nan"), "g"], ids=repr)
 def test_bad_gravity_and_factors(value):
     """Gravity and scale factors above zero only."""
     block = rk.Block(width=1.0, height=2.0)
-    with pytest.raises(InvalidValueError, match=r"^gravity must be "):
-        block.side("left", gravity=value)
-    with pytest.raises(InvalidValueError, match=r"^size must be "):
-        block.scaled(size=value)
-    with pytest.raises(InvalidValueError, match=r"^density must be "):
-        block.scaled(density=value)
-    with pytest.raises(InvalidValueError, match="foot must be"):
-        block.side("middle")
+    for ask, words in (
+        (lambda: block.side("left", gravity=value), r"^gravity must be "),
+        (lambda: block.scaled(size=value), r"^size must be "),
+        (lambda: block.scaled(density=value), r"^density must be "),
+        (lambda: block.side("middle"), "foot must be"),
+    ):
+        with pytest.raises(InvalidValueError, match=words):
+            ask()
 
 
 def test_frozen_scaled_mirrored():

@@ -60,21 +60,19 @@ def test_points_and_masses_that_are_none(points, masses, words):
         rk.MassPoints(points, masses, FEET)
 
 
+NO_FEET = [(1.0, -1.0), (0.0, 1.0), (0.1, 1.0), (-1.0, -0.5), (-1.0,), 3, None, "ab", (np.nan, 1.0)]
+NO_CONTACT = [[(0, "a")], [(0.0, np.nan)], [(0.5, -0.5)], [1.0], "ab", [(0, 1, 2)], 3]
+
+
 @pytest.mark.parametrize(
-    "feet", [(1.0, -1.0), (0.0, 1.0), (0.1, 1.0), (-1.0, -0.5), (-1.0,), 3, None, "ab", (np.nan, 1.0)]
+    ("feet", "contact", "words"),
+    [*((feet, None, r"feet|foot") for feet in NO_FEET), *((FEET, contact, "contact") for contact in NO_CONTACT)],
+    ids=repr,
 )
-def test_feet_that_are_none(feet):
-    """Feet swapped, beside the centre or malformed are refused."""
-    with pytest.raises(InvalidValueError, match=r"feet|foot"):
-        rk.MassPoints(POINTS, MASSES, feet)
-
-
-@pytest.mark.parametrize("contact", [[(0, "a")], [(0.0, np.nan)], [(0.5, -0.5)], [1.0], "ab", [(0, 1, 2)], 3], ids=repr)
-def test_contact_that_is_none(contact):
-    """Contact stretches that are no pairs of growing numbers are refused when they are given, not when
-    used."""
-    with pytest.raises(InvalidValueError, match="contact"):
-        rk.MassPoints(POINTS, MASSES, FEET, contact=contact)
+def test_feet_and_contact_that_are_none(feet, contact, words):
+    """Feet swapped, beside the centre or malformed, and stretches that are no growing pairs are refused at once."""
+    with pytest.raises(InvalidValueError, match=words):
+        rk.MassPoints(POINTS, MASSES, feet, contact=contact)
 
 
 def test_single_point_above_the_foot_loses_nothing_and_on_the_ground_all():

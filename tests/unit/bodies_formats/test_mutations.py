@@ -28,37 +28,9 @@ GEOJSON = [json.dumps(SQUARE), json.dumps({"type": "FeatureCollection", "feature
 
 TOKEN = re.compile(r"[\w.+-]+|\s+|.", re.DOTALL)
 STRANGE = [
-    "nan",
-    "inf",
-    "-inf",
-    "1e400",
-    "-1",
-    "0",
-    "true",
-    "null",
-    '"x"',
-    "[]",
-    "{}",
-    "1979-05-27",
-    "9" * 5000,
-    "1e308",
-]
-STRANGE += [
-    "-0.0",
-    "5e-324",
-    "\0",
-    "\ud7ff",
-    "units",
-    "width",
-    "EMPTY",
-    "Z",
-    "(",
-    "))",
-    "[[",
-    "Infinity",
-    "0x1F",
-    "1_0",
-]
+    "nan", "inf", "-inf", "1e400", "-1", "0", "true", "null", '"x"', "[]", "{}", "1979-05-27", "9" * 5000, "1e308",
+    "-0.0", "5e-324", "\0", "\ud7ff", "units", "width", "EMPTY", "Z", "(", "))", "[[", "Infinity", "0x1F", "1_0",
+]  # fmt: skip
 
 
 def mutated(text, rng):

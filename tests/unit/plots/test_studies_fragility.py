@@ -30,6 +30,12 @@ def stripes():
 
 
 @pytest.fixture(scope="module")
+def picture(stripes):
+    """Their picture."""
+    return fragility_picture(stripes)
+
+
+@pytest.fixture(scope="module")
 def raised():
     """The same pulses, raised level by level."""
     return incremental_dynamic_analysis(BLOCK, PULSES, np.arange(2.0, 12.1, 0.5), 0.9)
@@ -52,10 +58,9 @@ def _bars(axes):
     return found
 
 
-def test_points_and_intervals(stripes):
+def test_points_and_intervals(stripes, picture):
     """Points are counts over trials; intervals are those of Clopper and Pearson, from the beta distribution."""
-    figure = fragility_picture(stripes)
-    upper, lower = figure.axes
+    upper, lower = picture.axes
     assert lower.get_xlabel() == "peak ground acceleration [m/s$^2$]"
     assert upper.get_ylabel() == "probability [-]"
     for (points, ends), counts in zip(_bars(upper), stripes.counts.values(), strict=True):
@@ -68,9 +73,9 @@ def test_points_and_intervals(stripes):
         assert np.abs(ends[:, 0] - wald).max() > 0.01
 
 
-def test_curves_and_bands(stripes):
+def test_curves_and_bands(stripes, picture):
     """The drawn curve is the lognormal distribution of the fit, and lies within its band."""
-    upper = fragility_picture(stripes).axes[0]
+    upper = picture.axes[0]
     drawn = [line for line in upper.lines if len(line.get_xdata()) > 50]
     bands = [part for part in upper.collections if isinstance(part, PolyCollection)]
     assert len(drawn) == len(bands) == len(stripes.fits) == 2
@@ -85,16 +90,16 @@ def test_curves_and_bands(stripes):
             assert heights.min() <= value <= heights.max()
 
 
-def test_uplift_is_a_step(stripes):
+def test_uplift_is_a_step(picture):
     """Where PGA decides rocking there is no curve but a line at g tan(alpha) = g / 4."""
-    upper = fragility_picture(stripes).axes[0]
+    upper = picture.axes[0]
     (step,) = (line for line in upper.lines if len(set(line.get_xdata())) == 1 and list(line.get_ydata()) == [0, 1])
     assert step.get_xdata()[0] == pytest.approx(0.25 * G, rel=1e-12)
 
 
-def test_states_add_up(stripes):
+def test_states_add_up(stripes, picture):
     """The bars of every level go from 0 to 1, and those of overturning are the counts."""
-    lower = fragility_picture(stripes).axes[1]
+    lower = picture.axes[1]
     heights = np.array([[bar.get_height() for bar in group] for group in lower.containers])
     np.testing.assert_allclose(heights.sum(axis=0), 1.0, rtol=1e-12)
     np.testing.assert_allclose(heights[-1], stripes.counts["overturned"] / 24.0, atol=1e-12)
@@ -103,15 +108,13 @@ def test_states_add_up(stripes):
     assert words[-1] == "overturned"
 
 
-def test_words_do_not_overlap(stripes):
+def test_words_do_not_overlap(picture):
     """Legends lie beside the panels, not over one another, and nothing is cut off at 90 mm."""
-    figure = fragility_picture(stripes)
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    upper, lower = (axes.get_legend().get_window_extent(canvas.get_renderer()) for axes in figure.axes)
+    FigureCanvasAgg(picture).draw()
+    upper, lower = (axes.get_legend().get_window_extent() for axes in picture.axes)
     assert not upper.overlaps(lower)
-    assert max(upper.x1, lower.x1) <= figure.bbox.x1
-    assert figure.get_figwidth() * 25.4 == pytest.approx(90.0)
+    assert max(upper.x1, lower.x1) <= picture.bbox.x1
+    assert picture.get_figwidth() * 25.4 == pytest.approx(90.0)
 
 
 def test_separation_is_said():
@@ -196,22 +199,15 @@ def test_measures(clouded):
     assert right.get_xscale() == "log"
     assert any(list(line.get_xdata()) == [0.05, 0.05] for line in right.lines)
     FigureCanvasAgg(figure).draw()
-
-
-def test_measures_without_metadata(clouded):
-    """Without metadata there is one panel."""
+    # without metadata there is one panel
     assert len(measures_picture(compare_measures(clouded, ["pga", "pgv"])).axes) == 1
 
 
-@pytest.mark.parametrize("draw", [fragility_picture, incremental_dynamic_analysis_picture, measures_picture])
-def test_refusals(draw):
-    """What is no analysis is refused in words."""
-    with pytest.raises(InvalidValueError, match="got 'no analysis'"):
-        draw("no analysis")
-
-
-def test_level_out_of_range(stripes):
-    """A confidence that is no share is refused."""
+def test_refusals(stripes):
+    """What is no analysis is refused in words, and a confidence that is no share."""
+    for draw in (fragility_picture, incremental_dynamic_analysis_picture, measures_picture):
+        with pytest.raises(InvalidValueError, match="got 'no analysis'"):
+            draw("no analysis")
     with pytest.raises(InvalidValueError, match="level"):
         fragility_picture(stripes, level=95.0)
 
@@ -275,16 +271,17 @@ def test_stripes_stay_stripes():
 
 @pytest.fixture(scope="module")
 def closed_form():
-    """One sine of three times the frequency parameter, r = 0.9, slender-linear, raised level by level."""
+    """One sine of three times the frequency parameter, r = 0.9, slender-linear, raised level by level: its picture."""
     sine = rk.pulses.sine(1.0, 2.0 * math.pi / (3.0 * BLOCK.frequency_parameter))
     unit = G * BLOCK.slenderness_angle
-    return incremental_dynamic_analysis(BLOCK, sine, np.linspace(1.0, 4.0, 13) * unit, 0.9, linear=True), unit
+    found = incremental_dynamic_analysis(BLOCK, sine, np.linspace(1.0, 4.0, 13) * unit, 0.9, linear=True)
+    return incremental_dynamic_analysis_picture(found), unit
 
 
 def test_lanes_are_the_closed_form(closed_form):
     """Brown below 3.4847 and above 3.6311 times g alpha, blue between: the published boundaries of both modes."""
-    found, unit = closed_form
-    left = incremental_dynamic_analysis_picture(found).axes[0]
+    figure, unit = closed_form
+    left = figure.axes[0]
     fallen, again = (part for part in left.collections if isinstance(part, LineCollection))
     ends = np.array([segment[:, 1] for segment in fallen.get_segments()]) / unit
     np.testing.assert_allclose(ends[0, 1], 3.48466273332249203, rtol=1e-7)
@@ -311,13 +308,11 @@ def test_every_motion_has_a_lane_of_its_own():
 
 def test_words_of_the_incremental_picture_do_not_overlap(closed_form):
     """Axis label, name of the lanes and legend keep apart and inside 90 mm."""
-    figure = incremental_dynamic_analysis_picture(closed_form[0])
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    renderer = canvas.get_renderer()
+    figure = closed_form[0]
+    FigureCanvasAgg(figure).draw()
     left, right = figure.axes
-    parts = [part.get_window_extent(renderer) for part in (left.xaxis.label, right.xaxis.label, figure.legends[0])]
-    parts.append(left.texts[0].get_window_extent(renderer))
+    words = (left.xaxis.label, right.xaxis.label, figure.legends[0], left.texts[0])
+    parts = [part.get_window_extent() for part in words]
     for k, part in enumerate(parts):
         assert not any(part.overlaps(other) for other in parts[k + 1 :])
         assert figure.bbox.x0 <= part.x0 < part.x1 <= figure.bbox.x1

@@ -30,14 +30,19 @@ def many():
     return rocking_spectrum(pulses, ANGLES, np.linspace(1.0, 9.0, 30), 0.9)
 
 
+@pytest.fixture(scope="module")
+def pictures(one, many):
+    """Their pictures."""
+    return {"one": rocking_spectrum_picture(one), "many": rocking_spectrum_picture(many)}
+
+
 def _curves(axes):
     return {line.get_label(): line.get_data() for line in axes.lines if not line.get_label().startswith("_")}
 
 
-def test_curves_are_the_peaks(one):
+def test_curves_are_the_peaks(one, pictures):
     """Each curve is the peak rotation where the block stands, with a gap where it overturned."""
-    figure = rocking_spectrum_picture(one)
-    upper, lower = figure.axes[:2]
+    upper, lower = pictures["one"].axes[:2]
     assert upper.get_ylabel() == r"peak rotation $\theta\,/\,\alpha$ [-]"
     assert lower.get_xlabel() == r"$2\pi\,/\,p$ [s]"
     for place, alpha in enumerate(ANGLES):
@@ -49,9 +54,9 @@ def test_curves_are_the_peaks(one):
         assert 0 < stands.sum() < stands.size
 
 
-def test_bars_cover_what_overturned(one):
+def test_bars_cover_what_overturned(one, pictures):
     """A size is under the bar of its slenderness if and only if the block of that size overturned."""
-    lower = rocking_spectrum_picture(one).axes[1]
+    lower = pictures["one"].axes[1]
     assert "overturns" in lower.get_ylabel()
     for place, bars in enumerate(lower.collections):
         spans = [path.get_extents() for path in bars.get_paths()]
@@ -59,9 +64,9 @@ def test_bars_cover_what_overturned(one):
         assert covered == (one["mode"].values[0, place] >= 0).tolist()
 
 
-def test_size_above(one):
+def test_size_above(pictures):
     """The axis above says R = 3 g / (4 p^2): a period of 4 s is a semi-diagonal of 3 g / pi^2."""
-    figure = rocking_spectrum_picture(one)
+    figure = pictures["one"]
     FigureCanvasAgg(figure).draw()
     upper = figure.axes[0]
     (above,) = upper.child_axes
@@ -95,20 +100,15 @@ def test_failed_histories_count_nowhere(many):
     np.testing.assert_array_equal(*shares)
 
 
-def test_shares_of_many(many):
-    """Below the curves stands the share of the motions that overturned each block."""
-    figure = rocking_spectrum_picture(many)
+def test_shares_of_many(many, pictures):
+    """Below the curves stands the share of the motions that overturned each block; equal steps have a linear axis."""
+    figure = pictures["many"]
     lower = figure.axes[1]
+    assert (pictures["one"].axes[1].get_xscale(), lower.get_xscale()) == ("log", "linear")
     assert lower.get_ylabel() == "share over-\nturned [-]"
     for place, line in enumerate(lower.lines):
         np.testing.assert_allclose(line.get_ydata(), (many["mode"].values[:, place] >= 0).sum(axis=0) / 5.0, atol=1e-15)
     assert "5 motions" in figure.get_suptitle()
-
-
-def test_scales_follow_the_periods(one, many):
-    """Periods in equal ratios have a log axis, those in equal steps a linear one."""
-    assert rocking_spectrum_picture(one).axes[1].get_xscale() == "log"
-    assert rocking_spectrum_picture(many).axes[1].get_xscale() == "linear"
 
 
 def test_nothing_lifts():

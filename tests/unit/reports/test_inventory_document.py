@@ -3,6 +3,7 @@
 import json
 import re
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -33,33 +34,31 @@ def assessment():
     return assess(parse_inventory(TEXT, "list.csv"), hazard)
 
 
-def page(assessment, folder):
+def page(assessment):
     """The HTML."""
-    return render_html(inventory_document(assessment), folder)
+    return render_html(inventory_document(assessment), Path())
 
 
-def test_lights_are_letters_and_words(assessment, tmp_path):
+@pytest.fixture(scope="module")
+def html(assessment):
+    """The page of the whole list."""
+    return page(assessment)
+
+
+def test_lights_are_letters_and_words(html):
     """Without styles and colours the page still says red, amber and green, and the worst stands first."""
-    bare = re.sub(r"<style>.*?</style>|<[^>]+>", " ", page(assessment, tmp_path), flags=re.S)
+    bare = re.sub(r"<style>.*?</style>|<[^>]+>", " ", html, flags=re.S)
     order = [bare.index(word) for word in ("R\xa0RED", "A\xa0AMBER", "G\xa0GREEN")]
     assert order == sorted(order)
     assert "1 red, 1 amber, 2 green, 1 not assessed" in bare
 
 
-def test_page_is_escaped_and_complete_in_itself(assessment, tmp_path):
-    """What users typed stays words; nothing is fetched; no placeholder is left."""
-    html = page(assessment, tmp_path)
-    assert "<script>" not in html
-    assert "&lt;script&gt;alert(1)&lt;/script&gt;" in html
-    assert "&lt;b&gt;mirror&lt;/b&gt;" in html
-    for word in ("src=", "@import", "http://", "https://", "{{", "nan", "inf "):
+def test_page_is_complete_in_itself_and_says_what_it_rests_on(html):
+    """What users typed stays words, nothing is fetched; thresholds, seed, family, models, limits are on the page."""
+    for word in ("<script>", "src=", "@import", "http://", "https://", "{{", "nan", "inf "):
         assert word not in html
-
-
-def test_report_says_what_it_rests_on(assessment, tmp_path):
-    """Thresholds, seed, family, its illustrative ranges, the models, unread columns and sliding are on the page."""
-    html = page(assessment, tmp_path)
     for words in (
+        "&lt;script&gt;alert(1)&lt;/script&gt;", "&lt;b&gt;mirror&lt;/b&gt;",
         "At least 20% of the motions", "seed 3", "point-source", "illustrative ranges", "no hazard model", "housner",
         "Sliding is not assessed", "not of a code of practice", "Columns of the list that were not read:", "room",
         "line</th>", "width_cm must be one number",
@@ -67,12 +66,18 @@ def test_report_says_what_it_rests_on(assessment, tmp_path):
         assert words in html, words
 
 
-def test_page_without_any_verdict(assessment, tmp_path):
-    """A list of bad rows alone makes a report that says so."""
-    nothing = assess(parse_inventory("name,width_cm,depth_cm,height_cm\nx,?,1,1"), assessment.hazard)
-    html = page(nothing, tmp_path)
-    assert "No row could be assessed." in html
-    assert "0 red, 0 amber, 0 green, 1 not assessed" in html
+def test_pages_of_other_lists(assessment):
+    """Bad rows alone make a report that says so; a level of 99.9 % is printed as such, not as 100 %."""
+    bare = page(assess(parse_inventory("name,width_cm,depth_cm,height_cm\nx,?,1,1"), assessment.hazard))
+    items = [verdict.item for verdict in assessment.verdicts]
+    own = page(assess(items, assessment.hazard, thresholds=Thresholds(level=0.999)))
+    for html, words in (
+        (bare, "No row could be assessed."),
+        (bare, "0 red, 0 amber, 0 green, 1 not assessed"),
+        (own, "99.9% interval [%]"),
+    ):
+        assert words in html
+    assert "100% interval" not in own
 
 
 def test_folder_has_every_form(assessment, tmp_path, monkeypatch):
@@ -91,10 +96,7 @@ def test_folder_has_every_form(assessment, tmp_path, monkeypatch):
     assert plain["columns_not_read"] == ["room"]
     with pytest.raises(MissingExtraError, match=r"'\.\[excel\]'"):
         write_spreadsheet(assessment, tmp_path / "x.xlsx")
-
-
-def test_folder_that_cannot_be_written(assessment, tmp_path):
-    """A file in the place of the folder is refused in one sentence."""
+    # a file in the place of the folder is refused in one sentence
     (tmp_path / "taken").write_text("", encoding="utf-8")
     with pytest.raises(RockingError, match="cannot write to"):
         write_inventory(assessment, tmp_path / "taken")
@@ -131,13 +133,3 @@ def test_spreadsheet_and_csv_name_the_columns_that_were_not_read(assessment, tmp
         else:
             assert facts["not read"] == f"columns of the list: {named}"
             assert f"columns of the list that were not read: {named}" in last
-
-
-def test_the_level_of_the_interval_is_not_rounded(assessment, tmp_path):
-    """A level of 99.9 % is printed as such above the intervals, not as 100 %."""
-    own = assess(
-        [verdict.item for verdict in assessment.verdicts], assessment.hazard, thresholds=Thresholds(level=0.999)
-    )
-    html = page(own, tmp_path)
-    assert "99.9% interval [%]" in html
-    assert "100% interval" not in html

@@ -123,14 +123,6 @@ def test_a_closed_surface_is_left_as_it_is():
     assert len(soup.shape.vertices) == 9
 
 
-def test_missing_face():
-    """A hole is described and refused; one of 12 % of the surface is not filled even on request."""
-    with pytest.raises(GeometryError, match=r"1 hole\(s\): 4\.12 m wide \(3 edges\)"):
-        repaired(V, F[:-1])
-    with pytest.raises(GeometryError, match=r"are 12\.\d % of the surface; only up to 1 %"):
-        repaired(V, F[:-1], fill_holes=True)
-
-
 def test_small_hole():
     """A hole of a thousandth of a sphere is filled on request, said, and costs no more than that of the volume."""
     vertices, faces = sphere()
@@ -155,21 +147,24 @@ def test_duplicates_and_degenerates():
     assert done.shape.moments().mass == pytest.approx(4.0, rel=1e-14)
 
 
-def test_zero_volume():
-    """A sheet with two sides encloses nothing and is refused."""
-    with pytest.raises(GeometryError, match="nothing is left between"):
-        repaired(V * [1.0, 1.0, 0.0], F)
-    folded = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
-    with pytest.raises(GeometryError, match="no volume"):
-        repaired(folded, np.array([[0, 1, 2], [0, 2, 3], [1, 0, 3], [1, 3, 2]]))
+FOLDED = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
 
 
-def test_nan():
-    """A vertex that is not a number is named."""
-    vertices = V.copy()
-    vertices[5, 1] = math.nan
-    with pytest.raises(GeometryError, match="vertex 5 must be finite"):
-        repaired(vertices, F)
+@pytest.mark.parametrize(
+    ("vertices", "faces", "fill", "words"),
+    [
+        (V, F[:-1], False, r"1 hole\(s\): 4\.12 m wide \(3 edges\)"),
+        (V, F[:-1], True, r"are 12\.\d % of the surface; only up to 1 %"),
+        (V * [1.0, 1.0, 0.0], F, False, "nothing is left between"),
+        (FOLDED, np.array([[0, 1, 2], [0, 2, 3], [1, 0, 3], [1, 3, 2]]), False, "no volume"),
+        (np.where(np.arange(24).reshape(8, 3) == 16, math.nan, V), F, False, "vertex 5 must be finite"),
+    ],
+    ids=["missing face", "large hole", "sheet", "folded sheet", "nan"],
+)
+def test_what_is_no_surface(vertices, faces, fill, words):
+    """A hole is described, one of 12 % is not filled on request; sheets enclose nothing; no number is named."""
+    with pytest.raises(GeometryError, match=words):
+        repaired(vertices, faces, fill_holes=fill)
 
 
 def test_shells():
