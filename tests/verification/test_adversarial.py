@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import built
 from scipy.special import ellipk, ellipkinc
 
 from rocking.conventions import g
 from rocking.dynamics.impact_laws import ConstantRestitution
-from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.settings import Settings
 from rocking.motions import Segments
@@ -28,7 +28,7 @@ DISCRETE = ("outcome", "status", "side", "impacts", "uplifts")
 LARGEST_SHARE_OF_EDGES = {"grazing": 0.5, "threshold": 0.5, "critical": 0.5, "at the end": 0.5, "restitution": 0.2}
 SPEEDS_OF_REST = (0.01, 1e-4, 1e-6)
 
-pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
+pytestmark = built
 
 
 @dataclass(frozen=True)

@@ -6,21 +6,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import every_engine
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk, ellipkinc
 
 from rocking.conventions import g
 from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
-from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind, Trajectory
 from rocking.motions import Segments
 
-ENGINES = pytest.mark.parametrize(
-    "name",
-    [pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="not built")), "reference"],
-)
 ALPHA, P, STEP = 0.25, 2.0, 0.05
 
 
@@ -34,7 +30,7 @@ def moved(name: str, push: Any, lift: Any = None, r: float = 0.9, **state: float
     return {key: values[0] for key, values in found[0].items()}
 
 
-@ENGINES
+@every_engine
 @pytest.mark.parametrize("start", [1e-12, 1e-17, 1e-18, 1e-300, 5e-324])
 def test_a_body_hardly_turned(start: float, name: str) -> None:
     """Turned by nothing and thrown inwards it lands at once, with r times the speed; let go it stays where it is."""
@@ -46,7 +42,7 @@ def test_a_body_hardly_turned(start: float, name: str) -> None:
     assert abs(moved(name, still, rotation=start)["peak_rotation"]) <= start
 
 
-@ENGINES
+@every_engine
 def test_a_negative_scale_turns_the_motion_round(name: str) -> None:
     """A scale of -1 is the motion with its signs turned by hand: a ground that rose falls, and lifts the body."""
     push, lift = np.full(20, 0.1), np.append(0.0, np.full(19, 0.9))
@@ -70,7 +66,7 @@ def largest_before_impact(push: Any, rotation: float, velocity: float) -> float:
     return top
 
 
-@ENGINES
+@every_engine
 @pytest.mark.parametrize(
     ("rotation", "velocity"), [(0.1, 0.0), (0.1, 1e-6), (0.1, -1e-6), (0.01, -0.003), (0.01, 0.003)]
 )
@@ -95,7 +91,7 @@ def time_to_fall(alpha: float, p: float, start: float) -> float:
     return float(ellipk(m) - ellipkinc(math.asin(math.cos(0.5 * alpha) / math.sqrt(m)), m)) / p
 
 
-@ENGINES
+@every_engine
 @pytest.mark.parametrize(
     ("alpha", "p", "start", "step", "parts"),
     [
@@ -112,7 +108,7 @@ def test_an_impact_on_a_sample(alpha: float, p: float, start: float, step: float
     assert np.abs(found.rotation).max() <= start
 
 
-@ENGINES
+@every_engine
 def test_impacts_near_a_sample(name: str) -> None:
     """200 falls that end within a few units in the last place of a sample, on either side, all end in an impact."""
     random = np.random.default_rng(12)

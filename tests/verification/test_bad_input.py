@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import every_engine
 
 from rocking.dynamics import Outcome, Status
 from rocking.dynamics.impact_laws import ConstantRestitution
@@ -29,10 +30,6 @@ ROWS = tuple(name for name in batch.ROWS if not name.startswith("q_"))
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
 INJECTIONS = 1_000
 PATHOLOGICAL = {"fast": 10_000, "reference": 10_000 if CAMPAIGN else 200}
-ENGINES = pytest.mark.parametrize(
-    "name",
-    [pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="not built")), "reference"],
-)
 POISON = (math.nan, math.inf, -math.inf, -math.nan)
 REALS = ("peak_rotation", "peak_time", "peak_velocity", "truncation")
 HALF_PI = 0.5 * math.pi
@@ -91,7 +88,7 @@ def false_success(found: dict[str, Any], *, linear: bool = False) -> Any:
 # ---- poison ---------------------------------------------------------------------------------------------------------
 
 
-@ENGINES
+@every_engine
 def test_poisoned_rows(name: str) -> None:
     """1,000 rows with NaN or infinity in one of their numbers are refused; the rows between them keep their bits."""
     values = ordinary(2 * INJECTIONS if name == "fast" or CAMPAIGN else 1_100, 1)
@@ -109,7 +106,7 @@ def test_poisoned_rows(name: str) -> None:
     assert all(np.delete(found[key], ill).tobytes() == clean[key].tobytes() for key in fast_engine.RESULTS)
 
 
-@ENGINES
+@every_engine
 @pytest.mark.parametrize("vertical", [False, True])
 def test_poisoned_motions(name: str, vertical: bool) -> None:
     """NaN or infinity within a motion: refused, or no success that went through it and no effect on other motions."""
@@ -178,7 +175,7 @@ def monsters(random: np.random.Generator) -> list[Segments]:
     return motions
 
 
-@ENGINES
+@every_engine
 @pytest.mark.parametrize("linear", [False, True])
 def test_pathological_parameters(name: str, linear: bool) -> None:
     """10,000 rows of extremes on motions of extremes: a status each, no false success, and many of either."""
@@ -214,7 +211,7 @@ HANGS = {
 }
 
 
-@ENGINES
+@every_engine
 @pytest.mark.parametrize("case", HANGS)
 def test_no_hang(case: str, name: str) -> None:
     """Steps of 1e12 / p, a slenderness of 1e-300, falls of exp(100): done or refused within ten seconds."""

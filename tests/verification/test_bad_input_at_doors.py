@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import built
 
 import rocking as rk
 from rocking.dynamics import Outcome, Status
-from rocking.dynamics.plane import fast_engine
 from rocking.errors import RockingError
 
 HALF_PI = 0.5 * math.pi
@@ -139,7 +139,7 @@ def test_every_combination(motion: Any, order: int, linear: bool, name: str) -> 
         assert many["status"].values.ravel().tolist() == [0]
 
 
-@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
+@built
 @pytest.mark.filterwarnings("ignore:the ground would have to pull")  # 10 g and more throw a block, in both engines
 @pytest.mark.parametrize("peak", [10.0**k for k in range(2, 7)])
 def test_monstrous_records(peak: float) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import built
 
 import rocking as rk
 from rocking.dynamics import RockingParameters, RockingSide
@@ -18,7 +19,7 @@ from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.settings import Settings
 from rocking.motions import Segments
 
-pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
+pytestmark = built
 
 KINDS = ("records", "vertical", "pulses")
 COUNT = 700

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import built
 
 from rocking.campaigns import Campaign, CampaignInterrupted, Progress
 from rocking.dynamics.impact_laws import RandomRestitution
-from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.studies import HistoryTable
 
@@ -23,7 +23,7 @@ from workload import histories
 
 sys.path.pop(0)
 
-pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
+pytestmark = built
 COUNT = 2500
 FORK: dict[str, Any] = {"executor": "processes", "start_method": "fork"}
 unforked = pytest.mark.skipif(os.name == "nt", reason="this system does not fork")

@@ -5,15 +5,15 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 import pytest
+from engines import built
 
 from rocking.conventions import g
 from rocking.dynamics.impact_laws import ConstantRestitution
-from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.settings import Settings
 from rocking.motions import Segments
 
-pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
+pytestmark = built
 
 STEP, BODIES, NEIGHBOURS = 0.1, 60, 41
 

@@ -9,21 +9,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import every_engine
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.conventions import g
 from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
-from rocking.dynamics.plane import equations, fast_engine
+from rocking.dynamics.plane import equations
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import Trajectory
 from rocking.motions import Segments
 
-ENGINES = pytest.mark.parametrize(
-    "name",
-    [pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="not built")), "reference"],
-)
 FEW = settings(max_examples=25)
 
 # the laws are those of the equations of rocking, which hold also where the ground would have to pull
@@ -80,7 +77,7 @@ def block(alpha: float, size: float = 1.0) -> rk.Block:
     return rk.Block(width=2.0 * size * math.sin(alpha), height=2.0 * size * math.cos(alpha))
 
 
-@ENGINES
+@every_engine
 @FEW
 @given(alpha=slenderness, s=factors, r=coefficients, strength=strengths, seed=seeds)
 def test_size(name: str, alpha: float, s: float, r: float, strength: float, seed: int) -> None:
@@ -94,7 +91,7 @@ def test_size(name: str, alpha: float, s: float, r: float, strength: float, seed
         assert not same_course(one, respond(large, motion, r, name))
 
 
-@ENGINES
+@every_engine
 @FEW
 @given(alpha=slenderness, c=factors, r=coefficients, strength=strengths, seed=seeds)
 def test_gravity(name: str, alpha: float, c: float, r: float, strength: float, seed: int) -> None:
@@ -108,7 +105,7 @@ def test_gravity(name: str, alpha: float, c: float, r: float, strength: float, s
     assert same_course(one, other)
 
 
-@ENGINES
+@every_engine
 @FEW
 @given(alpha=slenderness, density=st.floats(1e-3, 1e6), depth=st.floats(0.01, 100.0), strength=strengths, seed=seeds)
 def test_mass(name: str, alpha: float, density: float, depth: float, strength: float, seed: int) -> None:
@@ -119,7 +116,7 @@ def test_mass(name: str, alpha: float, density: float, depth: float, strength: f
     assert same_course(respond(body, motion, "housner", name), respond(heavy, motion, "housner", name))
 
 
-@ENGINES
+@every_engine
 @FEW
 @given(alpha=slenderness, c=st.floats(0.3, 3.0), r=coefficients, strength=strengths, seed=seeds, linear=st.booleans())
 def test_constant_vertical(
@@ -140,7 +137,7 @@ def test_constant_vertical(
         assert np.abs(one.rotation[:n] - wrong.rotation[:n]).max() > 1e-8
 
 
-@ENGINES
+@every_engine
 @FEW
 @given(alpha=slenderness, k=st.floats(0.75, 1.3), r=coefficients, strength=strengths, seed=seeds)
 def test_equal_parameters(name: str, alpha: float, k: float, r: float, strength: float, seed: int) -> None:
@@ -153,7 +150,7 @@ def test_equal_parameters(name: str, alpha: float, k: float, r: float, strength:
     assert same_course(respond(body, motion, r, name), respond(pair, motion, r, name))
 
 
-@ENGINES
+@every_engine
 @FEW
 @given(alpha=slenderness, s=factors, c=factors, strength=st.floats(1.2, 6.0), omega=st.floats(0.5, 8.0), r=coefficients)
 def test_dimensionless_groups(
@@ -181,7 +178,7 @@ def histories(
     return run(parameters, motion, Settings(linear=linear, rest_speed=1e-6), engine=name, **state)
 
 
-@ENGINES
+@every_engine
 @FEW
 @given(alpha=slenderness, other=slenderness, r=coefficients, strength=strengths, seed=seeds)
 def test_linear_model(name: str, alpha: float, other: float, r: float, strength: float, seed: int) -> None:
@@ -200,7 +197,7 @@ def test_linear_model(name: str, alpha: float, other: float, r: float, strength:
             assert gap > 1e-8
 
 
-@ENGINES
+@every_engine
 @settings(max_examples=50)
 @given(
     alphas=st.tuples(slenderness, slenderness), ps=st.tuples(st.floats(1.0, 5.0), st.floats(1.0, 5.0)),
@@ -226,7 +223,7 @@ def test_mirror_is_bitwise(
         assert not np.array_equal(one.rotation, -same.rotation, equal_nan=True)
 
 
-@ENGINES
+@every_engine
 @FEW
 @given(lean=st.floats(-0.3, 0.3), strength=strengths, seed=seeds)
 def test_mirrored_body(name: str, lean: float, strength: float, seed: int) -> None:
@@ -243,7 +240,7 @@ def test_mirrored_body(name: str, lean: float, strength: float, seed: int) -> No
     assert np.abs(one.rotation[:n] + other.rotation[:n]).max() < 1e-8
 
 
-@ENGINES
+@every_engine
 @FEW
 @given(alpha=slenderness, p=st.floats(0.5, 6.0), r=st.sampled_from([1.0, 0.95, 0.8, 0.5]), start=st.floats(0.1, 0.95))
 def test_energy(name: str, alpha: float, p: float, r: float, start: float) -> None:
@@ -264,7 +261,7 @@ def test_energy(name: str, alpha: float, p: float, r: float, start: float) -> No
         assert np.abs(e / r**before - 1.0)[kept].max() > 0.01
 
 
-@ENGINES
+@every_engine
 @FEW
 @given(alpha=slenderness, seed=seeds, strength=strengths, start=st.floats(0.1, 0.8), vertical=st.booleans())
 def test_time_reversal(name: str, alpha: float, seed: int, strength: float, start: float, vertical: bool) -> None:
@@ -285,7 +282,7 @@ def test_time_reversal(name: str, alpha: float, seed: int, strength: float, star
     assert not ends[1] < 1e-5
 
 
-@ENGINES
+@every_engine
 @pytest.mark.parametrize("lift", [0.0, 0.4, -0.6])
 @FEW
 @given(left=st.floats(0.2, 1.5), right=st.floats(0.2, 1.5), h=st.floats(0.5, 5.0))

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import every_engine
 from scipy import stats
 
 from rocking.dynamics import RandomRestitution, RockingParameters, RockingSide, Settings
 from rocking.dynamics.impact_laws import uniform
-from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.motions import Segments
@@ -151,13 +151,7 @@ def coefficients(law: RandomRestitution, key: int, name: str, sides: tuple[float
     return [(e.coefficient, e.side) for e in found.events if e.kind is EventKind.IMPACT]
 
 
-ENGINES = pytest.mark.parametrize(
-    "name",
-    [pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="not built")), "reference"],
-)
-
-
-@ENGINES
+@every_engine
 def test_engines_draw_alike(name: str) -> None:
     """The n-th impact of history `key` meets the draw of (seed, key, n), to the bit, in C++ as in Python."""
     quantiles = np.linspace(0.75, 1.0, 5)
@@ -175,7 +169,7 @@ def test_engines_draw_alike(name: str) -> None:
     assert total > 25 * len(keys) * len(SEEDS)
 
 
-@ENGINES
+@every_engine
 def test_draws_multiply_the_coefficient_of_the_side(name: str) -> None:
     """A draw is a factor on the coefficient of the side that the body lands on."""
     law = RandomRestitution(np.array([0.9, 1.0]), 5)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from engines import every_engine
 
 from rocking.conventions import g
 from rocking.dynamics.impact_laws import ConstantRestitution
@@ -12,10 +13,6 @@ from rocking.dynamics.settings import Settings
 from rocking.motions import Segments
 
 COUNT = 40
-ENGINES = [
-    "reference",
-    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
-]
 
 
 def case(number):
@@ -40,7 +37,7 @@ def lifts(trajectory):
     return np.array([e.time for e in trajectory.events if e.kind is EventKind.UPLIFT])
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@every_engine
 def test_the_same_later_history(name):
     """Uplifts from rest at the same instants, the same outcome and peak, with far fewer impacts."""
     saved = 0

@@ -26,21 +26,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import every_engine
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from rocking.conventions import g
 from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
-from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.motions import Segments
 
-ENGINES = pytest.mark.parametrize(
-    "name",
-    [pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="not built")), "reference"],
-)
 IMPACTS = 3
 WITHIN = 1e-8
 
@@ -152,7 +148,7 @@ def frame_of(columns: int, gamma: float, size: float, alpha: float, mass: float)
     return Frame(columns, size * math.sin(alpha), size * math.cos(alpha), mass, gamma * columns * mass)
 
 
-@ENGINES
+@every_engine
 @settings(max_examples=15, deadline=None)
 @given(
     columns=st.integers(1, 40), gamma=st.floats(0.0, 20.0), size=st.floats(0.1, 20.0), alpha=st.floats(0.05, 0.5),
@@ -169,7 +165,7 @@ def test_a_frame_is_a_block(
     assert apart(frame.impacts(ratio * alpha), block) < WITHIN
 
 
-@ENGINES
+@every_engine
 @pytest.mark.parametrize("gamma", [0.1, 1.0, 10.0])
 def test_other_blocks_are_told_apart(name: str, gamma: float) -> None:
     """Negative control: neither p nor r of a column alone will do, and without a beam both do."""

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import every_engine
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -30,10 +31,6 @@ from rocking.studies import SampledRestitution, multiple_stripe_analysis
 ALARM = 1e-6
 SIGNS: dict[Foot, float] = {"left": -1.0, "right": 1.0}
 LAWS = pytest.mark.parametrize("law", [RandomRestitution, SampledRestitution])
-ENGINES = pytest.mark.parametrize(
-    "name",
-    [pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="not built")), "reference"],
-)
 quietly = pytest.mark.filterwarnings("ignore::rocking.errors.PlausibilityWarning")
 
 
@@ -223,7 +220,7 @@ def test_no_draw_is_beyond_the_bound(body: Any, left: Any, right: Any, seed: int
 
 
 @quietly
-@ENGINES
+@every_engine
 @pytest.mark.parametrize("body", BODIES)
 def test_no_impact_creates_energy(name: str, body: Any) -> None:
     """Kinetic energy I theta'^2 never grows over an impact under a law whose draws reach up to the bounds."""
@@ -281,7 +278,7 @@ def test_engines_agree(law: Any) -> None:
     assert (np.abs(fast["peak_rotation"] - swapped["peak_rotation"]) > 1e-3).sum() > 10
 
 
-@ENGINES
+@every_engine
 def test_each_impact_draws_from_its_side(name: str) -> None:
     """The n-th impact lands on a side with the quantile of that side at its share of the n-th number, to the bit."""
     law = RandomRestitution(TWO, 9)
@@ -297,7 +294,7 @@ def test_each_impact_draws_from_its_side(name: str) -> None:
         assert r == parameters.coefficient(side, 1.0, 4, n)
 
 
-@ENGINES
+@every_engine
 def test_equal_sides_are_one_table(name: str) -> None:
     """Two equal tables are one; run as two all the same, they give the same bits."""
     one, values = RandomRestitution(TWO["left"], 5), rows_of(40)
@@ -309,7 +306,7 @@ def test_equal_sides_are_one_table(name: str) -> None:
 
 
 @quietly
-@ENGINES
+@every_engine
 @LAWS
 def test_a_mirrored_body_gives_the_mirrored_response(name: str, law: Any) -> None:
     """Body, motion and tables mirrored: the same rotations with the other sign, and the same coefficients."""

@@ -22,16 +22,18 @@ What the keys mean:
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rocking import plausibility
 from rocking.conventions import FEET, Assumed
-from rocking.dynamics.contact import ContactResponse
 from rocking.dynamics.response import Response
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion
 from rocking.outcome import Outcome
 from rocking.restitution import models
+
+if TYPE_CHECKING:
+    from rocking.dynamics.contact import ContactResponse
 
 OUTCOME_WORDS = {
     Outcome.OVERTURNED: "overturns",
@@ -128,7 +130,7 @@ def outcome_facts(response: Response) -> dict[str, Any]:
     }
 
 
-def still_rocking_facts(response: Response | ContactResponse) -> dict[str, float | str] | None:
+def still_rocking_facts(response: "Response | ContactResponse") -> dict[str, float | str] | None:
     """Return the last state of a body that does not yet rest; None if it rests or has overturned."""
     if not response.still_rocking:
         return None

@@ -5,21 +5,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import built, every_engine
 
 from rocking.dynamics import Outcome, Settings, Status
-from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import ROWS, Batch, Rows, valid_row
 from rocking.dynamics.plane.fast_engine import RESULTS, Library
 from rocking.dynamics.settings import processors
 from rocking.errors import InvalidValueError
 from rocking.motions import Segments, pulses
 
-ENGINES = [
-    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
-    "reference",
-]
-built = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
-every_engine = pytest.mark.parametrize("name", ENGINES)
 GOOD: dict[str, Any] = {
     "alpha_right": 0.25, "alpha_left": 0.2, "p_right": 2.5, "p_left": 2.6, "r_right": 0.9, "r_left": 0.85,
     "q_right": 0.75, "q_left": 0.7, "share_right": 1.0, "share_left": 0.9,

@@ -8,16 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import ENGINES, every_engine
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics.plane import dense_output, equations, fast_engine
+from rocking.dynamics.plane import dense_output, equations
 from rocking.errors import InvalidValueError
 
-ENGINES = [
-    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
-    "reference",
-]
 BLOCK = rk.Block(width=1.0, height=3.0, depth=2.0, density=1000.0)
 MASS, RADIUS, ALPHA = 6000.0, math.hypot(0.5, 1.5), math.atan(1.0 / 3.0)
 P = math.sqrt(0.75 * g / RADIUS)
@@ -31,7 +28,7 @@ RECORD = rk.GroundMotion(
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@every_engine
 def test_free_rocking_ledger(name: str) -> None:
     """All energy is m g R (cos(alpha - theta_0) - cos(alpha)); n impacts take 1 - r^(2n) of it; no work is done."""
     response = rk.free_rocking(BLOCK, START, R, engine=name)
@@ -50,7 +47,7 @@ def test_free_rocking_ledger(name: str) -> None:
 
 
 @pytest.mark.parametrize("linear", [False, True])
-@pytest.mark.parametrize("name", ENGINES)
+@every_engine
 def test_shaken_ledger(name: str, linear: bool) -> None:
     """Under a record with a vertical part, work in, losses out and energy stored close to 1e-10 of the largest."""
     response = rk.simulate(BLOCK, RECORD, R, engine=name, linear=linear)
@@ -69,7 +66,7 @@ def test_a_wrong_ledger_does_not_close() -> None:
     assert off.closure > 1e-8 > energy.closure
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@every_engine
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_forces_when_let_go(name: str, sign: float) -> None:
     """Let go from theta_0: f_x = -s m 3/4 g sin cos, f_z = m (g - 3/4 g sin^2), of alpha - theta_0."""
@@ -129,7 +126,7 @@ def test_loss_of_contact(drop: float, flies: bool) -> None:
     assert len(said) == int(flies)
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@every_engine
 def test_forces_follow_from_the_motion(name: str) -> None:
     """Newton's second law: the forces are m times the acceleration of the centre, differentiated numerically."""
     response: Any = rk.free_rocking(BLOCK, START, R, engine=name)

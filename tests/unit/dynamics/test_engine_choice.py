@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import built
 
 import rocking as rk
 from rocking.dynamics.parameters import sides_of
@@ -16,7 +17,6 @@ from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarni
 
 BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
 RECORD = rk.GroundMotion(4.0 * np.sin(0.3 * np.arange(43)), 0.05)
-built = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 
 
 @pytest.fixture
@@ -168,7 +168,7 @@ def loaded(more: str = "") -> set[str]:
     return set(done.stdout.split())
 
 
-@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
+@built
 def test_the_first_response_loads_what_it_needs() -> None:
     """A response of the fast engine loads no files, tables, other models or engines; asked for, these are loaded."""
     found = loaded()

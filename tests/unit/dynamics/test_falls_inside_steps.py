@@ -5,21 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import every_engine
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics.plane import fast_engine
 from rocking.errors import InvalidValueError
 
-every_engine = pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(
-            "fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
-        ),
-        "reference",
-    ],
-)
 BLOCK = rk.Block(width=0.5, height=2.0)
 MASS, RADIUS, ALPHA, B = 2400.0, math.hypot(0.25, 1.0), math.atan(0.25), 0.25
 TO_TOP = MASS * g * RADIUS * (1.0 - math.cos(ALPHA))

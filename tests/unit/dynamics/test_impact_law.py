@@ -6,22 +6,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import built, every_engine
 from scipy import stats
 
 import rocking as rk
 from rocking.dynamics.content import hash_of
 from rocking.dynamics.impact_laws import ConstantRestitution, interpolated, uniform
-from rocking.dynamics.plane import fast_engine
 from rocking.errors import InvalidValueError
 
 # these take rows, whatever their type
 SPEED: Any = rk.dynamics.SpeedRestitution
 RANDOM: Any = rk.dynamics.RandomRestitution
 BLOCK = rk.Block(width=0.5, height=2.0)
-ENGINES = [
-    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
-    "reference",
-]
 MASK = 2**64 - 1
 
 
@@ -107,7 +103,7 @@ def test_speed_law() -> None:
     assert ConstantRestitution().factor(3.0, 1, 2) == 1.0 == ConstantRestitution().largest
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@every_engine
 def test_coefficients_by_side(name: str) -> None:
     """Landing left takes the left coefficient, landing right the right one, in either engine."""
     found = impacts_of({"left": 0.8, "right": 0.9}, name)
@@ -117,7 +113,7 @@ def test_coefficients_by_side(name: str) -> None:
     np.testing.assert_allclose(found["velocity_after"], expected * found["velocity_before"], rtol=1e-15)
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@every_engine
 def test_speed_law_in_a_response(name: str) -> None:
     """Each impact has the coefficient of its own speed, times Housner's 1 - 3/2 sin^2(alpha)."""
     housner = 1.0 - 1.5 * math.sin(math.atan(0.25)) ** 2
@@ -127,7 +123,7 @@ def test_speed_law_in_a_response(name: str) -> None:
     np.testing.assert_allclose(found["coefficient"], housner * np.interp(speeds, [0.05, 0.3], [1.0, 0.9]), rtol=1e-13)
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@every_engine
 def test_random_law_in_a_response(name: str) -> None:
     """The n-th impact has the n-th draw of its history, times 0.95, and another key other draws."""
     law = RANDOM([0.7, 0.8, 1.0], 12, times=0.95)
@@ -138,7 +134,7 @@ def test_random_law_in_a_response(name: str) -> None:
         assert 0.95 * 0.7 <= found.min() <= found.max() <= 0.95
 
 
-@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
+@built
 @pytest.mark.parametrize(
     "law", [SPEED([0.0, 0.4], [0.95, 0.8]), rk.dynamics.RandomRestitution.normal(0.9, 0.05, seed=8)]
 )

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import built, every_engine
 
 import rocking as rk
 from rocking.dynamics import Outcome, Status
@@ -13,11 +14,6 @@ from rocking.restitution import model
 
 pytest.importorskip("xarray")
 
-ENGINES = [
-    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
-    "reference",
-]
-every_engine = pytest.mark.parametrize("name", ENGINES)
 # these take rows, whatever their type
 SPEED: Any = rk.dynamics.SpeedRestitution
 RANDOM: Any = rk.dynamics.RandomRestitution
@@ -97,7 +93,7 @@ def test_outcomes_are_those_of_long_histories(name: str, tables: dict[str, Any])
         assert abs(float(found["peak_rotation"][body, 0, 2, 1])) == pytest.approx(alone.peak_rotation, rel=1e-9)
 
 
-@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
+@built
 def test_both_engines(tables: dict[str, Any]) -> None:
     """The engines agree on outcomes and counts, and on peaks to 1e-9."""
     fast, slow = tables["fast"], tables["reference"]
@@ -156,7 +152,7 @@ def test_models_as_objects() -> None:
     assert found["peak_rotation"].to_numpy()[0, 0, 0, 0] == found["peak_rotation"].to_numpy()[0, 0, 0, 1]
 
 
-@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
+@built
 def test_a_dataset_says_what_it_is() -> None:
     """Engine, seed, bodies and motions can be read off a dataset."""
     law = rk.dynamics.RandomRestitution.normal(0.9, 0.01, seed=7)
@@ -168,7 +164,7 @@ def test_a_dataset_says_what_it_is() -> None:
     assert "sine" in str(result.motion_provenance.values[0]).lower()
 
 
-@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
+@built
 def test_company_does_not_matter() -> None:
     """A record beside one that has a vertical part, on which the whole batch runs with one, keeps its bits."""
     random = np.random.default_rng(5)
@@ -181,7 +177,7 @@ def test_company_does_not_matter() -> None:
         np.testing.assert_array_equal(alone[name].values, beside[name].values)
 
 
-@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
+@built
 def test_a_twin_tells_what_the_integration_leaves_open() -> None:
     """Half a long step changes a peak by the error that it has against steps without error, of order 6 or more.
 

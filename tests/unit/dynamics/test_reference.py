@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import built, every_engine
 from numpy.polynomial import Polynomial
 
 import rocking as rk
 from rocking.conventions import g
 from rocking.dynamics import Outcome, RockingParameters, RockingSide
 from rocking.dynamics.impact_laws import ConstantRestitution
-from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.reference import Reference
 from rocking.dynamics.plane.trajectory import EventKind, Trajectory
@@ -159,11 +159,6 @@ def test_a_body_that_never_moves_has_its_peak_at_the_start() -> None:
     assert (still.peak_rotation, still.peak_time) == (0.0, 0.0)
 
 
-ENGINES = [
-    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
-    "reference",
-]
-every_engine = pytest.mark.parametrize("name", ENGINES)
 BURSTS = rk.GroundMotion(
     np.concatenate([np.zeros(9), 3.5 * np.sin(np.linspace(0.0, 2.0 * np.pi, 13)), np.zeros(150)] * 2), 0.05
 )
@@ -206,7 +201,7 @@ def test_after_overturning_there_is_nothing(name: str) -> None:
     assert run.overturning_time == run.peak_time < response.time[-1]
 
 
-@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
+@built
 def test_engines_hand_back_the_same() -> None:
     """Events of both engines agree in kind and side, in time to 1e-9 s, and rotations to 1e-10 rad."""
     fast, slow = (rk.simulate(BLOCK, BURSTS, 0.6, engine=name).trajectory for name in ("fast", "reference"))
@@ -254,7 +249,7 @@ def test_motions_that_are_not_finite_are_refused(name: str, degree: int, poison:
             )
 
 
-@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
+@built
 def test_records_of_all_kinds_in_one_library() -> None:
     """Records with and without a vertical part, cut off in mid-motion and not, of different lengths: each has the peak
     that it has by the reference engine, and the one it has alone."""

@@ -1,24 +1,16 @@
 """The response at its door: samples, impacts, sides, positions between samples, doubts and flight."""
 
-import json
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from scipy.io import loadmat
+from engines import ENGINES, every_engine
 
 import rocking as rk
 from rocking.conventions import g
 from rocking.dynamics import Outcome, Status
-from rocking.dynamics.plane import fast_engine
 
-ENGINES = [
-    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
-    "reference",
-]
-every_engine = pytest.mark.parametrize("name", ENGINES)
 BLOCK = rk.Block(width=1.0, height=3.0)
 ALPHA = math.atan(1.0 / 3.0)
 P = math.sqrt(0.75 * g / math.hypot(0.5, 1.5))
@@ -279,6 +271,10 @@ def test_side_is_against_the_ground(side: int, engine: str) -> None:
     assert response.side == side
     assert isinstance(response.side, int)
     assert float(response.rotation[-1]) * side > 0.0
+    facts = response.exported().provenance
+    assert (facts["side"], facts["overturning_time_s"], facts["impacts"]) == (
+        side, response.overturning_time, response.impacts.size,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("kind", STOOD)
@@ -298,23 +294,3 @@ def test_batches_say_the_same(side: int) -> None:
     pytest.importorskip("xarray")
     found = rk.simulate_many(BODY, PUSH, "ked", scale=FALLS[side])
     assert found["side"].item() == fallen(side).side
-
-
-def holds(attributes: dict[str, Any], response: rk.Response) -> bool:
-    """Whether a file holds side, time and impacts of a response that overturned."""
-    told = attributes["side"], attributes["overturning_time_s"], attributes["impacts"]
-    return bool(told == (response.side, response.overturning_time, response.impacts.size))
-
-
-@pytest.mark.parametrize("side", FALLS)
-def test_files_hold_the_numbers(side: int, tmp_path: Path) -> None:
-    """Dataset, netCDF and MATLAB file have them to the last bit; those of the other side are told apart."""
-    xarray = pytest.importorskip("xarray")
-    pytest.importorskip("h5netcdf")
-    pytest.importorskip("h5py")
-    response, other = fallen(side), fallen(-side)
-    mat = loadmat(response.to_mat(tmp_path / "out.mat"), simplify_cells=True)["rocking"]
-    with xarray.open_dataset(response.to_netcdf(tmp_path / "out.nc"), engine="h5netcdf", decode_timedelta=False) as nc:
-        for attributes in (response.to_xarray().attrs, nc.attrs, json.loads(mat["provenance"])):
-            assert holds(attributes, response)
-            assert not holds(attributes, other)

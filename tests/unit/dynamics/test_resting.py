@@ -5,23 +5,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from engines import every_engine
 
 import rocking as rk
 from rocking.conventions import g
 from rocking.dynamics import Outcome, RockingParameters, RockingSide
 from rocking.dynamics.impact_laws import ConstantRestitution, SpeedRestitution
-from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.event_functions import Push, RestoringMoments, comes_to_rest
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.reference import Reference
 from rocking.dynamics.settings import Settings
 from rocking.motions import Segments
 
-ENGINES = [
-    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
-    "reference",
-]
-every_engine = pytest.mark.parametrize("name", ENGINES)
 ALPHA, P = 0.25, 2.0
 
 

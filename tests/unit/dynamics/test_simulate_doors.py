@@ -2,16 +2,15 @@
 
 import math
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from engines import built
 
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics import ImpactLaw, Settings
-from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
 from rocking.motions import Segments
@@ -232,7 +231,6 @@ def test_the_doors_are_open() -> None:
     assert issubclass(InvalidValueError, ValueError)
 
 
-built = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 RESPONSE = rk.simulate(BLOCK, PULSE, "housner")
 END = float(RESPONSE.time[-1])
 VERTICAL = rk.GroundMotion(np.array([0.0, 3.0, 0.0]), 0.1, vertical=np.array([0.0, 1.0, 0.0]))
@@ -261,19 +259,6 @@ def test_friction(friction: Any) -> None:
     """A coefficient of friction is above zero and finite."""
     with pytest.raises(InvalidValueError, match="friction must be"):
         RESPONSE.contact.warnings(friction)
-
-
-@pytest.mark.parametrize("write", ["to_csv", "to_mat", "to_netcdf"])
-def test_what_is_no_file(write: str, tmp_path: Path) -> None:
-    """A folder, an empty string or what is no path is refused as a file, and nothing is written."""
-    for folder in (tmp_path, ""):
-        with pytest.raises(InvalidValueError, match="path must be the path of a file, got the folder"):
-            getattr(RESPONSE, write)(folder)
-    bad: Any
-    for bad in (None, 5, b"out.csv", ["out.csv"]):
-        with pytest.raises(InvalidValueError, match="path must be the path of a file, got"):
-            getattr(RESPONSE, write)(bad)
-    assert not list(tmp_path.iterdir())
 
 
 def test_the_last_sample_of_a_record() -> None:

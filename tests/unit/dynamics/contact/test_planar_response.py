@@ -135,14 +135,6 @@ def test_tables_hold_all_columns(rocked, tmp_path):
     assert data.sizes["impact"] == rocked.impacts.size
 
 
-def test_csv_needs_a_folder(rocked, tmp_path):
-    """A folder, or a file in none, is refused."""
-    refused = {tmp_path: "got the folder", tmp_path / "none" / "planar.csv": "no folder", 3: "path of a file, got 3"}
-    for path, words in refused.items():
-        with pytest.raises(InvalidValueError, match=words):
-            rocked.to_csv(path)
-
-
 @pytest.mark.parametrize(
     ("options", "words"),
     [
