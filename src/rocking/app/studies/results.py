@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from pydantic_core import to_json
 
-from rocking.app.answers import JsonAnswer
 from rocking.app.studies.finished import OpenStudy
 from rocking.app.studies.study_folder import StudyFolder
 from rocking.campaigns import disk
@@ -87,7 +87,7 @@ def kept_result(folder: StudyFolder) -> bytes | None:
 
 def keep_result(study: OpenStudy) -> bytes:
     """Make the result of a finished study, and keep it."""
-    data = bytes(JsonAnswer(result_of(study)).body)
+    data = to_json(result_of(study))  # the process of a study needs no more of an answer than its bytes
     disk.write_new(study.folder.path / NAME, data)
     return data
 

@@ -15,7 +15,6 @@ from pydantic import TypeAdapter
 
 from rocking.app.errors import NotFound
 from rocking.app.plain_text import record_file_name
-from rocking.app.studies.job_document import JobDocument
 from rocking.campaigns import disk
 from rocking.campaigns.jobs.folder import status_of
 from rocking.campaigns.status import CampaignStatus
@@ -23,6 +22,7 @@ from rocking.errors import InvalidValueError, RockingError
 
 if TYPE_CHECKING:
     from rocking.app.records import RecordStore
+    from rocking.app.studies.job_document import JobDocument
 
 _ID = re.compile(r"[0-9a-f]{16}\Z")
 META, JOB, CAMPAIGN, RECORDS, LOG = "meta.json", "job.toml", "campaign", "records", "log.txt"
@@ -75,7 +75,7 @@ class StudyFolder:
         """Folder of the campaign."""
         return self.path / CAMPAIGN
 
-    def create(self, meta: Meta, job: JobDocument, records: "RecordStore") -> None:
+    def create(self, meta: Meta, job: "JobDocument", records: "RecordStore") -> None:
         """Write what a study needs, so that it needs nothing else: a power cut leaves all of it or no `meta.json`."""
         from rocking.campaigns.jobs import Job
 
