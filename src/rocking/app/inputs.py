@@ -211,8 +211,8 @@ _INPUTS: dict[str, Any] = {"body": _BODY, "motion": _MOTION, "restitution": {"mo
 
 
 def _shown(example: dict[str, Any]) -> ConfigDict:
-    """Return what puts an example into the schema."""
-    return ConfigDict(json_schema_extra={"examples": [example]})
+    """Return what puts an example into the schema; FastAPI takes no table that is built only when it is read."""
+    return ConfigDict(json_schema_extra={"examples": [example]}, defer_build=False)
 
 
 MOTION_KEYS = frozenset({
@@ -319,7 +319,8 @@ def parsed_toml(text: str) -> dict[str, Any]:
         for value in level:
             if type(value) is int and not -_LARGEST <= value < _LARGEST:  # not written out: that may be refused itself
                 raise Refused(f"a whole number of {value.bit_length()} bits in the TOML does not fit into 64 bits")
-            if any("\0" in text for text in (value if isinstance(value, dict) else [value]) if isinstance(text, str)):
+            texts = [each for each in (value if isinstance(value, dict) else [value]) if isinstance(each, str)]
+            if any("\0" in text for text in texts):
                 raise Refused("a text in the TOML holds a NUL")
     return tables
 

@@ -86,15 +86,6 @@ def test_serve_from_start_to_end(tmp_path):
     assert not (data / "server.json").exists()
 
 
-def test_sigterm_ends_it_like_ctrl_c(tmp_path):
-    """A system that shuts down leaves the folder tidy as well."""
-    with running("--port", "0", "--data", str(tmp_path)) as (_, process):
-        assert (tmp_path / "api-key").exists()
-        process.terminate()
-        assert process.wait(10) == 0
-    assert not (tmp_path / "api-key").exists()
-
-
 LONG = """
 import sys, threading, time
 from rocking.app.api import response
@@ -134,14 +125,17 @@ def test_the_end_does_not_wait_for_a_long_computation(tmp_path):
     assert not (tmp_path / "api-key").exists()
 
 
-def test_killed_server_does_not_shut_its_folder(tmp_path):
-    """After kill -9 the next start takes the folder and makes a new key."""
+def test_a_killed_server_does_not_shut_its_folder_and_one_that_is_ended_leaves_it_tidy(tmp_path):
+    """After kill -9 the next start takes the folder and makes a new key; SIGTERM ends it as Ctrl-C does."""
     with running("--port", "0", "--data", str(tmp_path)) as (_, process):
         key = (tmp_path / "api-key").read_text()
         process.kill()
         process.wait(10)
-    with running("--port", "0", "--data", str(tmp_path)):
+    with running("--port", "0", "--data", str(tmp_path)) as (_, process):
         assert (tmp_path / "api-key").read_text() != key
+        process.terminate()
+        assert process.wait(10) == 0
+    assert not (tmp_path / "api-key").exists()
 
 
 def test_refusals_are_sentences(capsys, tmp_path):

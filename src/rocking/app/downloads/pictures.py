@@ -164,7 +164,11 @@ def comparison_picture(responses: Mapping[str, Response]) -> "Figure":
     )
     time, values = ground_curve(first)
     axes[0].plot(time, values, color=INK, linewidth=0.7)
-    axes[0].set_title(_ground(first), loc="left", fontsize=7.5)
+    ground = "free rocking, the ground at rest"
+    if first.motion is not None:
+        times = "" if first.scale == 1.0 else f"{first.scale:g} times "
+        ground = drawn_text(times + first.motion.name, 110)
+    axes[0].set_title(ground, loc="left", fontsize=7.5)
     axes[0].set_ylabel("ground\nacceleration\n[m/s$^2$]")
     looks = _looks(list(responses))
     for label, response in responses.items():
@@ -224,13 +228,6 @@ def _reach(responses: Mapping[str, Response]) -> tuple[float, float]:
     low, high = float(np.min(values, initial=0.0)), float(np.max(values, initial=0.0))
     room = 0.12 * (high - low) or 1.0
     return low - room, high + room
-
-
-def _ground(response: Response) -> str:
-    if response.motion is None:
-        return "free rocking, the ground at rest"
-    times = "" if response.scale == 1.0 else f"{response.scale:g} times "
-    return drawn_text(times + response.motion.name, 110)
 
 
 def _looks(labels: list[str]) -> dict[str, dict[str, object]]:
