@@ -149,18 +149,6 @@ def test_failed_corners_are_left_out():
     assert -3 in lattice.modes
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [({"by": "side"}, "by"), ({"tolerance": 0.0}, "tolerance"), ({"levels": -1}, "levels"),
-     ({"x": ("frequency_ratio", [1.0])}, "at least 2"), ({"restitution": 2.0}, "energy")],
-)  # fmt: skip
-def test_bad_values_are_refused_by_name(change, words):
-    """Each bad argument is named."""
-    given = {"x": GRID[0], "y": GRID[1], "restitution": 0.9} | change
-    with pytest.raises(InvalidValueError, match=words):
-        boundary(BLOCK, HALF_SINE, **given)
-
-
 def test_slivers_are_outlined_as_in_a_map_of_all_points():
     """Refining finds the lines that marching every point of the finest grid gives, thin gaps between modes included."""
     pulse, finest = rk.pulses.sine(1.0, 0.5), 10 * 2**3 + 1

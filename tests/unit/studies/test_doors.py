@@ -8,7 +8,6 @@ import pytest
 
 import rocking as rk
 from rocking.cli import main
-from rocking.errors import InvalidValueError
 from rocking.studies import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
 from rocking.studies.inventory import InventoryObject, Thresholds, assess
 from rocking.studies.inventory.hazard import Hazard
@@ -58,22 +57,6 @@ def test_levels_that_serve_where_none_are_given():
     np.testing.assert_allclose(levels, lifts * np.geomspace(0.9, 9.0, 16), rtol=1e-14)
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ({"analysis": "ida"}, "analysis must be one of stripes, cloud, incremental"),
-        ({"analysis": "cloud", "levels": LEVELS}, "levels are not for a cloud"),
-        ({"factor": 2.0}, 'factor is for analysis="cloud" only, this is "stripes"'),
-        ({"analysis": "cloud", "tolerance": 0.1}, 'tolerance is for analysis="incremental" only'),
-        ({"measure": "arias"}, "which levels of arias"),
-        ({"states": (0.5, 0.2)}, "states must be rotations over alpha"),
-    ],
-)
-def test_fragility_refuses(words, message):
-    with pytest.raises(InvalidValueError, match=message):
-        rk.fragility(BLOCK, PULSES, **words)
-
-
 def test_inventory_is_the_assessment():
     """Counts, lights and sentences of every verdict, by restitution and direction; the worst object first."""
     labelled = rk.inventory(OBJECTS, RECORDS, pga="0.3g")
@@ -119,19 +102,3 @@ def test_negative_control_thresholds_move_the_lights():
     )
     np.testing.assert_array_equal(usual["overturned"], strict["overturned"])
     assert usual["light"].values.tolist() != strict["light"].values.tolist()
-
-
-@pytest.mark.parametrize(
-    ("motions", "words", "message"),
-    [
-        ("firm-ground", {}, "how strong is the shaking"),
-        ("firm-ground", {"pga": "0.3g", "pgv": 0.2}, "pga or pgv, not both"),
-        (RECORDS, {"count": 3}, "count is for synthetic motions"),
-        (Hazard.of_records(RECORDS), {"pga": 1.0}, "scaled already"),
-        (RECORDS, {"pga": "0.3"}, "PGA must be a number with its unit"),
-        (RECORDS, {"pga": True}, "PGA must be a number with its unit"),
-    ],
-)
-def test_inventory_refuses(motions, words, message):
-    with pytest.raises(InvalidValueError, match=message):
-        rk.inventory(OBJECTS, motions, **words)

@@ -9,7 +9,6 @@ import rocking as rk
 from rocking.dynamics import ImpactLaw, RandomRestitution, Settings
 from rocking.dynamics.plane.fast_engine import RESULTS
 from rocking.errors import InvalidValueError
-from rocking.motions import Pulse
 from rocking.restitution import model
 from rocking.studies import Histories, HistoryTable, MotionList, MotionSet, Product, SampledRestitution, histories
 from rocking.studies.motion_sets import digest
@@ -299,38 +298,6 @@ def test_scales_of_each_motion():
     rows = made.rows(0, made.count)
     assert made.shape == (5, 3, 2, 2)
     assert np.array_equal(np.unique(rows.values["scale"][rows.motion == 3]), [7.0, 8.0])
-
-
-@pytest.mark.parametrize(("first", "last"), [(-1, 3), (4, 3), (0, 121)])
-def test_pieces_outside_are_refused(first, last):
-    """Numbers that are not of histories are refused."""
-    with pytest.raises(InvalidValueError, match=r"within \[0, 120\]"):
-        product().run(first, last)
-
-
-def test_bad_sets_are_refused():
-    """No motions, a mixture of records and pulses, or something else are refused by name."""
-    record = rk.GroundMotion([0.0, 1.0, 0.0], 0.01)
-    with pytest.raises(InvalidValueError, match="got none"):
-        MotionList([])
-    with pytest.raises(InvalidValueError, match="all records or all pulses"):
-        MotionList([record, rk.pulses.sine(1.0, 1.0)])
-    with pytest.raises(InvalidValueError, match="at index 1"):
-        MotionList([record, 3.0])  # type: ignore[list-item]
-    assert isinstance(MotionList(rk.pulses.sine(1.0, 1.0))[0], Pulse)
-
-
-def test_bad_products_are_refused():
-    """Sides that are missing or misshapen, and scales that fit no motion, are refused."""
-    base = product()
-    with pytest.raises(InvalidValueError, match="sides must be"):
-        Product(base.motions, {**base.sides, "p_left": np.ones((1, 2))}, base.scales)
-    with pytest.raises(InvalidValueError, match="sides must be"):
-        Product(base.motions, {"p_left": np.ones((1, 2))}, base.scales)
-    with pytest.raises(InvalidValueError, match="scales must be"):
-        Product(base.motions, base.sides, np.ones((4, 2)))
-    with pytest.raises(InvalidValueError, match="missing or unknown"):
-        HistoryTable(base.motions, np.zeros(3), {"p": np.ones(3)})
 
 
 def test_a_bad_row_is_reported_alone():

@@ -196,13 +196,6 @@ def test_lattice_points_of_the_axes_are_theirs():
     assert found.tolist() == x.tolist()
 
 
-@pytest.mark.parametrize("refine", [-1, 13, 1.5, True, "2"])
-def test_levels_are_refused(refine):
-    """Levels of refinement are whole numbers from 0 to 12."""
-    with pytest.raises(InvalidValueError, match="levels"):
-        overturning_map(BLOCK, PULSE, ("scale", [1.0, 2.0]), ("period", [0.3, 0.6]), 0.9, refine=refine)
-
-
 def test_random_restitution():
     """Random coefficients: every cell draws its own, as in `simulate_many`; refinement is refused."""
     law = rk.dynamics.RandomRestitution.normal(0.9, 0.03, seed=3)
@@ -213,16 +206,3 @@ def test_random_restitution():
     np.testing.assert_array_equal(found["peak_rotation"].values.ravel(), single["peak_rotation"].values.ravel())
     with pytest.raises(InvalidValueError, match="random"):
         overturning_map(BLOCK, noise(), ("scale", scales), ("semi_diagonal", [1.5]), law, refine=1)
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [({"motion": 3.0}, "motion"), ({"body": "block"}, "body"), ({"gravity": -1.0}, "gravity"),
-     ({"nonsense": 1}, "nonsense"), ({"threads": 0}, "threads"), ({"progress": 3}, "progress"),
-     ({"restitution": 1.2}, "energy"), ({"engine": "slow"}, "engine")],
-)  # fmt: skip
-def test_bad_values_are_refused_by_name(change, words):
-    """Each bad argument is named."""
-    given = {"body": BLOCK, "motion": PULSE, "restitution": 0.9} | change
-    with pytest.raises(InvalidValueError, match=words):
-        overturning_map(x=("scale", [1.0, 2.0]), y=("period", [0.3, 0.6]), **given)

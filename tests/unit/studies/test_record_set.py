@@ -168,27 +168,6 @@ def test_set_can_be_sent_to_a_worker():
     assert np.array_equal(again[1].acceleration, motions[1].acceleration)
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ({"count": 0}, "count must be a whole number in \\[1"),
-        ({"count": 2.5}, "count must be a whole number"),
-        ({"seed": -1}, "seed must be a whole number"),
-        ({"which": "no-such"}, "family must be one of"),
-        ({"pga": 0.0}, "pga must be > 0"),
-        ({"pga": float("nan")}, "pga must be finite"),
-        ({"pgv": -1.0}, "pgv must be > 0"),
-        ({"pga": 1.0, "pgv": 1.0}, "not to both"),
-        ({"time_step": 0.0}, "time_step must be > 0"),
-    ],
-)
-def test_refusals(options, words):
-    """What makes no set is refused before any motion is made."""
-    given = {"which": "firm-ground", "count": 3, "seed": 1} | options
-    with pytest.raises(InvalidValueError, match=words):
-        SyntheticSet(given.pop("which"), given.pop("count"), given.pop("seed"), **given)
-
-
 def test_numbers_outside_the_set():
     """There is no motion beyond the last: a loop over the set ends."""
     motions = SyntheticSet("point-source", 2, 1)
