@@ -92,13 +92,6 @@ def test_the_usual_interval_is_that_of_whole_clusters():
     assert (single.interval_method, "cluster" in single.verdict) == ("profile", False)
 
 
-def test_a_bad_method_or_number_of_repetitions_is_refused():
-    """Nothing but the three methods, or none, and whole numbers of repetitions."""
-    for bad in ({"method": ""}, {"method": "exact"}, {"repetitions": 0}, {"repetitions": [1]}):
-        with pytest.raises(InvalidValueError):
-            SPREAD.interval("median", **bad)
-
-
 def test_errors_of_clusters_by_the_sum_over_single_clusters():
     """The covariance is that of the textbook, H^-1 M H^-1, with M summed cluster by cluster from the likelihood."""
     counts, scale = SPREAD.counts, LogScale.of(SPREAD.counts)

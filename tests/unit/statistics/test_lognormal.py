@@ -148,6 +148,8 @@ def test_summary_is_plain():
         (lambda: FIT.interval("mean"), "parameter must be"),
         (lambda: FIT.interval("median", 1.0), "level must be in"),
         (lambda: FIT.interval("median", method="exact"), "method must be one of"),
+        (lambda: FIT.interval("median", method=""), "method must be one of"),
+        (lambda: FIT.interval("median", method="bootstrap", repetitions=[1]), "repetitions must be"),
         (lambda: FIT.probability(-1.0), "im must be finite and >= 0"),
         (lambda: FIT.band([math.nan]), "im must be finite and >= 0"),
         (lambda: FIT.bootstrap(repetitions=0), "repetitions must be"),

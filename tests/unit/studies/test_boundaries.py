@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
+from scipy import ndimage
 from scipy.optimize import brentq
 
 import rocking as rk
@@ -12,6 +13,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies import boundary, overturning_map, safe_beyond_overturning, safe_islands
 from rocking.studies.adaptive_grid import AdaptiveGrid, Plane
 from rocking.studies.boundaries import chains, crossed_edges, edge_numbers, segments
+from rocking.studies.islands import connected
 
 BLOCK = rk.Block.from_angle(0.15, 1.0)
 HALF_SINE = rk.pulses.half_sine(1.0, 0.5)
@@ -47,24 +49,25 @@ def test_each_of_the_sixteen_cells():
         assert len(np.unique(joined)) == alternations
 
 
-def test_a_point_is_enclosed():
-    """One point inside has a closed outline of four edges; a point at the margin an open one."""
-    (ring,) = outline([[0, 0, 0], [0, 1, 0], [0, 0, 0]])
-    assert len(ring) == 5
-    assert ring[0] == ring[-1]
-    (line,) = outline([[0, 1, 0], [0, 0, 0]])
-    assert len(line) == 3
-    assert line[0] != line[-1]
+DIAGONAL = [[0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 0]]
 
 
-def test_saddles_are_decided_by_their_centre():
-    """Opposite corners are two outlines if the centre is outside, and one if it is inside."""
-    diagonal = [[0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 0]]
-    assert len(outline(diagonal, centre=False)) == 2
-    assert len(outline(diagonal, centre=True)) == 1
-    other = [row[::-1] for row in diagonal]
-    assert len(outline(other, centre=False)) == 2
-    assert len(outline(other, centre=True)) == 1
+@pytest.mark.parametrize(
+    ("inside", "centre", "sizes", "closed"),
+    [
+        ([[0, 0, 0], [0, 1, 0], [0, 0, 0]], False, [5], True),
+        ([[0, 1, 0], [0, 0, 0]], False, [3], False),  # a point at the margin
+        (DIAGONAL, False, [5, 5], True),
+        (DIAGONAL, True, [9], True),
+        ([row[::-1] for row in DIAGONAL], False, [5, 5], True),
+        ([row[::-1] for row in DIAGONAL], True, [9], True),
+    ],
+)
+def test_outlines_of_points(inside, centre, sizes, closed):
+    """One point has a closed outline of four edges; opposite corners are one outline if the centre is inside."""
+    lines = outline(inside, centre)
+    assert [len(line) for line in lines] == sizes
+    assert all((line[0] == line[-1]) is closed for line in lines)
 
 
 def test_neighbours_share_edges():
@@ -86,13 +89,8 @@ def test_vertices_lie_on_the_closed_form():
     assert line.modes.tolist() == [[-1, 0]] * len(expected)
     assert not line.closed
     assert line.axes == ("frequency_ratio", "amplitude_ratio")
-
-
-def test_consecutive_vertices_are_of_one_cell():
-    """A polyline steps from cell to cell: no longer than a cell's diagonal, and sorted along this monotone curve."""
-    (line,) = boundary(BLOCK, HALF_SINE, *GRID, 0.9, linear=True, threads=1)
-    steps = np.abs(np.diff(line.points, axis=0))
-    assert (steps <= [1.0 + 1e-12, 0.5 + 1e-12]).all()
+    # from cell to cell: no longer than a cell's diagonal, and sorted along this monotone curve
+    assert (np.abs(np.diff(line.points, axis=0)) <= [1.0 + 1e-12, 0.5 + 1e-12]).all()
     assert (np.diff(line.points[:, 0]) > 0.0).all() or (np.diff(line.points[:, 0]) < 0.0).all()
 
 
@@ -171,45 +169,45 @@ def drawn(*rows):
     return xr.Dataset({"mode": (("y", "x"), modes)}, coords={"x": 10.0 * x, "y": y})
 
 
-def test_an_enclosed_island():
-    """A hole in overturning is found with its extent and area; the region that is never lifted is none."""
-    found = safe_islands(drawn("######", "#ss###", "#s####", "ss####", "......"))
-    assert len(found) == 0  # it is joined to the region below
-    found = safe_islands(drawn("######", "#ss###", "#s####", "######", "......"))
-    assert len(found) == 1
-    assert (found[0].cells, found[0].area, found[0].enclosed) == (3, 30.0, True)
-    assert (found[0].x, found[0].y) == ((10.0, 20.0), (2.0, 3.0))
-    assert found.labels.sum() == 3
-    assert found.labels[2].tolist() == [0, 1, 0, 0, 0, 0]
+@pytest.mark.parametrize(
+    ("rows", "enclosed", "every"),
+    [
+        (("######", "#ss###", "#s####", "ss####", "......"), [], 0),  # joined to the region below
+        (("######", "#ss###", "#s####", "######", "......"), [3], 1),
+        # what reaches the edge, or touches a failed point, may go on there
+        (("##s###", "##s###", "######", "......"), [], 1),
+        (("######", "#sx###", "######", "......"), [], 1),
+        # the largest first; an oblique strip is one island
+        (("#######", "#s##ss#", "###s###", "##s####", "#######", "......."), [4, 1], 2),
+        # pieces of a strip between two modes are none; a hole in either mode is one, also beside the other mode
+        (("#######", "#s##s##", "11s111s", "1111111", "......."), [], 3),
+        (("#######", "#s#####", "#######", "1111111", "1111s11", "1111111", "......."), [1, 1], 2),
+        (("#######", "#s#####", "1111111", "1111111", "......."), [], 1),
+    ],
+)
+def test_islands(rows, enclosed, every):
+    """Holes in one way of overturning are enclosed islands, by their cells; others are found where asked for."""
+    found, more = safe_islands(drawn(*rows)), safe_islands(drawn(*rows), enclosed=False)
+    assert [island.cells for island in found.islands] == enclosed
+    assert len(more) == every
+    assert sum(island.enclosed for island in more.islands) == len(enclosed)
+    assert found.labels.max() == len(enclosed)
+    assert [int((found.labels == k).sum()) for k in range(1, 1 + len(enclosed))] == enclosed
 
 
-def test_islands_that_reach_the_edge_or_a_failed_point():
-    """What reaches the edge of the map, or touches a failed point, may go on there: it is not called enclosed."""
-    edge = drawn("##s###", "##s###", "######", "......")
-    failed = drawn("######", "#sx###", "######", "......")
-    for given in (edge, failed):
-        assert len(safe_islands(given)) == 0
-        (island,) = safe_islands(given, enclosed=False).islands
-        assert not island.enclosed
+def test_extent_of_an_island():
+    """Area, and least and greatest coordinates."""
+    (found,) = safe_islands(drawn("######", "#ss###", "#s####", "######", "......")).islands
+    assert (found.area, found.x, found.y) == (30.0, (10.0, 20.0), (2.0, 3.0))
 
 
-def test_the_largest_comes_first_and_diagonals_hold():
-    """Islands are numbered by area; an oblique strip is one island."""
-    found = safe_islands(drawn("#######", "#s##ss#", "###s###", "##s####", "#######", "......."))
-    assert [island.cells for island in found.islands] == [4, 1]
-    assert found.labels.max() == 2
-    assert (found.labels == 1).sum() == 4
-
-
-def test_between_two_ways_of_overturning_nothing_is_enclosed():
-    """Pieces of a strip between two modes are none; a hole in either mode is one, also beside the other mode."""
-    strip = drawn("#######", "#s##s##", "11s111s", "1111111", ".......")
-    assert len(safe_islands(strip)) == 0
-    assert len(safe_islands(strip, enclosed=False)) == 3
-    holes = drawn("#######", "#s#####", "#######", "1111111", "1111s11", "1111111", ".......")
-    assert [island.cells for island in safe_islands(holes).islands] == [1, 1]
-    touching = drawn("#######", "#s#####", "1111111", "1111111", ".......")
-    assert len(safe_islands(touching)) == 0
+def test_regions_are_those_of_scipy():
+    """Random maps are numbered as `scipy.ndimage.label` numbers them, neighbours also diagonally."""
+    random = np.random.default_rng(1)
+    for _ in range(300):
+        survived = random.random(random.integers(1, 13, 2)) < random.random()
+        expected, _ = ndimage.label(survived, np.ones((3, 3)))
+        assert np.array_equal(connected(survived), expected)
 
 
 @pytest.mark.parametrize("points", [100, 200])

@@ -5,6 +5,7 @@ import json
 import math
 import sys
 import xml.etree.ElementTree as ET
+from functools import partial
 
 import numpy as np
 import pytest
@@ -89,13 +90,6 @@ def test_formulas_become_words(tmp_path, word):
     assert safe_cell(-1.5) == -1.5
 
 
-def test_cells_are_finite():
-    """NaN and infinity never get into a table."""
-    for bad in (math.nan, math.inf):
-        with pytest.raises(InvalidValueError):
-            safe_cell(bad)
-
-
 def test_mat_reads_back(tmp_path):
     """MATLAB's structure holds curves, counts and words."""
     made = loadmat(to_mat(model(), tmp_path / "f.mat"), squeeze_me=True, struct_as_record=False)["fragility"]
@@ -147,7 +141,10 @@ def parsed(path):
 
 
 def test_nrml_names_and_limits(tmp_path):
-    """Attributes are those that OpenQuake reads; PGA is in g; nothing rocks below the threshold."""
+    """Attributes are those that OpenQuake reads; PGA is in g; nothing rocks below the threshold.
+
+    Brackets, quotes and ampersands survive; states that differ only in signs get different names without blanks.
+    """
     node, function, imls, params, space = parsed(to_nrml(model(), tmp_path / "f.xml"))
     assert node.attrib == {"id": "statue_1", "assetCategory": "contents", "lossCategory": "contents"}
     assert function.attrib == {"id": "statue 1", "format": "continuous", "shape": "logncdf"}
@@ -156,25 +153,13 @@ def test_nrml_names_and_limits(tmp_path):
     assert float(imls.attrib["maxIML"]) >= 8.0 / 9.80665
     assert [p.attrib["ls"] for p in params] == node.find("n:limitStates", space).text.split()
     assert params[1].attrib["ls"] == "overturned"
-
-
-def test_nrml_escapes_names(tmp_path):
-    """Angle brackets, quotes and ampersands in a name survive the file; what XML cannot hold is refused."""
     path = to_nrml(model(name=NASTY, source="a < b & c"), tmp_path / "f.xml")
     node, function, _, _, space = parsed(path)
     assert function.attrib["id"] == NASTY
     assert node.find("n:description", space).text == "a < b & c"
     assert "<statue>" not in path.read_text(encoding="utf-8")
-    for bad in ("\x00", "\ud800", "bell\x07", ""):
-        with pytest.raises(InvalidValueError):
-            to_nrml(model(name=bad), tmp_path / "g.xml")
-
-
-def test_nrml_limit_states_are_distinct_words(tmp_path):
-    """States that differ only in signs get different names without blanks."""
     curves = tuple(FragilityCurve(name, 2.0 + k, 0.3) for k, name in enumerate(["a>b", "a above b", "0.5", "é"]))
-    _, _, _, params, _ = parsed(to_nrml(model(curves=curves), tmp_path / "f.xml"))
-    names = [p.attrib["ls"] for p in params]
+    names = [p.attrib["ls"] for p in parsed(to_nrml(model(curves=curves), tmp_path / "f.xml"))[3]]
     assert len(set(names)) == 4
     assert all(name.replace("_", "").isalnum() and name[0].isalpha() for name in names)
 
@@ -198,6 +183,9 @@ def test_nrml_refuses_what_openquake_does_not_know(tmp_path):
     for name in ("pga/(g tan alpha)", "housner", "sa(0.3,0.1)"):
         with pytest.raises(InvalidValueError, match="OpenQuake knows"):
             to_nrml(model(measure=name), tmp_path / "f.xml")
+    for bad in ("\x00", "\ud800", "bell\x07", ""):  # what XML cannot hold
+        with pytest.raises(InvalidValueError):
+            to_nrml(model(name=bad), tmp_path / "f.xml")
     with pytest.raises(InvalidValueError, match="loss_category"):
         to_nrml(model(), tmp_path / "f.xml", loss_category="all")
     with pytest.raises(InvalidValueError):
@@ -232,32 +220,22 @@ def test_models_of_analyses():
 
 
 @pytest.mark.parametrize(
-    "change",
+    "make",
     [
-        {"curves": ()}, {"curves": (CURVES[0], CURVES[0])}, {"levels": [1.0]}, {"levels": [3.0, 2.0, 1.0]},
-        {"trials": np.array([1])}, {"reached": {"x": np.array([1, 2])}},
+        *[partial(model, **change) for change in (
+            {"curves": ()}, {"curves": (CURVES[0], CURVES[0])}, {"levels": [1.0]}, {"levels": [3.0, 2.0, 1.0]},
+            {"trials": np.array([1])}, {"reached": {"x": np.array([1, 2])}},
+        )],
+        *[partial(FragilityCurve, "overturned", *values) for values in (
+            (0.0, 0.4), (1.0, 0.0), (math.nan, 0.4), (1.0, math.inf), (-1.0, 0.3),
+        )],
+        partial(table, model(), "nrml"), partial(to_csv, model(), 3), partial(to_csv, model(), "no/such/folder/f.csv"),
     ],
 )  # fmt: skip
-def test_models_that_do_not_fit_are_refused(change):
-    """No curve, two of one name, levels that do not increase, counts of another length."""
+def test_what_does_not_fit_is_refused(make):
+    """No curve, two of one name, levels that fall, counts of another length, curves without meaning, no file."""
     with pytest.raises(InvalidValueError):
-        model(**change)
-
-
-@pytest.mark.parametrize("values", [(0.0, 0.4), (1.0, 0.0), (math.nan, 0.4), (1.0, math.inf), (-1.0, 0.3)])
-def test_curves_without_meaning_are_refused(values):
-    """Median and dispersion are finite and above zero."""
-    with pytest.raises(InvalidValueError):
-        FragilityCurve("overturned", *values)
-
-
-def test_paths_and_tables_that_do_not_exist(tmp_path):
-    """A folder, a missing folder, a number, an unknown table."""
-    for bad in (tmp_path, tmp_path / "no" / "f.csv", 3):
-        with pytest.raises(InvalidValueError):
-            to_csv(model(), bad)
-    with pytest.raises(InvalidValueError):
-        table(model(), "nrml")
+        make()
 
 
 TAG = "{http://openquake.org/xmlns/nrml/0.5}"

@@ -40,13 +40,6 @@ def test_the_other_way_round_gains_what_was_lost():
     assert (there.low, there.high) == (back.low, back.high)
 
 
-@pytest.mark.parametrize(("hits", "size"), [(0, 50), (3, 50), (25, 50), (50, 50)])
-def test_the_interval_is_the_exact_binomial_one(hits, size):
-    """The interval of independent cells is that of scipy's exact binomial test."""
-    expected = stats.binomtest(hits, size).proportion_ci(0.95, "exact")
-    assert share_interval(hits, size) == pytest.approx((expected.low, expected.high), rel=1e-9, abs=1e-12)
-
-
 def coverage(by_motion, repetitions=400):
     """Share of intervals that hold the true share, for histories that are alike within a motion."""
     rng = np.random.default_rng(7)
