@@ -29,6 +29,12 @@ BODIES = {
 }
 
 
+def cross(a, b):
+    """numpy's, at a tenth of its cost for single vectors."""
+    (x, y, z), (u, v, w) = a.tolist(), b.tolist()
+    return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
+
+
 def on_feet(apart):
     """A block 1 x 2 on feet some way apart."""
     return Solid(box(1.0, 1.0, 2.0), base=[(x, y) for x in (-0.5 * apart, 0.5 * apart) for y in (-0.5, 0.5)])
@@ -115,7 +121,7 @@ def of_mass(solid, old, new, velocity, k):
     x = 0.5 * (old + new) + 0.5 * k * (new - old)
     arm, before, after = (found.centre - point for point in (x, old, new))
     matrix = found.inertia + found.mass * ((arm @ after) * np.eye(3) - np.outer(after, arm))
-    return np.linalg.solve(matrix, found.inertia @ velocity + found.mass * np.cross(arm, np.cross(velocity, before)))
+    return np.linalg.solve(matrix, found.inertia @ velocity + found.mass * cross(arm, cross(velocity, before)))
 
 
 def states(solid, count, seed):
@@ -125,7 +131,7 @@ def states(solid, count, seed):
     while count:
         i, j = rng.choice(len(corners), 2, replace=False)
         velocity = rng.normal(size=3) * [1.0, 1.0, rng.uniform(0.0, 1.5)]
-        if np.cross(velocity, corners[j] - corners[i])[2] < 0.0:
+        if cross(velocity, corners[j] - corners[i])[2] < 0.0:
             count -= 1
             yield corners[i], corners[j], velocity
 
@@ -148,15 +154,15 @@ def test_steps_keep_momentum_about_the_impulse_and_create_no_energy(name):
         energy = 0.5 * made @ impact.inertia @ made
         assert energy <= impact.energy * (1.0 + 1e-12)
         push = [
-            (np.cross(w, impact.moments.centre) - np.cross(velocity, solid.local_moments.centre - old))[2]
+            (cross(w, impact.moments.centre) - cross(velocity, solid.local_moments.centre - old))[2]
             for w in (made, of_mass(solid, old, new, velocity, 1.0))
         ]
         pulls += push[1] < 0.0
         assert push[0] >= -1e-12 or push[1] < 0.0
         if push[1] >= 0.0 and energy < impact.energy * (1.0 - 1e-9):
             expected = of_mass(solid, old, new, velocity, k)
-            back = np.cross(velocity, solid.local_moments.centre - old)[2]
-            if np.cross(expected, impact.moments.centre)[2] < back:  # it would pull: taken at the new corner
+            back = cross(velocity, solid.local_moments.centre - old)[2]
+            if cross(expected, impact.moments.centre)[2] < back:  # it would pull: taken at the new corner
                 expected, moved = of_mass(solid, old, new, velocity, 1.0), moved + 1
             np.testing.assert_allclose(made, expected, rtol=1e-9, atol=1e-9)
             wrong = of_mass(solid, old, new, velocity, -k)

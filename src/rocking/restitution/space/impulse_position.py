@@ -24,6 +24,7 @@ HIGHEST = 32
 
 _SAME, _CONVERGED, _NEGLIGIBLE = 1e-9, 1e-9, 1e-7
 _ARCS = 8
+_PIECE = 8192  # points at a time: what is computed of them stays in the cache
 
 
 class ImpulsePosition:
@@ -140,12 +141,15 @@ def _clouds(solid: Solid) -> list[FloatArray]:
 
 def _of_cloud(cloud: FloatArray, edge: FloatArray, offset: float) -> float:
     """``Int z^4/(t^2 + z^2) dm = sum z^4/(t^2 + z^2) (s . dA)/5`` by Gauss points of the surface."""
-    x, y, z, ax, ay, az = cloud
-    across, along = x * edge[1] - y * edge[0] - offset, x * edge[0] + y * edge[1]
-    cone = across * (ax * edge[1] - ay * edge[0]) + along * (ax * edge[0] + ay * edge[1]) + z * az
-    square = z * z
-    distance = np.maximum(across * across + square, 1e-300)
-    return 0.2 * float((cone * square * square / distance).sum())  # Eq. 107
+    terms = np.empty(cloud.shape[1])
+    for first in range(0, terms.size, _PIECE):
+        x, y, z, ax, ay, az = cloud[:, first : first + _PIECE]
+        across, along = x * edge[1] - y * edge[0] - offset, x * edge[0] + y * edge[1]
+        cone = across * (ax * edge[1] - ay * edge[0]) + along * (ax * edge[0] + ay * edge[1]) + z * az
+        square = z * z
+        distance = np.maximum(across * across + square, 1e-300)
+        terms[first : first + _PIECE] = cone * square * square / distance
+    return 0.2 * float(terms.sum())  # Eq. 107
 
 
 def _height(points: FloatArray) -> FloatArray:

@@ -46,18 +46,6 @@ def test_every_combination_has_a_place():
 
 
 @built
-def test_labels_and_units_go_along():
-    """The labelled dataset has every result with its unit, names, scales, and the engine that ran."""
-    batch = batch_in_space(BOX, PULSE, scales=[0.5, 1.0])
-    data = batch.to_xarray()
-    assert dict(data.sizes) == {"body": 1, "motion": 1, "scale": 2, "restitution": 1, "start": 1}
-    assert data["peak_tilt"].attrs["units"] == "rad"
-    assert data["restitution"].item() == "housner-3d"
-    assert "fast" in data.attrs["engine"]
-    assert set(data.data_vars) == {*batch.values, "overturned"}
-
-
-@built
 def test_a_bad_row_touches_no_other():
     """NaN and infinite scales and starts and an impossible body get a status; the other rows keep their bits."""
     good = batch_in_space([BOX], RECORD, scales=[0.5, 1.0], start=[SpatialStart(), SpatialStart(0.04)])
@@ -77,26 +65,6 @@ def test_a_bad_row_touches_no_other():
     refused = [batch_in_space(bodies, RECORD, scales=[math.nan], engine=engine) for engine in ("fast", "reference")]
     for name, values in refused[0].values.items():
         np.testing.assert_array_equal(refused[1].values[name], values, strict=True)
-
-
-@pytest.mark.parametrize(
-    "bad",
-    [
-        {"tilt": math.nan},
-        {"tilt": -0.01},
-        {"tilt": 0.5 * math.pi},
-        {"azimuth": math.inf},
-        {"yaw": math.nan},
-        {"angular_velocity": (0.0, math.nan, 0.0)},
-        {"angular_velocity": (0.0, math.inf)},
-        {"angular_velocity": (0.0, 0.1)},
-    ],
-)
-def test_starts_that_are_none(bad):
-    """Each number of a start is looked at by itself."""
-    good = {"tilt": 0.1, "azimuth": -2.0, "yaw": 7.0, "angular_velocity": (0.1, -0.2, 0.3)}
-    assert SpatialStart(**good).valid
-    assert not SpatialStart(**(good | bad)).valid
 
 
 @built
@@ -123,7 +91,7 @@ def test_the_reference_engine_serves_row_by_row():
     """Both engines give the same outcomes and counts, and the same numbers to 1e-6, refusals included."""
     bodies = [BOX, SpatialBody.box(0.7, 0.5, 2.5)]
     starts = [SpatialStart(), SpatialStart(0.03, 0.7), SpatialStart(math.nan)]
-    given, told = {"scales": [0.3, 0.8, 2.5], "start": starts}, []
+    given, told = {"scales": [0.8, 2.5], "start": starts}, []
     fast = batch_in_space(bodies, RECORD, ["housner-3d", "ked-3d", 0.9], **given)
     given |= {"engine": "reference", "progress": told.append}
     slow = batch_in_space(bodies, RECORD, ["housner-3d", "ked-3d", 0.9], **given)
@@ -164,23 +132,17 @@ def test_ground_at_rest_is_followed_for_300_over_p(size):
 
 
 @built
-@pytest.mark.parametrize("sides", [3, 8, 20])
+@pytest.mark.parametrize("sides", [3, 8, 20, 65])
 def test_bases_of_many_sides(sides):
-    """Regular polygons of any number of sides; more than 64 vertices are refused in words, round bases too."""
+    """Regular polygons of any number of sides; more than 64 vertices are refused in words."""
     angle = 2.0 * np.pi * np.arange(sides) / sides
     base = 0.3 * np.column_stack([np.cos(angle), np.sin(angle)])
     body = SpatialBody(100.0, np.array([0.0, 0.0, 1.0]), np.diag([40.0, 40.0, 5.0]), base)
-    assert batch_in_space(body, RECORD)["uplifts"].item() > 0
-
-
-@built
-def test_what_the_engine_does_not_know_is_refused_in_words():
-    """Round bases and more than 64 vertices: the message says what serves instead."""
-    angle = 2.0 * np.pi * np.arange(65) / 65
-    base = np.column_stack([np.cos(angle), np.sin(angle)])
-    many = SpatialBody(1.0, np.array([0.0, 0.0, 1.0]), np.eye(3), base)
-    with pytest.raises(InvalidValueError, match="at most 64"):
-        batch_in_space(many, RECORD)
+    if sides > 64:
+        with pytest.raises(InvalidValueError, match="at most 64"):
+            batch_in_space(body, RECORD)
+    else:
+        assert batch_in_space(body, RECORD)["uplifts"].item() > 0
 
 
 def test_laws_by_name_number_and_object():
@@ -275,6 +237,7 @@ def test_components_with_one_step_are_joined_as_others_are(until):
     [
         {"tilt": 0.5 * math.pi},
         {"tilt": -1e-9},
+        {"angular_velocity": (0.0, math.inf)},
         {"tilt": math.nan},
         {"azimuth": math.inf},
         {"yaw": math.nan},
@@ -320,6 +283,8 @@ def test_a_dataset_has_axes_units_and_provenance(batch, tmp_path):
         assert np.isnan(data["peak_tilt"].values[1]).all()
         assert data["lost"].attrs["units"] == "J"
         assert list(data["restitution"].values) == ["housner-3d", "0.9"]
+        assert set(data.data_vars) == {*batch.values, "overturned"}
+        assert "fast" in data.attrs["engine"]
         told = data.attrs
     assert told["software"] == f"rocking {rk.__version__}"
     assert told["setting_gravity"] == conventions.g

@@ -22,13 +22,13 @@ def fallen(solid):
 def test_energy_picture_names_its_units():
     """Units and a slice in J/m3 of one scale, the loss over the height in J/m; its area is what the impact costs."""
     result = fallen(STATUE)
-    figure = energy_picture(result, divisions=16)
+    figure = energy_picture(result, divisions=8)
     labels = {axes.get_ylabel() for axes in figure.axes} | {axes.get_xlabel() for axes in figure.axes}
     assert {"energy lost [J/m$^3$]", "energy lost [J/m]", "height [m]"} <= labels
     assert "0.8678" in figure.axes[2].get_title(loc="left")
     x, z = figure.axes[2].collections[0].get_paths()[0].vertices.T
     area = 0.5 * abs(float(x @ np.roll(z, 1) - z @ np.roll(x, 1)))
-    # 64 heights: the first and last half of a layer are not drawn, and the neck of the statue is a jump
+    # 32 heights: the first and last half of a layer are not drawn, and the neck of the statue is a jump
     assert area == pytest.approx(result.energy_before - result.energy_after, rel=0.03)
     figure.savefig(io.BytesIO(), format="png", dpi=40)
 
