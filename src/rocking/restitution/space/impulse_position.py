@@ -24,7 +24,7 @@ HIGHEST = 32
 
 _SAME, _CONVERGED, _NEGLIGIBLE = 1e-9, 1e-9, 1e-7
 _ARCS = 8
-_PIECE = 8192  # points at a time: what is computed of them stays in the cache
+_PIECE = 4096  # points at a time: what is computed of them stays in the cache
 
 
 class ImpulsePosition:
