@@ -90,6 +90,36 @@ def test_quantiles_and_shares_are_inverse(distribution):
     assert independent(distribution)(values) == pytest.approx(shares, abs=1e-12)
 
 
+GENERATORS = {
+    "modulation.a2": lambda seed: nonstationary_motion(
+        modulation_from_intensity(0.5, 5.0, 4.0), NonstationaryFilter(), seed=seed, duration=10.0
+    ),
+    "layer.frequency": lambda seed: kanai_tajimi_motion(KanaiTajimi(density=0.02), seed=seed, duration=3.0),
+    "source.stress_drop": lambda seed: point_source_motion(PointSource(magnitude=5.0, distance=20e3), seed=seed),
+}
+
+
+@pytest.mark.parametrize(
+    ("parameter", "value", "others", "words"),
+    [
+        ("modulation.a2", modulation_from_intensity(0.5, 5.0, 4.0).a2, {"corner", "filter.damping"}, "seed 1"),
+        ("layer.frequency", 2.5, {"envelope.rise"}, "seed 1"),
+        ("source.stress_drop", 8e6, {"source.kappa"}, "Boore 2003"),
+    ],
+)
+def test_generators_are_their_seeds(parameter, value, others, words):
+    """The same seed gives the same bits, another one does not, no seed is refused, every parameter is on record."""
+    one, same, other = (GENERATORS[parameter](seed) for seed in (1, 1, 2))
+    np.testing.assert_array_equal(one.acceleration, same.acceleration)
+    assert (one.acceleration != other.acceleration).any()
+    assert float(one.metadata[parameter]) == value
+    assert {"seed", "time_step", "duration"} | others <= set(one.metadata)
+    assert words in one.provenance[0]
+    for seed in (-1, 1.5, True, None):
+        with pytest.raises(InvalidValueError, match="seed"):
+            GENERATORS[parameter](seed)
+
+
 @pytest.mark.parametrize("name", list(families()))
 def test_motion_is_its_seed_and_number(name):
     """The same seed and number give the same bits; another seed or number another motion."""

@@ -195,10 +195,11 @@ def test_normalised_measures_know_angle_and_size():
 
 def test_table_has_names_values_and_units():
     """The table repeats the functions, with units of the SI."""
-    table = intensity_measures(ZIGZAG)
+    quick = GroundMotion(ZIGZAG.acceleration, 0.05)
+    table = intensity_measures(quick)
     units = {"pga": "m/s2", "pgv": "m/s", "pgd": "m", "arias": "m/s", "cav": "m/s", "d5_95": "s", "d5_75": "s"}
     assert units.items() <= {name: one.unit for name, one in table.items()}.items()
-    assert table["pgv"].value == peak_ground_velocity(ZIGZAG)
+    assert table["pgv"].value == peak_ground_velocity(quick)
     assert table["d5_75"].value < table["d5_95"].value
 
 

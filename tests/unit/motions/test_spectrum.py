@@ -168,7 +168,7 @@ LONG = GroundMotion(
 @pytest.mark.parametrize("damping", [0.0, 0.05, 0.6])
 def test_all_periods_at_once_are_each_period_by_itself(motion, damping):
     """The steps that are passed over hold no peak: a loop over periods and all steps agrees to 1e-12."""
-    periods = motion.time_step * np.geomspace(0.07, 600.0, 18)
+    periods = motion.time_step * np.geomspace(0.07, 600.0, 9)
     found = response_spectrum(motion, periods, damping)
     wanted = np.array([_per_period(motion, period, damping) for period in periods]).T
     for name, values in zip(("displacement", "velocity", "absolute_acceleration"), wanted, strict=True):

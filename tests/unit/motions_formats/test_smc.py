@@ -1,12 +1,11 @@
 """SMC: 8 columns of 10 characters that may touch each other, or Boore's 5 of 14."""
 
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
+from record_files import read_back, refused
 
-from rocking.conventions import g
 from rocking.errors import RecordError
 from rocking.motions.formats import Component, Record, Source, formats
 
@@ -15,17 +14,8 @@ SMC_USGS = formats()["smc-usgs"]
 SMC_BOORE = formats()["smc-boore"]
 
 NONE, BLANK = -32768, 1.7e38
-SAMPLES = [
-    " 1.5057E+0",
-    "-2.2223E+0",
-    "-1.9234E+0",
-    "-3.1562E+0",
-    "-3.2440E+0",
-    "-3.5638E+0",
-    "-5.1941E+0",
-    "-5.7933E+0",
-]
-SAMPLES += [" 0.0000E+0", " 1.0442E+2", "-7.8821E+1"]
+SAMPLES = [" 1.5057E+0", "-2.2223E+0", "-1.9234E+0", "-3.1562E+0", "-3.2440E+0", "-3.5638E+0", "-5.1941E+0"]
+SAMPLES += ["-5.7933E+0", " 0.0000E+0", " 1.0442E+2", "-7.8821E+1"]
 VALUES = [1.5057, -2.2223, -1.9234, -3.1562, -3.2440, -3.5638, -5.1941, -5.7933, 0.0, 104.42, -78.821]
 
 
@@ -143,23 +133,14 @@ def test_a_file_with_one_damaged_header_line_is_still_known(line: int) -> None:
 
 
 def test_what_is_written_is_read_back(made_up: Callable[..., Record]) -> None:
-    """A record in m/s2 comes back in cm/s2 to the five digits of the format, with its name."""
+    """In cm/s2, to the five digits of the format or the eight of Boore's; the azimuth is the fourteenth number."""
     record = made_up("45", scale=3.0)
-    content = SMC_USGS.write(record)
-    assert {len(line) for line in content.decode().splitlines()[:11]} == {80}
-    (part,) = SMC_USGS.read(Source("written", content)).components
-    np.testing.assert_allclose(part.acceleration, 100.0 * record.components[0].acceleration, rtol=5.1e-5, atol=1e-9)
-    assert (part.name, part.time_step) == ("45", 0.02)
-
-
-def test_the_azimuth_stands_where_the_format_has_it(made_up: Callable[..., Record]) -> None:
-    """The fourteenth whole number is the azimuth of the component; the thirteenth, of the vertical, stays open."""
-    lines = SMC_USGS.write(made_up("90")).decode().split("\n")
-    assert [int(lines[12][10 * k : 10 * k + 10]) for k in (4, 5)] == [NONE, 90]
-
-
-def test_what_it_cannot_hold_is_refused(made_up: Callable[..., Record]) -> None:
-    """Two components, or numbers of 1e10 cm/s2, do not fit."""
+    read_back(SMC_USGS, record, 100.0, rtol=5.1e-5, atol=1e-9)
+    read_back(SMC_BOORE, made_up("17", unit="cm/s2", scale=123.0), 1.0, rtol=5.1e-8, atol=1e-9)
+    lines = SMC_USGS.write(record).decode().splitlines()
+    assert {len(line) for line in lines[:11]} == {80}
+    # the thirteenth, of the vertical, stays open
+    assert [int(lines[12][10 * k : 10 * k + 10]) for k in (4, 5)] == [NONE, 45]
     with pytest.raises(RecordError, match="1 components"):
         SMC_USGS.write(made_up("a", "b"))
     with pytest.raises(RecordError, match="below 1e10"):
@@ -191,34 +172,15 @@ def test_a_typed_file_is_read() -> None:
     assert record.metadata["kind"] == "unknown"
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ("pk mtn =-2.500E+0", "pk mtn =-2.600E+0", "pk"),
-        ("0 UNKNOWN", "4 DISPLACEMENT", "displacement"),
-        (" -0.2500000E+01", " -0.2500010E+01", "minimum"),
-        ("-2.5000000E+00\n", "-2.5000000E+00\n 1.0000000E+00\n", "more"),
-        ("-2.5000000E+00\n", "", "1 columns of 14 characters expected"),
-    ],
-)
-def test_damage_is_refused(old: str, new: str, message: str) -> None:
+DAMAGES = [
+    ("pk mtn =-2.500E+0", "pk mtn =-2.600E+0", "pk"),
+    ("0 UNKNOWN", "4 DISPLACEMENT", "displacement"),
+    (" -0.2500000E+01", " -0.2500010E+01", "minimum"),
+    ("-2.5000000E+00\n", "-2.5000000E+00\n 1.0000000E+00\n", "more"),
+    ("-2.5000000E+00\n", "", "1 columns of 14 characters expected"),
+]
+
+
+def test_damage_is_refused() -> None:
     """The text peak, the extremes to seven digits, the kind and the end of the file are checked."""
-    changed = typed_by_boore().replace(old, new, 1)
-    assert changed != typed_by_boore()
-    with pytest.raises(RecordError, match=message):
-        SMC_BOORE.read(Source("typed", changed.encode()))
-
-
-def test_the_real_file(shared_records: Path) -> None:
-    """1987 Whittier, Carson-Catskill: 1646 samples at 0.02 s, 0.0421708 g as in the database it was made from."""
-    (part,) = SMC_BOORE.read(Source.of_path(shared_records / "smc" / "A-CAT090.AT2.smc")).components
-    assert (part.acceleration.size, part.time_step) == (1646, 0.02)
-    assert 0.01 * part.peak / g == pytest.approx(0.0421708, abs=6e-8)
-
-
-def test_what_boore_writes_is_read_back(made_up: Callable[..., Record]) -> None:
-    """Eight digits survive."""
-    record = made_up("17", unit="cm/s2", scale=123.0)
-    (part,) = SMC_BOORE.read(Source("written", SMC_BOORE.write(record))).components
-    np.testing.assert_allclose(part.acceleration, record.components[0].acceleration, rtol=5.1e-8, atol=1e-9)
-    assert part.name == "17"
+    refused(SMC_BOORE, typed_by_boore(), DAMAGES)
