@@ -1,10 +1,12 @@
 """Reading whatever format a file has, choosing components, provenance, writing, and damage of every kind."""
 
 import hashlib
+import math
 import re
 from contextlib import suppress
 from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 import pytest
@@ -40,15 +42,10 @@ def test_files_are_recognised_by_content_alone(name: str, made_up, tmp_path: Pat
     path = tmp_path / "misleading.sac"
     write_record(made_up("90"), path, name)
     assert read_record(path).format == name
-    source = Source.of_path(path)
-    assert [one.name for one in formats().values() if one.recognises(source)] == [name]
-
-
-def test_every_format_says_who_it_is() -> None:
-    """Names in the registry are those of the formats, each with a title."""
-    for name, one in formats().items():
-        assert one.name == name
-        assert one.title
+    source, known = Source.of_path(path), formats()
+    assert [one.name for one in known.values() if one.recognises(source)] == [name]
+    assert known[name].name == name
+    assert known[name].title
 
 
 def test_unknown_files_and_formats(tmp_path: Path) -> None:
@@ -192,16 +189,22 @@ def test_forced_format_refuses_foreign_content(name: str) -> None:
             reader.read(source, "g", 0.01)
 
 
-def test_units_and_steps_are_never_guessed(tmp_path: Path) -> None:
-    """Columns need units=; a velocity unit, a negative or a non-number step are refused."""
-    path = _write(tmp_path, COLUMNS)
-    with pytest.raises(RecordError, match="say units="):
-        read_record(path)
-    with pytest.raises(InvalidValueError, match="units must be one of"):
-        read_record(path, units="cm/s")
-    for step in (-0.01, float("nan"), float("inf"), "0.01", True):
-        with pytest.raises(InvalidValueError, match="time_step"):
-            read_record(path, units="g", time_step=step)  # type: ignore[arg-type]
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({}, "say units="),
+        ({"units": "cm/s"}, "units must be one of"),
+        *(({"units": "g", "time_step": step}, "time_step") for step in (-0.01, math.nan, math.inf, "0.01", True)),
+        ({"units": "g"}, "has the components column 2, column 3; say component="),
+        ({"units": "g", "component": "EW"}, "component must name one component, got 'EW'; the file has column 2"),
+        ({"units": "g", "component": "column 2", "vertical": "Z"}, "vertical must name one component"),
+        ({"units": "g", "component": "column 2", "vertical": "column 2"}, "it is the vertical one already"),
+    ],
+)
+def test_nothing_is_guessed(options: dict[str, Any], message: str, tmp_path: Path) -> None:
+    """Columns need units=, a step that is one, and names where there are several; no component is both parts."""
+    with pytest.raises((RecordError, InvalidValueError), match=message):
+        read_motion(_write(tmp_path, COLUMNS), **options)
 
 
 def test_motion_in_si_with_provenance(tmp_path: Path) -> None:
@@ -221,19 +224,6 @@ def test_motion_in_si_with_provenance(tmp_path: Path) -> None:
     assert motion.metadata["vertical component"] == "column 3"
     digest = hashlib.sha256(COLUMNS.encode()).hexdigest()
     assert motion.provenance[0] == f"read from hand.txt, SHA-256 {digest}, format columns, component column 2, unit g"
-
-
-def test_components_must_be_named(tmp_path: Path) -> None:
-    """Several components need a name; the errors list them; one component cannot be both parts."""
-    path = _write(tmp_path, COLUMNS)
-    with pytest.raises(InvalidValueError, match="has the components column 2, column 3; say component="):
-        read_motion(path, units="g")
-    with pytest.raises(InvalidValueError, match="component must name one component, got 'EW'; the file has column 2"):
-        read_motion(path, units="g", component="EW")
-    with pytest.raises(InvalidValueError, match="vertical must name one component"):
-        read_motion(path, units="g", component="column 2", vertical="Z")
-    with pytest.raises(InvalidValueError, match="it is the vertical one already"):
-        read_motion(path, units="g", component="column 2", vertical="column 2")
 
 
 def test_components_of_unequal_length_are_cut(made_up, tmp_path: Path) -> None:
@@ -269,30 +259,24 @@ def test_motions_come_back(name: str, tmp_path: Path) -> None:
         write_motion(motion, path, name, units="furlong")
 
 
-def test_files_that_cannot_be_written(made_up, tmp_path: Path) -> None:
-    """A folder that does not exist and samples that are not finite are refused."""
-    with pytest.raises(RecordError, match="No such file"):
-        write_record(made_up("90"), tmp_path / "absent" / "x.at2", "peer")
-    bad = Record("x", (Component("90", np.array([0.0, np.nan]), "g", 0.01),))
-    for name in TEXT_FORMATS:
-        with pytest.raises(RecordError, match="finite"):
-            write_record(bad, tmp_path / "x", name)
-
-
 @pytest.mark.parametrize(
-    ("unit", "step", "message"),
+    ("samples", "unit", "step", "message"),
     [
-        ("furlong", 0.01, "unit must be one of"),
-        ("g", 0.0, "time step must be in"),
-        ("g", float("nan"), "time step must"),
+        ([0.0, math.nan], "g", 0.01, "finite"),
+        ([0.0, 1.0], "furlong", 0.01, "unit must be one of"),
+        ([0.0, 1.0], "g", 0.0, "time step must be in"),
+        ([0.0, 1.0], "g", math.nan, "time step must"),
     ],
 )
-def test_records_without_meaning_are_not_written(unit: str, step: float, message: str, tmp_path: Path) -> None:
-    """A unit that is none, or a step that is not positive, is written by no format."""
-    record = Record("x", (Component("90", np.array([0.0, 1.0]), unit, step),))
+def test_what_cannot_be_written(samples: list[float], unit: str, step: float, message: str, tmp_path: Path) -> None:
+    """Samples that are not finite, a unit that is none, a step that is not positive, a folder that is not there."""
+    record = Record("x", (Component("90", np.array(samples), unit, step),))
     for name in (*TEXT_FORMATS, "columns"):
         with pytest.raises(RecordError, match=message):
             write_record(record, tmp_path / "x", name)
+    good = Record("x", (Component("90", np.array([0.0, 1.0]), "g", 0.01),))
+    with pytest.raises(RecordError, match="No such file"):
+        write_record(good, tmp_path / "absent" / "x.at2", "peer")
 
 
 @pytest.mark.parametrize("filler", [b"1", b" ", b"(", b"UNITS OF ", b"CHAN 1: "])
@@ -380,14 +364,10 @@ def test_whatever_a_reader_raises_is_a_refusal(where: str, monkeypatch: pytest.M
     assert caught.value.__cause__ is cause
 
 
-def test_rows_of_separators_alone_are_no_columns(tmp_path: Path) -> None:
-    """A sheet of another kind, which begins with empty rows: refused by the reader itself, not by the last door."""
+def test_rows_of_separators_alone_are_no_columns(tmp_path: Path, shared_records: Path) -> None:
+    """A cone penetration test, which begins with empty rows: refused by the reader itself, not by the last door."""
     path = _write(tmp_path, ";;;\n;;;\nGround water:;0.94;m below ground level;\n;;;\n0.01;0.02;0.01;0\n")
     with pytest.raises(RecordError, match=r"hand\.txt, line 1: 1 to \d columns expected, found 0"):
         read_record(path, format="columns", units="g")
-
-
-def test_the_sheet_that_is_no_record(shared_records: Path) -> None:
-    """A cone penetration test is refused."""
     with pytest.raises(RecordError, match="columns expected, found 0"):
         read_record(shared_records / "refused" / "columns" / "standard_1_pre_v0p5p4.csv", units="g")
