@@ -271,15 +271,17 @@ def _seconds(said: str) -> float:
 
 
 def _recognised(source: Source) -> RecordFormat:
-    known = formats()
-    last = known.pop(LAST_RESORT)
-    found = [one for one in known.values() if one.recognises(source)]
+    known = (format_named(name) for name in _CLASSES if name != LAST_RESORT)
+    found = [one for one in known if one.recognises(source)]
     if len(found) > 1:
         names = ", ".join(one.name for one in found)
         raise source.error(None, f"it could be {names}; say format= one of these")
-    if found or last.recognises(source):
-        return found[0] if found else last
-    unknown = f"not recognised as any of {', '.join([*known, LAST_RESORT])}; damaged, or another format?"
+    if found:
+        return found[0]
+    last = format_named(LAST_RESORT)
+    if last.recognises(source):
+        return last
+    unknown = f"not recognised as any of {', '.join(_CLASSES)}; damaged, or another format?"
     raise last.refusal(source) or source.error(None, unknown)
 
 
