@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rocking.plots.sensitivity import difference_map_picture, sensitivity_picture
     from rocking.plots.solid import energy_picture, slices_picture, solid_picture
     from rocking.plots.spatial import spatial_picture
-    from rocking.plots.style import save, write
+    from rocking.plots.style import write
     from rocking.plots.transitions import transitions_of_many_picture, transitions_picture
 
 __all__ = [
@@ -48,7 +48,6 @@ __all__ = [
     "regimes_picture",
     "response_picture",
     "rocking_spectrum_picture",
-    "save",
     "sensitivity_picture",
     "slices_picture",
     "solid_picture",
@@ -69,7 +68,6 @@ _OTHERS = {
     "record_set_picture": "ground_motion",
     "refined_map_picture": "overturning_map",
     "regime_map_picture": "regimes",
-    "save": "style",
     "slices_picture": "solid",
     "transitions_of_many_picture": "transitions",
     "write": "style",

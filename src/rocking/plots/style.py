@@ -179,26 +179,6 @@ def headline(figure: "Figure", sentence: str) -> None:
     figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
 
 
-def save(figure: "Figure", folder: Path, stem: str) -> list[Path]:
-    """Write a figure as PNG and SVG, the same bytes every time.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        The figure.
-    folder : Path
-        Where to write.
-    stem : str
-        File name without suffix.
-
-    Returns
-    -------
-    list of Path
-        PNG and SVG.
-    """
-    return [write(figure, folder / f"{stem}.{kind}") for kind in ("png", "svg")]
-
-
 def write(figure: "Figure", path: Path) -> Path:
     """Write a figure in the format that the suffix names.
 

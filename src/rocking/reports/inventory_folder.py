@@ -10,7 +10,7 @@ from typing import Any
 
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError, extra
 from rocking.reports.inventory_document import inventory_document
-from rocking.reports.render import render_html, render_pdf
+from rocking.reports.render import render_pdf, write_html
 from rocking.studies.inventory.assessment import Assessment
 from rocking.studies.inventory.table import HEADER, LIMITS, as_csv, as_plain, rows
 
@@ -76,10 +76,6 @@ def inventory_json(assessment: Assessment) -> str:
     return json.dumps(as_plain(assessment), indent=2, allow_nan=False, ensure_ascii=False)
 
 
-def _html(assessment: Assessment, path: Path) -> None:
-    path.write_text(render_html(inventory_document(assessment), path.parent), encoding="utf-8")
-
-
 def _pdf(assessment: Assessment, path: Path) -> None:
     # the renderer leaves its source beside the pictures for a moment: not among the user's files
     with TemporaryDirectory() as folder:
@@ -89,10 +85,6 @@ def _pdf(assessment: Assessment, path: Path) -> None:
 def _csv(assessment: Assessment, path: Path) -> None:
     # the byte order mark tells Excel that it is UTF-8
     path.write_text(as_csv(assessment), encoding="utf-8-sig", newline="")
-
-
-def _json(assessment: Assessment, path: Path) -> None:
-    path.write_text(inventory_json(assessment) + "\n", encoding="utf-8")
 
 
 def write_spreadsheet(assessment: Assessment, path: Path) -> None:
@@ -144,10 +136,10 @@ def _dress(sheet: Any) -> None:
     sheet.auto_filter.ref = sheet.dimensions
 
 
-_WRITERS: dict[str, Callable[[Assessment, Path], None]] = {
-    "html": _html,
+_WRITERS: dict[str, Callable[[Assessment, Path], object]] = {
+    "html": lambda assessment, path: write_html(inventory_document(assessment), path.parent, path),
     "pdf": _pdf,
     "xlsx": write_spreadsheet,
     "csv": _csv,
-    "json": _json,
+    "json": lambda assessment, path: path.write_text(inventory_json(assessment) + "\n", encoding="utf-8"),
 }

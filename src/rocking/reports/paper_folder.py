@@ -89,11 +89,13 @@ def _row(row: TableRow) -> dict[str, Any]:
 
 def _draw(folder: Path, step: Step) -> None:
     from rocking.plots.paper_figures import paper_figures
-    from rocking.plots.style import save
+    from rocking.plots.style import write
 
     for stem, draw in paper_figures().items():
         step(stem.replace("_", " "))
-        save(draw(), folder, stem)
+        figure = draw()
+        for kind in ("png", "svg"):
+            write(figure, folder / f"{stem}.{kind}")
 
 
 def _write_table(table: ReportTable, path: Path) -> None:

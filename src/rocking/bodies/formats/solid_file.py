@@ -83,14 +83,14 @@ def solid_from_toml(text: str, name: str = "<text>", folder: str | Path | None =
     with blamed(name):
         document = validated(SolidDocument, parsed_toml(text))
         root = None if folder is None else Path(folder)
-        said: list[str] = []
+        repairs: list[str] = []
         parts: list[Part] = []
         for number, table in enumerate(document.solid.part):
             with blamed(f"solid.part[{number}]"):
-                parts.append(_part(table, document.units, root, said))
+                parts.append(_part(table, document.units, root, repairs))
         with blamed("solid"):
             solid = _standing(document, parts)
-            solid.name, solid.repairs = document.name or name, tuple(said)
+            solid.name, solid.repairs = document.name or name, tuple(repairs)
             return solid
 
 
@@ -105,11 +105,11 @@ def _standing(document: "schema.SolidDocument", parts: list[Part]) -> Solid:
     )
 
 
-def _part(table: "schema.PartTable", units: str, folder: Path | None, said: list[str]) -> Part:
+def _part(table: "schema.PartTable", units: str, folder: Path | None, repairs: list[str]) -> Part:
     density = DEFAULT_DENSITY if table.density is None else table.density
     scale = length_unit(units)
     if table.mesh is not None:
-        part = _mesh(table.mesh, units, folder, density, said)
+        part = _mesh(table.mesh, units, folder, density, repairs)
     else:
         part = Part(_shape(table, scale), density)
     for turn in table.turned or ():
@@ -127,12 +127,12 @@ def _moved(part: Part, place: list[float]) -> Part:
     return part.moved(*place)
 
 
-def _mesh(table: "schema.MeshTable", units: str, folder: Path | None, density: float, said: list[str]) -> Part:
+def _mesh(table: "schema.MeshTable", units: str, folder: Path | None, density: float, repairs: list[str]) -> Part:
     path = beside(folder, table.file)
     own = table.units or units
     reach = None if table.weld_tolerance is None else table.weld_tolerance * length_unit(own)
     mesh = mesh_from_file(path, units=own, up=table.up, weld_tolerance=reach, fill_holes=table.fill_holes)
-    said += [f"{path.name}: {words}" for words in mesh.repairs]
+    repairs += [f"{path.name}: {words}" for words in mesh.repairs]
     return mesh.part(density)
 
 

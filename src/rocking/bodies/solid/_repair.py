@@ -49,28 +49,28 @@ def repaired(
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     points = vertices - middle
     size = checks.length("largest dimension of the mesh", float(np.ptp(points, axis=0).max()))
-    said: list[str] = []
-    points, faces = _welded(points, faces, weld_tolerance, size, said)
-    faces = _cleaned(faces, said)
-    faces = turned_consistently(faces, said)
+    repairs: list[str] = []
+    points, faces = _welded(points, faces, weld_tolerance, size, repairs)
+    faces = _cleaned(faces, repairs)
+    faces = turned_consistently(faces, repairs)
     loops = boundary_loops(faces, points)
     if loops and not fill_holes:
         raise GeometryError(holes_sentence(loops, points + middle))
-    points, faces = filled(points, faces, loops, said)
-    faces = turned_consistently(faces, said) if loops else faces
+    points, faces = filled(points, faces, loops, repairs)
+    faces = turned_consistently(faces, repairs) if loops else faces
     if count := len(open_edges(faces)):
         raise GeometryError(
             f"no side of the surface is the outside: {count} edges cannot be matched however the faces are turned; "
             "do more than two faces meet along them, or is the surface one-sided?"
         )
-    faces = oriented_shells(points, faces, said)
+    faces = oriented_shells(points, faces, repairs)
     used, numbers = np.unique(faces, return_inverse=True)
     points, faces = points[used], numbers.reshape(faces.shape)
     if not check_crossings(points[faces], lambda where: place(where + middle)):
-        said.append("too many faces lie side by side to try whether all of them keep clear of each other")
+        repairs.append("too many faces lie side by side to try whether all of them keep clear of each other")
     shape = Polyhedron(points, faces, simple=True)
     _check_hull(shape)
-    return Repaired(shape, middle, tuple(said))
+    return Repaired(shape, middle, tuple(repairs))
 
 
 def _triangles(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
@@ -96,7 +96,7 @@ def _triangles(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntAr
 
 
 def _welded(
-    points: FloatArray, faces: IntArray, tolerance: float | None, size: float, said: list[str]
+    points: FloatArray, faces: IntArray, tolerance: float | None, size: float, repairs: list[str]
 ) -> tuple[FloatArray, IntArray]:
     from scipy.spatial import cKDTree
 
@@ -113,7 +113,7 @@ def _welded(
         same, joined = same[first], near[joined]
     if merged:
         how = f"within {reach:.3g} m of each other" if reach > 0.0 else "in the same place"
-        said.append(f"merged {merged} of {len(points)} vertices that lay {how}")
+        repairs.append(f"merged {merged} of {len(points)} vertices that lay {how}")
     return same, joined
 
 
@@ -125,11 +125,11 @@ def _boundary(faces: IntArray) -> IntArray:
     return alone
 
 
-def _cleaned(faces: IntArray, said: list[str]) -> IntArray:
+def _cleaned(faces: IntArray, repairs: list[str]) -> IntArray:
     a, b, c = faces.T
     whole = (a != b) & (b != c) & (c != a)
     if not whole.all():
-        said.append(f"removed {int((~whole).sum())} faces that had shrunk to an edge or a point")
+        repairs.append(f"removed {int((~whole).sum())} faces that had shrunk to an edge or a point")
     faces = faces[whole]
     _, first, inverse = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_inverse=True)
     if len(first) == len(faces):
@@ -143,7 +143,7 @@ def _cleaned(faces: IntArray, said: list[str]) -> IntArray:
         raise GeometryError(
             "the faces lie on top of each other and nothing is left between them: the surface is a sheet"
         )
-    said.append(f"removed {len(faces) - len(result)} faces that lay on top of others")
+    repairs.append(f"removed {len(faces) - len(result)} faces that lay on top of others")
     return result
 
 
@@ -209,7 +209,9 @@ def holes_sentence(loops: list[IntArray], points: FloatArray) -> str:
     )
 
 
-def filled(points: FloatArray, faces: IntArray, loops: list[IntArray], said: list[str]) -> tuple[FloatArray, IntArray]:
+def filled(
+    points: FloatArray, faces: IntArray, loops: list[IntArray], repairs: list[str]
+) -> tuple[FloatArray, IntArray]:
     """Return the surface with a fan of triangles over each hole."""
     if not loops:
         return points, faces
@@ -226,7 +228,7 @@ def filled(points: FloatArray, faces: IntArray, loops: list[IntArray], said: lis
             f"{len(loops)} hole(s) are {percent(share)} of the surface; only up to 1 % is filled, as a larger "
             "patch would invent part of the body: close them in the program that made the mesh"
         )
-    said.append(f"filled {len(loops)} hole(s), together {percent(share)} of the surface, each with a fan")
+    repairs.append(f"filled {len(loops)} hole(s), together {percent(share)} of the surface, each with a fan")
     return points, np.concatenate([faces, fans])
 
 

@@ -72,7 +72,7 @@ def in_words(place: FloatArray, unit: str = "m") -> str:
     return f"({', '.join(f'{round(x, 9) + 0.0:.4g}' for x in place.tolist())}) {unit}"
 
 
-def check_crossings(triangles: FloatArray, said: Callable[[FloatArray], str] = in_words) -> bool:
+def check_crossings(triangles: FloatArray, place_words: Callable[[FloatArray], str] = in_words) -> bool:
     """Refuse a surface that passes through itself.
 
     Every pair of faces is tried, to a millionth of the size. Beside 500 faces, chosen by their area, the surface must
@@ -80,7 +80,7 @@ def check_crossings(triangles: FloatArray, said: Callable[[FloatArray], str] = i
     corners and edges of the mesh only. Not seen are such lobes where they take less than about a hundredth of the
     surface, folds within one plane, which enclose nothing, and crossings shallower than a millionth of the size.
 
-    triangles: corners of the faces of a closed, oriented surface [m]; said: turns a place [m] into the user's words.
+    triangles: corners of the faces of a closed, oriented surface [m]; place_words: a place [m] in the user's words.
     Returns whether every pair of faces could be tried; False on surfaces of which tens of millions lie side by side.
 
     >>> from rocking.bodies.solid import box
@@ -92,8 +92,8 @@ def check_crossings(triangles: FloatArray, said: Callable[[FloatArray], str] = i
     found = pierced(centred)
     if found.pairs:
         raise GeometryError(
-            f"the surface passes through itself, most plainly near {said(middle + found.place)}; {found.pairs} pair(s) "
-            f"of faces cross; {_REPAIR}"
+            f"the surface passes through itself, most plainly near {place_words(middle + found.place)}; "
+            f"{found.pairs} pair(s) of faces cross; {_REPAIR}"
         )
     points = _beside(centred)
     times = winding(points, centred)
@@ -106,7 +106,7 @@ def check_crossings(triangles: FloatArray, said: Callable[[FloatArray], str] = i
         worst = suspects[0]
         raise GeometryError(
             f"the surface passes through itself or is inside out in part: it winds {int(times[worst])} times round the "
-            f"point near {said(middle + points[worst])}, where a body has 1 and its surroundings 0; {_REPAIR}"
+            f"point near {place_words(middle + points[worst])}, where a body has 1 and its surroundings 0; {_REPAIR}"
         )
     return found.complete
 

@@ -14,7 +14,7 @@ MOST_SHELLS = 200
 _PROBES, _GRID = 40, 12
 
 
-def turned_consistently(faces: IntArray, said: list[str]) -> IntArray:
+def turned_consistently(faces: IntArray, repairs: list[str]) -> IntArray:
     """Return the faces turned so that neighbours across an edge agree.
 
     In each connected piece the smaller number of faces is turned.
@@ -25,13 +25,13 @@ def turned_consistently(faces: IntArray, said: list[str]) -> IntArray:
     minority = np.bincount(labels, weights=flip) > 0.5 * np.bincount(labels)
     turn = flip != minority[labels]
     if turn.any():
-        said.append(
+        repairs.append(
             f"turned round {int(turn.sum())} of {len(faces)} faces that looked the other way than their neighbours"
         )
     return np.where(turn[:, None], faces[:, ::-1], faces)
 
 
-def oriented_shells(points: FloatArray, faces: IntArray, said: list[str]) -> IntArray:
+def oriented_shells(points: FloatArray, faces: IntArray, repairs: list[str]) -> IntArray:
     """Return the faces with outer shells looking outward and shells inside others looking inward."""
     labels = connected(len(faces), *_neighbours(faces)[:2])
     count = int(labels.max()) + 1
@@ -45,10 +45,10 @@ def oriented_shells(points: FloatArray, faces: IntArray, said: list[str]) -> Int
     wrong = [(volume < 0.0) == (level % 2 == 0) and volume != 0.0 for volume, level in zip(volumes, depth, strict=True)]
     turned = sum(len(shell) for shell, bad in zip(shells, wrong, strict=True) if bad)
     if turned:
-        said.append(f"turned {sum(wrong)} shell(s), {turned} faces, inside out")
+        repairs.append(f"turned {sum(wrong)} shell(s), {turned} faces, inside out")
     cavities = sum(level % 2 for level in depth)
     if count > 1:
-        said.append(
+        repairs.append(
             f"the surface has {count} separate shells, {cavities} of them cavities inside others; the rest add up"
         )
     return np.where(np.array(wrong)[labels][:, None], faces[:, ::-1], faces)
