@@ -3,6 +3,8 @@
 from pathlib import Path
 from typing import Any
 
+from rocking.campaigns import reading
+from rocking.campaigns.identity import Identity
 from rocking.campaigns.jobs import Job, JobFolder
 
 BODY = '[body]\nunits = "m"\nwidth = 0.5\nheight = 2.0\n'
@@ -48,3 +50,16 @@ def finished(path: Path, text: str, **how: Any) -> JobFolder:
     folder = JobFolder.create(path, Job.of_text(text))
     folder.run(**({"workers": 1} | how))
     return folder
+
+
+def digests(folder: JobFolder) -> dict[str, tuple[str, str]]:
+    """Keys and hashes of the results of all rounds."""
+    plans = {path: Identity.read(path).plan for path in sorted(folder.path.glob("round-*"))}
+    return {path.name: (plan.key, reading.digest(reading.pieces(path, plan))) for path, plan in plans.items()}
+
+
+def flip(path: Path, bit: int) -> None:
+    """Change a bit of a file; a negative number counts from its end."""
+    data = bytearray(path.read_bytes())
+    data[bit // 8] ^= 1 << bit % 8
+    path.write_bytes(data)

@@ -74,7 +74,14 @@ class Campaign:
         with disk.guarded(path, lambda: "nothing was written"):
             disk.make_folder(path)
             with FolderLock(path):
-                _refuse_used(path)
+                there = {entry.name for entry in path.iterdir() if not entry.name.startswith(".")} - {LOCK, SHARDS}
+                if NAME in there:
+                    raise CampaignMismatchError(f"{path}: a campaign is here already: open it, or take a new folder")
+                if there:
+                    first = min(there)
+                    raise CampaignMismatchError(
+                        f"{path}: not empty ({first} ...); a campaign takes a folder of its own"
+                    )
                 disk.make_folder(path / SHARDS)
                 identity.write(path)
         return cls(path, histories, identity)
@@ -141,11 +148,6 @@ class Campaign:
     def plan(self) -> Plan:
         """How it is cut."""
         return self.identity.plan
-
-    @property
-    def key(self) -> str:
-        """Name of the histories: 64 hexadecimal digits."""
-        return self.identity.plan.key
 
     def status(self, *, verify: bool = True) -> CampaignStatus:
         """Return how far it is.
@@ -251,30 +253,13 @@ class Campaign:
         dict of str to ndarray
             Those keys, one entry a history.
         """
-        for name in names:
-            _check_column(name)
+        if odd := [name for name in names if name not in RESULTS]:
+            raise InvalidValueError(f"column must be one of {', '.join(RESULTS)}, got {odd[0]!r:.60}")
         whole = {name: np.empty(self.plan.count, RESULTS[name]) for name in names or RESULTS}
         for piece in self.pieces():
             for name, values in whole.items():
                 values[piece.first : piece.last] = piece.results[name]
         return whole
-
-    def column(self, name: str) -> Iterator[np.ndarray]:
-        """Return one result of all histories, piece by piece.
-
-        Parameters
-        ----------
-        name : str
-            A key of `fast_engine.RESULTS`.
-
-        Yields
-        ------
-        ndarray
-            Its values for one chunk after another.
-        """
-        _check_column(name)
-        for piece in self.pieces():
-            yield piece.results[name]
 
     def sha256(self) -> str:
         """Return the hash of all results; it does not depend on the size of the chunks.
@@ -295,19 +280,6 @@ class Campaign:
             What is damaged or missing; a run computes that.
         """
         return reading.verified(self.folder)
-
-
-def _check_column(name: str) -> None:
-    if name not in RESULTS:
-        raise InvalidValueError(f"column must be one of {', '.join(RESULTS)}, got {name!r:.60}")
-
-
-def _refuse_used(folder: Path) -> None:
-    there = {entry.name for entry in folder.iterdir() if not entry.name.startswith(".")} - {LOCK, SHARDS}
-    if NAME in there:
-        raise CampaignMismatchError(f"{folder}: a campaign is here already: open it, or take a new folder")
-    if there:
-        raise CampaignMismatchError(f"{folder}: not empty ({min(there)} ...); a campaign takes a folder of its own")
 
 
 def _histories(value: object) -> Histories:

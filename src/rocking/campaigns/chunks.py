@@ -4,6 +4,7 @@ import hashlib
 import json
 import struct
 import zlib
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
@@ -15,10 +16,15 @@ from rocking.errors import InvalidValueError
 from rocking.studies.histories import LARGEST_CHUNK
 
 MAGIC = b"ROCKSHRD"
-_LENGTHS = struct.Struct("<8sII")
-_SEAL = 32
 FORMAT = 2
 """Version of the files of a campaign."""
+
+_LENGTHS = struct.Struct("<8sII")
+_SEAL = 32
+_COLUMNS = {name: np.dtype(kind).newbyteorder("<") for name, kind in RESULTS.items()}
+_NAMES = [[name, kind.str] for name, kind in _COLUMNS.items()]
+WIDTH = sum(kind.itemsize for kind in _COLUMNS.values())
+"""Results of one history [bytes]."""
 
 DEFAULT_CHUNK = 65536
 """Histories of a chunk of the fast engine: about 0.3 s of work, beside which a few milliseconds of safety are small."""
@@ -43,12 +49,6 @@ class Chunk(NamedTuple):
         whole = self.of or self.name
         name = hashlib.sha256(f"{whole} {first} {last}".encode()).hexdigest()
         return Chunk(self.number, first, last, name, whole)
-
-
-def default_chunk(engine: str, together: int = 1) -> int:
-    """Return how many histories make a chunk, unless somebody wants another number."""
-    usual = DEFAULT_CHUNK if engine.startswith("fast") else REFERENCE_CHUNK
-    return max(usual - usual % together, usual if together > usual else 1)
 
 
 @dataclass(frozen=True)
@@ -95,13 +95,15 @@ def pack(chunk: Chunk, arrays: Arrays) -> bytes:
     Magic word, version, length of the header; the header in JSON; the columns, little-endian; SHA-256 of all that.
     """
     count = chunk.last - chunk.first
-    columns = [np.ascontiguousarray(arrays[name][:count], _little(kind)).data for name, kind in RESULTS.items()]
-    header = json.dumps(_header(chunk, columns), sort_keys=True, separators=(",", ":")).encode()
+    columns = {name: np.ascontiguousarray(arrays[name][:count], kind).data for name, kind in _COLUMNS.items()}
+    sums = {name: zlib.crc32(column) for name, column in columns.items()}
+    content = {"name": chunk.name, "first": chunk.first, "last": chunk.last, "columns": _NAMES, "crc32": sums}
+    header = json.dumps(content, sort_keys=True, separators=(",", ":")).encode()
     head = _LENGTHS.pack(MAGIC, FORMAT, len(header)) + header
-    made = hashlib.sha256(head)
-    for column in columns:
-        made.update(column)
-    return b"".join([head, *columns, made.digest()])
+    digest = hashlib.sha256(head)
+    for column in columns.values():
+        digest.update(column)
+    return b"".join([head, *columns.values(), digest.digest()])
 
 
 def seal(data: bytes) -> str:
@@ -133,13 +135,13 @@ def unpack(data: bytes, chunk: Chunk, sealed: str | None = None) -> Arrays:
 
 def _columns(data: bytes, place: int, chunk: Chunk, header: Any) -> Arrays:
     count, arrays = chunk.last - chunk.first, {}
-    if header.get("first") != chunk.first or header.get("last") != chunk.last or header.get("columns") != _names():
+    if header.get("first") != chunk.first or header.get("last") != chunk.last or header.get("columns") != _NAMES:
         raise CampaignDamagedError("its header does not fit its name")
-    if place + count * _width() + _SEAL != len(data):
-        raise CampaignDamagedError(f"it has {len(data)} bytes, {place + count * _width() + _SEAL} are due")
-    for name, kind in RESULTS.items():
-        arrays[name] = np.frombuffer(data, _little(kind), count, place).astype(kind, copy=False)
-        place += count * np.dtype(kind).itemsize
+    if (due := place + count * WIDTH + _SEAL) != len(data):
+        raise CampaignDamagedError(f"it has {len(data)} bytes, {due} are due")
+    for name, kind in _COLUMNS.items():
+        arrays[name] = np.frombuffer(data, kind, count, place).astype(RESULTS[name], copy=False)
+        place += count * kind.itemsize
     return arrays
 
 
@@ -160,19 +162,16 @@ def _payload_at(data: bytes) -> int:
 
 def _where_broken(data: bytes, place: int) -> str:
     """Say which column changed, as far as the header can still tell."""
-    try:
+    with suppress(CampaignDamagedError, KeyError, TypeError, ValueError):
         header = _read_header(data, place)
         count = int(header["last"]) - int(header["first"])
-        due = place + count * _width() + _SEAL
-        if due != len(data):
+        if (due := place + count * WIDTH + _SEAL) != len(data):
             return f"it has {len(data)} bytes, {due} are due: cut short?"
-        for name, kind in RESULTS.items():
-            end = place + count * np.dtype(kind).itemsize
+        for name, kind in _COLUMNS.items():
+            end = place + count * kind.itemsize
             if zlib.crc32(memoryview(data)[place:end]) != header["crc32"][name]:
                 return f"column {name} has changed"
             place = end
-    except (CampaignDamagedError, KeyError, TypeError, ValueError):
-        pass
     return "its seal is broken"
 
 
@@ -184,21 +183,3 @@ def _read_header(data: bytes, place: int) -> Any:
     if not isinstance(header, dict):
         raise CampaignDamagedError("its header is no header")
     return header
-
-
-def _header(chunk: Chunk, columns: list[memoryview]) -> dict[str, Any]:
-    sums = {name: zlib.crc32(column) for name, column in zip(RESULTS, columns, strict=True)}
-    return {"name": chunk.name, "first": chunk.first, "last": chunk.last, "columns": _names(), "crc32": sums}
-
-
-def _names() -> list[list[str]]:
-    return [[name, _little(kind).str] for name, kind in RESULTS.items()]
-
-
-def _little(kind: Any) -> Any:
-    return np.dtype(kind).newbyteorder("<")
-
-
-def _width() -> int:
-    """Bytes of a history."""
-    return sum(np.dtype(kind).itemsize for kind in RESULTS.values())

@@ -9,9 +9,10 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any
 
+from rocking import checks
 from rocking.campaigns.chunks import Chunk
 from rocking.campaigns.disk import CampaignWorkerError
-from rocking.campaigns.executors import Done, Executor, Retried, Stop, WorkerTask, cannot_be_sent, whole
+from rocking.campaigns.executors import MOST_WORKERS, Done, Executor, Retried, Stop, WorkerTask, cannot_be_sent
 from rocking.errors import InvalidValueError, MissingExtraError, how_to_install
 
 _LOOK = 0.2
@@ -40,11 +41,14 @@ class DaskExecutor(Executor):
         value: object = address
         if not isinstance(value, str) or not value:
             raise InvalidValueError(f'address must be that of a scheduler, as in "tcp://host:8786", got {value!r:.60}')
-        self.address, self.ahead, self.timeout = address, whole("ahead", ahead), timeout
+        self.address, self.ahead, self.timeout = address, checks.whole("ahead", ahead, 1, MOST_WORKERS), timeout
 
     def run(self, job: WorkerTask, chunks: Iterator[Chunk], stop: Stop, retried: Retried) -> Iterator[Done]:
         """Compute chunks; what the cluster lost is tried again, chunks of a worker that dies by the cluster itself."""
-        dask = _distributed()
+        try:
+            dask = import_module("distributed")
+        except ImportError as error:
+            raise MissingExtraError(how_to_install("a campaign on a Dask cluster", "distributed", error)) from error
         try:
             client = dask.Client(self.address, timeout=self.timeout, set_as_default=False)
         except (OSError, ValueError) as error:
@@ -58,8 +62,12 @@ class _Window:
 
     def __init__(self, dask: ModuleType, client: Any, job: WorkerTask, executor: DaskExecutor) -> None:
         self._dask, self._client, self._job, self._executor = dask, client, job, executor
+        try:
+            pickled = pickle.dumps(job)
+        except (AttributeError, TypeError, pickle.PicklingError) as error:
+            raise CampaignWorkerError(cannot_be_sent(error)) from error
         # a task and not scattered data: when the worker that holds it dies, another one makes it again
-        self._loaded = client.submit(pickle.loads, _pickled(job), pure=False)
+        self._loaded = client.submit(pickle.loads, pickled, pure=False)
         self._flying: dict[Any, tuple[Chunk, int]] = {}
 
     def work(self, chunks: Iterator[Chunk], stop: Stop, retried: Retried) -> Iterator[Done]:
@@ -72,18 +80,20 @@ class _Window:
                 return
             for future in self._landed():
                 chunk, attempts = self._flying.pop(future)
-                done = self._kept(future, chunk)
-                if done is None:
-                    self._lost(chunk, attempts, retried)
-                else:
+                if (done := self._kept(future, chunk)) is not None:
                     yield done._replace(attempts=attempts)
+                    continue
+                if attempts >= 3 or self._client.status != "running":
+                    where = f"histories {chunk.first} to {chunk.last - 1}"
+                    raise CampaignWorkerError(f"the Dask cluster lost {where}; is it gone?")
+                retried(chunk, "the cluster lost a chunk; it is computed again")
+                self._submit(chunk, attempts + 1)
 
     def _fill(self, chunks: Iterator[Chunk], stop: Stop) -> bool:
         if not stop():
             self._executor.at_once = max(1, sum(self._client.nthreads().values()))
         while len(self._flying) < self._executor.at_once * self._executor.ahead and not stop():
-            chunk = next(chunks, None)
-            if chunk is None:
+            if (chunk := next(chunks, None)) is None:
                 break
             self._submit(chunk, 1)
         return bool(self._flying)
@@ -111,28 +121,8 @@ class _Window:
             raise CampaignWorkerError(f"{where}: {type(error).__name__}: {error}") from error
         return self._job.keep(chunk, data, seconds, worker)
 
-    def _lost(self, chunk: Chunk, attempts: int, retried: Retried) -> None:
-        if attempts >= 3 or self._client.status != "running":
-            raise CampaignWorkerError(f"the Dask cluster lost histories {chunk.first} to {chunk.last - 1}; is it gone?")
-        retried(chunk, "the cluster lost a chunk; it is computed again")
-        self._submit(chunk, attempts + 1)
-
-
-def _pickled(job: WorkerTask) -> bytes:
-    try:
-        return pickle.dumps(job)
-    except (AttributeError, TypeError, pickle.PicklingError) as error:
-        raise CampaignWorkerError(cannot_be_sent(error)) from error
-
 
 def _compute(job: WorkerTask, chunk: Chunk) -> tuple[bytes, float, str]:
     start = time.perf_counter()
     data = job.compute(chunk) or b""
     return data, job.pace.settled(time.perf_counter() - start), f"process {os.getpid()} on {socket.gethostname()}"
-
-
-def _distributed() -> ModuleType:
-    try:
-        return import_module("distributed")
-    except ImportError as error:
-        raise MissingExtraError(how_to_install("a campaign on a Dask cluster", "distributed", error)) from error

@@ -1,6 +1,5 @@
 """Files that are there as a whole or not at all, one process a campaign, and what stops it."""
 
-import contextlib
 import os
 import secrets
 import socket
@@ -15,8 +14,9 @@ from rocking.errors import RockingError
 
 NOTHING_LOST = "nothing that was recorded before is lost"
 _UNFINISHED = ".part"
-_FULL = {sqlite3.SQLITE_FULL}
-_DENIED = {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM}
+_DENIED = {
+    sqlite3.SQLITE_FULL, sqlite3.SQLITE_READONLY, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM
+}  # fmt: skip
 _TAKEN = {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}
 NAME = "running.lock"
 _PATIENCE = 0.5
@@ -90,12 +90,10 @@ def make_folder(folder: Path) -> None:
         sync_folder(each.parent)
 
 
-def remove_unfinished(folder: Path) -> int:
+def remove_unfinished(folder: Path) -> None:
     """Remove files that were being written when their process ended; call it while nobody writes."""
-    unfinished = list(folder.glob(f".*{_UNFINISHED}"))
-    for path in unfinished:
+    for path in folder.glob(f".*{_UNFINISHED}"):
         path.unlink(missing_ok=True)
-    return len(unfinished)
 
 
 def set_aside(path: Path) -> Path:
@@ -125,7 +123,7 @@ def guarded(
         if foreign(error):
             raise
         code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT) & 0xFF
-        if code in _FULL | _DENIED:
+        if code in _DENIED:
             raise CampaignStorageError(f"{folder}: the ledger: {error}; {safe()}; {_ADVICE}") from error
         if code in _TAKEN:
             raise CampaignBusyError(f"{folder}: another process holds the ledger ({error}); try again later") from error
@@ -163,9 +161,9 @@ class FolderLock:
         deadline = time.monotonic() + _PATIENCE  # who only looks whether it is held, holds it for an instant
         while not _take(handle):
             if time.monotonic() > deadline:
-                holder = _text(handle) or "another process"
+                runs = _text(handle)
                 os.close(handle)
-                raise CampaignBusyError(f"{self._path.parent}: {holder} runs this campaign; wait for it, or stop it")
+                raise CampaignBusyError(f"{self._path.parent}: {runs} runs this campaign; wait for it, or stop it")
             time.sleep(0.02)
         _held.add(handle)
         self._handle = handle
@@ -175,7 +173,7 @@ class FolderLock:
         return self
 
     def __exit__(self, *_: object) -> None:
-        with contextlib.suppress(OSError):
+        with suppress(OSError):
             os.ftruncate(self._handle, 0)
         _held.discard(self._handle)
         os.close(self._handle)
@@ -188,16 +186,16 @@ def holder(folder: Path) -> str | None:
     except OSError:
         return None
     try:
-        return None if _take(handle) else (_text(handle) or "another process")
+        return None if _take(handle) else _text(handle)
     finally:
         os.close(handle)
 
 
 def _text(handle: int) -> str:
-    with contextlib.suppress(OSError):
+    with suppress(OSError):
         os.lseek(handle, 0, os.SEEK_SET)
-        return os.read(handle, 200).decode(errors="replace")
-    return ""
+        return os.read(handle, 200).decode(errors="replace") or "another process"
+    return "another process"
 
 
 if sys.platform == "win32":
@@ -224,7 +222,7 @@ else:
     def _let_go_in_child() -> None:
         """Let go in a forked worker: if it outlives its parent, the campaign is not busy."""
         for handle in _held:
-            with contextlib.suppress(OSError):
+            with suppress(OSError):
                 os.close(handle)
         _held.clear()
 

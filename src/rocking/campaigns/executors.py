@@ -14,13 +14,13 @@ from threading import Event
 from types import FrameType
 from typing import Any, NamedTuple
 
+from rocking import checks
 from rocking.campaigns import chunks as shard
 from rocking.campaigns import disk, identity
 from rocking.campaigns.chunks import DEFAULT_CHUNK, Chunk
 from rocking.campaigns.disk import CampaignWorkerError
 from rocking.campaigns.identity import kind_of
 from rocking.dynamics.plane.fast_engine import Arrays, empty_results
-from rocking.errors import InvalidValueError
 from rocking.studies.histories import Histories
 
 PIECE = 1.0
@@ -33,6 +33,7 @@ _REST = 0.5
 SUFFIX, PIECES = ".shard", "pieces"
 """End of the names of shards; the folder of those that are pieces of a chunk, until it is whole."""
 
+MOST_WORKERS = 4096
 _LOOK = 0.2
 Stop = Callable[[], bool]
 Retried = Callable[[Chunk, str], None]
@@ -48,8 +49,6 @@ class Interruption:
     False
     """
 
-    _WATCHED = (signal.SIGINT, signal.SIGTERM)
-
     def __init__(self) -> None:
         self._requested = False
         self._before: dict[signal.Signals, Any] = {}
@@ -60,28 +59,25 @@ class Interruption:
 
     def __enter__(self) -> "Interruption":
         if threading.current_thread() is threading.main_thread():
-            self._before = {each: signal.signal(each, self._note) for each in self._WATCHED}
+            self._before = {each: signal.signal(each, self._note) for each in (signal.SIGINT, signal.SIGTERM)}
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._restore()
-
-    def _note(self, number: int, frame: FrameType | None) -> None:
-        self._requested = True
-        self._restore()
-
-    def _restore(self) -> None:
         for each, handler in self._before.items():
             signal.signal(each, handler if handler is not None else signal.SIG_DFL)
         self._before = {}
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        self._requested = True
+        self.__exit__()
 
 
 class Pace:
     """How many histories at a time take as long as nobody minds to wait, learned from one step to the next."""
 
-    def __init__(self, engine: str, together: int = 1, made: bool = False) -> None:
+    def __init__(self, engine: str, together: int = 1, synthetic: bool = False) -> None:
         self.least = _FIRST[kind_of(engine)]
-        self.step = min(self.least, together) if made else self.least
+        self.step = min(self.least, together) if synthetic else self.least
         self.together = together
         self._first: tuple[int, float] | None = None
         self._startup = 0.0
@@ -133,8 +129,8 @@ class WorkerTask:
 
     def __post_init__(self) -> None:
         """Start with few histories at a time."""
-        made = not self.histories.motions.in_memory
-        object.__setattr__(self, "pace", Pace(self.engine, self.histories.together, made))
+        synthetic = not self.histories.motions.in_memory
+        object.__setattr__(self, "pace", Pace(self.engine, self.histories.together, synthetic))
 
     def check(self) -> None:
         """Refuse to compute what this campaign would not recognise as its own bits."""
@@ -163,12 +159,16 @@ class WorkerTask:
         """Compute a chunk, or as much of it as takes a second; the first history that is not there, None if stopped."""
         self.check()
         first, begun = chunk.first, time.perf_counter()
-        while first < chunk.last and not _long(time.perf_counter() - begun, first - chunk.first, chunk.last - first):
-            if first > chunk.first and stop():
+        while first < chunk.last:
+            spent, done = time.perf_counter() - begun, first - chunk.first
+            # a piece is long enough after a second, unless the rest takes less than half of one
+            if spent > PIECE and done > 0 and (chunk.last - first) * spent > _REST * PIECE * done:
+                break
+            if done and stop():
                 return None
             start, last = time.perf_counter(), self.pace.until(first, chunk.last)
             for name, values in self.histories.run(first, last, threads=threads).items():
-                results[name][first - chunk.first : last - chunk.first] = values
+                results[name][done : last - chunk.first] = values
             if not self.pace.begun:
                 begun = time.perf_counter()  # the first step of all starts much else
             self.pace.took(last - first, time.perf_counter() - start)
@@ -182,17 +182,9 @@ class WorkerTask:
         return Done(done, shard.seal(data), len(data), seconds, worker or f"process {os.getpid()}")
 
 
-def _long(spent: float, done: int, left: int) -> bool:
-    """Return whether a piece is long enough: after a second, unless the rest takes less than half of one."""
-    return spent > PIECE and done > 0 and left * spent > _REST * PIECE * done
-
-
 def path_of(folder: Path, chunk: Chunk) -> Path:
     """Return where the shard of a chunk is, or of a piece of one."""
     return (folder.with_name(PIECES) if chunk.of else folder) / f"{chunk.name}{SUFFIX}"
-
-
-_Begun = tuple[Chunk, Arrays, Future[tuple[int, float] | None]]
 
 
 class Executor(ABC):
@@ -229,13 +221,6 @@ def cannot_be_sent(error: Exception) -> str:
     return f"the histories cannot be sent to a process: {error}; lambdas and local functions cannot, named ones can"
 
 
-def whole(name: str, value: object, high: int = 4096) -> int:
-    """Return a whole number of things of which there is at least one."""
-    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= high:
-        raise InvalidValueError(f"{name} must be a whole number in [1, {high}], got {value!r:.60}")
-    return value
-
-
 class Serial(Executor):
     """Computes the chunks one after another in this process.
 
@@ -250,7 +235,7 @@ class Serial(Executor):
     """
 
     def __init__(self, threads: int | None = None) -> None:
-        self._threads = None if threads is None else whole("workers", threads)
+        self._threads = None if threads is None else checks.whole("workers", threads, 1, MOST_WORKERS)
 
     def run(self, job: WorkerTask, chunks: Iterator[Chunk], stop: Stop, retried: Retried) -> Iterator[Done]:
         """Compute chunks one after another; of one that is begun too early nothing is wanted."""
@@ -261,7 +246,7 @@ class Serial(Executor):
             last = job.fill(results, chunk, self._threads, lambda: over.is_set() or stop())
             return None if last is None else (last, job.pace.settled(time.perf_counter() - start))
 
-        def begin() -> _Begun | None:
+        def begin() -> tuple[Chunk, Arrays, Future[tuple[int, float] | None]] | None:
             """Begin the next chunk, if there is one; its results are there as soon as its time is known."""
             chunk = next(chunks, None)
             if chunk is None:

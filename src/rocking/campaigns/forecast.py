@@ -3,17 +3,20 @@
 import shutil
 import time
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rocking.campaigns.chunks import Plan
+from rocking.campaigns.chunks import WIDTH, Plan
 from rocking.campaigns.disk import CampaignStorageError
+from rocking.campaigns.identity import usual_chunk
 from rocking.campaigns.status import NOISE, CampaignStatus, Estimate
-from rocking.dynamics.plane.fast_engine import RESULTS
-from rocking.studies.histories import Histories
+from rocking.studies.histories import MOTIONS_AT_ONCE, Histories
+from rocking.studies.motion_sets import MotionSet
 
-BYTES = sum(np.dtype(kind).itemsize for kind in RESULTS.values())
-"""Results of one history [bytes]."""
+if TYPE_CHECKING:
+    from rocking.campaigns.jobs.job import Job
 
 _BESIDE = 8192
 _WARM = 4
@@ -21,6 +24,8 @@ _RUN = 2048
 _SHARE = 0.1
 _LONGEST = 2.0
 _PLACES = 32
+# what an adaptive study keeps of a history, with what it takes for a moment; memory of a worker without work [bytes]
+_KEPT, _BASE = 100, 150_000_000
 
 
 @dataclass(frozen=True)
@@ -38,13 +43,75 @@ def forecast(status: CampaignStatus, plan: Plan, histories: Histories) -> Foreca
     """Compute a sample of the histories, and compare the room on the disk with what is needed."""
     left, chunks = status.histories - status.histories_done, status.chunks - status.chunks_done
     work = trial(histories).at(1.0 / left) if left else Estimate(0.0, 0.0, 0.0)
-    needed = left * BYTES + chunks * _BESIDE
+    needed = left * WIDTH + chunks * _BESIDE
     free = shutil.disk_usage(status.folder).free
     if free < needed:
         raise CampaignStorageError(
             f"{status.folder}: {needed / 1e6:.0f} MB are needed, {free / 1e6:.0f} MB are free; make room first"
         )
     return Forecast(left, chunks, work, needed, free)
+
+
+@dataclass(frozen=True)
+class JobForecast:
+    """What a job will take, an adaptive study in its first round."""
+
+    histories: int
+    chunks: int
+    chunk: int  # histories in each
+    rate: float  # histories of one core in a second [1/s]
+    seconds: float  # time of the workers for all of them [s]
+    between: tuple[float, float]  # bounds between which it probably is [s]
+    memory: int  # of all workers together, of an adaptive study with all that its rounds keep, roughly [bytes]
+    disk: int  # room for the results [bytes]
+    free: int | None  # room that there is, where a folder is given [bytes]
+    later: tuple[int, int] | None = None  # of an adaptive study, how many histories later rounds usually have
+
+
+def job_forecast(job: "Job", workers: int = 1, folder: Path | None = None) -> JobForecast:
+    """Return what a job will take, from histories that are computed for two seconds.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    workers : int
+        How many cores.
+    folder : Path, optional
+        Where it is to be kept; nothing is written there.
+
+    Returns
+    -------
+    JobForecast
+        Estimates.
+    """
+    histories, search = job.study.histories, job.study.search
+    count = histories.count
+    chunk = min(job.document.campaign.chunk or usual_chunk(histories), count)
+    chunks = -(-count // chunk)
+    each, later = trial(histories), None if search is None else search.later(count)
+    work = each.at(workers / count)
+    memory = workers * (_BASE + 4 * WIDTH * chunk + _bytes_of(job.problem.motions))
+    if search is not None and later is not None:
+        memory += _KEPT * (count + int(search.kept * later[1]))
+    return JobForecast(
+        count, chunks, chunk, 1.0 / each.seconds, work.seconds, (work.low, work.high), memory,
+        disk=WIDTH * count + 5000 * chunks,
+        free=None if folder is None else _free(folder),
+        later=later,
+    )  # fmt: skip
+
+
+def _bytes_of(motions: MotionSet) -> int:
+    """Return the room that motions take which are held in memory [bytes]."""
+    if not motions.in_memory:
+        return MOTIONS_AT_ONCE * 8 * 8192
+    return 3 * 8 * int(sum(np.size(getattr(motions[k], "acceleration", 0)) for k in range(len(motions))))
+
+
+def _free(folder: Path) -> int:
+    path = folder.resolve()
+    return shutil.disk_usage(next(each for each in (path, *path.parents) if each.exists())).free
 
 
 def trial(histories: Histories) -> Estimate:
@@ -54,19 +121,19 @@ def trial(histories: Histories) -> Estimate:
 
     Returns the mean of all histories, with twice its standard error.
     """
-    count, made = histories.count, not histories.motions.in_memory
+    count, synthetic = histories.count, not histories.motions.in_memory
     start = time.perf_counter()
     _timed(histories, 0, min(count, _WARM))  # motions are laid out, code is loaded
     middle = count // 2
     size = int(_SHARE / max(_timed(histories, middle, min(middle + _WARM, count)), 1e-9))
-    size = max(1, min(size, _RUN, histories.together if made else count, count))
+    size = max(1, min(size, _RUN, histories.together if synthetic else count, count))
     times: list[float] = []
     for place in range(1, _PLACES + 1):
         first = int(_spread(place) * (count - size + 1))
-        first -= first % histories.together if made else 0
+        first -= first % histories.together if synthetic else 0
         last = min(first + size, count)
         each = _timed(histories, first, last)
-        if made:  # the second time they are there
+        if synthetic:  # the second time they are there
             again = _timed(histories, first, last)
             used = np.unique(histories.rows(first, last).motion).size
             each = again + max(0.0, each - again) * (last - first) / used * min(1.0, len(histories.motions) / count)

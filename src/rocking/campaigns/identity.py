@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from rocking.campaigns import disk
-from rocking.campaigns.chunks import FORMAT, Plan, default_chunk
+from rocking.campaigns.chunks import DEFAULT_CHUNK, FORMAT, REFERENCE_CHUNK, Plan
 from rocking.campaigns.disk import CampaignDamagedError, CampaignMismatchError
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
@@ -35,8 +35,8 @@ _SHOWN = 5
 
 def engine_of(histories: Histories) -> str:
     """Return the engine that computes here: of the same text, ``fast, 0123456789abcdef``, are the same bits."""
-    chosen = fast_engine.chosen(histories.engine, histories.law)
-    return f"{chosen}, {_fingerprint(chosen, fast_engine.instruction_set() if chosen == 'fast' else '')}"
+    engine = fast_engine.chosen(histories.engine, histories.law)
+    return f"{engine}, {_fingerprint(engine, fast_engine.instruction_set() if engine == 'fast' else '')}"
 
 
 def kind_of(name: str) -> str:
@@ -45,47 +45,42 @@ def kind_of(name: str) -> str:
 
 
 @cache
-def _fingerprint(chosen: str, instruction_set: str) -> str:
+def _fingerprint(engine: str, instruction_set: str) -> str:
     """Hash the results of a few histories; the instruction set is what the cache tells engines apart by."""
-    made = hashlib.sha256()
-    count = _EACH if chosen == "fast" else _OF_REFERENCE
+    digest = hashlib.sha256()
+    count = _EACH if engine == "fast" else _OF_REFERENCE
     for motions, law, settings in _batches():
-        results = Batch(motions, law, settings, 1, chosen).run(count, lambda first, last: _rows(count))[0]
+        results = Batch(motions, law, settings, 1, engine).run(count, lambda first, last: _rows(count))[0]
         for name, kind in RESULTS.items():
-            made.update(np.ascontiguousarray(results[name], np.dtype(kind).newbyteorder("<")).tobytes())
-    return made.hexdigest()[:16]
+            digest.update(np.ascontiguousarray(results[name], np.dtype(kind).newbyteorder("<")).tobytes())
+    return digest.hexdigest()[:16]
 
 
 def _batches() -> list[tuple[list[Segments], ImpactLaw, Settings]]:
     """Pulses and records, with and without a vertical part, all laws, both kinds of equations, all orders."""
-    quantiles = {"right": np.arange(33) / 256.0 + 0.8125, "left": np.arange(33) / 512.0 + 0.875}
-    by_speed = SpeedRestitution(np.array([0.0, 1.0, 4.0]), np.array([1.0, 0.9375, 0.75]))
-    drawn = RandomRestitution(quantiles, 7)
-    plain, linear = Settings(gravity=9.8125), Settings(gravity=9.8125, linear=True)
-    return [
-        (_pulses(), drawn, plain),
-        (_records(vertical=False), ConstantRestitution(), Settings(gravity=9.8125, order=6)),
-        (_records(vertical=True), by_speed, plain),
-        (_pulses(), by_speed, linear),
-    ]
-
-
-def _pulses() -> list[Segments]:
-    """Waves of parabolas: four stretches up, four down; of fractions that every machine has to the last bit."""
+    # waves of parabolas: four stretches up, four down; of fractions that every machine has to the last bit
     bump = np.array([0.0, 4.0, -4.0, 0.5, -0.5, 0.0, 0.25, -0.25])
     waves = np.array([1.0, -1.0, 1.0, -1.0])[:, None] * bump
-    return [Segments(step, size * waves) for size, step in ((2.0, 0.25), (6.0, 0.25), (12.0, 0.5), (3.0, 0.75))]
-
-
-def _records(*, vertical: bool) -> list[Segments]:
-    """Shaking by remainders of whole numbers, which look like noise and are the same everywhere."""
+    pulses = [Segments(step, size * waves) for size, step in ((2.0, 0.25), (6.0, 0.25), (12.0, 0.5), (3.0, 0.75))]
+    flat, upright = [
+        [
+            Segments.between_samples(0.03125, _noise(37 + k, size), _noise(91 + k, 0.25 * size) if vertical else None)
+            for k, size in enumerate((2.0, 6.0, 12.0, 3.0))
+        ]
+        for vertical in (False, True)
+    ]
+    quantiles = {"right": np.arange(33) / 256.0 + 0.8125, "left": np.arange(33) / 512.0 + 0.875}
+    by_speed = SpeedRestitution(np.array([0.0, 1.0, 4.0]), np.array([1.0, 0.9375, 0.75]))
     return [
-        Segments.between_samples(0.03125, _noise(37 + k, size), _noise(91 + k, 0.25 * size) if vertical else None)
-        for k, size in enumerate((2.0, 6.0, 12.0, 3.0))
+        (pulses, RandomRestitution(quantiles, 7), Settings(gravity=9.8125)),
+        (flat, ConstantRestitution(), Settings(gravity=9.8125, order=6)),
+        (upright, by_speed, Settings(gravity=9.8125)),
+        (pulses, by_speed, Settings(gravity=9.8125, linear=True)),
     ]
 
 
 def _noise(factor: int, size: float) -> FloatArray:
+    """Shaking by remainders of whole numbers, which looks like noise and is the same everywhere."""
     number = np.arange(96)
     return np.asarray(size * ((number * number * factor + 11 * number) % 101 - 50) / 64.0, np.float64)
 
@@ -114,10 +109,10 @@ class Identity:
     @classmethod
     def of(cls, histories: Histories, size: int | None = None) -> "Identity":
         """Return the identity of a new campaign: the same wherever an engine of the same last digits makes it."""
-        chosen = engine_of(histories)
-        pieces = usual_chunk(histories) if size is None else size
+        size = usual_chunk(histories) if size is None else size
         content = histories.description()
-        return cls(Plan(histories.key(content), histories.count, pieces, chosen, software()), _plain(content))
+        plan = Plan(histories.key(content), histories.count, size, engine_of(histories), software())
+        return cls(plan, dict(json.loads(json.dumps(content, allow_nan=False))))
 
     @classmethod
     def read(cls, folder: Path) -> "Identity":
@@ -128,7 +123,10 @@ class Identity:
         except (FileNotFoundError, NotADirectoryError) as error:
             raise CampaignMismatchError(f"{folder}: no campaign here ({NAME} is missing)") from error
         try:
-            content = _decoded(text)
+            outer = json.loads(text)
+            content, stated = outer["campaign"], outer["sha256"]
+            if _encoded(content, stated) != text or _sum(content) != stated:
+                raise ValueError("its checksum does not fit")
             if content["plan"]["format"] != FORMAT:
                 raise CampaignMismatchError(f"{path}: format {content['plan']['format']}, this is {FORMAT}")
             return cls(Plan(**content["plan"]), content["histories"])
@@ -146,28 +144,33 @@ class Identity:
     def refuse_other(self, folder: Path, histories: Histories) -> None:
         """Refuse histories, or a version of this package, that the campaign was not created with."""
         other = Identity.of(histories, self.plan.size)
-        if other.plan.key != self.plan.key:
+        was, now = self.plan, other.plan
+        if was.key != now.key:
             differences = list(_differences(self.histories, other.histories, ""))
             differences.sort(key=lambda text: "..." in text)  # what a person can read comes first
             more = f"; and {len(differences) - _SHOWN} more" if len(differences) > _SHOWN else ""
             shown = "; ".join(differences[:_SHOWN]) + more
             raise CampaignMismatchError(f"{folder}: this campaign is of other histories: {shown or 'their key'}")
-        if other.plan.software != self.plan.software:
-            raise CampaignMismatchError(_other(folder, "software", self.plan.software, other.plan.software))
-        was, now = self.plan.engine, other.plan.engine
-        if was != now and kind_of(was) == kind_of(now):
+        for what, before, here in (("software", was.software, now.software), ("engine", was.engine, now.engine)):
+            if before == here:
+                continue
+            if what == "engine" and kind_of(before) == kind_of(here):
+                raise CampaignMismatchError(
+                    f"{folder}: this machine computes other last digits: begun with engine {before}, here it is {here} "
+                    f"({LAST_DIGITS}); finish it where it was begun, or create a new campaign"
+                )
             raise CampaignMismatchError(
-                f"{folder}: this machine computes other last digits: begun with engine {was}, here it is {now} "
-                f"({LAST_DIGITS}); finish it where it was begun, or create a new campaign"
+                f"{folder}: begun with {what} {before}, this is {here}, whose results may differ in their last bits; "
+                f"finish it with {before}, or create a new campaign"
             )
-        if was != now:
-            raise CampaignMismatchError(_other(folder, "engine", was, now))
 
 
 def usual_chunk(histories: Histories) -> int:
     """Return how many histories make a chunk, unless somebody wants another number; those of a made motion together."""
     together = 1 if histories.motions.in_memory else histories.together
-    return default_chunk(fast_engine.chosen(histories.engine, histories.law), together)
+    engine = fast_engine.chosen(histories.engine, histories.law)
+    usual = DEFAULT_CHUNK if engine.startswith("fast") else REFERENCE_CHUNK
+    return max(usual - usual % together, usual if together > usual else 1)
 
 
 def software() -> str:
@@ -177,31 +180,12 @@ def software() -> str:
     return __version__
 
 
-def _decoded(text: bytes) -> Any:
-    outer = json.loads(text)
-    content, stated = outer["campaign"], outer["sha256"]
-    if _encoded(content, stated) != text or _sum(content) != stated:
-        raise ValueError("its checksum does not fit")
-    return content
-
-
-def _plain(described: dict[str, Any]) -> dict[str, Any]:
-    return dict(json.loads(json.dumps(described, allow_nan=False)))
-
-
 def _sum(content: Any) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
 def _encoded(content: Any, stated: str) -> bytes:
     return (json.dumps({"campaign": content, "sha256": stated}, sort_keys=True, indent=1) + "\n").encode()
-
-
-def _other(folder: Path, what: str, was: str, now: str) -> str:
-    return (
-        f"{folder}: begun with {what} {was}, this is {now}, whose results may differ in their last bits; "
-        f"finish it with {was}, or create a new campaign"
-    )
 
 
 def _differences(was: Any, now: Any, where: str) -> Iterator[str]:

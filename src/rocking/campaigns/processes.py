@@ -11,11 +11,12 @@ from collections.abc import Callable, Iterator
 from contextlib import closing
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple
 
+from rocking import checks
 from rocking.campaigns.chunks import Chunk
 from rocking.campaigns.disk import CampaignWorkerError
-from rocking.campaigns.executors import Done, Executor, Retried, Serial, Stop, WorkerTask, cannot_be_sent, whole
+from rocking.campaigns.executors import MOST_WORKERS, Done, Executor, Retried, Serial, Stop, WorkerTask, cannot_be_sent
 from rocking.errors import InvalidValueError
 
 _WATCH = 0.5
@@ -36,13 +37,24 @@ class Failure(NamedTuple):
 
 def serve(job: WorkerTask, connection: Connection) -> None:
     """Compute chunks until told to end, or the campaign's process is gone."""
-    orphaned = _orphaned()
+    # the end of the campaign's process closes a pipe, but a forked sibling may hold that open; a new father tells as
+    # well, but under a fork server the father is the server: so both are asked
+    father, campaign = os.getppid(), multiprocessing.parent_process()
+
+    def orphaned() -> bool:
+        return os.getppid() != father or (campaign is not None and not campaign.is_alive())
+
     # Ctrl-C goes to all processes of a terminal: the campaign's process decides what it means
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     try:
-        while (chunk := _next(connection, orphaned)) is not None:
-            connection.send(answer(job, chunk, orphaned))
+        while True:
+            if connection.poll(_WATCH):
+                if (chunk := connection.recv()) is None:
+                    return
+                connection.send(answer(job, chunk, orphaned))
+            elif orphaned():
+                return
     except (EOFError, OSError):
         return
 
@@ -61,22 +73,6 @@ def answer(job: WorkerTask, chunk: Chunk, stop: Callable[[], bool] = lambda: Fal
         return Failure(chunk, f"{type(error).__name__}: {error}", None)
 
 
-def _orphaned() -> Callable[[], bool]:
-    """Make the question whether the campaign's process has gone."""
-    # its end closes a pipe, but a forked sibling may hold that open; a new father tells as well, but under a fork
-    # server the father is the server: so both are asked
-    father, campaign = os.getppid(), multiprocessing.parent_process()
-    return lambda: os.getppid() != father or (campaign is not None and not campaign.is_alive())
-
-
-def _next(connection: Connection, orphaned: Callable[[], bool]) -> Chunk | None:
-    while not connection.poll(_WATCH):
-        if orphaned():
-            return None
-    received: Chunk | None = connection.recv()
-    return received
-
-
 class Processes(Executor):
     """Computes the chunks on processes of this machine, one thread of the engine each."""
 
@@ -84,7 +80,9 @@ class Processes(Executor):
         known = multiprocessing.get_all_start_methods()
         if start_method not in known:
             raise InvalidValueError(f"start_method must be one of {', '.join(known)}, got {start_method!r:.60}")
-        self.at_once = _processors() if workers is None else whole("workers", workers)
+        affinity = getattr(os, "sched_getaffinity", None)
+        processors = len(affinity(0)) if affinity else os.cpu_count() or 1
+        self.at_once = processors if workers is None else checks.whole("workers", workers, 1, MOST_WORKERS)
         self.start_method = start_method
 
     def run(self, job: WorkerTask, chunks: Iterator[Chunk], stop: Stop, retried: Retried) -> Iterator[Done]:
@@ -168,7 +166,10 @@ class _Crew:
                     self._bury(member)
                     break
                 if isinstance(answer, Failure):
-                    _raise(answer)
+                    if answer.number is not None:
+                        raise OSError(answer.number, answer.why)
+                    where = f"histories {answer.chunk.first} to {answer.chunk.last - 1}"
+                    raise CampaignWorkerError(f"{where}: {answer.why}")
                 yield answer._replace(attempts=member.tasks.popleft()[1])
 
     def close(self) -> None:
@@ -195,12 +196,6 @@ class _Crew:
         member.end()
 
 
-def _raise(failure: Failure) -> NoReturn:
-    if failure.number is not None:
-        raise OSError(failure.number, failure.why)
-    raise CampaignWorkerError(f"histories {failure.chunk.first} to {failure.chunk.last - 1}: {failure.why}")
-
-
 def _cause(code: int | None) -> str:
     if code is None or code >= 0:
         return f"with code {code}"
@@ -220,13 +215,6 @@ def _no_interruption() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _processors() -> int:
-    try:
-        return len(os.sched_getaffinity(0))
-    except AttributeError:
-        return os.cpu_count() or 1
 
 
 def chosen(executor: str | Executor, workers: int | None, start_method: str | None) -> Executor:

@@ -42,7 +42,7 @@ def digest(ranges: Iterator[HistoryRange]) -> str:
     for piece in ranges:
         for name, values in piece.results.items():
             columns[name].update(np.ascontiguousarray(values, values.dtype.newbyteorder("<")).tobytes())
-    text = "".join(f"{name} {np.dtype(RESULTS[name]).name} {made.hexdigest()}\n" for name, made in columns.items())
+    text = "".join(f"{name} {np.dtype(RESULTS[name]).name} {each.hexdigest()}\n" for name, each in columns.items())
     return hashlib.sha256(text.encode()).hexdigest()
 
 

@@ -44,7 +44,7 @@ class EarlierRun:
             if stop():
                 return self
             known[record.number] = True
-            self.finished[record.number] = self._recall(self.plan.chunk(record.number), record.seal)
+            self.finished[record.number] = self._intact(self.plan.chunk(record.number), record.seal) is not None
         there = {entry.name for entry in os.scandir(self.folder)}
         for number in np.flatnonzero(~known):
             if stop() or not there:
@@ -64,7 +64,7 @@ class EarlierRun:
             piece = self.plan.chunk(record.number).piece(record.first, record.last)
             if self.finished[record.number]:
                 self.ledger.forget(piece.name)  # its chunk was adopted
-            elif self._recall(piece, record.seal):
+            elif self._intact(piece, record.seal) is not None:
                 self.pieces.setdefault(record.number, []).append(piece)
                 known.add(piece.name + SUFFIX)
         for path in sorted(self.folder.with_name(PIECES).glob(f"*{SUFFIX}")):
@@ -91,41 +91,32 @@ class EarlierRun:
         self.pieces[piece.number] = sorted([*others, piece])
         return True
 
-    def _recall(self, chunk: Chunk, sealed: str) -> bool:
-        """See whether a recorded shard is still what it was; it is taken back if not."""
-        path = path_of(self.folder, chunk)
-        try:
-            shard.unpack(path.read_bytes(), chunk, sealed)
-        except FileNotFoundError:
-            self.ledger.forget(chunk.name)
-            self._note(chunk, f"{path.name} is missing; it is computed again")
-            return False
-        except CampaignDamagedError as error:
-            aside = disk.set_aside(path)
-            self.ledger.forget(chunk.name)
-            self._note(chunk, f"{path.name}: {error}; kept as {aside.name}, and computed again")
-            return False
-        return True
-
     def _adopt(self, chunk: Chunk) -> bool:
         """Record a shard that is there and whole."""
-        path = path_of(self.folder, chunk)
-        data = path.read_bytes()
-        try:
-            shard.unpack(data, chunk)
-        except CampaignDamagedError as error:
-            aside = disk.set_aside(path)
-            self._note(chunk, f"{path.name}: {error}; kept as {aside.name}, and computed again")
+        data = self._intact(chunk)
+        if data is None:
             return False
-        disk.sync_folder(path.parent)  # it was perhaps renamed in the last instant before a kill
+        disk.sync_folder(path_of(self.folder, chunk).parent)  # perhaps renamed in the last instant before a kill
         record = LedgerEntry(*chunk[:4], shard.seal(data), len(data), 1, 0.0, "an earlier run", now())
         (self.ledger.record_piece if chunk.of else self.ledger.record)(record)
         self.adopted += 1
         return True
 
-    def _note(self, chunk: Chunk, why: str) -> None:
+    def _intact(self, chunk: Chunk, sealed: str | None = None) -> bytes | None:
+        """Return a shard that is still what it was; one that is not is set aside, taken back and noted."""
+        path = path_of(self.folder, chunk)
+        try:
+            data = path.read_bytes()
+            shard.unpack(data, chunk, sealed)
+            return data
+        except FileNotFoundError:
+            why = f"{path.name} is missing; it is computed again"
+        except CampaignDamagedError as error:
+            why = f"{path.name}: {error}; kept as {disk.set_aside(path).name}, and computed again"
+        self.ledger.forget(chunk.name)
         self.ledger.note("damaged", chunk.number, why)
         self.set_aside.append(why)
+        return None
 
 
 def set_aside_if_damaged(folder: Path, plan: Plan) -> list[str]:

@@ -71,7 +71,13 @@ class Remaining(Iterator[Chunk]):
         whole = self._out.pop(done.first, done)
         if whole.last == done.last:
             return
-        self._gaps[done.number] = _joined([whole.piece(done.last, whole.last), *self._gaps.get(done.number, [])])
+        gaps: list[Chunk] = []  # in order, those without anything between them as one
+        for gap in sorted([whole.piece(done.last, whole.last), *self._gaps.get(done.number, [])]):
+            if gaps and gaps[-1].last == gap.first:
+                gaps[-1] = gap.piece(gaps[-1].first, gap.last)
+            else:
+                gaps.append(gap)
+        self._gaps[done.number] = gaps
         shares = self._costs.shares(done.last, whole.last)
         self._free += shares
         for part in np.flatnonzero(shares):
@@ -127,17 +133,6 @@ def _gaps(chunk: Chunk, pieces: list[Chunk]) -> list[Chunk]:
             gaps.append(chunk.piece(first, begin))
         first = end
     return gaps
-
-
-def _joined(gaps: list[Chunk]) -> list[Chunk]:
-    """Return gaps in order, those without anything between them as one."""
-    joined: list[Chunk] = []
-    for gap in sorted(gaps):
-        if joined and joined[-1].last == gap.first:
-            joined[-1] = gap.piece(joined[-1].first, gap.last)
-        else:
-            joined.append(gap)
-    return joined
 
 
 def run(
@@ -224,9 +219,9 @@ class _CampaignRun:
                 raise CampaignDamagedError(f"{path}: {error}; run the campaign again: it is computed anew") from error
             for name, values in arrays.items():
                 results[name][each.first - chunk.first : each.last - chunk.first] = values
-        parts = [record for record in self.ledger.pieces() if record.number == number]
-        seconds, attempts = sum(each.seconds for each in parts), sum(each.attempts - 1 for each in parts) + 1
-        workers = ", ".join(sorted({each.worker for each in parts}))
+        records = [record for record in self.ledger.pieces() if record.number == number]
+        seconds, attempts = sum(each.seconds for each in records), sum(each.attempts - 1 for each in records) + 1
+        workers = ", ".join(sorted({each.worker for each in records}))
         done = self.job.keep(chunk, shard.pack(chunk, results), seconds, workers)
         self.ledger.record(_record(done._replace(attempts=attempts)))
         for each in self.earlier.pieces.pop(number):

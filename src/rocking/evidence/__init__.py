@@ -6,22 +6,16 @@ from rocking.lazy import exports
 
 if TYPE_CHECKING:
     from rocking.evidence._claims import claims
-    from rocking.evidence._coefficient_table import CoefficientRow, coefficient_table
-    from rocking.evidence._errata import Erratum, errata
-    from rocking.evidence._league import LeagueRow, league, verdict
+    from rocking.evidence._coefficient_table import coefficient_table
+    from rocking.evidence._errata import errata
+    from rocking.evidence._league import league, verdict
     from rocking.evidence._restitution_distribution import RestitutionDistribution, restitution_distribution
-    from rocking.evidence.calibration import Calibration, Prediction, calibrate, interval_for
-    from rocking.evidence.claim import Claim
+    from rocking.evidence.calibration import Calibration, calibrate, interval_for
     from rocking.evidence.measurements import DataSet, all_measurements, datasets
 
 __all__ = [
     "Calibration",
-    "Claim",
-    "CoefficientRow",
     "DataSet",
-    "Erratum",
-    "LeagueRow",
-    "Prediction",
     "RestitutionDistribution",
     "all_measurements",
     "calibrate",
@@ -39,12 +33,7 @@ __getattr__, __dir__ = exports(
     __name__,
     {
         "Calibration": "rocking.evidence.calibration",
-        "Claim": "rocking.evidence.claim",
-        "CoefficientRow": "rocking.evidence._coefficient_table",
         "DataSet": "rocking.evidence.measurements",
-        "Erratum": "rocking.evidence._errata",
-        "LeagueRow": "rocking.evidence._league",
-        "Prediction": "rocking.evidence.calibration",
         "RestitutionDistribution": "rocking.evidence._restitution_distribution",
         "all_measurements": "rocking.evidence.measurements",
         "calibrate": "rocking.evidence.calibration",

@@ -6,7 +6,7 @@ from typing import Any
 
 from rocking.bodies import Body
 from rocking.conventions import Foot
-from rocking.evidence.calibration import CALIBRATED_RANGE, calibrate, interval_for
+from rocking.evidence.calibration import CALIBRATED_RANGE, Prediction, calibrate, interval_for
 from rocking.restitution import Implication, RestitutionModel, implied, model, models
 
 CALIBRATED = "calibrated"
@@ -14,31 +14,15 @@ CALIBRATED = "calibrated"
 
 @dataclass(frozen=True, slots=True)
 class CoefficientRow:
-    """One model's answer for one body.
+    """One model's answer for one body."""
 
-    Parameters
-    ----------
-    name : str
-        Name of the model with its parameters, or ``"calibrated"``.
-    title : str
-        The model in one line.
-    coefficient : float
-        theta_dot_after / theta_dot_before [-].
-    low, high : float
-        95 % interval for a single measured body, from the residuals on the published measurements [-].
-    implication : Implication
-        Impulse position, friction, energy loss.
-    warnings : tuple of str
-        What a user should know before using the number.
-    """
-
-    name: str
-    title: str
-    coefficient: float
-    low: float
+    name: str  # of the model with its parameters, or "calibrated"
+    title: str  # the model in one line
+    coefficient: float  # theta_dot_after / theta_dot_before [-]
+    low: float  # low, high: 95 % interval for a single measured body, from the residuals on the measurements [-]
     high: float
-    implication: Implication
-    warnings: tuple[str, ...]
+    implication: Implication  # impulse position, friction, energy loss
+    warnings: tuple[str, ...]  # what a user should know before using the number
 
     @property
     def half_interval(self) -> float:
@@ -46,13 +30,7 @@ class CoefficientRow:
         return 0.5 * (self.high - self.low)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the row as plain values, for JSON and tables.
-
-        Returns
-        -------
-        dict
-            Field names to numbers and strings.
-        """
+        """Return the row as plain values, for JSON and tables."""
         return {
             "model": self.name,
             "coefficient_of_restitution": self.coefficient,
@@ -110,9 +88,26 @@ def coefficient_table(
     >>> rows[0].name, [round(row.coefficient, 6) for row in rows if row.name == "housner"]
     ('calibrated', [0.911765])
     """
-    chosen = default_models() if which is None else list(which)
-    rows = [_model_row(body, model(each, eta=eta), onto) for each in chosen]
-    return ((_calibrated_row(body, onto), *rows)) if calibrated else tuple(rows)
+    rows = []
+    if calibrated:
+        posterior = calibrate()
+        title = f"default, fitted to the published measurements: {posterior.model().label}"
+        prediction = posterior.predict(body, onto=onto)
+        outside = outside_evidence(body, onto)
+        rows.append(_row(body, onto, CALIBRATED, title, prediction, (outside,) if outside else ()))
+    for each in default_models() if which is None else which:
+        known = model(each, eta=eta)
+        warnings = tuple(flag.value for flag in known.evaluate(body, onto).flags)
+        rows.append(_row(body, onto, known.label, known.title, interval_for(known, body, onto=onto), warnings))
+    return tuple(rows)
+
+
+def _row(
+    body: Body, onto: Foot, name: str, title: str, interval: Prediction, warnings: tuple[str, ...]
+) -> CoefficientRow:
+    value, low, high = float(interval.coefficient), float(interval.low), float(interval.high)
+    implication = implied(body, value, onto=onto)
+    return CoefficientRow(name, title, value, low, high, implication, (*warnings, *implication.objections))
 
 
 def outside_evidence(body: Body, onto: Foot = "right") -> str:
@@ -125,29 +120,3 @@ def outside_evidence(body: Body, onto: Foot = "right") -> str:
     if low <= ratio <= high:
         return ""
     return f"h/b = {ratio:.3g} is outside the measured range {low:g} to {high:g}: the interval is an extrapolation"
-
-
-def _model_row(body: Body, which: RestitutionModel, onto: Foot) -> CoefficientRow:
-    result = which.evaluate(body, onto)
-    implication = implied(body, result.coefficient, onto=onto)
-    interval = interval_for(which, body, onto=onto)
-    warnings = tuple(flag.value for flag in result.flags) + implication.objections
-    return CoefficientRow(
-        which.label, which.title, result.coefficient, float(interval.low), float(interval.high), implication, warnings
-    )
-
-
-def _calibrated_row(body: Body, onto: Foot) -> CoefficientRow:
-    calibration = calibrate()
-    prediction = calibration.predict(body, onto=onto)
-    value = float(prediction.coefficient)
-    implication = implied(body, value, onto=onto)
-    return CoefficientRow(
-        CALIBRATED,
-        f"default, fitted to the published measurements: {calibration.model().label}",
-        value,
-        float(prediction.low),
-        float(prediction.high),
-        implication,
-        tuple(words for words in (outside_evidence(body, onto), *implication.objections) if words),
-    )

@@ -1,5 +1,6 @@
 """What Mao et al. (2024) print beside what is computed: Tables 1 to 3, and errors, reported and never corrected."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,24 +12,12 @@ from rocking.restitution import Housner, Ked
 
 @dataclass(frozen=True, slots=True)
 class Erratum:
-    """Something the paper prints that recomputing does not confirm, or confirms against doubt.
-
-    Parameters
-    ----------
-    name : str
-        Short name.
-    statement : str
-        What was found.
-    evidence : str
-        The numbers.
-    found : bool
-        Whether the data at hand show it.
-    """
+    """Something the paper prints that recomputing does not confirm, or confirms against doubt."""
 
     name: str
-    statement: str
-    evidence: str
-    found: bool
+    statement: str  # what recomputing shows
+    evidence: str  # the numbers
+    found: bool  # whether the data at hand show it
 
 
 def errata(data: dict[str, DataSet] | None = None) -> tuple[Erratum, ...]:
@@ -50,49 +39,47 @@ def errata(data: dict[str, DataSet] | None = None) -> tuple[Erratum, ...]:
     True
     """
     tables = datasets() if data is None else data
-    checks = (
-        _relative_errors_use_other_column,
-        _rounded_energy_ratios,
-        _wrong_value,
-        _experiments_are_rounded_energy_ratios,
-        _last_error_is_not_zero,
-        _true_housner_of_table_2,
-        _housner_correlates_as_well,
-        _missing_blocks,
-        _run_together,
-        _closer_in_half,
-    )
-    return tuple(check(tables) for check in checks)
+    return tuple(Erratum(name, statement, *check(tables)) for name, statement, check in _CHECKS)
 
 
-def _relative_errors_use_other_column(tables: dict[str, DataSet]) -> Erratum:
+_Check = Callable[[dict[str, DataSet]], tuple[str, bool]]
+_CHECKS: list[tuple[str, str, _Check]] = []
+
+
+def _erratum(name: str, statement: str) -> Callable[[_Check], _Check]:
+    def register(check: _Check) -> _Check:
+        _CHECKS.append((name, statement, check))
+        return check
+
+    return register
+
+
+@_erratum(
+    "Table 1, relative errors",
+    "The relative errors are not those of the r_H printed beside them but of the r_H of Table 2.",
+)
+def _relative_errors_use_other_column(tables: dict[str, DataSet]) -> tuple[str, bool]:
     first, second = tables["table1"], tables["table2"]
     other = dict(zip(second.slenderness.tolist(), second.printed["housner"].tolist(), strict=True))
     by_table_2 = np.array([other[ratio] for ratio in first.slenderness.tolist()])
     printed = first.printed["relative_error"]
     misfit_own = float(np.abs(relative_error(first.printed["housner"], first.coefficient) - printed).max())
     misfit_other = float(np.abs(relative_error(by_table_2, first.coefficient) - printed).max())
-    return Erratum(
-        "Table 1, relative errors",
-        "The relative errors are not those of the r_H printed beside them but of the r_H of Table 2.",
-        f"largest difference {misfit_own:.4f} with Table 1's own r_H, {misfit_other:.1e} with Table 2's",
-        misfit_other < 2e-6 < misfit_own,
+    return f"largest difference {misfit_own:.4f} with Table 1's own r_H, {misfit_other:.1e} with Table 2's", (
+        misfit_other < 2e-6 < misfit_own
     )
 
 
-def _rounded_energy_ratios(tables: dict[str, DataSet]) -> Erratum:
+@_erratum("Table 2, r_H", "The printed r_H are square roots of energy ratios rounded to two digits.")
+def _rounded_energy_ratios(tables: dict[str, DataSet]) -> tuple[str, bool]:
     printed = tables["table2"].printed["housner"]
     ratios = np.round(printed**2, 2)
     misfit = float(np.abs(np.sqrt(ratios) - printed).max())
-    return Erratum(
-        "Table 2, r_H",
-        "The printed r_H are square roots of energy ratios rounded to two digits.",
-        f"sqrt({', '.join(f'{each:.2f}' for each in ratios)}) to {misfit:.0e}",
-        misfit < 1e-6,
-    )
+    return f"sqrt({', '.join(f'{each:.2f}' for each in ratios)}) to {misfit:.0e}", (misfit < 1e-6)
 
 
-def _wrong_value(tables: dict[str, DataSet]) -> Erratum:
+@_erratum("Table 2, a wrong r_H", "One r_H is wrong beyond any rounding of energy ratios.")
+def _wrong_value(tables: dict[str, DataSet]) -> tuple[str, bool]:
     second = tables["table2"]
     truth = Housner().of_slenderness(second.slenderness)
     # an energy ratio rounded to two digits leaves r open by 0.005 / (2 r)
@@ -103,52 +90,44 @@ def _wrong_value(tables: dict[str, DataSet]) -> Erratum:
             second.slenderness[beyond], second.printed["housner"][beyond], truth[beyond], strict=True
         )
     ]
-    return Erratum(
-        "Table 2, a wrong r_H",
-        "One r_H is wrong beyond any rounding of energy ratios.",
-        "; ".join(where) or "none",
-        len(where) == 1 and second.slenderness[beyond].tolist() == [4.33],
-    )
+    return "; ".join(where) or "none", (len(where) == 1 and second.slenderness[beyond].tolist() == [4.33])
 
 
-def _experiments_are_rounded_energy_ratios(tables: dict[str, DataSet]) -> Erratum:
+@_erratum(
+    "Table 1, r_e",
+    "The measured r_e are square roots of energy ratios with two digits: six printed digits, two of them real.",
+)
+def _experiments_are_rounded_energy_ratios(tables: dict[str, DataSet]) -> tuple[str, bool]:
     first = tables["table1"]
     ratios = np.round(first.coefficient**2, 2)
     misfit = float(np.abs(np.sqrt(ratios) - first.coefficient).max())
     half = 0.5 * (first.high - first.low)
-    return Erratum(
-        "Table 1, r_e",
-        "The measured r_e are square roots of energy ratios with two digits: six printed digits, two of them real.",
-        f"to {misfit:.0e}; rounding half-width {half.min():.4f} to {half.max():.4f}",
-        misfit < 1e-6,
-    )
+    return f"to {misfit:.0e}; rounding half-width {half.min():.4f} to {half.max():.4f}", (misfit < 1e-6)
 
 
-def _last_error_is_not_zero(tables: dict[str, DataSet]) -> Erratum:
+@_erratum(
+    "Table 1, last relative error",
+    "The last relative error is printed as 0 because both numbers were rounded to the same energy ratio.",
+)
+def _last_error_is_not_zero(tables: dict[str, DataSet]) -> tuple[str, bool]:
     first = tables["table1"]
     true = float(relative_error(Housner().of_slenderness(first.slenderness[-1:]), first.coefficient[-1:])[0])
     printed = float(first.printed["relative_error"][-1])
-    return Erratum(
-        "Table 1, last relative error",
-        "The last relative error is printed as 0 because both numbers were rounded to the same energy ratio.",
-        f"printed {printed:g}, {true:.4f} against the true r_H",
-        printed == 0.0 and true > 0.001,
-    )
+    return f"printed {printed:g}, {true:.4f} against the true r_H", (printed == 0.0 and true > 0.001)
 
 
-def _true_housner_of_table_2(tables: dict[str, DataSet]) -> Erratum:
+@_erratum("Table 2, true r_H", "Housner's model gives other values than those printed, in all rows but the first.")
+def _true_housner_of_table_2(tables: dict[str, DataSet]) -> tuple[str, bool]:
     second = tables["table2"]
     truth = Housner().of_slenderness(second.slenderness)
     off = int((np.abs(truth - second.printed["housner"]) > 0.5e-6).sum())
-    return Erratum(
-        "Table 2, true r_H",
-        "Housner's model gives other values than those printed, in all rows but the first.",
-        ", ".join(f"{each:.6f}" for each in truth),
-        off == len(second) - 1,
-    )
+    return ", ".join(f"{each:.6f}" for each in truth), (off == len(second) - 1)
 
 
-def _housner_correlates_as_well(tables: dict[str, DataSet]) -> Erratum:
+@_erratum(
+    "Correlation", "The correlation does not tell the models apart: Housner's is as high, and higher in S, M and L."
+)
+def _housner_correlates_as_well(tables: dict[str, DataSet]) -> tuple[str, bool]:
     pairs = []
     for name in ("table2", "S", "M", "L"):
         data = tables[name]
@@ -156,52 +135,47 @@ def _housner_correlates_as_well(tables: dict[str, DataSet]) -> Erratum:
             tuple(correlation(model.of_slenderness(data.slenderness), data.coefficient) for model in (Housner(), Ked()))
         )
     words = ", ".join(f"{housner:.4f} / {ked:.4f}" for housner, ked in pairs)
-    return Erratum(
-        "Correlation",
-        "The correlation does not tell the models apart: Housner's is as high, and higher in S, M and L.",
-        f"Housner / KED for Table 2, S, M, L: {words}",
-        all(abs(housner - ked) < 0.005 for housner, ked in pairs) and all(h > k for h, k in pairs[1:]),
+    return f"Housner / KED for Table 2, S, M, L: {words}", (
+        all(abs(housner - ked) < 0.005 for housner, ked in pairs) and all(h > k for h, k in pairs[1:])
     )
 
 
-def _missing_blocks(tables: dict[str, DataSet]) -> Erratum:
+@_erratum("Table 3, number of blocks", "Section 3.1 says each set has 10 blocks; Table 3 lists fewer.")
+def _missing_blocks(tables: dict[str, DataSet]) -> tuple[str, bool]:
     counts = [len(tables[name]) for name in ("S", "M", "L")]
-    return Erratum(
-        "Table 3, number of blocks",
-        "Section 3.1 says each set has 10 blocks; Table 3 lists fewer.",
-        f"{counts} rows in S, M, L",
-        counts == [9, 9, 9],
-    )
+    return f"{counts} rows in S, M, L", (counts == [9, 9, 9])
 
 
-def _run_together(tables: dict[str, DataSet]) -> Erratum:
+@_erratum(
+    "Table 3, M7",
+    "The text of the article runs mass and slenderness of M7 together (16346.75); 1634 g and 6.75 are meant.",
+)
+def _run_together(tables: dict[str, DataSet]) -> tuple[str, bool]:
     group = tables["M"]
     row = group.labels.index("M7")
     # masses of a group are proportional to slenderness, which settles where the number ends
     others = np.arange(len(group)) != row
     per_ratio = float(np.median(group.mass[others] / group.slenderness[others]))
     expected = per_ratio * float(group.slenderness[row])
-    return Erratum(
-        "Table 3, M7",
-        "The text of the article runs mass and slenderness of M7 together (16346.75); 1634 g and 6.75 are meant.",
+    return (
         f"mass {1e3 * group.mass[row]:.0f} g, {1e3 * expected:.0f} g by proportion to the other blocks of the group",
-        abs(float(group.mass[row]) / expected - 1.0) < 0.01,
+        (abs(float(group.mass[row]) / expected - 1.0) < 0.01),
     )
 
 
-def _closer_in_half(tables: dict[str, DataSet]) -> Erratum:
-    parts = [tables[name] for name in ("table1", "S", "M", "L")]
-    wins = [closer_rows(part) for part in parts]
-    total, of_table_3 = sum(map(sum, wins)), sum(map(sum, wins[1:]))
-    slender = [won for part, won in zip(parts, wins, strict=True)]
-    above = sum(int((np.array(won) & (part.slenderness > 6.0)).sum()) for part, won in zip(parts, slender, strict=True))
-    count, of = sum(map(len, parts)), sum(map(len, parts[1:]))
-    rows_above = sum(int((part.slenderness > 6.0).sum()) for part in parts)
-    return Erratum(
-        "Agreement with experiment",
-        "KED is closer to the experiment than Housner in about half of the rows, and in none above slenderness 6.",
-        f"{total} of {count} rows, {of_table_3} of {of} in Table 3, {above} of {rows_above} above 6",
-        total == 21 and count == 39 and of_table_3 == 13 and above == 0,
+@_erratum(
+    "Agreement with experiment",
+    "KED is closer to the experiment than Housner in about half of the rows, and in none above slenderness 6.",
+)
+def _closer_in_half(tables: dict[str, DataSet]) -> tuple[str, bool]:
+    sets = [tables[name] for name in ("table1", "S", "M", "L")]
+    won, slender = [np.array(closer_rows(each)) for each in sets], [each.slenderness > 6.0 for each in sets]
+    total, of_table_3 = (sum(int(each.sum()) for each in wins) for wins in (won, won[1:]))
+    count, of = (sum(map(len, some)) for some in (sets, sets[1:]))
+    above = sum(int((closer & tall).sum()) for closer, tall in zip(won, slender, strict=True))
+    rows_above = sum(int(tall.sum()) for tall in slender)
+    return f"{total} of {count} rows, {of_table_3} of {of} in Table 3, {above} of {rows_above} above 6", (
+        total == 21 and count == 39 and of_table_3 == 13 and above == 0
     )
 
 
@@ -252,6 +226,7 @@ def recomputed(name: str) -> tuple[TableRow, ...]:
         "housner": Housner().of_slenderness(data.slenderness),
         "ked": Ked().of_slenderness(data.slenderness),
     }
+    digits = {"relative_error": 6} | ({"ked": 8, "housner": 6} if name == "table2" else {})
     truth["relative_error"] = relative_error(truth["housner"], data.coefficient)
     return tuple(
         TableRow(
@@ -259,7 +234,7 @@ def recomputed(name: str) -> tuple[TableRow, ...]:
             float(data.slenderness[i]),
             float(data.coefficient[i]),
             {
-                key: Entry(float(column[i]), float(truth[key][i]), _digits(name, key))
+                key: Entry(float(column[i]), float(truth[key][i]), digits.get(key, 3))
                 for key, column in data.printed.items()
             },
         )
@@ -272,11 +247,3 @@ def mean_rows(data: DataSet) -> dict[float, float]:
     return {
         float(ratio): float(data.coefficient[data.slenderness == ratio].mean()) for ratio in np.unique(data.slenderness)
     }
-
-
-def _digits(name: str, key: str) -> int:
-    if key == "relative_error":
-        return 6
-    if name == "table2":
-        return 8 if key == "ked" else 6
-    return 3

@@ -7,14 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from rocking.conventions import FloatArray
 from rocking.evidence import comparison
-from rocking.evidence.comparison import (
-    MEASURES,
-    compare,
-    drawn,
-    resampled,
-)  # fmt: skip
+from rocking.evidence.comparison import MEASURES, compare, drawn, resampled
 from rocking.evidence.contenders import Contender, as_it_is, contenders
 from rocking.evidence.likelihood import rounding_bic
 from rocking.evidence.measurements import BANDS, GROUPS, DataSet, all_measurements
@@ -25,50 +19,25 @@ _UNRESOLVED = 6.0
 
 @dataclass(frozen=True, slots=True)
 class LeagueRow:
-    """One contender's record on the 39 measurements.
+    """One contender's record on the 39 measurements."""
 
-    Parameters
-    ----------
-    name : str
-        Name in the league.
-    model : RestitutionModel
-        The model, with fitted values where there are any.
-    parameters : tuple of str
-        Names of the fitted parameters.
-    rmse, bias : float
-        Of r, model minus experiment [-].
-    rmse_low, rmse_high : float
-        95 % bootstrap interval of the error, specimens resampled within their data sets [-].
-    correlation, concordance : float
-        Pearson's and Lin's [-].
-    loss_rmse, log_loss_rmse : float
-        Errors of the energy loss 1 - r^2, absolute and logarithmic [-].
-    leave_one_out, leave_group_out : float
-        RMSE of predictions by fits that have not seen the row, or its whole data set [-].
-    bic : float
-        From the likelihood that knows the rounding, with a scatter that grows with the loss; lower is better.
-    by_group, by_band : dict of str to float
-        RMSE by data set and by slenderness band [-].
-    ahead_of_ked : (float, float)
-        95 % paired bootstrap interval of RMSE minus that of KED [-]; not resolved where it includes zero.
-    """
-
-    name: str
-    model: RestitutionModel
-    parameters: tuple[str, ...]
-    rmse: float
+    name: str  # in the league
+    model: RestitutionModel  # with fitted values where there are any
+    parameters: tuple[str, ...]  # names of the fitted parameters
+    rmse: float  # rmse, bias: of r, model minus experiment [-]
     bias: float
-    rmse_low: float
+    rmse_low: float  # rmse_low, rmse_high: 95 % bootstrap interval, specimens resampled within their data sets [-]
     rmse_high: float
-    correlation: float
-    concordance: float
-    loss_rmse: float
+    correlation: float  # Pearson's [-]
+    concordance: float  # Lin's [-]
+    loss_rmse: float  # loss_rmse, log_loss_rmse: errors of the energy loss 1 - r^2, absolute and logarithmic [-]
     log_loss_rmse: float
-    leave_one_out: float
-    leave_group_out: float
-    bic: float
-    by_group: dict[str, float]
-    by_band: dict[str, float]
+    leave_one_out: float  # RMSE of predictions by fits that have not seen the row [-]
+    leave_group_out: float  # the same without its whole data set [-]
+    bic: float  # of the likelihood that knows the rounding, with a scatter that grows with the loss; lower is better
+    by_group: dict[str, float]  # RMSE by data set [-]
+    by_band: dict[str, float]  # RMSE by slenderness band [-]
+    # 95 % paired bootstrap interval of RMSE minus that of KED [-]; not resolved where it includes zero
     ahead_of_ked: tuple[float, float]
 
     @property
@@ -78,13 +47,7 @@ class LeagueRow:
         return ", ".join(f"{name} = {values[name]:.4g}" for name in self.parameters)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the row as plain values.
-
-        Returns
-        -------
-        dict
-            Field names to numbers and strings.
-        """
+        """Return the row as plain values."""
         plain = {name: getattr(self, name) for name in self.__slots__ if name not in ("model", "parameters")}
         return {**plain, "fitted": {name: self.model.parameters[name] for name in self.parameters}}
 
@@ -120,48 +83,36 @@ def _standing() -> tuple[LeagueRow, ...]:
 def _row(contender: Contender, data: DataSet) -> LeagueRow:
     model = contender.fit(data)
     r, measured = model.of_slenderness(data.slenderness), data.coefficient
-    low, high, behind, ahead = _bootstrap(r, data)
+    low, high = np.quantile(resampled((r - measured) ** 2, drawn(data)), [0.025, 0.975]).tolist()
+    against_ked = compare(data, r, Ked().of_slenderness(data.slenderness))
     count = len(contender.parameters)
     bands = {name: (data.slenderness > a) & (data.slenderness <= b) for name, a, b in BANDS}
     groups = {name: np.array([group == name for group in data.group]) for name in GROUPS}
+    each = list(np.eye(len(data), dtype=bool)) if count else [np.ones(len(data), dtype=bool)]
+    measures = ("rmse", "bias", "correlation", "concordance", "loss_rmse", "log_loss_rmse")
     return LeagueRow(
         name=contender.name,
         model=model,
         parameters=contender.parameters,
-        rmse=comparison.rmse(r, measured),
-        bias=comparison.bias(r, measured),
         rmse_low=low,
         rmse_high=high,
-        correlation=comparison.correlation(r, measured),
-        concordance=comparison.concordance(r, measured),
-        loss_rmse=comparison.loss_rmse(r, measured),
-        log_loss_rmse=comparison.log_loss_rmse(r, measured),
-        leave_one_out=_left_out(contender, data, [data.slenderness == data.slenderness] if not count else _each(data)),
+        **{name: getattr(comparison, name)(r, measured) for name in measures},
+        leave_one_out=_left_out(contender, data, each),
         leave_group_out=_left_out(contender, data, list(groups.values())),
         bic=rounding_bic(data, r, count),
         by_group={name: comparison.rmse(r[rows], measured[rows]) for name, rows in groups.items()},
         by_band={name: comparison.rmse(r[rows], measured[rows]) for name, rows in bands.items()},
-        ahead_of_ked=(behind, ahead),
+        ahead_of_ked=(against_ked.low, against_ked.high),
     )
 
 
-def _each(data: DataSet) -> list[Any]:
-    return list(np.eye(len(data), dtype=bool))
-
-
-def _left_out(contender: Contender, data: DataSet, parts: list[Any]) -> float:
+def _left_out(contender: Contender, data: DataSet, subsets: list[Any]) -> float:
     predicted = np.empty(len(data))
-    for left in parts:
+    for left in subsets:
         # nothing is fitted where nothing is free, so the whole may be left out at once
         model = contender.fit(data.rows(~left)) if contender.parameters else contender.fit(data)
         predicted[left] = model.of_slenderness(data.slenderness[left])
     return comparison.rmse(predicted, data.coefficient)
-
-
-def _bootstrap(r: FloatArray, data: DataSet) -> tuple[float, float, float, float]:
-    low, high = np.quantile(resampled((r - data.coefficient) ** 2, drawn(data)), [0.025, 0.975]).tolist()
-    against = compare(data, r, Ked().of_slenderness(data.slenderness))
-    return low, high, against.low, against.high
 
 
 def verdict(rows: Sequence[LeagueRow]) -> tuple[str, ...]:
@@ -179,14 +130,19 @@ def verdict(rows: Sequence[LeagueRow]) -> tuple[str, ...]:
     """
     by_name = {row.name: row for row in rows}
     ked, housner = by_name["ked"], by_name["housner"]
-    free = [row for row in rows if not row.parameters]
+    best = min(rows, key=lambda row: row.bic)
+    close = [row.name for row in rows if row.bic - best.bic < _UNRESOLVED]
     return (
         f"Error of r: {_between(ked, housner, 'r')}.",
-        _against_free(ked, free),
+        _against_free(ked, [row for row in rows if not row.parameters]),
         *(f"{name.capitalize()}: {_between(ked, housner, name)}." for name in list(MEASURES)[1:]),
-        _slender(ked, housner),
-        _best(rows),
-        _unresolved(rows),
+        f"Above slenderness 6: {_between(ked, housner, 'r', 6.0)}. The bias of KED over all rows is {ked.bias:+.4f} "
+        "(model minus measurement).",
+        f"With fitted parameters the lowest BIC is that of {best.name} ({best.fitted or 'nothing fitted'}): RMSE "
+        f"{best.rmse:.4f}, leave-one-out {best.leave_one_out:.4f}, leave-one-data-set-out {best.leave_group_out:.4f}.",
+        f"What these data cannot resolve: {', '.join(close)} lie within {_UNRESOLVED:g} in BIC of each other. Two "
+        "sources, repeated tests of the same blocks and one tape-covered interface are little evidence: what a model "
+        "does outside slenderness 1.5 to 9.75, or for other shapes, is theory.",
     )
 
 
@@ -208,29 +164,4 @@ def _against_free(ked: LeagueRow, free: Sequence[LeagueRow]) -> str:
     return (
         f"Models without a fitted parameter that are closer than KED: {names}. The smallest error is that of "
         f"{best.name}: {_between(best, ked, 'r')}."
-    )
-
-
-def _slender(ked: LeagueRow, housner: LeagueRow) -> str:
-    return (
-        f"Above slenderness 6: {_between(ked, housner, 'r', 6.0)}. The bias of KED over all rows is {ked.bias:+.4f} "
-        "(model minus measurement)."
-    )
-
-
-def _best(rows: Sequence[LeagueRow]) -> str:
-    best = min(rows, key=lambda row: row.bic)
-    return (
-        f"With fitted parameters the lowest BIC is that of {best.name} ({best.fitted or 'nothing fitted'}): RMSE "
-        f"{best.rmse:.4f}, leave-one-out {best.leave_one_out:.4f}, leave-one-data-set-out {best.leave_group_out:.4f}."
-    )
-
-
-def _unresolved(rows: Sequence[LeagueRow]) -> str:
-    best = min(row.bic for row in rows)
-    close = [row.name for row in rows if row.bic - best < _UNRESOLVED]
-    return (
-        f"What these data cannot resolve: {', '.join(close)} lie within {_UNRESOLVED:g} in BIC of each other. Two "
-        "sources, repeated tests of the same blocks and one tape-covered interface are little evidence: what a model "
-        "does outside slenderness 1.5 to 9.75, or for other shapes, is theory."
     )

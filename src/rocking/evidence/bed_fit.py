@@ -74,11 +74,12 @@ def explanations() -> tuple[Physics, ...]:
     zeta, hard, eta, base = ("damping", DAMPED), ("hardness", HARDNESS), (0.9, 1.0), (0.5, 1.0)
     bed = ((zeta[0], hard[0]), (1.5, 100.0), (zeta[1], hard[1]))
     return (
-        Physics("one bed", "all blocks stand on one bed; mass has no effect", *bed, _plain),
+        Physics("one bed", "all blocks stand on one bed; mass has no effect", *bed, _bed),
         Physics(
             "loss beside the bed",
             "a factor eta for all blocks on tape (S, M, L), none for Table 1",
-            (*bed[0], "eta"), (*bed[1], 0.98), (*bed[2], eta), _common_factor,
+            (*bed[0], "eta"), (*bed[1], 0.98), (*bed[2], eta),
+            lambda p, data, points: _by_row(data, 1.0, p[2], p[2], p[2]) * _bed(p, data, points),
         ),
         Physics(
             "loss that does not grow with mass",
@@ -88,69 +89,49 @@ def explanations() -> tuple[Physics, ...]:
         Physics(
             "loss by group",
             "an interface factor eta of its own for each group",
-            (*bed[0], *_by_group("eta")), (*bed[1], 0.98, 0.98, 0.98), (*bed[2], eta, eta, eta), _factors,
+            (*bed[0], *_by_group("eta")), (*bed[1], 0.98, 0.98, 0.98), (*bed[2], eta, eta, eta),
+            lambda p, data, points: _by_row(data, 1.0, *p[2:]) * _bed(p, data, points),
         ),
         Physics(
             "damping by group",
             "the damping ratio of the bed differs between the groups",
             ("hardness", "damping Table 1", *_by_group("damping")), (100.0, 1.5, 1.5, 1.5, 1.5),
-            (hard[1], *(DAMPED,) * 4), _dampings,
+            (hard[1], *(DAMPED,) * 4),
+            lambda p, data, points: bed_coefficients(data.slenderness, points, _by_row(data, *p[1:]), float(p[0])),
         ),
         Physics(
             "hardness by group",
             "the hardness of the bed, or the landing speed, differs between the groups",
             ("damping", "hardness Table 1", *_by_group("hardness")), (1.5, 100.0, 100.0, 100.0, 100.0),
-            (zeta[1], *(HARDNESS,) * 4), _hardnesses,
+            (zeta[1], *(HARDNESS,) * 4),
+            lambda p, data, points: bed_coefficients(data.slenderness, points, float(p[0]), _by_row(data, *p[1:])),
         ),
         Physics(
             "narrower base by group",
             "the base rests on a part of its width that differs between the groups",
-            (*bed[0], *_by_group("share")), (*bed[1], 0.95, 0.95, 0.95), (*bed[2], base, base, base), _shares,
+            (*bed[0], *_by_group("share")), (*bed[1], 0.95, 0.95, 0.95), (*bed[2], base, base, base),
+            lambda p, data, points: _bed(p, data, points, share=_by_row(data, 1.0, *p[2:])),
         ),
         Physics(
             "unevenness of one height",
             "millimetres of the same height under all blocks move the impulse by an amount over the width",
-            (*bed[0], "uneven"), (*bed[1], 0.05), (*bed[2], (-0.5, 0.5)), _uneven,
+            (*bed[0], "uneven"), (*bed[1], 0.05), (*bed[2], (-0.5, 0.5)),
+            lambda p, data, points: _bed(p, data, points, shift=p[2] / relative_width(data)),
         ),
     )  # fmt: skip
 
 
-def _by_group(word: str) -> tuple[str, ...]:
-    return tuple(f"{word} {group}" for group in BLOCKS)
+def _by_group(parameter: str) -> tuple[str, ...]:
+    return tuple(f"{parameter} {group}" for group in BLOCKS)
 
 
-def _plain(p: FloatArray, data: DataSet, points: int) -> FloatArray:
-    return bed_coefficients(data.slenderness, points, float(p[0]), float(p[1]))
-
-
-def _common_factor(p: FloatArray, data: DataSet, points: int) -> FloatArray:
-    return np.asarray(_by_row(data, 1.0, p[2], p[2], p[2]) * _plain(p, data, points))
+def _bed(p: FloatArray, data: DataSet, points: int, **more: FloatArray) -> FloatArray:
+    return bed_coefficients(data.slenderness, points, float(p[0]), float(p[1]), **more)
 
 
 def _tape(p: FloatArray, data: DataSet, points: int) -> FloatArray:
     light = np.where(np.isnan(data.mass), 0.0, 1.0 / np.where(np.isnan(data.mass), 1.0, data.mass))
-    return np.asarray(np.sqrt(np.maximum(1.0 - p[2] * light, 0.0)) * _plain(p, data, points))
-
-
-def _factors(p: FloatArray, data: DataSet, points: int) -> FloatArray:
-    return np.asarray(_by_row(data, 1.0, *p[2:]) * _plain(p, data, points))
-
-
-def _dampings(p: FloatArray, data: DataSet, points: int) -> FloatArray:
-    return bed_coefficients(data.slenderness, points, _by_row(data, *p[1:]), float(p[0]))
-
-
-def _hardnesses(p: FloatArray, data: DataSet, points: int) -> FloatArray:
-    return bed_coefficients(data.slenderness, points, float(p[0]), _by_row(data, *p[1:]))
-
-
-def _shares(p: FloatArray, data: DataSet, points: int) -> FloatArray:
-    return bed_coefficients(data.slenderness, points, float(p[0]), float(p[1]), share=_by_row(data, 1.0, *p[2:]))
-
-
-def _uneven(p: FloatArray, data: DataSet, points: int) -> FloatArray:
-    shift = p[2] / relative_width(data)
-    return bed_coefficients(data.slenderness, points, float(p[0]), float(p[1]), shift=shift)
+    return np.asarray(np.sqrt(np.maximum(1.0 - p[2] * light, 0.0)) * _bed(p, data, points))
 
 
 def _by_row(data: DataSet, *values: float) -> FloatArray:
@@ -199,12 +180,12 @@ def fit_bed(physics: Physics, data: DataSet | None = None, *, points: Sequence[i
     near, _, n = max(tried, key=lambda each: each[1])
     # a simplex that has collapsed at a bound is started once more
     near, _ = _most_likely(physics, rows, n, near, _POLISHED)
-    found, log_likelihood = _most_likely(physics, rows, n, near, _POLISHED)
-    mean = physics.predict(found[:-2], rows, n)
+    best, log_likelihood = _most_likely(physics, rows, n, near, _POLISHED)
+    mean = physics.predict(best[:-2], rows, n)
     count = len(physics.parameters) + 3
     return BedFit(
-        physics, n, dict(zip(physics.parameters, found[:-2].tolist(), strict=True)),
-        math.exp(found[-2]), float(found[-1]), log_likelihood,
+        physics, n, dict(zip(physics.parameters, best[:-2].tolist(), strict=True)),
+        math.exp(best[-2]), float(best[-1]), log_likelihood,
         count * math.log(len(rows)) - 2.0 * log_likelihood, rmse(mean, rows.coefficient), mean,  # Eq. 138
     )  # fmt: skip
 
@@ -222,8 +203,8 @@ def left_out(fit: BedFit, data: DataSet | None = None) -> FloatArray:
     scores = np.empty(len(rows))
     for i in every.tolist():
         seen, unseen = rows.rows((every != i).tolist()), rows.rows([i])
-        found, _ = _most_likely(fit.physics, seen, fit.points, start, _AGAIN)
-        scores[i] = _log_likelihood(fit.physics, unseen, fit.points, found)
+        best, _ = _most_likely(fit.physics, seen, fit.points, start, _AGAIN)
+        scores[i] = _log_likelihood(fit.physics, unseen, fit.points, best)
     return scores
 
 
@@ -249,6 +230,6 @@ def _most_likely(
         return -_log_likelihood(physics, data, points, inside(free)) + 10.0 * float(outside)
 
     options: Any = {"xatol": 1e-5, "fatol": 1e-5, "maxfev": steps, "adaptive": True}
-    found: Any = minimize(misfit, np.clip((start - low) / span, 0.02, 0.98), method="Nelder-Mead", options=options)
-    best = inside(found.x)
+    result: Any = minimize(misfit, np.clip((start - low) / span, 0.02, 0.98), method="Nelder-Mead", options=options)
+    best = inside(result.x)
     return best, _log_likelihood(physics, data, points, best)

@@ -44,25 +44,13 @@ _SAMPLES = 4000
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
-    """Coefficients of restitution with their intervals.
+    """Coefficients of restitution with their intervals."""
 
-    Parameters
-    ----------
-    coefficient : ndarray
-        Expected coefficient [-].
-    low, high : ndarray
-        Ends of the interval for a single measured body [-].
-    standard_deviation : ndarray
-        Of a single measured body [-].
-    level : float
-        Probability of the interval [-].
-    """
-
-    coefficient: FloatArray
-    low: FloatArray
+    coefficient: FloatArray  # expected coefficient [-]
+    low: FloatArray  # low, high: ends of the interval for a single measured body [-]
     high: FloatArray
-    standard_deviation: FloatArray
-    level: float = LEVEL
+    standard_deviation: FloatArray  # of a single measured body [-]
+    level: float = LEVEL  # probability of the interval [-]
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,11 +117,11 @@ class Calibration:
         True
         """
         if isinstance(body, Body):
-            found, shape = self._predicted(*_geometry(body, onto)), ()
+            values, shape = self._predicted(*_geometry(body, onto)), ()
         else:
             ratios = checks.positive_array("slenderness_ratio", body)
-            found, shape = self._of_ratios(np.ascontiguousarray(ratios).tobytes()), ratios.shape
-        mean, low, high, spread = (values.reshape(shape).copy() for values in found)
+            values, shape = self._of_ratios(np.ascontiguousarray(ratios).tobytes()), ratios.shape
+        mean, low, high, spread = (each.reshape(shape).copy() for each in values)
         return Prediction(mean, low, high, spread)
 
     @lru_cache(maxsize=16)  # noqa: B019 - there is one calibration, and pictures ask it for the same ratios again
@@ -204,18 +192,18 @@ def fingerprint(data: DataSet) -> str:
 def keep(path: Path) -> None:
     """Compute what `calibrate` and `interval_for` read, and write it."""
     data = all_measurements()
-    found = calibrate_on(data)
+    calibration = calibrate_on(data)
     named = [model(name) for name in models() if name != "fixed"]
     predictions = np.array([each.of_slenderness(data.slenderness) for each in named])
     arrays: dict[str, Any] = {
         "inputs": fingerprint(data),
-        "samples": found.samples,
-        "joint": found.joint,
-        "summary": [list(facts.values()) for facts in found.summary.values()],
+        "samples": calibration.samples,
+        "joint": calibration.joint,
+        "summary": [list(facts.values()) for facts in calibration.summary.values()],
         "predictions": predictions,
         "misfits": [fit_scatter(data, each)[:2] for each in predictions],
     }
-    for name, (grid, weight) in found.marginals.items():
+    for name, (grid, weight) in calibration.marginals.items():
         arrays |= {f"{name}_grid": grid, f"{name}_weight": weight}
     np.savez_compressed(path, **arrays)
 
@@ -244,7 +232,9 @@ def posterior_grid(data: DataSet) -> PosteriorGrid:
     terms = np.empty_like(sd)
     for i in range(len(_ETA)):
         terms[i] = interval_log_likelihood(data.low, data.high, mean[i], sd[i])
-    return PosteriorGrid(_log_prior(), terms, mean, sd)
+    eta: FloatArray = 0.5 * np.log1p(-_ETA) + 97.5 * np.log(_ETA)  # Eq. 135
+    k: FloatArray = -0.5 * ((_K - 0.6) / 0.12) ** 2  # Eq. 135
+    return PosteriorGrid(eta[:, None, None, None] + k[None, :, None, None], terms, mean, sd)
 
 
 def marginal_quantiles(grid: FloatArray, weight: FloatArray, levels: tuple[float, ...]) -> list[float]:
@@ -260,8 +250,8 @@ def marginal_quantiles(grid: FloatArray, weight: FloatArray, levels: tuple[float
     fine = np.linspace(axis[held][0], axis[held][-1], 64 * grid.size + 1)
     density = np.exp(CubicSpline(axis[held], np.log(weight[held] / weight.max()))(fine))
     below = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]))])
-    found = np.interp(levels, below / below[-1], fine)
-    return [float(value) for value in (found if even else np.exp(found))]
+    quantiles = np.interp(levels, below / below[-1], fine)
+    return [float(value) for value in (quantiles if even else np.exp(quantiles))]
 
 
 def normalised(log_weight: FloatArray) -> FloatArray:
@@ -292,30 +282,26 @@ def interval_for(model: RestitutionModel, body: Body, *, onto: Foot = "right") -
     """
     _, bound = _geometry(body, onto)
     r = np.asarray(model.coefficient(body, onto))
-    floor, slope = _misfit(model)
+    if isinstance(model, Fixed):
+        floor, slope = (calibrate().summary[name]["mean"] for name in ("s", "gamma"))
+    else:
+        floor, slope = _misfit(model.of_slenderness(all_measurements().slenderness).tobytes())
     sd = scatter(r, floor, slope)
     reach = 1.959963984540054 * sd
     top = np.maximum(bound, r)
     return Prediction(r, np.clip(r - reach, 0.0, None), np.minimum(r + reach, top.reshape(())), sd)
 
 
-def _misfit(model: RestitutionModel) -> tuple[float, float]:
-    if isinstance(model, Fixed):
-        facts = calibrate().summary
-        return facts["s"]["mean"], facts["gamma"]["mean"]
-    return _fitted(model.of_slenderness(all_measurements().slenderness).tobytes())
-
-
 @lru_cache(maxsize=1024)
-def _fitted(predictions: bytes) -> tuple[float, float]:
-    data, given = all_measurements(), np.frombuffer(predictions)
+def _misfit(predictions: bytes) -> tuple[float, float]:
+    data, predicted = all_measurements(), np.frombuffer(predictions)
     with np.load(KEPT) as kept:
         if kept["inputs"] == fingerprint(data):
-            same = np.abs(kept["predictions"] - given).max(axis=1) < 1e-12
+            same = np.abs(kept["predictions"] - predicted).max(axis=1) < 1e-12
             if same.any():
                 floor, slope = kept["misfits"][same][0].tolist()
                 return floor, slope
-    floor, slope, _ = fit_scatter(data, given)
+    floor, slope, _ = fit_scatter(data, predicted)
     return floor, slope
 
 
@@ -324,12 +310,6 @@ def _geometry(body: Body | Any, onto: Foot) -> tuple[ImpactGeometry, FloatArray]
         return ImpactGeometry.of_body(body, onto), np.array([energy_bound(body, onto)])
     ratios = np.atleast_1d(checks.positive_array("slenderness_ratio", body)).ravel()
     return ImpactGeometry.of_slenderness(ratios), np.ones(ratios.shape)
-
-
-def _log_prior() -> FloatArray:
-    eta: FloatArray = 0.5 * np.log1p(-_ETA) + 97.5 * np.log(_ETA)  # Eq. 135
-    k: FloatArray = -0.5 * ((_K - 0.6) / 0.12) ** 2  # Eq. 135
-    return eta[:, None, None, None] + k[None, :, None, None]
 
 
 def _summarised(weight: FloatArray) -> Calibration:
@@ -357,19 +337,19 @@ def _facts(grid: FloatArray, weight: FloatArray) -> dict[str, float]:
 def _quantile(mean: FloatArray, sd: FloatArray, level: float) -> FloatArray:
     """Return a quantile of equally likely normals, those of a column together: Newton's method within a bracket."""
     low, high = (mean - 8.0 * sd).min(axis=0), (mean + 8.0 * sd).max(axis=0)
-    found = mean.mean(axis=0)
+    value = mean.mean(axis=0)
     for _ in range(100):
-        z = (found - mean) / sd
+        z = (value - mean) / sd
         excess = normal_cdf(z).mean(axis=0) - level  # Eq. 137
-        low, high = np.where(excess < 0.0, found, low), np.where(excess < 0.0, high, found)
+        low, high = np.where(excess < 0.0, value, low), np.where(excess < 0.0, high, value)
         slope = (np.exp(-0.5 * z * z) / sd).mean(axis=0) / math.sqrt(2.0 * math.pi)
         with np.errstate(divide="ignore", invalid="ignore"):
-            following = found - excess / slope
+            following = value - excess / slope
         following = np.where((following > low) & (following < high), following, 0.5 * (low + high))
-        if np.abs(following - found).max() < 1e-13:
+        if np.abs(following - value).max() < 1e-13:
             return np.asarray(following)
-        found = following
-    return np.asarray(found)
+        value = following
+    return np.asarray(value)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,5 +1,6 @@
 """A claim of the paper and its verdict; what every judge of a claim needs."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from rocking.conventions import FloatArray
@@ -7,33 +8,35 @@ from rocking.evidence.comparison import Difference
 from rocking.evidence.measurements import DataSet, datasets
 from rocking.restitution import Housner, Ked
 
+Judge = Callable[[], tuple[str, str]]
+"""Returns a verdict, and the numbers."""
+
+JUDGES: list[tuple[str, str, str, Judge]] = []
+"""Section, quote and test of every claim, and who judges it."""
+
 HOLDS, IN_PART, FAILS, UNTESTABLE = "holds", "holds in part", "does not hold", "not testable"
 UNRESOLVED = "not resolved"
 
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """A claim of the paper and what the published measurements say about it.
+    """A claim of the paper and what the published measurements say about it."""
 
-    Parameters
-    ----------
-    section : str
-        Section of the paper.
-    quote : str
-        The claim, in the paper's words or close to them.
-    verdict : str
-        ``"holds"``, ``"holds in part"``, ``"does not hold"``, ``"not resolved"`` or ``"not testable"``.
-    evidence : str
-        The numbers.
-    test : str
-        How it was tested.
-    """
+    section: str  # of the paper
+    quote: str  # the claim, in the paper's words or close to them
+    verdict: str  # "holds", "holds in part", "does not hold", "not resolved" or "not testable"
+    evidence: str  # the numbers
+    test: str  # how it was tested
 
-    section: str
-    quote: str
-    verdict: str
-    evidence: str
-    test: str
+
+def claim(section: str, quote: str, test: str) -> Callable[[Judge], Judge]:
+    """Let a function judge a claim of the paper."""
+
+    def register(judge: Judge) -> Judge:
+        JUDGES.append((section, quote, test, judge))
+        return judge
+
+    return register
 
 
 def truth(name: str) -> tuple[DataSet, FloatArray, FloatArray]:

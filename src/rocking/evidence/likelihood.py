@@ -1,7 +1,7 @@
 """Likelihood of measurements that were rounded before they were printed."""
 
 import math
-from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -27,9 +27,9 @@ def interval_log_likelihood(low: FloatArray, high: FloatArray, mean: FloatArray,
     if not deep.any():
         return np.log(probability)
     upper, lower = log_ndtr(b[deep]), log_ndtr(a[deep])
-    found = np.log(probability, where=~deep, out=np.empty_like(probability))
-    found[deep] = upper + np.log1p(-np.exp(np.minimum(lower - upper, -1e-300)))  # Eq. 134
-    return found
+    logarithm = np.log(probability, where=~deep, out=np.empty_like(probability))
+    logarithm[deep] = upper + np.log1p(-np.exp(np.minimum(lower - upper, -1e-300)))  # Eq. 134
+    return logarithm
 
 
 def normal_cdf(z: FloatArray) -> FloatArray:
@@ -53,13 +53,16 @@ def gaussian_bic(residuals: FloatArray, parameters: int) -> float:
 
 def fit_scatter(data: DataSet, mean: FloatArray) -> tuple[float, float, float]:
     """Fit the parameters of `scatter` around predictions; return them and the logarithm of the largest likelihood."""
-    (log_floor, slope), best = _maximise(
-        lambda p: float(
-            interval_log_likelihood(data.low, data.high, mean, scatter(mean, math.exp(p[0]), float(p[1]))).sum()
-        ),
-        [-2.3, 0.8],
-    )
-    return math.exp(log_floor), slope, best
+    from scipy.optimize import minimize
+
+    def misfit(parameters: FloatArray) -> float:
+        sd = scatter(mean, math.exp(parameters[0]), float(parameters[1]))
+        return -float(interval_log_likelihood(data.low, data.high, mean, sd).sum())
+
+    options: Any = {"xatol": 1e-8, "fatol": 1e-10}
+    result = minimize(misfit, np.array([-2.3, 0.8]), method="Nelder-Mead", options=options)
+    log_floor, slope = result.x.tolist()
+    return math.exp(log_floor), slope, -float(result.fun)
 
 
 def rounding_bic(data: DataSet, mean: FloatArray, parameters: int) -> float:
@@ -68,13 +71,3 @@ def rounding_bic(data: DataSet, mean: FloatArray, parameters: int) -> float:
     Two parameters beside those of the model are of the scatter.
     """
     return -2.0 * fit_scatter(data, mean)[2] + (parameters + 2) * math.log(len(data))  # Eq. 138
-
-
-def _maximise(function: Callable[[FloatArray], float], start: list[float]) -> tuple[list[float], float]:
-    from scipy.optimize import minimize
-
-    def negative(parameters: FloatArray) -> float:
-        return -function(parameters)
-
-    result = minimize(negative, np.array(start), method="Nelder-Mead", options={"xatol": 1e-8, "fatol": 1e-10})
-    return [float(value) for value in result.x], -float(result.fun)

@@ -17,6 +17,8 @@ GROUPS = ("table1", "S", "M", "L")
 BANDS = (("h/b <= 3", 0.0, 3.0), ("3 < h/b <= 6", 3.0, 6.0), ("h/b > 6", 6.0, np.inf))
 """Slenderness bands of the league table: name, above, up to."""
 
+_COLUMNS = ("slenderness", "coefficient", "low", "high", "mass")
+
 
 @dataclass(frozen=True, eq=False)
 class DataSet:
@@ -79,11 +81,7 @@ class DataSet:
         index = np.arange(len(self))[np.asarray(chosen)]
         return replace(
             self,
-            slenderness=self.slenderness[index],
-            coefficient=self.coefficient[index],
-            low=self.low[index],
-            high=self.high[index],
-            mass=self.mass[index],
+            **{name: getattr(self, name)[index] for name in _COLUMNS},
             labels=tuple(self.labels[i] for i in index.tolist()),
             group=tuple(self.group[i] for i in index.tolist()),
             printed={key: column[index] for key, column in self.printed.items()},
@@ -105,14 +103,14 @@ def datasets() -> dict[str, DataSet]:
     {'table1': 12, 'table2': 7, 'S': 9, 'M': 9, 'L': 9}
     """
     first, second, third = (_read(f"mao2024_table{i}.csv") for i in (1, 2, 3))
-    found = {
+    sets = {
         "table1": _dataset("table1", "table1", first, [row["block_and_base"] for row in first]),
         "table2": _dataset("table2", "table2", second, [f"h/b = {row['slenderness_ratio']}" for row in second]),
     }
     for name in ("S", "M", "L"):
         rows = [row for row in third if row["block"].startswith(name)]
-        found[name] = _dataset(name, "table3", rows, [row["block"] for row in rows])
-    return found
+        sets[name] = _dataset(name, "table3", rows, [row["block"] for row in rows])
+    return sets
 
 
 @lru_cache(maxsize=1)
@@ -129,22 +127,14 @@ def all_measurements() -> DataSet:
     >>> len(all_measurements())
     39
     """
-    parts = [datasets()[name] for name in GROUPS]
-
-    def joined(name: str) -> FloatArray:
-        return np.concatenate([getattr(part, name) for part in parts])
-
+    groups = [datasets()[name] for name in GROUPS]
     return DataSet(
         name="all",
         title="All 39 measurements",
-        source=parts[0].source,
-        slenderness=joined("slenderness"),
-        coefficient=joined("coefficient"),
-        low=joined("low"),
-        high=joined("high"),
-        mass=joined("mass"),
-        labels=tuple(label for part in parts for label in part.labels),
-        group=tuple(group for part in parts for group in part.group),
+        source=groups[0].source,
+        **{name: np.concatenate([getattr(each, name) for each in groups]) for name in _COLUMNS},
+        labels=tuple(label for each in groups for label in each.labels),
+        group=tuple(group for each in groups for group in each.group),
         printed={},
     )
 

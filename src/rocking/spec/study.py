@@ -64,7 +64,9 @@ class StudyProblem:
 
         Returns what its function in `rocking.studies` does, a map as `MapArrays`; of several restitutions a comparison.
         """
-        compute = _ANSWERS[self.document.campaign.kind]
+        from rocking.spec.document import NEEDS
+
+        compute = _ANSWERS[NEEDS[self.document.campaign.kind]]
         return compute(self, {**self.stated, "threads": threads, "progress": progress})
 
     def only(self, things: str) -> Any:
@@ -191,7 +193,6 @@ def _inventory(problem: StudyProblem, options: dict[str, Any]) -> Any:
 
 
 _ANSWERS: dict[str, Callable[[StudyProblem, dict[str, Any]], Any]] = {
-    "overturning-map": _map, "minimum-acceleration": _minimum, "rocking-spectrum": _spectrum,
-    "stripes": _fragility, "incremental": _fragility, "cloud": _fragility,
-    "inventory": _inventory,
+    "map": _map, "minimum": _minimum, "spectrum": _spectrum, "fragility": _fragility, "inventory": _inventory,
 }  # fmt: skip
+"""What computes a study in memory, by the table of its document that is its own."""

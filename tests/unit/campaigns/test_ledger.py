@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from campaign_jobs import flip
 
 from rocking.campaigns import Campaign, CampaignDamagedError
 from rocking.campaigns.ledger import Ledger, LedgerEntry
@@ -14,12 +15,6 @@ from rocking.campaigns.status import Meter
 
 FLIPS = 400
 Shards = Callable[[Campaign], dict[str, str]]
-
-
-def flip(path, bit):
-    data = bytearray(path.read_bytes())
-    data[bit // 8] ^= 1 << bit % 8
-    path.write_bytes(data)
 
 
 def records(campaign):

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from campaign_jobs import flip
 
 from rocking.campaigns import Campaign, CampaignInterrupted, executors
 from rocking.campaigns.chunks import Plan
@@ -117,7 +118,7 @@ def test_damaged_pieces_are_named_and_computed_again(campaign, finished, short, 
     first, second, *_ = sorted((campaign.folder / "pieces").glob("*.shard"))
     data, other = first.read_bytes(), second.read_bytes()
     if harm == "flip":
-        first.write_bytes(data[:200] + bytes([data[200] ^ 4]) + data[201:])
+        flip(first, 8 * 200 + 2)
     elif harm == "cut":
         first.write_bytes(data[:-1])
     elif harm == "lose":

@@ -233,22 +233,23 @@ def test_what_is_kept_is_what_would_be_computed():
     assert (kept.samples == anew.samples).all(axis=1).mean() > 0.995
     for each in (Housner(), Ked(), ShiftedImpulse()):
         floor, slope, _ = fit_scatter(all_measurements(), each.of_slenderness(all_measurements().slenderness))
-        assert calibration._misfit(each) == pytest.approx((floor, slope), rel=1e-6)
+        found = interval_for(each, Block(width=1.0, height=3.0))
+        assert found.standard_deviation == pytest.approx(scatter(found.coefficient, floor, slope), rel=1e-6)
 
 
 def test_other_measurements_are_calibrated_anew(monkeypatch):
     """With a row left out nothing that is kept is read: neither the posterior nor the misfit of a model."""
-    fewer = all_measurements().rows(np.arange(len(all_measurements()) - 1))
-    whole, misfit = calibrate().summary, calibration._misfit(Ked())
+    fewer, block = all_measurements().rows(np.arange(len(all_measurements()) - 1)), Block(width=1.0, height=3.0)
+    whole, interval = calibrate().summary, interval_for(Ked(), block)
     monkeypatch.setattr(calibration, "all_measurements", lambda: fewer)
-    for cache in (calibrate, calibration._fitted):
+    for cache in (calibrate, calibration._misfit):
         cache.cache_clear()
     try:
         assert calibrate().summary["k"] == pytest.approx(calibrate_on(fewer).summary["k"])
         assert calibrate().summary["k"]["mean"] != pytest.approx(whole["k"]["mean"], rel=1e-6)
-        assert calibration._misfit(Ked()) != pytest.approx(misfit, rel=1e-6)
+        assert interval_for(Ked(), block).low != pytest.approx(float(interval.low), rel=1e-6)
     finally:
-        for cache in (calibrate, calibration._fitted):
+        for cache in (calibrate, calibration._misfit):
             cache.cache_clear()
 
 

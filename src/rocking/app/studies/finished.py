@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking.campaigns.jobs import Job, JobFolder
-    from rocking.campaigns.jobs.adaptive import AdaptiveResult
+    from rocking.campaigns.jobs.study import AdaptiveResult
 
 
 Crossing = Literal["refuse", "common-dispersion"]

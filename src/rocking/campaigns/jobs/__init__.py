@@ -1,9 +1,9 @@
 """Jobs: a TOML file says what a campaign computes; its results become files with their provenance."""
 
-from rocking.campaigns.jobs.exporting import export, exports_of
+from rocking.campaigns.forecast import job_forecast as forecast
+from rocking.campaigns.jobs.exporting import export
 from rocking.campaigns.jobs.findings import analyses, answer, assessment, comparison, measure_comparison
 from rocking.campaigns.jobs.folder import JobFolder, status_of, verified
-from rocking.campaigns.jobs.forecasting import forecast
 from rocking.campaigns.jobs.job import Job
 
 __all__ = [
@@ -14,7 +14,6 @@ __all__ = [
     "assessment",
     "comparison",
     "export",
-    "exports_of",
     "forecast",
     "measure_comparison",
     "status_of",

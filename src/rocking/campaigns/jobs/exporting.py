@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -27,6 +27,8 @@ from rocking.campaigns.jobs.rounds import finished_rounds
 from rocking.campaigns.jobs.study import TYPES, pieces_of
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
+from rocking.outcome import contact_words, lost_contact
+from rocking.spec.document import ExportTable
 from rocking.statistics.goodness import FEWEST
 from rocking.studies.fragility.curves import Crossing, check_crossing, nested
 from rocking.studies.fragility.measure_comparison import MeasureComparison
@@ -44,9 +46,6 @@ from rocking.tables import (
     to_netcdf,
     to_parquet,
 )
-
-if TYPE_CHECKING:
-    from rocking.studies.fragility.curves import FragilityModel
 
 MOST_REPETITIONS = 100_000
 """Most repetitions of a bootstrap."""
@@ -103,18 +102,7 @@ _RANKED = {
 
 
 def exports_of(folder: JobFolder) -> list[str]:
-    """Return what can be exported of a campaign.
-
-    Parameters
-    ----------
-    folder : JobFolder
-        The campaign.
-
-    Returns
-    -------
-    list of str
-        The first is what is written unless something else is asked for.
-    """
+    """Return what can be exported of a campaign; the first is written unless something else is asked for."""
     return [*folder.job.study.exports, *(COMPARED if comparable(folder) else ())]
 
 
@@ -133,12 +121,11 @@ def export(
     what : str, optional
         ``histories``, every one (.nc, .parquet, .csv, .mat, .xlsx); the .nc of a refined map holds its points and
         polylines too. Of fragility campaigns ``fragility``, the curves with their goodness of fit (.nc, .csv, .mat,
-        .xlsx, and .xml for NRML), ``fragility-points``, observed and fitted level by level (.csv), and ``fema-p58``, a
-        table (.csv); of refined maps ``refined``, all points, and ``boundary``, the vertices of the polylines (.csv,
-        .parquet, .mat, .xlsx); of minimum accelerations ``crossings`` and ``minima`` (the same, and both in one .nc),
-        with ``histories`` for the first samples; of jobs with several restitutions ``flips``, what each of them changes
-        against the first, and ``differences``, cell by cell (the same, and .nc); of clouds ``measures``, the ranking of
-        intensity measures (the same, and .nc). The first of `exports_of` if not given.
+        .xlsx, and .xml for NRML), ``fragility-points``, observed and fitted level by level, and ``fema-p58`` (.csv). As
+        tables (.csv, .parquet, .mat, .xlsx): of refined maps ``refined``, all points, and ``boundary``, the vertices of
+        the polylines; of minimum accelerations ``crossings`` and ``minima`` (both in one .nc); with several
+        restitutions ``flips``, what each changes against the first, and ``differences``, cell by cell; of clouds
+        ``measures``, the ranking of intensity measures (.nc, too). The first of `exports_of` if not given.
     restitution : str, optional
         Label of the restitution whose fragility or measures are meant, where there are several.
     crossing : {"refuse", "common-dispersion"}, optional
@@ -162,26 +149,24 @@ def export(
     CampaignIncompleteError
         If the campaign is not finished.
     """
-    target = target_of(path)
-    what = exports_of(folder)[0] if what is None else what
-    _check_what(what, target.suffix.lower(), restitution, crossing, folder)
-    _check_bootstrap(what, bootstrap)
+    target, what = checked(folder, path, what, restitution, crossing, bootstrap)
     refuse_unfinished(folder)
     provenance = provenance_of(folder)
     unfinished = target.with_name(f".{target.stem}.{os.getpid()}.part{target.suffix}")
     with disk.guarded(target.parent, lambda: "the campaign itself is safe"):
         try:
-            if what == MEASURES:
+            if what in ANALYSES:
+                _write_fragility(folder, unfinished, what, restitution, crossing, bootstrap)
+            elif what == MEASURES:
                 ranking = measure_comparison(folder, restitution, progress)
                 provenance |= {"measures_left_out": dict(ranking.left_out), "least_rotation_over_alpha": ranking.least}
                 provenance |= {} if restitution is None else {"restitution": restitution}
-                _write_table(measures_table(ranking), unfinished, _attributes(folder, provenance))
-            elif what in ANALYSES:
-                _write_fragility(_fragility(folder, restitution, crossing, bootstrap), unfinished, what, provenance)
+                _write_tables([measures_table(ranking)], unfinished, attributes_of(folder, provenance))
             elif what in COMPARED:
-                _write_table(comparison_table(comparison(folder), what), unfinished, _attributes(folder, provenance))
+                table = comparison_table(comparison(folder), what)
+                _write_tables([table], unfinished, attributes_of(folder, provenance))
             else:
-                _write_histories(folder, unfinished, what, _attributes(folder, provenance), progress)
+                _write_study(folder, unfinished, what, attributes_of(folder, provenance), progress)
             if target.suffix.lower() in {".csv", ".xml"}:  # neither has room for it
                 write_provenance(provenance, target)
             unfinished.replace(target)
@@ -204,7 +189,7 @@ def write_provenance(provenance: dict[str, Any], beside: Path) -> Path:
     return path
 
 
-def _attributes(folder: JobFolder, provenance: dict[str, Any]) -> dict[str, Any]:
+def attributes_of(folder: JobFolder, provenance: dict[str, Any]) -> dict[str, Any]:
     """Return the provenance as attributes of a file: the main facts each by itself, and all of it as JSON."""
     about = folder.job.study.attributes
     plain = {name: int(v) if isinstance(v, bool) else v for name, v in about.items() if v is not None}
@@ -212,17 +197,21 @@ def _attributes(folder: JobFolder, provenance: dict[str, Any]) -> dict[str, Any]
     return {**main, **plain, "provenance": json.dumps(provenance, sort_keys=True)}
 
 
-def _check_what(
-    what: str, suffix: str, restitution: str | None, crossing: Crossing | None, folder: JobFolder
-) -> None:  # fmt: skip
+def checked(
+    folder: JobFolder, path: str | os.PathLike[str], what: str | None, restitution: str | None,
+    crossing: Crossing | None, bootstrap: int | None = None,
+) -> tuple[Path, str]:  # fmt: skip
+    """Return the file and what it will hold, after refusing what `export` would."""
+    target = target_of(path)
+    what, suffix = exports_of(folder)[0] if what is None else what, target.suffix.lower()
     if what not in ENDINGS:
         raise InvalidValueError(f"what must be one of {', '.join(ENDINGS)}, got {what!r:.60}")
-    allowed = ENDINGS[what]
-    if suffix not in allowed:
+    if suffix not in ENDINGS[what]:
         more = "; .xml (NRML) is for the fragility" if suffix == ".xml" and what == "histories" else ""
         if suffix == ".nc" and what in {"refined", "boundary"}:
             more = "; the .nc of the histories (--out histories=FILE.nc) holds points and polylines too"
-        raise InvalidValueError(f"{what} can be written as {', '.join(allowed)}, got {suffix or 'no ending'!r}{more}")
+        allowed = ", ".join(ENDINGS[what])
+        raise InvalidValueError(f"{what} can be written as {allowed}, got {suffix or 'no ending'!r}{more}")
     if what not in _OF_ONE and restitution is not None:
         raise InvalidValueError("restitution goes with fragility, fema-p58 and measures; every history has its own")
     if what not in ANALYSES and crossing is not None:
@@ -234,19 +223,15 @@ def _check_what(
         check_crossing("refuse" if crossing is None else crossing)
     if what in _OF_ONE:
         label_of(what, restitution, list(folder.job.problem.restitutions))
-
-
-def _check_bootstrap(what: str, bootstrap: int | None) -> None:
-    if bootstrap is None:
-        return
-    if what not in ANALYSES:
+    if bootstrap is not None and what not in ANALYSES:
         raise InvalidValueError("bootstrap goes with fragility, fragility-points and fema-p58: it is about curves")
-    whole = checks.within("bootstrap", bootstrap, 0, MOST_REPETITIONS, hint="how many times the study is repeated")
+    whole = checks.within("bootstrap", bootstrap or 0, 0, MOST_REPETITIONS, hint="how many times the study is repeated")
     if 0 < whole < FEWEST or whole != int(whole):
         raise InvalidValueError(f"bootstrap must be 0 or a whole number >= {FEWEST}, got {bootstrap!r}")
+    return target, what
 
 
-def _write_histories(
+def _write_study(
     folder: JobFolder, path: Path, what: str, attributes: dict[str, Any], progress: Callable[[int], None] | None
 ) -> None:
     """Write histories, or the tables of an adaptive study; a refined map has room for both in one .nc."""
@@ -256,86 +241,83 @@ def _write_histories(
         def pieces() -> Iterator[tuple[int, int, Arrays]]:
             return pieces_of(study, folder.campaign.pieces(), progress)
 
+        attributes = {**attributes, "contact": _contact_words(folder)}
         FORMATS[suffix](Grid("histories", study.dims, study.coordinates, TYPES, pieces, attributes), path)
         if suffix != ".nc" or "refined" not in study.exports:
             return
     result = answer(folder)
-    attributes = attributes | result.attributes
-    if suffix == ".nc":
-        add_to_netcdf(result.tables, path, attributes)
-    else:
-        _write_table(result.tables[what], path, attributes)
+    tables = [*result.tables.values()] if suffix == ".nc" else [result.tables[what]]
+    _write_tables(tables, path, attributes | result.attributes)
 
 
-def _write_table(table: Table, path: Path, attributes: dict[str, Any]) -> None:
+def _contact_words(folder: JobFolder) -> str:
+    """Return in how many histories the ground would have to pull."""
+    counts = np.zeros(2, np.int64)
+    for piece in folder.campaign.pieces():
+        lost = lost_contact(piece.results)
+        counts += np.bincount(lost[np.isfinite(lost)].astype(np.int64), minlength=2)
+    return contact_words(np.repeat([0.0, 1.0], counts))
+
+
+def _write_tables(tables: list[Table], path: Path, attributes: dict[str, Any]) -> None:
     suffix = path.suffix.lower()
     if suffix == ".nc":
-        add_to_netcdf({table.row: table}, path, attributes)
+        add_to_netcdf({table.row: table for table in tables}, path, attributes)
     else:
-        TABLE_FORMATS[suffix](replace(table, provenance=attributes), path)
+        TABLE_FORMATS[suffix](replace(tables[0], provenance=attributes), path)
 
 
-def _fragility(
-    folder: JobFolder, restitution: str | None, crossing: Crossing | None, bootstrap: int | None
-) -> "FragilityModel":
-    """Return the curves of a finished campaign with goodness of fit; all random numbers have its seed."""
+def _write_fragility(
+    folder: JobFolder, path: Path, what: str, restitution: str | None, crossing: Crossing | None, bootstrap: int | None
+) -> None:
+    """Write the curves of a finished campaign with goodness of fit; all random numbers have its seed."""
+    from rocking.studies.fragility import export as files
     from rocking.studies.fragility.curves import model_of
 
-    campaign, how = folder.job.document.campaign, folder.job.document.export
+    campaign, stated = folder.job.document.campaign, folder.job.document.export or ExportTable()
     every = analyses(folder)
-    repetitions = (how.bootstrap if how is not None else 0) if bootstrap is None else bootstrap
     analysis = every[restitution] if restitution else next(iter(every.values()))
+    repetitions = stated.bootstrap if bootstrap is None else bootstrap
     model = model_of(analysis, campaign.name, bootstrap=repetitions, seed=campaign.seed)
-    way = (how.crossing if how is not None else "refuse") if crossing is None else crossing
-    return nested(model, way) if way == "common-dispersion" else model
-
-
-def _write_fragility(model: "FragilityModel", path: Path, what: str, provenance: dict[str, Any]) -> None:
-    from rocking.studies.fragility import export as files
-    from rocking.studies.fragility.export import to_nrml
-
+    if (crossing or stated.crossing) == "common-dispersion":
+        model = nested(model, "common-dispersion")
     suffix = path.suffix.lower()
     if suffix == ".csv":
         files.to_csv(model, path, _CURVES[what])
-        return
-    if suffix != ".xml":
-        model = replace(model, about={**model.about, "provenance": json.dumps(provenance, sort_keys=True)})
-    writers: dict[str, Callable[[Any, Path], Path]] = {
-        ".nc": files.to_netcdf, ".mat": files.to_mat, ".xlsx": files.to_excel, ".xml": to_nrml,
-    }  # fmt: skip
-    writers[suffix](model, path)
+    elif suffix == ".xml":
+        files.to_nrml(model, path)
+    else:
+        about = {**model.about, "provenance": json.dumps(provenance_of(folder), sort_keys=True)}
+        writers: dict[str, Any] = {".nc": files.to_netcdf, ".mat": files.to_mat, ".xlsx": files.to_excel}
+        writers[suffix](replace(model, about=about), path)
 
 
 def measures_table(ranking: MeasureComparison) -> Table:
     """Return a ranking of measures as a table, the most efficient first, with ``p(name)`` for each metadata column."""
     rows = [row | {"unit": "1" if row["unit"] == "-" else row["unit"]} for row in ranking.rows()]
-
-    def meaning(name: str) -> str:
-        return _RANKED.get(name, f"p-value of the residuals over {name[2:-1]}" if name.startswith("p(") else name)
-
-    return _of_rows("rank", rows, meaning)
+    tested = {name: f"p-value of the residuals over {name[2:-1]}" for row in rows for name in row if name[:2] == "p("}
+    return _of_rows("rank", rows, _RANKED | tested)
 
 
 def comparison_table(compared: Sensitivity, what: str) -> Table:
     """Return the ``flips`` of a comparison, or its ``differences`` cell by cell."""
     if what == "flips":
-        return _of_rows("choice", compared.summary(), lambda _: "")
+        return _of_rows("choice", compared.summary(), dict.fromkeys(compared.summary()[0], ""))
     # analyses call the largest rotation over alpha by its own name
     peak_name = "peak_ratio" if "peak_ratio" in compared.datasets[compared.baseline] else "rotation"
     verdict, peak = compared.differences("verdict"), compared.differences(peak_name)
     columns = {}
-    for k, name in enumerate(verdict.dims):
+    for name, place in zip(verdict.dims, np.indices(verdict.shape, sparse=True), strict=True):
         values = np.asarray(verdict[name].values)
         # words are kept once: written out they would take many times the room of the numbers
         whole = values if values.dtype.kind in "iufb" else text_array([str(value) for value in values])
-        shape = [-1 if k == axis else 1 for axis in range(verdict.ndim)]
-        columns[str(name)] = Column(np.broadcast_to(whole.reshape(shape), verdict.shape).ravel())
+        columns[str(name)] = Column(np.broadcast_to(whole[place], verdict.shape).ravel())
     columns["verdict"] = Column(verdict.values.ravel(), meaning=str(verdict.attrs["long_name"]))
     columns["peak_ratio"] = Column(peak.values.ravel(), meaning=str(peak.attrs["long_name"]))
     return Table("difference", columns)
 
 
-def _of_rows(row: str, rows: list[dict[str, Any]], meaning: Callable[[str], str]) -> Table:
+def _of_rows(row: str, rows: list[dict[str, Any]], meanings: Mapping[str, str]) -> Table:
     """Return rows of any keys as a table; NaN, or no text, where a row has none."""
     columns: dict[str, Column] = {}
     for name in dict.fromkeys(name for each in rows for name in each):
@@ -344,7 +326,7 @@ def _of_rows(row: str, rows: list[dict[str, Any]], meaning: Callable[[str], str]
             array = text_array(["" if value is None else str(value) for value in values])
         else:
             array = np.array([np.nan if value is None else value for value in values])
-        columns[name] = Column(array, meaning=meaning(name), variable=variable_of(name, columns))
+        columns[name] = Column(array, meaning=meanings.get(name, name), variable=variable_of(name, columns))
     return Table(row, columns)
 
 

@@ -1,16 +1,15 @@
 """Results of the studies of finished campaigns, as the Python calls return them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rocking.campaigns import CampaignIncompleteError
-from rocking.campaigns.jobs.adaptive import AdaptiveResult
-from rocking.campaigns.jobs.folder import JobFolder
+from rocking.campaigns.jobs.folder import JobFolder, job_status
 from rocking.campaigns.jobs.kinds.fragility import MEASURES, columns_of, measures_of
-from rocking.campaigns.jobs.rounds import replayed, resume, status_of_rounds
-from rocking.campaigns.jobs.study import TYPES, pieces_of
+from rocking.campaigns.jobs.rounds import replayed, resume
+from rocking.campaigns.jobs.study import TYPES, AdaptiveResult, pieces_of
 from rocking.dynamics.impact_laws import ImpactLaw, RandomRestitution
 from rocking.errors import InvalidValueError, extra
 from rocking.quantities import attributes
@@ -26,28 +25,21 @@ if TYPE_CHECKING:
 READ = ("outcome", "peak_rotation", "least_force")
 """All that analyses and assessments read of a history: 17 bytes."""
 
-_COMPARED = ("outcome", "peak_ratio")
 _NOTHING = "nothing to export because"
 
 
 def refuse_unfinished(folder: JobFolder) -> None:
     """Refuse a campaign that is not finished."""
-    path = folder.path
-    if folder.job.study.search is None:
-        status = folder.campaign.status(verify=False)
-        complete, share = status.complete, f"{status.chunks_done} of {status.chunks} chunks of {path} are finished"
-    else:
-        known, begun, complete = status_of_rounds(path, verify=False)
-        status = known or folder.campaign.status(verify=False)
-        rounds = "one round" if begun <= 1 else f"{begun} rounds"
+    path, known = folder.path, job_status(folder.path, folder.job.document, verify=False)
+    if known.complete:
+        return
+    status = known.status or folder.campaign.status(verify=False)
+    share = f"{status.chunks_done} of {status.chunks} chunks of {path} are finished"
+    if known.rounds is not None:
+        rounds = "one round" if known.rounds <= 1 else f"{known.rounds} rounds"
         share = f"{path} is not finished: {status.chunks_done} of {status.chunks} chunks of {rounds} so far"
         share += ", and more rounds may follow"
-    if not complete:
-        raise CampaignIncompleteError(f"{_NOTHING} {share}; go on with: {resume(path)}")
-
-
-def _refused(folder: JobFolder, what: str) -> InvalidValueError:
-    return InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no {what}')
+    raise CampaignIncompleteError(f"{_NOTHING} {share}; go on with: {resume(path)}")
 
 
 def analyses(folder: JobFolder) -> dict[str, Any]:
@@ -70,7 +62,7 @@ def analyses(folder: JobFolder) -> dict[str, Any]:
     """
     study = folder.job.study
     if study.finish is None:
-        raise _refused(folder, "fragility")
+        raise InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no fragility')
     return study.finish(folder.campaign.results(*READ))
 
 
@@ -96,7 +88,7 @@ def answer(folder: JobFolder) -> AdaptiveResult:
     """
     search = folder.job.study.search
     if search is None:
-        raise _refused(folder, "rounds")
+        raise InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no rounds')
     return replayed(search, folder.path)
 
 
@@ -120,10 +112,10 @@ def assessment(folder: JobFolder) -> "Assessment":
     """
     assess = folder.job.study.assess
     if assess is None:
-        raise _refused(folder, "assessment")
+        raise InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no assessment')
     refuse_unfinished(folder)
-    made: Assessment = assess(folder.campaign.results(*READ))
-    return made
+    result: Assessment = assess(folder.campaign.results(*READ))
+    return result
 
 
 def comparable(folder: JobFolder) -> bool:
@@ -132,13 +124,15 @@ def comparable(folder: JobFolder) -> bool:
     return len(folder.job.problem.restitutions) > 1 and study.search is None and study.assess is None
 
 
-def comparison(folder: JobFolder) -> Sensitivity:
+def comparison(folder: JobFolder, names: Collection[str] = ("outcome", "peak_ratio")) -> Sensitivity:
     """Return how the restitution changes the results of a finished campaign, as the Python calls do.
 
     Parameters
     ----------
     folder : JobFolder
         The campaign of a job with several restitutions; the first one is what the others are compared with.
+    names : collection of str
+        What of every history the datasets of the comparison hold.
 
     Returns
     -------
@@ -156,7 +150,7 @@ def comparison(folder: JobFolder) -> Sensitivity:
         raise InvalidValueError("a comparison needs a map, spectra, fragility or histories with several restitutions")
     refuse_unfinished(folder)
     restitutions = folder.job.problem.restitutions
-    results = _datasets(folder) if folder.job.study.finish is None else analyses(folder)
+    results = datasets(folder, names) if folder.job.study.finish is None else analyses(folder)
     drawn = [
         label
         for label, law in restitutions.items()
@@ -165,21 +159,21 @@ def comparison(folder: JobFolder) -> Sensitivity:
     return Sensitivity(results, baseline=next(iter(restitutions)), drawn=drawn)
 
 
-def _datasets(folder: JobFolder) -> "dict[str, xr.Dataset]":
+def datasets(folder: JobFolder, names: Collection[str] = tuple(TYPES)) -> "dict[str, xr.Dataset]":
+    """Return results of all histories by label of the restitution, as the studies' functions return them."""
     xarray: Any = extra("xarray", "comparing restitutions")
-    study = folder.job.study
-    flat = {name: np.empty(study.histories.count, TYPES[name]) for name in _COMPARED}
+    study, labels = folder.job.study, list(folder.job.problem.restitutions)
+    flat = {name: np.empty(study.histories.count, TYPES[name]) for name in names}
     for first, last, results in pieces_of(study, folder.campaign.pieces()):
         for name, values in flat.items():
             values[first:last] = results[name]
-    axis = list(study.dims).index("restitution")
-    whole = {name: np.moveaxis(values.reshape(study.shape), axis, 0) for name, values in flat.items()}
-    dims = [name for name in study.dims if name != "restitution"]
-    along = {name: study.coordinates[name] for name in dims if name in study.coordinates}
-    coords = {name: each.values for name, each in along.items() if each.dims == (name,)}
+    data = {name: (tuple(study.dims), values.reshape(study.shape), attributes(name)) for name, values in flat.items()}
+    coords = {name: (each.dims, each.values, each.attributes) for name, each in study.coordinates.items()}
+    every = xarray.Dataset(data, coords, study.attributes)
+    if len(labels) == 1:
+        return {labels[0]: every.assign_attrs(restitution=labels[0])}
     return {
-        label: xarray.Dataset({name: (dims, whole[name][k], attributes(name)) for name in _COMPARED}, coords)
-        for k, label in enumerate(folder.job.problem.restitutions)
+        label: every.isel(restitution=k, drop=True).assign_attrs(restitution=label) for k, label in enumerate(labels)
     }
 
 
@@ -224,12 +218,12 @@ def measure_comparison(
     def measured(more: int) -> None:
         """Tell of motions, each of which is measured once for each measure, as shares of the histories."""
         nonlocal motions
-        assert progress is not None
         before, motions = count * motions // total, motions + more
-        progress(count * motions // total - before)
+        if progress is not None:
+            progress(count * motions // total - before)
 
     try:
-        return compare_measures(cloud, names, columns, progress=None if progress is None else measured)
+        return compare_measures(cloud, names, columns, progress=measured)
     except InvalidValueError as error:
         raise InvalidValueError(f"{_NOTHING} {error}") from error
 

@@ -4,10 +4,10 @@ import hashlib
 import json
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,16 +20,16 @@ from rocking.campaigns import (
     disk,
     reading,
 )
-from rocking.campaigns.identity import NAME
 from rocking.campaigns.jobs.job import Job
 from rocking.campaigns.jobs.rounds import (
+    HISTORIES,
     finished_rounds,
+    of_rounds,
     opened,
     resume,
     round_folder,
     run_rounds,
-    status_of_rounds,
-    verified_rounds,
+    summed,
     way_out,
 )
 from rocking.campaigns.reading import Verification
@@ -37,8 +37,11 @@ from rocking.campaigns.status import CampaignStatus, Summary
 from rocking.errors import InvalidValueError
 from rocking.spec.reading import InputFiles, document_of, located, refuse_changes
 
-JOB, INPUTS, HISTORIES = "job.toml", "inputs.json", "histories"
-"""Files of the folder, and its folder of results."""
+if TYPE_CHECKING:
+    from rocking.spec.document import CampaignDocument
+
+JOB, INPUTS = "job.toml", "inputs.json"
+"""Files of the folder."""
 
 
 @dataclass(frozen=True)
@@ -80,13 +83,19 @@ class JobFolder:
             "files": job.inputs,
         }
         with disk.guarded(path, lambda: "nothing was written"):
-            _refuse_used(path)
+            if path.exists() and not path.is_dir():
+                raise CampaignMismatchError(f"{path}: a file, not a folder")
             disk.make_folder(path)
+            there = {entry.name for entry in path.iterdir() if not entry.name.startswith(".")}
+            if JOB in there:
+                raise CampaignMismatchError(f"{path}: a campaign is here already; go on with: {resume(path)}")
+            if odd := sorted(there - {INPUTS}):
+                raise CampaignMismatchError(f"{path}: not empty ({odd[0]} ...); a campaign takes a folder of its own")
             disk.write_new(path / INPUTS, (json.dumps(content, indent=1, sort_keys=True) + "\n").encode())
             disk.write_new(path / JOB, job.text.encode())
-        made = cls(path, job)
-        _ = made.campaign
-        return made
+        begun = cls(path, job)
+        _ = begun.campaign
+        return begun
 
     @classmethod
     def open(cls, folder: str | os.PathLike[str], inputs: str | os.PathLike[str] | None = None) -> "JobFolder":
@@ -201,16 +210,24 @@ def status_of(folder: str | os.PathLike[str], *, verify: bool = True) -> JobStat
         As recorded at this instant.
     """
     path = Path(folder)
-    text, content = _kept(path)
-    with located(content["job_file"]):
-        document = document_of(text)
-    name, kind = document.campaign.name, document.campaign.kind
-    if document.is_adaptive:
-        status, begun, complete = status_of_rounds(path, verify=verify)
-        return JobStatus(path, name, kind, status, complete, begun)
-    there = (path / HISTORIES / NAME).exists()
-    known = Campaign.status_of(path / HISTORIES, verify=verify) if there else None
-    return JobStatus(path, name, kind, known, known is not None and known.complete)
+    return job_status(path, _document(path), verify)
+
+
+def job_status(path: Path, document: "CampaignDocument", verify: bool) -> JobStatus:
+    """Return how far the campaign of a document is."""
+    name, kind, adaptive = document.campaign.name, document.campaign.kind, document.is_adaptive
+    each = of_rounds(path, adaptive, lambda folder: Campaign.status_of(folder, verify=verify))
+    if not each:
+        return JobStatus(path, name, kind, None, False, 0 if adaptive else None)
+    if not adaptive:
+        return JobStatus(path, name, kind, each[0], each[0].complete)
+    status = summed(
+        each, "histories", "histories_done", "chunks", "chunks_done", "seconds", "retries", "damaged", "broken"
+    )
+    status = replace(status, folder=path, running=disk.holder(path), work=None)
+    finished = finished_rounds(path)
+    complete = finished is not None and finished["rounds"] == len(each) and status.complete
+    return JobStatus(path, name, kind, status, complete, len(each))
 
 
 def verified(folder: str | os.PathLike[str]) -> Verification:
@@ -227,19 +244,11 @@ def verified(folder: str | os.PathLike[str]) -> Verification:
         Of an adaptive study that of all rounds that have begun, which count on.
     """
     path = Path(folder)
-    text, content = _kept(path)
-    wrong: list[str] = []
-    with located(content["job_file"]):
-        adaptive = document_of(text).is_adaptive
-    if adaptive:
-        rounds = verified_rounds(path)
-        noted = finished_rounds(path)
-        if noted is None or noted["rounds"] != len(rounds):
-            wrong.append(f"{path} is not finished, and more rounds may follow")
-    else:
-        there = (path / HISTORIES / NAME).exists()
-        rounds = [reading.verified(path / HISTORIES)] if there else []
-        wrong += [] if there else [f"{path}: nothing is computed yet"]
+    adaptive = _document(path).is_adaptive
+    rounds = of_rounds(path, adaptive, reading.verified)
+    wrong = [] if rounds or adaptive else [f"{path}: nothing is computed yet"]
+    if adaptive and ((noted := finished_rounds(path)) is None or noted["rounds"] != len(rounds)):
+        wrong = [f"{path} is not finished, and more rounds may follow"]
     begins = np.cumsum([0, *(each.histories for each in rounds)]).tolist()
     return Verification(
         begins[-1],
@@ -248,6 +257,12 @@ def verified(folder: str | os.PathLike[str]) -> Verification:
         (*wrong, *(sentence for each in rounds for sentence in each.damaged)),
         tuple((a + k, b + k) for k, each in zip(begins, rounds, strict=False) for a, b in each.missing),
     )
+
+
+def _document(path: Path) -> "CampaignDocument":
+    text, content = _kept(path)
+    with located(content["job_file"]):
+        return document_of(text)
 
 
 def _kept(path: Path) -> tuple[str, dict[str, Any]]:
@@ -265,11 +280,7 @@ def _kept(path: Path) -> tuple[str, dict[str, Any]]:
                 f"{path / JOB} has changed since the campaign began; restore it, or begin a new campaign in another "
                 "folder"
             )
-        return text.decode(), {
-            **content,
-            "job_folder": str(content["job_folder"]),
-            "job_file": str(content["job_file"]),
-        }
+        return text.decode(), content | {name: str(content[name]) for name in ("job_folder", "job_file")}
     except (ValueError, KeyError, TypeError, AssertionError) as error:
         raise CampaignDamagedError(
             f"{path / INPUTS} is missing or damaged ({error}); begin a new campaign of {path / JOB} in another folder"
@@ -278,14 +289,3 @@ def _kept(path: Path) -> tuple[str, dict[str, Any]]:
 
 def _sha256(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
-
-
-def _refuse_used(path: Path) -> None:
-    if path.exists() and not path.is_dir():
-        raise CampaignMismatchError(f"{path}: a file, not a folder")
-    there = {entry.name for entry in path.iterdir() if not entry.name.startswith(".")} if path.is_dir() else set()
-    if JOB in there:
-        raise CampaignMismatchError(f"{path}: a campaign is here already; go on with: {resume(path)}")
-    odd = sorted(there - {INPUTS})
-    if odd:
-        raise CampaignMismatchError(f"{path}: not empty ({odd[0]} ...); a campaign takes a folder of its own")

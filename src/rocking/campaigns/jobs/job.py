@@ -95,10 +95,10 @@ class Job:
         Job
             The job.
         """
-        made = cls(text, name, Path(folder))
+        job = cls(text, name, Path(folder))
         with located(name):
-            _ = made.study
-        return made
+            _ = job.study
+        return job
 
     @cached_property
     def document(self) -> "CampaignDocument":

@@ -18,13 +18,12 @@ from rocking.campaigns import (
     Progress,
     disk,
 )
-from rocking.campaigns.disk import FolderLock, holder
+from rocking.campaigns.disk import FolderLock
 from rocking.campaigns.executors import Interruption, WorkerTask
 from rocking.campaigns.identity import NAME, SHARDS, Identity
-from rocking.campaigns.jobs.adaptive import AdaptiveResult, Search, first_round
+from rocking.campaigns.jobs.study import AdaptiveResult, Search, first_round
 from rocking.campaigns.processes import chosen
-from rocking.campaigns.reading import Verification, verified
-from rocking.campaigns.status import CampaignStatus, Summary
+from rocking.campaigns.status import Summary
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.studies.histories import Histories
 
@@ -32,6 +31,9 @@ _T = TypeVar("_T")
 
 NEEDED = ("outcome", "status", "side", "peak_rotation", "impacts", "overturning_time", "least_force")
 """What studies decide on: no more of a round is held in memory."""
+
+HISTORIES = "histories"
+"""The only round of a study that is not adaptive."""
 
 FINISHED = "finished.json"
 """Written when a study has asked for its last round: how many there were, and of how many histories."""
@@ -65,8 +67,10 @@ def way_out(folder: Path, number: int) -> Iterator[None]:
         ) from error
 
 
-def _of_rounds(folder: Path, look: Callable[[Path], _T]) -> list[_T]:
-    """Return what is seen in the folders of the rounds that have begun."""
+def of_rounds(folder: Path, adaptive: bool, look: Callable[[Path], _T]) -> list[_T]:
+    """Return what is seen in the folders of the rounds that have begun; what is not adaptive has one."""
+    if not adaptive:
+        return [look(folder / HISTORIES)] if (folder / HISTORIES / NAME).exists() else []
     seen: list[_T] = []
     while ((path := round_folder(folder, len(seen))) / NAME).exists():
         with way_out(folder, len(seen)):
@@ -74,29 +78,11 @@ def _of_rounds(folder: Path, look: Callable[[Path], _T]) -> list[_T]:
     return seen
 
 
-def _summed(each: Sequence[_T], *names: str) -> _T:
+def summed(each: Sequence[_T], *names: str) -> _T:
     """Return the first of some reports with numbers summed up, and lists of sentences one after another."""
     columns = {name: [getattr(one, name) for one in each] for name in names}
     sums = {name: sum(values, type(values[0])()) for name, values in columns.items()}
     return replace(each[0], **sums)  # type: ignore[type-var]
-
-
-def status_of_rounds(folder: Path, *, verify: bool = True) -> tuple[CampaignStatus | None, int, bool]:
-    """Return the status of the rounds that have begun, how many they are, and whether all are there and complete."""
-    rounds = _of_rounds(folder, lambda path: Campaign.status_of(path, verify=verify))
-    if not rounds:
-        return None, 0, False
-    sums = _summed(
-        rounds, "histories", "histories_done", "chunks", "chunks_done", "seconds", "retries", "damaged", "broken"
-    )
-    status = replace(sums, folder=folder, running=holder(folder), work=None)
-    finished = finished_rounds(folder)
-    return status, len(rounds), finished is not None and finished["rounds"] == len(rounds) and status.complete
-
-
-def verified_rounds(folder: Path) -> list[Verification]:
-    """Read everything that the rounds have that have begun."""
-    return _of_rounds(folder, verified)
 
 
 def finished_rounds(folder: Path) -> dict[str, int] | None:
@@ -123,31 +109,29 @@ class Rounds:
         self.done: list[Summary] = []
         self.between = Interruption()
 
-    def compute(self, histories: Histories) -> Arrays:
-        """Return the results of the next round; as they were, if it was computed before."""
-        path = round_folder(self.folder, self.number)
-        if self.between.requested():
-            raise CampaignInterrupted(_stopped(self.folder, self.number))
-        if self.who is None and not (path / NAME).exists():
-            raise CampaignIncompleteError(f"{path} is missing; go on with: {resume(self.folder)}")
-        with _of_the_job(self.folder, self.number):
-            results = self._results(opened(path, histories, self.chunk))
-        self.number += 1
-        self.histories += histories.count
-        return results
-
     @property
     def counts(self) -> dict[str, int]:
         """Rounds and histories so far."""
         return {"rounds": self.number, "histories": self.histories}
 
-    def _results(self, campaign: Campaign) -> Arrays:
-        if self.who is not None:
-            with suppress(CampaignDamagedError):  # what is damaged is set aside, said, and computed again
-                if campaign.status(verify=False).complete:
-                    return campaign.results(*NEEDED)
-            self.advance(campaign)
-        return campaign.results(*NEEDED)
+    def compute(self, histories: Histories) -> Arrays:
+        """Return the results of the next round; as they were, if it was computed before."""
+        path, results = round_folder(self.folder, self.number), None
+        with self._stopping():
+            if self.between.requested():
+                raise CampaignInterrupted("between rounds")
+            if self.who is None and not (path / NAME).exists():
+                raise CampaignIncompleteError(f"{path} is missing; go on with: {resume(self.folder)}")
+            campaign = opened(path, histories, self.chunk)
+            if self.who is not None:
+                with suppress(CampaignDamagedError):  # what is damaged is set aside, said, and computed again
+                    results = campaign.results(*NEEDED) if campaign.status(verify=False).complete else None
+                if results is None:
+                    self.advance(campaign)
+            results = results or campaign.results(*NEEDED)
+        self.number += 1
+        self.histories += histories.count
+        return results
 
     def advance(self, campaign: Campaign) -> None:
         """Compute what is missing of a round."""
@@ -155,7 +139,7 @@ class Rounds:
         alone = {"executor": "serial", "workers": 1, "start_method": None} if campaign.plan.chunks == 1 else {}
         self.between.__exit__()  # within a round Ctrl-C and SIGTERM are its campaign's, which knows how to stop
         if self.between.requested():
-            raise CampaignInterrupted("between rounds")  # said in other words by whoever counts them
+            raise CampaignInterrupted("between rounds")
         self.done.append(campaign.run(**({"executor": self.who} | self.how | alone)))
         self.between = Interruption().__enter__()
 
@@ -168,20 +152,21 @@ class Rounds:
         """Note it no longer."""
         self.between.__exit__()
 
-
-@contextmanager
-def _of_the_job(folder: Path, number: int) -> Iterator[None]:
-    """Say what stops a round in words of the job: its user knows that folder, and no other."""
-    try:
-        with way_out(folder, number):
-            yield
-    except CampaignInterrupted as error:
-        raise CampaignInterrupted(_stopped(folder, number)) from error
-    except CampaignStorageError as error:
-        cause = error.__cause__
-        why = getattr(cause, "strerror", None) or cause or error
-        advice = f"make room or allow writing, then go on with: {resume(folder)}"
-        raise CampaignStorageError(f"{folder}: {why} in round {number + 1}; {disk.NOTHING_LOST}; {advice}") from error
+    @contextmanager
+    def _stopping(self) -> Iterator[None]:
+        """Say what stops a round in words of the job: its user knows that folder, and no other."""
+        folder = self.folder
+        try:
+            with way_out(folder, self.number):
+                yield
+        except CampaignInterrupted as error:
+            stopped = f"{folder}: stopped in round {self.number + 1}; {disk.NOTHING_LOST}"
+            raise CampaignInterrupted(f"{stopped}; go on with: {resume(folder)}") from error
+        except CampaignStorageError as error:
+            cause = error.__cause__
+            why = f"{getattr(cause, 'strerror', None) or cause or error} in round {self.number + 1}"
+            advice = f"make room or allow writing, then go on with: {resume(folder)}"
+            raise CampaignStorageError(f"{folder}: {why}; {disk.NOTHING_LOST}; {advice}") from error
 
 
 def opened(path: Path, histories: Histories, chunk: int | None) -> Campaign:
@@ -211,7 +196,12 @@ def run_rounds(
     workers: int | None = None, progress: Callable[[Progress], object] | None = None, **options: Any,
 ) -> Summary:  # fmt: skip
     """Compute what is missing of all rounds, read the others, and return what was done in the former."""
-    _check(executor, workers, search, options.get("start_method"))
+    who = chosen(executor, workers, options.get("start_method"))
+    if isinstance(executor, Executor):  # one that cannot compute is refused, also where no round is sent to it
+        histories = first_round(search)
+        plan = Identity.of(histories).plan
+        task = WorkerTask(histories, plan.engine, plan.software, Path(SHARDS))
+        assert not list(who.run(task, iter(()), bool, lambda *_: None))
     rounds = Rounds(folder, chunk, executor, workers=workers, progress=progress, **options)
     with ExitStack() as stack:
         with disk.guarded(folder):
@@ -222,19 +212,4 @@ def run_rounds(
         with disk.guarded(folder):
             disk.write_new(folder / FINISHED, (json.dumps(rounds.counts, indent=1) + "\n").encode())
     nothing = Summary(0, 0, 0, (), (), 0)
-    return _summed([nothing, *rounds.done], "computed", "resumed", "adopted", "set_aside", "retries", "seconds")
-
-
-def _check(executor: str | Executor, workers: int | None, search: Search, start_method: str | None) -> None:
-    """Refuse an executor that cannot compute, also where every round is of one chunk and none would be sent to it."""
-    who = chosen(executor, workers, start_method)
-    if isinstance(executor, Executor):
-        histories = first_round(search)
-        plan = Identity.of(histories).plan
-        task = WorkerTask(histories, plan.engine, plan.software, Path(SHARDS))
-        nothing = list(who.run(task, iter(()), bool, lambda *_: None))
-        assert not nothing
-
-
-def _stopped(folder: Path, number: int) -> str:
-    return f"{folder}: stopped in round {number + 1}; {disk.NOTHING_LOST}; go on with: {resume(folder)}"
+    return summed([nothing, *rounds.done], "computed", "resumed", "adopted", "set_aside", "retries", "seconds")

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -40,12 +41,13 @@ def text() -> Callable[..., str]:
     return text_of
 
 
-@pytest.fixture
-def finished(tmp_path: Path) -> Callable[..., JobFolder]:
-    """Campaign of a small job that is through."""
+@pytest.fixture(scope="session")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., JobFolder]:
+    """Campaign of a small job that is through; computed once, not to be changed."""
 
+    @cache
     def make(kind: str, chunk: int | None = None, words: str | None = None) -> JobFolder:
-        folder = JobFolder.create(tmp_path / f"{kind}-{chunk}", Job.of_text(words or text_of(kind, chunk)))
+        folder = JobFolder.create(tmp_path_factory.mktemp(kind) / "c", Job.of_text(words or text_of(kind, chunk)))
         folder.campaign.run(workers=1)
         return folder
 

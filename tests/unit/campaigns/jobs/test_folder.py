@@ -1,5 +1,6 @@
 """The folder of a campaign, its inputs and models in the user's own files: what is refused, and how it goes on."""
 
+import hashlib
 import json
 import pickle
 import subprocess
@@ -129,9 +130,12 @@ def test_changed_copy_is_refused(job, tmp_path):
         with pytest.raises(CampaignDamagedError, match=r"job\.toml has changed since the campaign began; restore it"):
             ask(tmp_path / "c")
     noted = tmp_path / "c" / "inputs.json"
+    assert json.loads(noted.read_text())["job_sha256"] == hashlib.sha256(folder.job.text.encode()).hexdigest()
     noted.write_text(json.dumps({k: v for k, v in json.loads(noted.read_text()).items() if k != "job_sha256"}))
     with pytest.raises(CampaignMismatchError, match=r"this campaign is of other histories: content\.scales"):
         _ = JobFolder.open(tmp_path / "c").campaign
+    copy.write_text(folder.job.text)
+    assert JobFolder.open(tmp_path / "c").campaign.plan == folder.campaign.plan
 
 
 def test_forecast(job, tmp_path):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from campaign_jobs import flip
 
 from rocking.campaigns import CampaignDamagedError, CampaignIncompleteError
 from rocking.campaigns.jobs import Job, JobFolder, assessment, export
@@ -97,9 +98,7 @@ def test_unfinished_and_damaged(job, tmp_path):
     folder.run(workers=1)
     before = as_plain(assessment(folder))
     shard = sorted((tmp_path / "c" / "histories" / "shards").glob("*.shard"))[3]
-    data = bytearray(shard.read_bytes())
-    data[-40] ^= 1
-    shard.write_bytes(bytes(data))
+    flip(shard, -8 * 40)
     with pytest.raises(CampaignDamagedError):
         assessment(folder)
     assert len(folder.run(workers=1).set_aside) == 1

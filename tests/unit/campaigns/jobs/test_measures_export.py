@@ -12,8 +12,8 @@ from scipy.io import loadmat
 
 import rocking as rk
 from rocking.campaigns import CampaignIncompleteError, CampaignInterrupted
-from rocking.campaigns.jobs import Job, JobFolder, analyses, export, exports_of, measure_comparison
-from rocking.campaigns.jobs.exporting import measures_table
+from rocking.campaigns.jobs import Job, JobFolder, analyses, export, measure_comparison
+from rocking.campaigns.jobs.exporting import exports_of, measures_table
 from rocking.errors import InvalidValueError
 from rocking.studies import SyntheticSet, cloud, compare_measures
 

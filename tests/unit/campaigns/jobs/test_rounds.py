@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from campaign_jobs import BODY, PULSE, finished, job, search
+from campaign_jobs import BODY, PULSE, digests, finished, flip, job, search
 
 import rocking as rk
 from rocking import conventions
@@ -70,15 +70,6 @@ def same_sheets(found, wanted):
         for column, each in sheet.columns.items():
             values = found.tables[name].columns[column].values
             assert np.array_equal(values, each.values, equal_nan=each.values.dtype.kind == "f"), column
-
-
-def digests(folder):
-    """Keys and hashes of the results of all rounds."""
-    from rocking.campaigns import reading
-    from rocking.campaigns.identity import Identity
-
-    plans = {path.name: (path, Identity.read(path).plan) for path in sorted(folder.path.glob("round-*"))}
-    return {name: (plan.key, reading.digest(reading.pieces(path, plan))) for name, (path, plan) in plans.items()}
 
 
 @pytest.mark.parametrize("by", ["verdict", "mode"])
@@ -190,6 +181,7 @@ FORKED = {"executor": "processes", "workers": 2, "start_method": "fork"}
         ("map", 7, {"workers": 2}),
         ("map", 7, FORKED),
         ("map", 64, {"workers": 2}),
+        ("minimum", 1, {"workers": 1, "order_seed": 3}),
         ("minimum", 23, FORKED),
         ("minimum", 1000, {"workers": 2}),
     ],
@@ -269,10 +261,7 @@ def test_altered_round_is_seen(whole, tmp_path):
     """Negative control: a byte of an inner round changed. Exports refuse it; a run computes it again and says so."""
     shutil.copytree(whole["map"].path, tmp_path / "c")
     folder = JobFolder(tmp_path / "c", whole["map"].job)
-    shard = next((tmp_path / "c" / "round-002" / "shards").glob("*.shard"))
-    data = bytearray(shard.read_bytes())
-    data[len(data) // 2] ^= 1
-    shard.write_bytes(bytes(data))
+    flip(next((tmp_path / "c" / "round-002" / "shards").glob("*.shard")), 8 * 600)
     with pytest.raises(CampaignDamagedError, match="round-002"):
         answer(folder)
     with pytest.raises(CampaignDamagedError, match="round-002"):

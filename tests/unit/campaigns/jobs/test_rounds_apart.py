@@ -1,14 +1,12 @@
 """Rounds under other executors, and what is said where a round stops, is damaged, or is not the last."""
 
 import errno
-import hashlib
-import json
 import os
 import sqlite3
 
 import numpy as np
 import pytest
-from campaign_jobs import BODY, PULSE, axes, finished, job
+from campaign_jobs import BODY, PULSE, axes, digests, finished, job
 
 from rocking.campaigns import (
     CampaignDamagedError,
@@ -18,9 +16,7 @@ from rocking.campaigns import (
     CampaignWorkerError,
     DaskExecutor,
     Serial,
-    reading,
 )
-from rocking.campaigns.identity import Identity
 from rocking.campaigns.jobs import Job, JobFolder, answer, export, forecast, rounds, status_of, verified
 from rocking.errors import InvalidValueError
 from rocking.studies.adaptive_grid import absent, merged
@@ -35,12 +31,6 @@ SMALL = MAP.replace("count = 50", "count = 4").replace("refine = 0", "refine = 1
 def begun(path, words=SMALL):
     """A campaign of which nothing is computed."""
     return JobFolder.create(path, Job.of_text(words))
-
-
-def digests(folder):
-    """Hashes of the results of all rounds."""
-    paths = sorted(folder.path.glob("round-*"))
-    return [reading.digest(reading.pieces(path, Identity.read(path).plan)) for path in paths]
 
 
 @pytest.fixture(scope="module")
@@ -150,22 +140,6 @@ def test_damaged_round_and_its_way_out(tmp_path):
     inner.rmdir()
     assert JobFolder.open(folder.path).run(workers=1).computed == 1
     assert digests(folder) == before
-
-
-def test_changed_job_is_named(tmp_path):
-    """The job in the folder edited: said of it, and not of hashes; folders without its hash open as before."""
-    folder = begun(tmp_path / "c")
-    path = folder.path / "job.toml"
-    path.write_text(path.read_text().replace("height = 2.0", "height = 2.1"))
-    with pytest.raises(CampaignDamagedError, match=r"job\.toml has changed since the campaign began; restore it"):
-        JobFolder.open(folder.path)
-    path.write_text(SMALL)
-    assert JobFolder.open(folder.path).job.text == SMALL
-    noted = folder.path / "inputs.json"
-    content = json.loads(noted.read_text())
-    assert content.pop("job_sha256") == hashlib.sha256(SMALL.encode()).hexdigest()
-    noted.write_text(json.dumps(content))
-    assert JobFolder.open(folder.path).job.text == SMALL
 
 
 def test_forecast_of_later_rounds(whole):

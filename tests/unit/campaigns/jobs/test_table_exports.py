@@ -11,7 +11,8 @@ from scipy.io import loadmat
 
 import rocking as rk
 from rocking import conventions
-from rocking.campaigns.jobs import comparison, export, exports_of
+from rocking.campaigns.jobs import comparison, export
+from rocking.campaigns.jobs.exporting import exports_of
 from rocking.errors import InvalidValueError
 from rocking.studies import map_sensitivity
 from rocking.tables import Column, Table, add_to_netcdf, text_array, to_mat

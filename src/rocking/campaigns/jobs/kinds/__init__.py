@@ -3,10 +3,9 @@
 from collections.abc import Callable
 
 from rocking.campaigns.jobs.kinds.fragility import fragility_study
-from rocking.campaigns.jobs.kinds.inventory import inventory_study
 from rocking.campaigns.jobs.kinds.maps import map_study
 from rocking.campaigns.jobs.kinds.minimum import minimum_study
-from rocking.campaigns.jobs.kinds.products import product_study, spectrum_study
+from rocking.campaigns.jobs.kinds.products import inventory_study, product_study, spectrum_study
 from rocking.campaigns.jobs.study import Study
 from rocking.spec.document import NEEDS
 from rocking.spec.study import StudyProblem

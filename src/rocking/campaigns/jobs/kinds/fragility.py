@@ -44,7 +44,9 @@ def fragility_study(problem: StudyProblem) -> Study:
     exports: tuple[str, ...] = ("histories", *ANALYSES)
     with located("fragility"):
         plans = {label: _plan(table, problem, restitution) for label, restitution in problem.restitutions.items()}
-        merged = _merged([product for product, _ in plans.values()])
+        products = [product for product, _ in plans.values()]  # the same but for their sides
+        sides = {n: np.concatenate([each.sides[n] for each in products], axis=1) for n in products[0].sides}
+        merged = replace(products[0], sides=sides)
     if problem.document.campaign.kind == "cloud":
         exports = (*exports, MEASURES)
         with located("export"):
@@ -93,12 +95,6 @@ def _plan(table: FragilityTable, problem: StudyProblem, restitution: Any) -> tup
     return incremental_dynamic_plan(
         body, motions, table.levels.numbers(), restitution, **(how | {"tolerance": tolerance})
     )
-
-
-def _merged(products: list[Product]) -> Product:
-    """Return one product of all restitutions; everything else of them is the same."""
-    sides = {name: np.concatenate([p.sides[name] for p in products], axis=1) for name in products[0].sides}
-    return replace(products[0], sides=sides)
 
 
 def measures_of(document: CampaignDocument) -> list[str]:

@@ -1,14 +1,14 @@
 """Overturning maps as campaigns: their histories piece by piece, and their boundaries in rounds."""
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from rocking import quantities
-from rocking.campaigns.jobs.adaptive import AdaptiveResult, Compute, DelegatedQuestion
-from rocking.campaigns.jobs.study import Study, along, labels_along
+from rocking.campaigns.jobs.study import AdaptiveResult, Compute, DelegatedQuestion, Study, along, labels_along
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.content import hash_of
 from rocking.dynamics.parameters import sides_of
@@ -84,14 +84,12 @@ class MapHistories(Histories):
     def of(cls, planes: list[Plane]) -> "MapHistories":
         """Return the histories of a map."""
         question = planes[0].question
-        made = cls(
-            MotionList([question.motion]), tuple(planes),
-            law=question.law, settings=question.settings, engine=question.engine,
-        )  # fmt: skip
+        how: dict[str, Any] = {"law": question.law, "settings": question.settings, "engine": question.engine}
+        histories = cls(MotionList([question.motion]), tuple(planes), **how)
         for number, plane in enumerate(planes):
             # a map none of whose bodies can be made is refused as a whole; single cells of others are not
-            plane.case(*made._points(made._probes(number)))
-        return made
+            plane.case(*histories._points(histories._probes(number)))
+        return histories
 
     @property
     def cells(self) -> int:
@@ -139,20 +137,18 @@ class MapHistories(Histories):
 
     def _values(self, numbers: np.ndarray) -> tuple[dict[str, FloatArray], FloatArray]:
         """Return what the engine takes of histories, and how their motion is stretched."""
-        pieces = [self._of_plane(plane, numbers[numbers // self.cells == k]) for k, plane in enumerate(self.planes)]
-        values = {name: np.concatenate([each[name] for each, _ in pieces]) for name in pieces[0][0]}
-        return values, np.concatenate([stretch for _, stretch in pieces])
-
-    def _of_plane(self, plane: Plane, numbers: np.ndarray) -> tuple[dict[str, FloatArray], FloatArray]:
-        if not numbers.size:
-            sides = {name: values[:0] for name, values in sides_of([None]).items()}
-            return {**sides, "scale": np.empty(0)}, np.empty(0)
-        try:
-            case = plane.case(*self._points(numbers))
-        except InvalidValueError:  # none of these bodies can be made
-            sides = {name: np.full(numbers.size, np.nan) for name in sides_of([None])}
-            return {**sides, "scale": np.ones(numbers.size)}, np.ones(numbers.size)
-        return case.values, case.stretch
+        names = [*sides_of([None]), "scale"]
+        values, stretch = {name: np.full(numbers.size, np.nan) for name in names}, np.ones(numbers.size)
+        values["scale"][:] = 1.0
+        for k, plane in enumerate(self.planes):
+            own = numbers // self.cells == k
+            if own.any():
+                with suppress(InvalidValueError):  # none of these bodies can be made
+                    case = plane.case(*self._points(numbers[own]))
+                    stretch[own] = case.stretch
+                    for name in names:
+                        values[name][own] = case.values[name]
+        return values, stretch
 
 
 @dataclass(frozen=True)
@@ -223,13 +219,13 @@ def _points(points: RefinedMap, plane: Plane) -> Table:
     mode, ratio = QUANTITIES["mode"], QUANTITIES["peak_ratio"]
     base, meaning = points.base.astype(np.int64), "1 for points of the map itself, 0 for new ones"
     columns = {
-        x.name: Column(points.x, x.unit, x.words, "refined_x"),
-        y.name: Column(points.y, y.unit, y.words, "refined_y"),
-        "mode": Column(points.modes, mode.unit, mode.meaning, "refined_mode"),
-        "peak_ratio": Column(points.peak_ratio, ratio.unit, ratio.meaning, "refined_peak_ratio"),
-        "base": Column(base, "1", meaning, "refined_base"),
+        "x": (x.name, points.x, x.unit, x.words),
+        "y": (y.name, points.y, y.unit, y.words),
+        "mode": ("mode", points.modes, mode.unit, mode.meaning),
+        "peak_ratio": ("peak_ratio", points.peak_ratio, ratio.unit, ratio.meaning),
+        "base": ("base", base, "1", meaning),
     }
-    return Table("point", columns)
+    return Table("point", _columns("refined", columns))
 
 
 def _vertices(lines: list[Polyline], plane: Plane) -> Table:
@@ -237,17 +233,23 @@ def _vertices(lines: list[Polyline], plane: Plane) -> Table:
     sizes = [len(line.points) for line in lines]
     points = np.concatenate([np.empty((0, 2)), *(line.points for line in lines)])
     modes = np.concatenate([np.empty((0, 2), np.int64), *(line.modes for line in lines)])
-    number = np.repeat(np.arange(len(lines)), sizes)
     closed = np.repeat(np.array([line.closed for line in lines], np.int64), sizes)
     regions = text_array([line.region for line in lines for _ in line.points])
     unit, meaning = QUANTITIES["mode"].unit, QUANTITIES["mode"].meaning
     columns = {
-        "line": Column(number, "1", "number of the polyline", "boundary_line"),
-        "region": Column(regions, "1", "what lies inside", "boundary_region"),
-        "closed": Column(closed, "1", "1 if the polyline ends where it starts", "boundary_closed"),
-        x.name: Column(points[:, 0], x.unit, x.words, "boundary_x"),
-        y.name: Column(points[:, 1], y.unit, y.words, "boundary_y"),
-        "mode_outside": Column(modes[:, 0], unit, f"outside: {meaning}", "boundary_mode_outside"),
-        "mode_inside": Column(modes[:, 1], unit, f"inside: {meaning}", "boundary_mode_inside"),
+        "line": ("line", np.repeat(np.arange(len(lines)), sizes), "1", "number of the polyline"),
+        "region": ("region", regions, "1", "what lies inside"),
+        "closed": ("closed", closed, "1", "1 if the polyline ends where it starts"),
+        "x": (x.name, points[:, 0], x.unit, x.words),
+        "y": (y.name, points[:, 1], y.unit, y.words),
+        "mode_outside": ("mode_outside", modes[:, 0], unit, f"outside: {meaning}"),
+        "mode_inside": ("mode_inside", modes[:, 1], unit, f"inside: {meaning}"),
     }
-    return Table("vertex", columns)
+    return Table("vertex", _columns("boundary", columns))
+
+
+def _columns(prefix: str, columns: dict[str, tuple[str, np.ndarray, str, str]]) -> dict[str, Column]:
+    """Return columns of name, values, unit and meaning, each under a name by which all tables fit into one file."""
+    return {
+        name: Column(values, unit, meaning, f"{prefix}_{key}") for key, (name, values, unit, meaning) in columns.items()
+    }

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking.campaigns.jobs.adaptive import AdaptiveResult, Compute, NumberedTable, first_round
-from rocking.campaigns.jobs.study import Study, along, labels_along
+from rocking.campaigns.jobs.study import AdaptiveResult, Compute, NumberedTable, Study, along, first_round, labels_along
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, sides_of
@@ -54,7 +53,9 @@ _CROSSING = {
 def minimum_study(problem: StudyProblem) -> Study:
     """Return the study of minimum accelerations: its first samples, over motion, restitution, body and point."""
     table = problem.document.minimum or MinimumTable()
-    motions, settings = _held(problem), problem.settings
+    if len(problem.motions) > MOST_IN_MEMORY:
+        raise InvalidValueError(f"motions: there may be up to {MOST_IN_MEMORY}, got {len(problem.motions)}")
+    motions, settings = MotionList([problem.motions[k] for k in range(len(problem.motions))]), problem.settings
     with located("body"):
         parameters = [
             [RockingParameters.of_body(b, restitution, settings.gravity) for b in problem.bodies]
@@ -87,12 +88,6 @@ def minimum_study(problem: StudyProblem) -> Study:
     }
     exports = ("crossings", "minima", "histories")
     return Study(first_round(search), dims, coordinates, attributes, exports, search=search)
-
-
-def _held(problem: StudyProblem) -> MotionList:
-    if len(problem.motions) > MOST_IN_MEMORY:
-        raise InvalidValueError(f"motions: there may be up to {MOST_IN_MEMORY}, got {len(problem.motions)}")
-    return MotionList([problem.motions[k] for k in range(len(problem.motions))])
 
 
 @dataclass(frozen=True)
@@ -137,14 +132,12 @@ def tables_of(
 ) -> dict[str, Table]:  # fmt: skip
     """Return ``minima``, a table with a row for each case, and ``crossings``, with a row for each crossing."""
     rows = [_row(each, cases, effort, k) for k, each in enumerate(crossings)]
-    numbers = {
-        name: Column(np.array([row[name] for row in rows], np.float64), unit, meaning)
-        for name, (unit, meaning) in _NUMBERS.items()
-    }
-    counts = {
-        name: Column(np.array([row[name] for row in rows], np.int64), "1", meaning) for name, meaning in _COUNTS.items()
-    }
-    minima = Table("case", _prefixed("case", _places(np.arange(len(crossings)), shape, names) | numbers | counts))
+    columns = _places(np.arange(len(crossings)), shape, names)
+    described = _NUMBERS | {name: ("1", meaning) for name, meaning in _COUNTS.items()}
+    for name, (unit, meaning) in described.items():
+        values = np.array([row[name] for row in rows], np.int64 if name in _COUNTS else np.float64)
+        columns[name] = Column(values, unit, meaning)
+    minima = Table("case", _prefixed("case", columns))
     known = [(k, each) for k, each in enumerate(crossings) if each is not None and len(each)]
     case = np.repeat(np.array([k for k, _ in known], np.int64), [len(each) for _, each in known])
     columns = _places(case, shape, names)

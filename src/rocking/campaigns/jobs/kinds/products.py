@@ -1,21 +1,23 @@
-"""Rocking spectra, and every motion with every body, scale and restitution, as campaigns."""
+"""Rocking spectra, inventories, and every motion with every body, scale and restitution, as campaigns."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from rocking import checks
 from rocking.bodies import Block, Body
 from rocking.campaigns.jobs.study import Study, along, labels_along, motions_along
-from rocking.conventions import FloatArray
-from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
+from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.errors import InvalidValueError
 from rocking.spec.document import HistoriesTable
-from rocking.spec.fields import Values
 from rocking.spec.reading import located
-from rocking.spec.study import StudyProblem
-from rocking.studies.histories import Histories, Product
+from rocking.spec.study import StudyProblem, inventory_of
+from rocking.studies.histories import Product
+from rocking.studies.inventory.assessment import assessment_plan
+from rocking.studies.inventory.objects import DIRECTIONS
+from rocking.studies.motion_sets import MotionList
 from rocking.studies.sensitivity.restitutions import sampled
 from rocking.tables import Column
 
@@ -26,19 +28,21 @@ def spectrum_study(problem: StudyProblem) -> Study:
     """Return the study of rocking spectra: over motion, slenderness angle and period, and several restitutions."""
     table = problem.document.spectrum
     assert table is not None  # the document refuses to be without
-    angles = _row("spectrum.slenderness_angles", table.slenderness_angles, "rad")
-    times = _row("spectrum.periods", table.periods, "s")
+    angles = checks.positive_array("spectrum.slenderness_angles", table.slenderness_angles.numbers(), "rad")
+    times = checks.positive_array("spectrum.periods", table.periods.numbers(), "s")
+    for name, row in (("slenderness_angles", angles), ("periods", times)):
+        if np.any(np.diff(row) <= 0.0):
+            raise InvalidValueError(f"spectrum.{name} must increase from value to value")
     scale = checks.within("spectrum.scale", table.scale, -1e6, 1e6)
     if times.max() > _LONGEST:  # its square would be beyond all numbers
         raise InvalidValueError(f"spectrum.periods must be up to {_LONGEST:g} s, got {times.max():g}")
-    sizes = 0.75 * problem.settings.gravity * (0.5 * times / np.pi) ** 2
+    sizes = 0.75 * problem.settings.gravity * (0.5 * times / np.pi) ** 2  # Eq. 180
     with located("spectrum"):
         blocks = [Block.from_angle(float(alpha), float(size)) for alpha in angles for size in sizes]
-        sides, law = _sides(blocks, problem)
+        product, attributes = _product(problem, blocks, np.array([scale]))
     dims = {"motion": len(problem.motions), "slenderness_angle": angles.size, "period": times.size}
     # a law changes it from impact to impact: there is no one coefficient to tell
-    coefficient = np.where(isinstance(law, ConstantRestitution), sides["r_right"], np.nan)
-    coefficient = coefficient.reshape(angles.size, times.size, len(problem.restitutions))
+    coefficient = np.where(isinstance(product.law, ConstantRestitution), product.sides["r_right"], np.nan)
     coordinates = {
         "motion": motions_along(problem.motions),
         "slenderness_angle": along("slenderness_angle", angles, "rad", "slenderness angle"),
@@ -48,10 +52,13 @@ def spectrum_study(problem: StudyProblem) -> Study:
     if len(problem.restitutions) > 1:
         dims["restitution"] = len(problem.restitutions)
         coordinates["restitution"] = labels_along("restitution", problem.restitutions, "restitution")
-    else:
-        coefficient = coefficient[..., 0]
+    coefficient = coefficient.reshape([*dims.values()][1:])
     coordinates["coefficient"] = Column(coefficient, "1", "coefficient of restitution", dims=tuple(dims)[1:])
-    return Study(_product(problem, sides, np.array([scale]), law), dims, coordinates, {"scale": scale})
+    attributes["scale"] = scale
+    if isinstance(problem.motions, MotionList):
+        hashes = (item["sha256"] for item in problem.motions.description()["motions"])
+        attributes["motion_sha256"] = "; ".join(hashes)
+    return Study(sampled(product), dims, coordinates, attributes)
 
 
 def product_study(problem: StudyProblem) -> Study:
@@ -61,39 +68,60 @@ def product_study(problem: StudyProblem) -> Study:
     if bad.size:
         raise InvalidValueError(f"histories.scales must be within 1e6, got {scales[bad[0]]:g} at index {bad[0]}")
     with located("body"):
-        sides, law = _sides(problem.bodies, problem)
+        product, attributes = _product(problem, problem.bodies, scales)
+    angle, frequency = product.sides["alpha_right"][:, 0], product.sides["p_right"][:, 0]
+    motions = problem.motions
     coordinates = {
-        "motion": motions_along(problem.motions),
+        "motion": motions_along(motions),
         "body": along("body", np.arange(len(problem.bodies)), "1", "number of the body in the job"),
         "scale": along("scale", scales, "1", "factor on the motion"),
         "restitution": labels_along("restitution", problem.restitutions, "restitution"),
-        "slenderness_angle": along("body", sides["alpha_right"][:, 0], "rad", "slenderness angle of the right side"),
-        "frequency_parameter": along("body", sides["p_right"][:, 0], "rad/s", "frequency parameter of the right side"),
+        "slenderness_angle": along("body", angle, "rad", "slenderness angle of the right side"),
+        "frequency_parameter": along("body", frequency, "rad/s", "frequency parameter of the right side"),
     }
-    sizes = (len(problem.motions), len(problem.bodies), scales.size, len(problem.restitutions))
+    if isinstance(motions, MotionList):
+        sources = ("; ".join(getattr(motions[k], "provenance", ())) or repr(motions[k]) for k in range(len(motions)))
+        coordinates["motion_provenance"] = labels_along("motion", sources, "where the motion comes from")
+    sizes = (len(motions), len(problem.bodies), scales.size, len(problem.restitutions))
     dims = dict(zip(("motion", "body", "scale", "restitution"), sizes, strict=True))
-    attributes = {"bodies": "; ".join(repr(body) for body in problem.bodies)[:4000]}
-    return Study(_product(problem, sides, scales, law), dims, coordinates, attributes)
+    attributes["bodies"] = "; ".join(repr(body) for body in problem.bodies)[:4000]
+    return Study(sampled(product), dims, coordinates, attributes)
 
 
-def _product(problem: StudyProblem, sides: dict[str, FloatArray], scales: FloatArray, law: ImpactLaw) -> Histories:
-    engine = problem.document.settings.engine
-    return sampled(Product(problem.motions, sides, scales, law=law, settings=problem.settings, engine=engine))
+def inventory_study(problem: StudyProblem) -> Study:
+    """Return the study of an inventory.
+
+    Returns over motion, object, direction and the model of impact: the one asked for and the one beside it.
+    """
+    objects, motions, limits = inventory_of(problem)
+    hazard = motions(None)
+    with located("inventory"):
+        product, finish, items = assessment_plan(
+            objects, hazard, restitution=problem.restitution, thresholds=limits, gravity=problem.settings.gravity
+        )
+    dims = dict(
+        zip(("motion", "object", "direction", "restitution"), (len(hazard.motions), len(items), 2, 2), strict=True)
+    )
+    coordinates = {
+        "motion": motions_along(product.motions),
+        "object": labels_along("object", (item.name for item in items), "name of the object"),
+        "row": along("object", [item.row for item in items], "1", "line of the object in its file"),
+        "direction": labels_along("direction", DIRECTIONS, "direction of the shaking"),
+        "restitution": labels_along("restitution", ("asked", "compared"), "model of impact"),
+    }
+    attributes = {"shaking": hazard.words(), "hazard": hazard.source, "objects": objects.source}
+    return Study(product, dims, coordinates, attributes, assess=finish)
 
 
-def _sides(bodies: Sequence[Body], problem: StudyProblem) -> tuple[dict[str, FloatArray], ImpactLaw]:
-    """Return the sides of bodies with every restitution, shape (bodies, restitutions), and the law of impacts."""
-    gravity = problem.settings.gravity
-    parameters = [
-        [RockingParameters.of_body(body, restitution, gravity) for body in bodies]
-        for restitution in problem.restitutions.values()
-    ]
+def _product(problem: StudyProblem, bodies: Sequence[Body], scales: np.ndarray) -> tuple[Product, dict[str, Any]]:
+    """Return bodies with every motion, scale and restitution, and what a Python call says of such a study."""
+    settings, restitutions = problem.settings, list(problem.restitutions.values())
+    parameters = [[RockingParameters.of_body(body, each, settings.gravity) for body in bodies] for each in restitutions]
     columns = [sides_of(row) for row in parameters]
-    return {name: np.stack([column[name] for column in columns], axis=-1) for name in columns[0]}, parameters[0][0].law
-
-
-def _row(where: str, table: Values, unit: str) -> FloatArray:
-    values = checks.positive_array(where, table.numbers(), unit)
-    if np.any(np.diff(values) <= 0.0):
-        raise InvalidValueError(f"{where} must increase from value to value")
-    return values
+    sides = {name: np.stack([column[name] for column in columns], axis=-1) for name in columns[0]}
+    law, engine = parameters[0][0].law, problem.document.settings.engine
+    stated = {f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in settings.stated.items()}
+    attributes = {"seed": int(getattr(law, "seed", 0)), **stated}
+    if len(restitutions) == 1:
+        attributes["restitution"] = parameters[0][0].label
+    return Product(problem.motions, sides, scales, law=law, settings=settings, engine=engine), attributes
