@@ -106,11 +106,11 @@ def export(
     out: Annotated[
         list[str],
         typer.Option(
-            help="File, again for more: .nc, .parquet, .csv, .mat or .xlsx; .xml for NRML; of an inventory .html, "
-            ".pdf, .xlsx, .csv, .json, or a folder for all. It holds what suits the kind; WHAT=FILE says which: "
-            "histories; of fragility campaigns fragility, fragility-points, fema-p58 (.csv); of refined maps refined, "
-            "boundary; of minimum accelerations crossings, minima; of inventories report; of clouds measures; of "
-            "several restitutions flips, differences."
+            help="File, again for more: .nc, .parquet, .csv, .mat or .xlsx; .xml for NRML; .png, .svg or .pdf for a "
+            "picture; of an inventory .html, .pdf, .xlsx, .csv, .json, or a folder for all. It holds what suits the "
+            "kind; WHAT=FILE says which: histories; picture; of fragility campaigns fragility, fragility-points, "
+            "fema-p58 (.csv); of refined maps refined, boundary; of minimum accelerations crossings, minima; of "
+            "inventories report; of clouds measures; of several restitutions flips, differences."
         ),
     ],
     restitution: Annotated[
