@@ -134,8 +134,8 @@ def _housner_correlates_as_well(tables: dict[str, DataSet]) -> tuple[str, bool]:
         pairs.append(
             tuple(correlation(model.of_slenderness(data.slenderness), data.coefficient) for model in (Housner(), Ked()))
         )
-    words = ", ".join(f"{housner:.4f} / {ked:.4f}" for housner, ked in pairs)
-    return f"Housner / KED for Table 2, S, M, L: {words}", (
+    correlations = ", ".join(f"{housner:.4f} / {ked:.4f}" for housner, ked in pairs)
+    return f"Housner / KED for Table 2, S, M, L: {correlations}", (
         all(abs(housner - ked) < 0.005 for housner, ked in pairs) and all(h > k for h, k in pairs[1:])
     )
 

@@ -194,10 +194,10 @@ def restitution_distribution(
     outside = not all(low <= known.side(foot).slenderness_ratio <= high for foot in FEET)
     bounds = {foot: energy_bound(known, foot) for foot in FEET}
     feet = (onto,) if known.is_symmetric else FEET
-    found = {foot: _truncated(posterior, ImpactGeometry.of_body(known, foot), bounds[foot]) for foot in feet}
-    for foot, (_, cut) in found.items():
+    truncated = {foot: _truncated(posterior, ImpactGeometry.of_body(known, foot), bounds[foot]) for foot in feet}
+    for foot, (_, cut) in truncated.items():
         plausibility.warn(plausibility.of_truncation(cut, foot, bounds[foot]))
-    both = {foot: found.get(foot, found[onto]) for foot in FEET}
+    both = {foot: truncated.get(foot, truncated[onto]) for foot in FEET}
     tables, cuts = {foot: both[foot][0] for foot in FEET}, {foot: both[foot][1] for foot in FEET}
     return RestitutionDistribution(tables, cuts, bounds, onto, outside)
 

@@ -67,7 +67,7 @@ class Comparison:
 
     def sentence(self, one: str, other: str) -> str:
         """Return the outcome in words."""
-        told = (
+        numbers = (
             f"{self.first:.4f} for {one} against {self.second:.4f} for {other}, difference "
             f"{self.first - self.second:+.4f}, 95 % interval {self.low:+.4f} to {self.high:+.4f}"
         )
@@ -75,7 +75,7 @@ class Comparison:
         groups = "; ".join(
             f"{'Table 1' if name == 'table1' else name}: {outcome[each.sign]}" for name, each in self.by_group.items()
         )
-        return f"{outcome[self.sign]} ({told}{'; by group: ' if groups else ''}{groups})"
+        return f"{outcome[self.sign]} ({numbers}{'; by group: ' if groups else ''}{groups})"
 
 
 def compare(data: DataSet, one: FloatArray, other: FloatArray, measure: str = "r") -> Comparison:
@@ -100,8 +100,8 @@ def _compared(
         low, high = np.nanquantile(one - other, [0.025, 0.975]).tolist()
     if np.unique(weight, axis=1).shape[1] < _FEWEST:
         low, high = -np.inf, np.inf
-    parts = {name: _compared([each[rows] for each in squares], own, {}) for name, (rows, own) in groups.items()}
-    return Comparison(first, second, low, high, parts)
+    by_group = {name: _compared([each[rows] for each in squares], own, {}) for name, (rows, own) in groups.items()}
+    return Comparison(first, second, low, high, by_group)
 
 
 def errors_of_groups(

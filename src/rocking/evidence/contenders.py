@@ -64,10 +64,10 @@ def family(
         """Find the parameter by bounded least squares."""
         from scipy.optimize import minimize_scalar
 
-        found = minimize_scalar(
+        least = minimize_scalar(
             lambda value: fitted(float(value), data)[1], bounds=ends, method="bounded", options={"xatol": 1e-7}
         )
-        return fitted(float(found.x), data)[0]
+        return fitted(float(least.x), data)[0]
 
     prefix = "eta*" if eta else ""
     return Contender(f"{prefix}{name}({parameter})", (("eta", parameter) if eta else (parameter,)), fit)

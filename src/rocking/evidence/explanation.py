@@ -77,13 +77,13 @@ class Explanation:
 
     def _of_mass(self) -> str:
         shares = self.shares_lost
-        told = ", ".join(f"{100.0 * share:.1f} % ({name})" for name, share in shares.items())
+        losses = ", ".join(f"{100.0 * share:.1f} % ({name})" for name, share in shares.items())
         falls = list(shares.values()) == sorted(shares.values(), reverse=True)
         order = "falls from the lightest group to the heaviest" if falls else "does not follow the mass"
         limits = _listed(list(self.ranked[0].fit.at_a_limit)) if self.ranked[0].fit.at_a_limit else "no parameter"
         return (
-            f"With a factor for each group the energy lost beside the bed is {told}: it {order}. The shape of the bed "
-            f"need not change with mass for that; at the end of its range the best fit has {limits}."
+            f"With a factor for each group the energy lost beside the bed is {losses}: it {order}. The shape of the "
+            f"bed need not change with mass for that; at the end of its range the best fit has {limits}."
         )
 
     def _rivals(self, best: Ranked) -> str:
