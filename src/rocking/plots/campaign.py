@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from rocking.campaigns.jobs import JobFolder, analyses, answer, assessment, comparison
-from rocking.campaigns.jobs.findings import datasets, refuse_unfinished
+from rocking.campaigns.jobs.findings import datasets, label_of, refuse_unfinished
 from rocking.campaigns.jobs.study import TYPES
 from rocking.errors import InvalidValueError
 from rocking.plots.fragility import fragility_picture
@@ -33,8 +33,8 @@ def check_picture(folder: JobFolder, restitution: str | None) -> None:
     kind, labels = folder.job.document.campaign.kind, list(folder.job.problem.restitutions)
     if kind in WITHOUT:
         raise InvalidValueError(f'a campaign of kind "{kind}" has no picture; take its table (.csv, .xlsx, .nc)')
-    if restitution is not None and restitution not in labels:
-        raise InvalidValueError(f"restitution must be one of {', '.join(labels)}, got {restitution!r:.60}")
+    if restitution is not None or kind in {"cloud", "incremental"}:  # of which there is no picture that compares
+        label_of("picture", restitution, labels)
 
 
 def campaign_picture(folder: JobFolder, restitution: str | None = None) -> "Figure":

@@ -302,7 +302,8 @@ def measures_table(ranking: MeasureComparison) -> Table:
 def comparison_table(compared: Sensitivity, what: str) -> Table:
     """Return the ``flips`` of a comparison, or its ``differences`` cell by cell."""
     if what == "flips":
-        return _of_rows("choice", compared.summary(), dict.fromkeys(compared.summary()[0], ""))
+        rows = compared.summary()
+        return _of_rows("choice", rows, {name: "" for row in rows for name in row})
     # analyses call the largest rotation over alpha by its own name
     peak_name = "peak_ratio" if "peak_ratio" in compared.datasets[compared.baseline] else "rotation"
     verdict, peak = compared.differences("verdict"), compared.differences(peak_name)

@@ -76,3 +76,12 @@ def test_search_without_a_result(tmp_path):
     folder = through(tmp_path / "c", OTHERS["nothing computed"])
     with pytest.raises(InvalidValueError, match=r"no history of .*, body \d with restitution 0\.85 has a result"):
         write(folder.path, [str(tmp_path / "a.png")], **NOTHING)
+
+
+def test_which_restitution_is_drawn(finished, tmp_path, text):
+    """Clouds and incremental analyses have a picture of each restitution, and none that compares them."""
+    folder = finished("cloud", None, text("cloud") + TWO_MODELS)
+    with pytest.raises(InvalidValueError, match="restitution must be one of housner, ked: each has a picture of its"):
+        write(folder.path, [str(tmp_path / "a.png")], **NOTHING)
+    write(folder.path, [str(tmp_path / "a.png")], **(NOTHING | {"restitution": "ked"}))
+    assert (tmp_path / "a.png").exists()
