@@ -233,6 +233,7 @@ def test_the_doors_are_open() -> None:
 
 RESPONSE = rk.simulate(BLOCK, PULSE, "housner")
 END = float(RESPONSE.time[-1])
+SLIDING = rk.simulate(BLOCK, PULSE, friction=0.2, duration=END)
 VERTICAL = rk.GroundMotion(np.array([0.0, 3.0, 0.0]), 0.1, vertical=np.array([0.0, 1.0, 0.0]))
 
 
@@ -249,8 +250,11 @@ def test_times_that_are_no_numbers(time: Any) -> None:
 @pytest.mark.parametrize("time", [math.nan, math.inf, [0.1, -math.inf], -1.0, 1e9, -1e-6, END * (1.0 + 1e-6)])
 def test_times_outside_the_response(time: Any) -> None:
     """Times that are not finite or outside the response are refused with its range; the ends may be off by rounding."""
-    with pytest.raises(InvalidValueError, match=r"time must be in \[0, [0-9.]*\] s, where the response is known, got"):
-        RESPONSE.at(time)
+    for response in (RESPONSE, SLIDING):
+        with pytest.raises(
+            InvalidValueError, match=r"time must be in \[0, [0-9.]*\] s, where the response is known, got"
+        ):
+            response.at(time)
     assert RESPONSE.at([-1e-15, END * (1.0 + 1e-15)]).tolist() == [RESPONSE.rotation[0], RESPONSE.rotation[-1]]
 
 

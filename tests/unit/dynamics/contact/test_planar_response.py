@@ -105,13 +105,6 @@ def test_positions_between_samples(rocked):
     assert (around[1, 2] - around[0, 2]) / (2.0 * step) == pytest.approx(rocked.angular_velocity[k], rel=1e-6)
 
 
-def test_times_outside_are_refused(rocked):
-    """Before the start, after the end, and NaN."""
-    for time in (-1.0, 1e3, math.nan):
-        with pytest.raises(InvalidValueError, match="time must be in"):
-            rocked.at(time)
-
-
 def test_impacts_have_impulses_that_press(rocked):
     """Vertical impulses are never negative, friction stays within its cone, losses are positive."""
     impacts = rocked.impacts
