@@ -17,7 +17,14 @@ from rocking.bodies.formats.source import blamed
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.pulse import Motion
 from rocking.spec.construction import body_of, motion_of
-from rocking.spec.document import OneMotionTable, ResponseTables, SettingsTable, check_start
+from rocking.spec.document import (
+    OneMotionTable,
+    ResponseTable,
+    ResponseTables,
+    RestitutionTable,
+    SettingsTable,
+    check_start,
+)
 from rocking.spec.fields import JobTable, Words, refused
 from rocking.spec.response import ResponseProblem, problem_of
 
@@ -243,6 +250,10 @@ class Inputs(ResponseTables):
 
     model_config = _shown(_INPUTS)
 
+    # said once more: the schema tells defaults, which it does not know of a factory
+    restitution: RestitutionTable = RestitutionTable(model="ked")
+    response: ResponseTable = ResponseTable()
+    settings: SettingsTable = SettingsTable()
     body: BodyInput
     motion: MotionInput | None = None
 

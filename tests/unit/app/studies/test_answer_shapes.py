@@ -31,6 +31,7 @@ POINTS = {"units": "m", "mass_points": {"points": [[0, 1], [1, 1], [0.5, 4]], "m
 PULSE = {"pulse": "sine:amplitude=3,period=0.8", "scale": 2.0}
 MODELS = {"models": ["ked", "housner"], "values": [0.8]}
 MOVED = {"body": BLOCK, "motion": PULSE, "restitution": MODELS}
+SHORT = {"body": BLOCK, "motion": {"pulse": "sine:amplitude=12,period=0.4"}, "restitution": {"value": 0.5}}
 FREE = {"body": HOLLOW, "restitution": {"value": 0.9}, "response": {"free": 0.4}}
 SYNTHETIC = {"synthetic": "pulse-like", "seed": 3, "scale": 3.0}
 STUDIES = {
@@ -137,8 +138,9 @@ def test_every_answer_has_the_declared_shape(
     operations = {(method, path) for path, item in script.schema["paths"].items() for method in item}
     assert script.seen == operations, operations - script.seen
     assert len(operations) >= 29
-    refused = sum(_refused_when_damaged(script, place, value) for place, value in script.answers)
-    assert refused > 400
+    kinds = {(place, tuple(value)): value for place, value in script.answers if isinstance(value, dict)}
+    refused = sum(_refused_when_damaged(script, place, value) for (place, _), value in kinds.items())
+    assert refused > 200
 
 
 def _ask_session_and_records(script: Asker) -> None:
@@ -190,13 +192,11 @@ def _take_files(script: Asker, study: str) -> None:
             if "{study}" in path:
                 script.take("GET", path, fill=fill)
             else:
-                script.take("POST", path, fill=fill, json=MOVED)
+                script.take("POST", path, fill=fill, json=SHORT)
 
 
 def _refused_when_damaged(script: Asker, place: tuple[str, str], value: Any) -> int:
     """Return how many damages of an answer were noticed: a key that is not declared, a number that is a text."""
-    if not isinstance(value, dict):
-        return 0
     for key in value:
         text_or_none = value[key] is None or isinstance(value[key], str)
         for other in ({"odd": {"odd": [{}]}}, [0.5] if text_or_none else "odd text"):
