@@ -7,7 +7,9 @@ import pytest
 
 from rocking import Region
 from rocking.bodies.solid import Part, Prism, Solid, divided, voxels
-from rocking.restitution.space import energy_left, impact_in_space, lost_density, unit_energies
+from rocking.restitution.space import impact_in_space, unit_energies
+from rocking.restitution.space.energies import lost_density
+from rocking.restitution.space.ked import energy_left
 
 WIDTH, HEIGHT, PLACE, GROUND = 0.78, 3.0, np.array([104.0, -37.0, 7.5]), 7.5
 

@@ -18,7 +18,8 @@ from rocking.bodies.solid import (
 )
 from rocking.bodies.solid.sampling import gauss_order
 from rocking.bodies.solid.surfaces import TriangleSurface, gauss
-from rocking.restitution.space import energy_left, impact_in_space, unit_energies
+from rocking.restitution.space import impact_in_space, unit_energies
+from rocking.restitution.space.ked import energy_left
 
 BODIES = {
     "box": Solid(box(1.0, 1.0, 4.0)),

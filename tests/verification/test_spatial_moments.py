@@ -12,8 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rocking.bodies.solid import Corner, Edge, Part, Solid, box, cylinder, ellipsoid, frustum, rotation_about
-from rocking.restitution.space import SpatialImpact, SpatialKedPoint, energy_left, impact_in_space, spatial_models
+from rocking.restitution.space import SpatialImpact, SpatialKedPoint, impact_in_space, spatial_models
 from rocking.restitution.space.integrals import edge_frame, kept_moments
+from rocking.restitution.space.ked import energy_left
 
 UP = np.array([0.0, 0.0, 1.0])
 PRISM = Solid(box(1.0, 1.3, 4.0))

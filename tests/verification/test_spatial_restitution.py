@@ -21,8 +21,9 @@ from rocking.bodies.solid import (
     frustum,
     rotation_about,
 )
-from rocking.restitution.space import edge_coefficient, energy_left, impact_in_space, spatial_models
+from rocking.restitution.space import edge_coefficient, impact_in_space, spatial_models
 from rocking.restitution.space.integrals import kept_moments, line_moment
+from rocking.restitution.space.ked import energy_left
 
 PRISM = Solid(Part(box(1.0, 1.0, 4.0)).moved(0.5, 0.5, 0.0))
 MODELS = sorted(spatial_models())

@@ -9,7 +9,8 @@ from rocking.bodies.solid.surfaces import TriangleSurface
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.plots.style import DOUBLE, GREY, INK, SINGLE, in_journal_style, new_figure
-from rocking.restitution.space import SpatialImpact, SpatialRestitution, UnitEnergies, lost_density, unit_energies
+from rocking.restitution.space import SpatialImpact, SpatialRestitution, UnitEnergies, unit_energies
+from rocking.restitution.space.energies import lost_density
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

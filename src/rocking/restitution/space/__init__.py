@@ -1,11 +1,11 @@
 """What an impact costs a body in space: corner to corner, edge to edge, corner to edge."""
 
-from rocking.restitution.space.energies import UnitEnergies, lost_density, unit_energies
+from rocking.restitution.space.energies import UnitEnergies, unit_energies
 from rocking.restitution.space.horizontal_momentum import SpatialHorizontalMomentum
 from rocking.restitution.space.housner import SpatialHousner
 from rocking.restitution.space.impact import SpatialImpact
 from rocking.restitution.space.interface import edge_coefficient, impact_in_space, spatial_model, spatial_models
-from rocking.restitution.space.ked import SpatialKedPoint, energy_left
+from rocking.restitution.space.ked import SpatialKedPoint
 from rocking.restitution.space.ked_impulse import SpatialKed
 from rocking.restitution.space.model import SpatialFlag, SpatialModel, SpatialRestitution
 
@@ -20,9 +20,7 @@ __all__ = [
     "SpatialRestitution",
     "UnitEnergies",
     "edge_coefficient",
-    "energy_left",
     "impact_in_space",
-    "lost_density",
     "spatial_model",
     "spatial_models",
     "unit_energies",

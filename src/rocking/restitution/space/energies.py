@@ -110,22 +110,7 @@ def unit_energies(result: SpatialRestitution | SpatialImpact, units: Units | int
 
 
 def lost_density(impact: SpatialImpact, part: Part, points: FloatArray) -> FloatArray:
-    """Return the energy that stages 1 and 2 take at points of a part, over its volume.
-
-    Parameters
-    ----------
-    impact : SpatialImpact
-        The impact.
-    part : Part
-        Gives the density of mass.
-    points : ndarray, shape (n, 3)
-        Points in the user's coordinates [m].
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Energy lost [J/m3].
-    """
+    """Return the energy that stages 1 and 2 take at points of a part [m], over its volume [J/m3]."""
     before, _, left = stage_velocities(impact, checks.real_array("points", points, "m") - impact.solid.origin)
     density: FloatArray = 0.5 * part.density * (np.square(before).sum(axis=1) - np.square(left).sum(axis=1))
     return density

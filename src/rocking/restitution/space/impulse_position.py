@@ -17,7 +17,7 @@ import numpy as np
 from rocking.bodies.solid import RoundBase, Solid, SupportPolygon
 from rocking.bodies.solid.sampling import samples
 from rocking.conventions import FloatArray
-from rocking.restitution.space.integrals import extruded_moment
+from rocking.restitution.space.integrals import extruded_moment, height_squared
 
 HIGHEST = 32
 """Degree of the polynomials, at most."""
@@ -76,16 +76,15 @@ class ImpulsePosition:
         return total
 
     def _fitted(self, middle: float, half: float) -> list[float]:
-        values = {share: self.exact(middle + half * share) for share in (1.0, 0.0, -1.0)}
-        degree, found = 2, _coefficients(list(values.values()))
+        values = [self.exact(middle + half * share) for share in (1.0, 0.0, -1.0)]
+        degree, found = 2, _coefficients(values)
         while degree < HIGHEST:
             degree *= 2
             shares = [math.cos(math.pi * j / degree) for j in range(degree + 1)]
             new = {share: self.exact(middle + half * share) for share in shares[1::2]}
             error = max(abs(_value(found, share) - value) for share, value in new.items())
-            every = [new[share] if j % 2 else old for j, (share, old) in enumerate(_paired(shares, values))]
-            values = dict(zip(shares, every, strict=True))
-            found = _coefficients(every)
+            every = [new[share] if j % 2 else values[j // 2] for j, share in enumerate(shares)]
+            values, found = every, _coefficients(every)
             if error <= _CONVERGED * max(1.0, *map(abs, every)):
                 break
         return found
@@ -133,7 +132,7 @@ def _clouds(solid: Solid) -> list[FloatArray]:
     for part in solid.local_parts:
         shape, top = part.shape, float(part.box()[1][2])
         negligible = _NEGLIGIBLE * shape.moments().mass * top * top
-        batches = samples(shape.surfaces(part.rotation, part.translation), _height, negligible, _height_squared)
+        batches = samples(shape.surfaces(part.rotation, part.translation), _height, negligible, height_squared)
         rows = [np.column_stack([points, part.density * areas]) for points, areas in batches]
         made.append(np.ascontiguousarray(np.concatenate(rows).T))
     return made
@@ -154,17 +153,6 @@ def _of_cloud(cloud: FloatArray, edge: FloatArray, offset: float) -> float:
 
 def _height(points: FloatArray) -> FloatArray:
     return np.abs(points[:, 2])
-
-
-def _height_squared(points: FloatArray) -> FloatArray:
-    squared: FloatArray = points[:, 2] ** 2
-    return squared
-
-
-def _paired(shares: list[float], values: dict[float, float]) -> list[tuple[float, float]]:
-    """Every new node with the value at the old one of the same place, for nodes of doubled number."""
-    known = list(values.values())
-    return [(share, known[j // 2]) for j, share in enumerate(shares)]
 
 
 def _coefficients(values: list[float]) -> list[float]:

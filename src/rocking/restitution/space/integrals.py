@@ -48,10 +48,16 @@ def line_moment(solid: Solid, edge: Edge) -> float:
 @lru_cache(maxsize=_CACHED)
 def _line_moment(solid: Solid, x: float, y: float, z: float, *direction: float) -> float:
     point, edge = np.array([x, y, z]), np.array(direction)
-    total = 0.0
+    distance, total = distance_to(edge), 0.0
+
+    def features(s: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return (s[:, 2] ** 2 * (1.0 / np.maximum(distance(s), 1e-300)))[:, None], np.ones(1)
+
     for part in solid.local_parts:
         exact = extruded_moment(part, point, edge)
-        total += _line_moment_part(part, point, edge) if exact is None else exact
+        if exact is None:
+            exact = float(of_part(part, point, features, (distance, height_squared))[0, 0])
+        total += exact
     return total
 
 
@@ -66,15 +72,6 @@ def extruded_moment(part: Part, point: FloatArray, edge: FloatArray) -> float | 
     turned = float(np.sign(plane[0, 0] * plane[1, 1] - plane[0, 1] * plane[1, 0]))
     length = part.density * prism.length
     return length * turned * sum(ring_integral(times(ring, plane.T) + shift) for ring in prism.region.rings)
-
-
-def _line_moment_part(part: Part, point: FloatArray, edge: FloatArray) -> float:
-    def features(s: FloatArray) -> tuple[FloatArray, FloatArray]:
-        inverse = 1.0 / np.maximum(distance(s), 1e-300)
-        return (s[:, 2] ** 2 * inverse)[:, None], np.ones(1)
-
-    distance = distance_to(edge)
-    return float(of_part(part, point, features, (distance, _height_squared))[0, 0])
 
 
 def distance_to(edge: FloatArray) -> Distance:
@@ -104,7 +101,8 @@ def of_part(part: Part, point: FloatArray, features: Features, graded: tuple[Dis
     return part.density * total / (degrees[:, None] + degrees[None, :] + 3.0)  # Eq. 107
 
 
-def _height_squared(s: FloatArray) -> FloatArray:
+def height_squared(s: FloatArray) -> FloatArray:
+    """Return the squared heights of points."""
     squared: FloatArray = s[:, 2] ** 2
     return squared
 
@@ -120,32 +118,33 @@ class KeptMoments:
     form: FloatArray  # products of n quadratic and m linear features over the squared length; shape (n + m, n + m)
     directions: FloatArray  # A: the directions of the linear features [-]; shape (m, 3)
     products: FloatArray  # how each linear feature times s is made of the quadratic ones [-]; shape (n, m, 3)
-    # mass, first and second moments about the landing point, from which the form is removed; without, it is what stays
-    whole: tuple[float, FloatArray, FloatArray] | None
+    # mass, first and second moments about the landing point from which the form is removed, at a corner; at an edge the
+    # form is what stays, and these are zero
+    whole: tuple[float, FloatArray, FloatArray]
+    sign: float
 
     @property
     def second(self) -> FloatArray:
         """``Int Q_ij dm``, shape (3, 3) [kg]."""
         count = len(self.directions)
         tensor = times(times(self.directions.T, self.form[-count:, -count:]), self.directions)
-        return tensor if self.whole is None else self.whole[0] * np.eye(3) - tensor
+        return self.whole[0] * np.eye(3) + self.sign * tensor
 
     @property
     def third(self) -> FloatArray:
         """``Int Q_ij s_k dm``, shape (3, 3, 3) [kg m]."""
         count = len(self.directions)
         mixed = times(self.form[-count:, :-count], self._factors.reshape(-1, 9))
-        tensor: FloatArray = np.einsum("pi,pjk->ijk", self.directions, mixed.reshape(-1, 3, 3))
-        return tensor if self.whole is None else np.einsum("ij,k->ijk", np.eye(3), self.whole[1]) - tensor
+        tensor = np.einsum("pi,pjk->ijk", self.directions, mixed.reshape(-1, 3, 3))
+        return np.asarray(np.einsum("ij,k->ijk", np.eye(3), self.whole[1]) + self.sign * tensor)
 
     @property
     def fourth(self) -> FloatArray:
         """``Int Q_ij s_k s_l dm``, shape (3, 3, 3, 3) [kg m2]."""
         count = len(self.directions)
-        tensor: FloatArray = np.einsum(
-            "pik,pq,qjl->ijkl", self._factors, self.form[:-count, :-count], self._factors, optimize=True
-        )
-        return tensor if self.whole is None else np.einsum("ij,kl->ijkl", np.eye(3), self.whole[2]) - tensor
+        form = self.form[:-count, :-count]
+        tensor = np.einsum("pik,pq,qjl->ijkl", self._factors, form, self._factors, optimize=True)
+        return np.asarray(np.einsum("ij,kl->ijkl", np.eye(3), self.whole[2]) + self.sign * tensor)
 
     @cached_property
     def _factors(self) -> FloatArray:
@@ -162,12 +161,10 @@ class KeptMoments:
         """Return the kinetic energy of what stage 2 keeps of the velocities ``u + W s`` [J]."""
         state = self.coefficients(drift, gradient)
         along = dot(state, applied(self.form, state))  # Eq. 106
-        if self.whole is None:
-            return 0.5 * max(along, 0.0)
         mass, first, second = self.whole
         crossed = 2.0 * dot(drift, applied(gradient, first))
         every = mass * dot(drift, drift) + crossed + float((times(gradient, second) * gradient).sum())
-        return 0.5 * max(every - along, 0.0)
+        return 0.5 * max(every + self.sign * along, 0.0)
 
 
 def kept_moments(solid: Solid, onto: Corner | Edge) -> KeptMoments:
@@ -195,18 +192,23 @@ def _about_point(solid: Solid, x: float, y: float, z: float) -> KeptMoments:
         products[number, i, j] = products[number, j, i] = 1.0
     found = solid.local_moments
     whole = found.mass, found.mass * (found.centre - point), found.second_about(point)
-    return KeptMoments(form, np.eye(3), products, whole)
+    return KeptMoments(form, np.eye(3), products, whole, -1.0)
 
 
 @lru_cache(maxsize=_CACHED)
 def _about_line(solid: Solid, x: float, y: float, z: float, *direction: float) -> KeptMoments:
     point, frame = np.array([x, y, z]), edge_frame(np.array(direction))
-    form = sum((_line_part(part, point, frame) for part in solid.local_parts), np.zeros(()))
+    graded = distance_to(frame[0]), None
+
+    def features(s: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return _edge_features(times(s, frame.T))
+
+    form = sum((of_part(part, point, features, graded) for part in solid.local_parts), np.zeros(()))
     e, f, g = frame
     # s = sigma e + t f + z g; quadratic features zz, z sigma, tz, tt, t sigma; linear ones z and t
     none = np.zeros(3)
     products = np.array([[g, none], [e, none], [f, g], [none, f], [none, e]])
-    return KeptMoments(form, np.stack([-f, g]), products, None)
+    return KeptMoments(form, np.stack([-f, g]), products, (0.0, none, np.zeros((3, 3))), 1.0)
 
 
 def edge_frame(direction: FloatArray) -> FloatArray:
@@ -214,13 +216,6 @@ def edge_frame(direction: FloatArray) -> FloatArray:
     across = np.cross(_UP, direction)
     across /= math.sqrt(dot(across, across))
     return np.stack([direction, across, np.cross(direction, across)])
-
-
-def _line_part(part: Part, point: FloatArray, frame: FloatArray) -> FloatArray:
-    def features(s: FloatArray) -> tuple[FloatArray, FloatArray]:
-        return _edge_features(times(s, frame.T))
-
-    return of_part(part, point, features, (distance_to(frame[0]), None))
 
 
 def _corner_features(s: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -58,23 +58,7 @@ class SpatialKedPoint(SpatialModel):
 
 
 def energy_left(impact: SpatialImpact) -> float:
-    """Return the kinetic energy after stage 2, T'' [J].
-
-    Parameters
-    ----------
-    impact : SpatialImpact
-        The impact, of a body in any attitude.
-
-    Returns
-    -------
-    float
-        Energy [J].
-
-    Raises
-    ------
-    InvalidValueError
-        If the body is known by its mass, centre and inertia alone.
-    """
+    """Return the kinetic energy after stage 2, T'' [J]."""
     solid, onto = impact.placed_solid
     drift, gradient = applied(impact.level, impact.landing_velocity), times(impact.level, impact.spin)
     if isinstance(onto, Edge) and _is_plane(impact, onto, solid.size):
