@@ -1,13 +1,14 @@
 """Components joined and turned, and peaks over all directions."""
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 
 from rocking.errors import InvalidValueError
-from rocking.motions import GroundMotion, pulses, resampled, rotated, rotd_pga, with_vertical
+from rocking.motions import GroundMotion, resampled, rotated, rotd_pga, with_vertical
 
 ALONG = GroundMotion([0.0, 1.0, -2.0, 4.0], 0.1, name="H", metadata={"component": "90"}, provenance=("read along",))
 UP = GroundMotion([0.5, 0.0, 0.0, 3.0], 0.1, name="V", metadata={"component": "UP"}, provenance=("read up", "cut"))
@@ -57,38 +58,16 @@ def test_two_components_of_one_name_keep_apart() -> None:
     assert with_vertical(GroundMotion([1.0, 2.0], 0.1), ALONG).metadata["vertical component"] == "90"
 
 
-def test_what_cannot_be_joined() -> None:
-    """A motion that has a vertical part already is refused on either side, and so is what is no record."""
-    both = with_vertical(ALONG, UP)
-    with pytest.raises(InvalidValueError, match="horizontal must have no vertical part yet"):
-        with_vertical(both, UP)
-    with pytest.raises(InvalidValueError, match="vertical must have no vertical part yet"):
-        with_vertical(ALONG, both)
-    bad: Any
-    for bad in (pulses.sine(1.0, 1.0), None, [1.0, 2.0]):
-        with pytest.raises(InvalidValueError, match="vertical must be a GroundMotion, got"):
-            with_vertical(ALONG, bad)
-
-
 RANDOM = np.random.default_rng(8)
 X, Y = (GroundMotion(row, 0.01, name=name) for row, name in zip(RANDOM.normal(size=(2, 300)), "xy", strict=True))
 RAY = np.sin(np.arange(50.0))
 
 
 def test_quarter_and_half_turns() -> None:
-    """A quarter turn makes y of x and -x of y; half a turn both negative; none leaves the samples."""
-    a, b = rotated(X, Y, 0.5 * math.pi)
-    np.testing.assert_allclose(a.acceleration, Y.acceleration, rtol=0.0, atol=1e-15)
-    np.testing.assert_allclose(b.acceleration, -X.acceleration, rtol=0.0, atol=1e-15)
-    a, b = rotated(X, Y, math.pi)
-    np.testing.assert_allclose(a.acceleration, -X.acceleration, rtol=0.0, atol=1e-15)
-    a, b = rotated(X, Y, 0.0)
-    assert np.array_equal(a.acceleration, X.acceleration)
-    assert np.array_equal(b.acceleration, Y.acceleration)
-
-
-def test_there_and_back_keeps_the_vector() -> None:
-    """The length of the vector does not change, and turning back gives the components."""
+    """A quarter turn makes y of x and -x of y, half a turn both negative; lengths stay, and turning back undoes it."""
+    for angle, first, second in ((0.5 * math.pi, Y, X.scaled(-1)), (math.pi, X.scaled(-1), Y.scaled(-1)), (0.0, X, Y)):
+        for turned, expected in zip(rotated(X, Y, angle), (first, second), strict=True):
+            np.testing.assert_allclose(turned.acceleration, expected.acceleration, rtol=0.0, atol=2e-15)
     a, b = rotated(X, Y, 0.7)
     length = np.hypot(X.acceleration, Y.acceleration)
     np.testing.assert_allclose(np.hypot(a.acceleration, b.acceleration), length, rtol=1e-14)
@@ -138,16 +117,19 @@ def test_peaks_do_not_see_the_axes() -> None:
     assert values[0] < values[-1]
 
 
-def test_refusals() -> None:
-    """Other lengths, other steps, percentiles outside [0, 100], angles that are no number."""
-    with pytest.raises(InvalidValueError, match=r"0\.01 s and 300 samples, got 0\.01 s and 2"):
-        rotated(X, GroundMotion(np.zeros(2), 0.01), 0.1)
-    with pytest.raises(InvalidValueError, match="second must have the step"):
-        rotd_pga(X, GroundMotion(Y.acceleration, 0.02), 50)
-    bad: Any
-    for bad in (-1, 101, math.nan, None, "50"):
-        with pytest.raises(InvalidValueError, match="percentile must be"):
-            rotd_pga(X, Y, bad)
-    for bad in (math.nan, math.inf, None, "x", [0.1, 0.2]):
-        with pytest.raises(InvalidValueError, match="angle must be"):
-            rotated(X, Y, bad)
+BOTH = with_vertical(ALONG, UP)
+REFUSED: list[tuple[str, Callable[[], Any]]] = [
+    ("horizontal must have no vertical part yet", lambda: with_vertical(BOTH, UP)),
+    ("vertical must have no vertical part yet", lambda: with_vertical(ALONG, BOTH)),
+    (r"0\.01 s and 300 samples, got 0\.01 s and 2", lambda: rotated(X, GroundMotion(np.zeros(2), 0.01), 0.1)),
+    ("second must have the step", lambda: rotd_pga(X, GroundMotion(Y.acceleration, 0.02), 50)),
+    *(("percentile must be", lambda x=x: rotd_pga(X, Y, x)) for x in (-1, 101, math.nan, None, "50")),
+    *(("angle must be", lambda x=x: rotated(X, Y, x)) for x in (math.nan, math.inf, None, "x", [0.1, 0.2])),
+]
+
+
+@pytest.mark.parametrize(("message", "call"), REFUSED)
+def test_refusals(message: str, call: Callable[[], Any]) -> None:
+    """A second vertical part, other lengths and steps, percentiles outside [0, 100], angles that are no number."""
+    with pytest.raises(InvalidValueError, match=message):
+        call()

@@ -49,18 +49,12 @@ def test_bad_steps(step: Any) -> None:
         motion_of([0.0, 1.0], step)
 
 
-def test_parts_of_two_lengths() -> None:
-    """A vertical part of another length is refused, naming both."""
-    with pytest.raises(InvalidValueError, match="as many samples as acceleration, 3, got 2"):
-        motion_of([0.0, 1.0, 2.0], vertical=[0.0, 1.0])
-    with pytest.raises(InvalidValueError, match="vertical must"):
-        motion_of([0.0, 1.0, 2.0], vertical=1.0)
-
-
 def test_the_limits_themselves_are_allowed() -> None:
-    """1e6 m/s2, steps of 1e-9 s and of 1000 s, and two samples are a motion."""
+    """1e6 m/s2, steps of 1e-9 s and of 1000 s, and two samples are a motion; parts of two lengths are none."""
     assert motion_of([1e6, -1e6], 1e-9).peak == 1e6
     assert motion_of([0, 1], 1000).duration == 1000.0
+    with pytest.raises(InvalidValueError, match="as many samples as acceleration, 3, got 2"):
+        motion_of([0.0, 1.0, 2.0], vertical=[0.0, 1.0])
 
 
 def test_numbers_of_a_motion() -> None:
@@ -89,13 +83,8 @@ def test_copied_and_frozen() -> None:
     with pytest.raises(TypeError):
         motion.metadata["station"] = "2"  # type: ignore[index]
     assert motion.metadata == {"station": "1"}
-
-
-def test_equality_is_identity() -> None:
-    """Two motions of the same samples are two motions, and each can be a key of a dictionary."""
-    one, other = motion_of([0.0, 1.0]), motion_of([0.0, 1.0])
-    assert one != other
-    assert len({one, other}) == 2
+    # two motions of the same samples are two motions, and each can be a key of a dictionary
+    assert len({motion_of([0.0, 1.0]), motion_of([0.0, 1.0])}) == 2
 
 
 @pytest.mark.parametrize(
