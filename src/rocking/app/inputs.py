@@ -25,7 +25,7 @@ from rocking.spec.document import (
     SettingsTable,
     check_start,
 )
-from rocking.spec.fields import JobTable, Words, refused
+from rocking.spec.fields import JobTable, Text, refused
 from rocking.spec.response import ResponseProblem, problem_of
 
 if TYPE_CHECKING:
@@ -233,7 +233,7 @@ class MotionInput(OneMotionTable):
     """One pulse, one uploaded record by its hash, or one motion of a synthetic family."""
 
     record: Hash | None = None
-    file_name: Words | None = None
+    file_name: Text | None = None
 
     @model_validator(mode="after")
     def _named_record(self) -> "MotionInput":

@@ -12,18 +12,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
     from rocking.cli.application import application
     from rocking.errors import RockingError, SlowEngineWarning
 
-    words = sys.argv[1:] if arguments is None else list(arguments)
+    arguments = sys.argv[1:] if arguments is None else list(arguments)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("always", SlowEngineWarning)
             warnings.showwarning = _Notes()
             # without arguments the help is the answer
-            code = application(words)(args=words or ["--help"], prog_name="rocking", standalone_mode=False)
+            code = application(arguments)(args=arguments or ["--help"], prog_name="rocking", standalone_mode=False)
     except RockingError as error:
         print(f"rocking: {error}", file=sys.stderr)
         sys.exit(2)
     except TyperException as error:
-        print(f"rocking: {_refusal(error, words)}; see rocking --help", file=sys.stderr)
+        print(f"rocking: {_refusal(error, arguments)}; see rocking --help", file=sys.stderr)
         sys.exit(2)
     except OSError as error:
         print(f"rocking: {error.strerror or error}: {error.filename or ''}".rstrip(": "), file=sys.stderr)
@@ -34,16 +34,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
     sys.exit(code or 0)
 
 
-def _refusal(error: Exception, words: list[str]) -> str:
+def _refusal(error: Exception, arguments: list[str]) -> str:
     """Return why the words make no sense, with how an option of earlier is said now, or a comma for a point."""
     from rocking.checks import decimal_comma  # numpy with it, which help does not need
-    from rocking.cli.options import said_now
+    from rocking.cli.options import renamed
 
     option = str(getattr(error, "option_name", ""))
-    if new := said_now(option):
+    if new := renamed(option):
         return f"{option} {new}"
     message = error.format_message() if hasattr(error, "format_message") else str(error)
-    hints = [decimal_comma(word) for word in words if not word.partition("=")[2].strip("+-,0123456789")]
+    hints = [decimal_comma(word) for word in arguments if not word.partition("=")[2].strip("+-,0123456789")]
     return f"{message}{next(filter(None, hints), '') if 'valid number' in message else ''}"
 
 

@@ -16,7 +16,7 @@ COMMANDS = (
 )  # fmt: skip
 
 
-def application(words: Sequence[str] | None = None) -> typer.Typer:
+def application(arguments: Sequence[str] | None = None) -> typer.Typer:
     """Return the command line application; for the words of one call, the command they name, or a list."""
     app = typer.Typer(
         name="rocking",
@@ -27,10 +27,10 @@ def application(words: Sequence[str] | None = None) -> typer.Typer:
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback()(_root)
-    named = words[0] if words else ""
+    named = arguments[0] if arguments else ""
     for name in COMMANDS:
         module = _MODULES.get(name, name)
-        if words is None or name == named:
+        if arguments is None or name == named:
             app.command(name)(getattr(import_module(f"rocking.cli.{module}"), name))
         elif named not in COMMANDS:
             app.command(name)(_listed(module, name))

@@ -210,9 +210,9 @@ class Arguments:
             raise InvalidValueError(f"a pulse takes no {', '.join(odd)}: these are for files; got {word[:200]!r}")
         return table
 
-    def one_motion(self, words: Sequence[str]) -> Tables:
+    def one_motion(self, motions: Sequence[str]) -> Tables:
         """Return the table [motion] of a plane body: one motion, and its vertical part where z= names it."""
-        along = _along(words)
+        along = _along(motions)
         if "y" in along:
             raise InvalidValueError("a plane body has one horizontal motion, along x, and a vertical one, along z")
         if "x" not in along:
@@ -229,12 +229,12 @@ class Arguments:
         same = Path(upright["record"]) == Path(table["record"]) and component
         return {**table, **component, **({} if same else {"vertical_file": upright["record"]})}
 
-    def components(self, words: Sequence[str]) -> Tables:
+    def components(self, motions: Sequence[str]) -> Tables:
         """Return the table [motion] of a body in space: a motion along each axis that was named.
 
         What `--set` says of format, unit and step is for every file, the rest for the one along x, or the first.
         """
-        along = _along(words)
+        along = _along(motions)
         if not along:
             raise InvalidValueError(f"{NO_MOTION}, along y and z with --motion y=FILE and --motion z=FILE")
         records = [axis for axis, word in along.items() if "record" in _place(word)]
@@ -262,9 +262,9 @@ def _place(word: str) -> Tables:
     return {"pulse": word}
 
 
-def _along(words: Sequence[str]) -> dict[str, str]:
+def _along(motions: Sequence[str]) -> dict[str, str]:
     along: dict[str, str] = {}
-    for word in words:
+    for word in motions:
         axis, equals, rest = word.partition("=")
         axis, rest = (axis, rest) if equals and axis in {"x", "y", "z"} else ("x", word)
         if axis in along:

@@ -70,7 +70,7 @@ def compute(folder: JobFolder, who: tuple[str | Executor, int | None], as_json: 
     with bar(name, folder.campaign.plan.count, quiet=as_json) as tell:
         done = folder.run(who[0], workers=who[1], progress=tell)
     status = status_of(folder.path)
-    told = {
+    facts = {
         **_facts(status),
         "computed_chunks": done.computed,
         "resumed_chunks": done.resumed,
@@ -80,9 +80,9 @@ def compute(folder: JobFolder, who: tuple[str | Executor, int | None], as_json: 
         "run_seconds": done.seconds,
     }
     if as_json:
-        print_json(told)
+        print_json(facts)
         return
-    print(_words(status))
+    print(_sentence(status))
     for sentence in (*done.set_aside, *done.retries):
         print(f"note: {sentence}")
     target = "report.html" if folder.job.study.assess is not None else "result.nc"
@@ -91,12 +91,12 @@ def compute(folder: JobFolder, who: tuple[str | Executor, int | None], as_json: 
 
 def show_status(folder: Path, as_json: bool) -> None:
     """Print how far a campaign is."""
-    found = status_of(folder)
-    status = found.status
+    job_status = status_of(folder)
+    status = job_status.status
     if as_json:
-        print_json(_facts(found))
+        print_json(_facts(job_status))
     else:
-        print(_words(found))
+        print(_sentence(job_status))
         for sentence in (*status.damaged, *status.broken) if status else ():
             print(f"note: {sentence}")
     if status and status.broken:
@@ -105,62 +105,65 @@ def show_status(folder: Path, as_json: bool) -> None:
 
 def show_verification(folder: Path, as_json: bool) -> None:
     """Print what was found when everything that a campaign has was read."""
-    found = verified(folder)
+    check = verified(folder)
     if as_json:
-        print_json({"folder": str(folder), "whole": found.whole, **vars(found)})
+        print_json({"folder": str(folder), "whole": check.whole, **vars(check)})
     else:
-        share = f"{found.verified} of {found.histories} histories were read and are what was written"
-        print(f"{folder}: {share}, in {found.chunks} chunks{'' if found.whole else ' and pieces of others'}")
-        for sentence in found.damaged:
+        share = f"{check.verified} of {check.histories} histories were read and are what was written"
+        print(f"{folder}: {share}, in {check.chunks} chunks{'' if check.whole else ' and pieces of others'}")
+        for sentence in check.damaged:
             print(f"damaged: {sentence}")
-        for first, last in found.missing:
+        for first, last in check.missing:
             print(f"missing: histories {first} to {last - 1}")
-        if not found.whole:
+        if not check.whole:
             print(f"go on with: {resume(folder)}")
-    if not found.whole:
+    if not check.whole:
         raise typer.Exit(DAMAGED)
 
 
 def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> None:
     """Print what a job will take."""
     job = Job.read(path)
-    found = forecast(job, workers, out)
-    told = {
+    estimate = forecast(job, workers, out)
+    facts = {
         "job": str(path),
         "campaign": job.document.campaign.name,
         "kind": job.document.campaign.kind,
         "dimensions": dict(job.study.dims),
         "inputs": job.inputs,
-        **{name: value for name, value in vars(found).items() if name != "later"},
-        **({"first_round_only": True, "later": found.later} if job.document.is_adaptive else {}),
+        **{name: value for name, value in vars(estimate).items() if name != "later"},
+        **({"first_round_only": True, "later": estimate.later} if job.document.is_adaptive else {}),
     }
     if as_json:
-        print_json(told)
+        print_json(facts)
     else:
         over = " x ".join(f"{size} {name}" for name, size in job.study.dims.items())
-        print(f"{path}: {told['campaign']} ({told['kind']}), {len(job.inputs)} input files, no mistake found")
-        print(f"  histories  {found.histories} = {over}, in {found.chunks} chunks of {found.chunk}")
-        if found.later is not None:
+        print(f"{path}: {facts['campaign']} ({facts['kind']}), {len(job.inputs)} input files, no mistake found")
+        print(f"  histories  {estimate.histories} = {over}, in {estimate.chunks} chunks of {estimate.chunk}")
+        if estimate.later is not None:
             print("             in the first round, as are time and disk; what it finds decides on later rounds:")
-            print(f"             usually {found.later[0]} to {found.later[1]} more histories, with their time and disk")
-        between = " to ".join(_span(seconds) for seconds in found.between)
-        rate = f"{found.rate:.3g} histories/s each"
-        print(f"  time       about {_span(found.seconds)} ({between}) with {workers} core(s): {rate}")
-        print(f"  memory     about {found.memory / 1e6:.0f} MB{'' if found.later is None else ' in all rounds'}")
-        free = "" if found.free is None else f", {found.free / 1e6:.0f} MB are free"
-        print(f"  disk       {found.disk / 1e6:.1f} MB{free}")
-    if found.free is not None and found.free < found.disk:
-        raise CampaignStorageError(f"{out}: {found.disk / 1e6:.0f} MB are needed, {found.free / 1e6:.0f} MB are free")
+            low, high = estimate.later
+            print(f"             usually {low} to {high} more histories, with their time and disk")
+        between = " to ".join(_span(seconds) for seconds in estimate.between)
+        rate = f"{estimate.rate:.3g} histories/s each"
+        print(f"  time       about {_span(estimate.seconds)} ({between}) with {workers} core(s): {rate}")
+        print(f"  memory     about {estimate.memory / 1e6:.0f} MB{'' if estimate.later is None else ' in all rounds'}")
+        free = "" if estimate.free is None else f", {estimate.free / 1e6:.0f} MB are free"
+        print(f"  disk       {estimate.disk / 1e6:.1f} MB{free}")
+    if estimate.free is not None and estimate.free < estimate.disk:
+        raise CampaignStorageError(
+            f"{out}: {estimate.disk / 1e6:.0f} MB are needed, {estimate.free / 1e6:.0f} MB are free"
+        )
 
 
-def _facts(found: JobStatus) -> dict[str, Any]:
+def _facts(job_status: JobStatus) -> dict[str, Any]:
     """Return how far a campaign is, under keys that stay the same."""
-    status = found.status
+    status = job_status.status
     facts = {
-        "campaign": found.name,
-        "kind": found.kind,
-        "folder": str(found.path),
-        "complete": found.complete,
+        "campaign": job_status.name,
+        "kind": job_status.kind,
+        "folder": str(job_status.path),
+        "complete": job_status.complete,
         "histories": None if status is None else status.histories,
         "histories_done": 0 if status is None else status.histories_done,
         "chunks": None if status is None else status.chunks,
@@ -172,20 +175,20 @@ def _facts(found: JobStatus) -> dict[str, Any]:
         "broken": [] if status is None else list(status.broken),
         "software": None if status is None else status.software,
     }
-    return facts if found.rounds is None else facts | {"rounds_begun": found.rounds}
+    return facts if job_status.rounds is None else facts | {"rounds_begun": job_status.rounds}
 
 
-def _words(found: JobStatus) -> str:
-    status, name, folder = found.status, found.name, found.path
+def _sentence(job_status: JobStatus) -> str:
+    status, name, folder = job_status.status, job_status.name, job_status.path
     if status is None:
         return f"{name}: nothing is computed yet; go on with: {resume(folder)}"
-    if found.complete:
-        many = "" if found.rounds is None else f"{found.rounds} rounds, "
+    if job_status.complete:
+        many = "" if job_status.rounds is None else f"{job_status.rounds} rounds, "
         return f"{name}: all {status.histories} histories ({many}{status.chunks} chunks) are safe in {folder}"
     now = f"{status.running} runs it" if status.running else f"go on with: {resume(folder)}"
     share = f"{status.histories_done} of {status.histories} histories ({status.chunks_done} of {status.chunks} chunks)"
-    if found.rounds is not None:
-        share = f"round {found.rounds} has begun, how many follow is not known; of these rounds {share}"
+    if job_status.rounds is not None:
+        share = f"round {job_status.rounds} has begun, how many follow is not known; of these rounds {share}"
     return f"{name}: {share} are safe in {folder}; {now}"
 
 

@@ -1,6 +1,5 @@
 """`rocking cor`: the coefficient of restitution of a body under every model."""
 
-import math
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +11,7 @@ from rocking.bodies import Solid
 from rocking.cli import options
 from rocking.cli.arguments import Arguments, document_file, hinted
 from rocking.cli.exports import PICTURES, Export, Exports, draw, write_records
-from rocking.cli.numbers import in_unit
+from rocking.cli.numbers import in_unit, side_line
 from rocking.cli.page import Page, deliver
 from rocking.conventions import FEET, Foot, g
 from rocking.errors import InvalidValueError
@@ -187,12 +186,10 @@ class PlaneAnswer:
         feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
         for foot in feet:
             side = body.side(foot, gravity)
-            where = "" if body.is_symmetric else f"{foot} foot: "
+            uplift = side.uplift_acceleration
             lines.append(
-                f"{where}h/b = {side.slenderness_ratio:.4g}, alpha = {side.slenderness_angle:.4g} rad "
-                f"({math.degrees(side.slenderness_angle):.3g} deg), R = {in_unit(side.semi_diagonal, self.length)}, "
-                f"p = {side.frequency_parameter:.4g} rad/s, "
-                f"uplift at {side.uplift_acceleration:.3g} m/s2 ({side.uplift_acceleration / gravity:.3g} g)"
+                f"{'' if body.is_symmetric else f'{foot} foot: '}h/b = {side.slenderness_ratio:.4g}, "
+                f"{side_line(side, self.length)}, uplift at {uplift:.3g} m/s2 ({uplift / gravity:.3g} g)"
             )
         if body.is_symmetric and (outside := outside_evidence(body)):
             lines.append(outside)

@@ -33,13 +33,13 @@ class FragilityAnswer:
 
     @classmethod
     def of(
-        cls, problem: "StudyProblem", tell: Any, threads: int | None, *, written: str, length: str
+        cls, problem: "StudyProblem", progress: Any, threads: int | None, *, written: str, length: str
     ) -> "FragilityAnswer":
         """Compute an analysis."""
-        found = problem.answer(tell, threads)
+        analysis = problem.answer(progress, threads)
         several = len(problem.restitutions) > 1
-        results = found.results if several else {next(iter(problem.restitutions)): found}
-        return cls(problem, results, found if several else None, written, length)
+        results = analysis.results if several else {next(iter(problem.restitutions)): analysis}
+        return cls(problem, results, analysis if several else None, written, length)
 
     @property
     def first(self) -> Any:
@@ -232,42 +232,42 @@ class FragilityAnswer:
         )
         return [*lines, f"Intervals: {how}, since a motion serves at every level."]
 
-    def _transitions(self, found: IncrementalDynamicAnalysis) -> list[str]:
+    def _transitions(self, analysis: IncrementalDynamicAnalysis) -> list[str]:
         unit, factor = self.unit
-        first, whole = found.first_crossing_fit, int(found.complete.sum())
+        first, whole = analysis.first_crossing_fit, int(analysis.complete.sum())
         curve = (
             "too few motions overturn it for a curve"
             if first is None
             else f"median {first.median / factor:.4g} {unit}, dispersion {first.dispersion:.3g}"
         )
         return [
-            sentence(f"{found.definitions['first crossing']}: {curve}"),
-            f"{len(found.resurrected())} of {whole} motion{'s' * (whole != 1)} left it standing at levels above one "
-            f"that overturns it, {len(found.resurrected(WIDE))} of them over more than 1 % of the level.",
+            sentence(f"{analysis.definitions['first crossing']}: {curve}"),
+            f"{len(analysis.resurrected())} of {whole} motion{'s' * (whole != 1)} left it standing at levels above one "
+            f"that overturns it, {len(analysis.resurrected(WIDE))} of them over more than 1 % of the level.",
         ]
 
 
-def _result_facts(found: Any) -> dict[str, Any]:
-    summary = found.summary()
+def _result_facts(analysis: Any) -> dict[str, Any]:
+    summary = analysis.summary()
     facts = {
-        "restitution": found.subject.parameters.label,
-        "definition": found.definition,
+        "restitution": analysis.subject.parameters.label,
+        "definition": analysis.definition,
         "uplift": summary["uplift"],
         "failed": summary["failed"],
-        "contact": found.responses.contact,
-        "trials": found.trials,
-        "reached": dict(found.counts),
-        "curves": {name: fit.summary() for name, fit in found.fits.items()},
+        "contact": analysis.responses.contact,
+        "trials": analysis.trials,
+        "reached": dict(analysis.counts),
+        "curves": {name: fit.summary() for name, fit in analysis.fits.items()},
     }
     if "regression" in summary:
         facts["regression"] = summary["regression"]
-    if isinstance(found, IncrementalDynamicAnalysis):
+    if isinstance(analysis, IncrementalDynamicAnalysis):
         facts |= {
             "first_crossing": summary["first crossing"],
-            "first_crossings": found.first_crossings,
-            "overturning_intervals": [{"motion": i.motion, "start": i.start, "end": i.end} for i in found.intervals],
-            "resurrected_motions": found.resurrected(),
-            "resurrected_motions_over_1_percent": found.resurrected(WIDE),
+            "first_crossings": analysis.first_crossings,
+            "overturning_intervals": [{"motion": i.motion, "start": i.start, "end": i.end} for i in analysis.intervals],
+            "resurrected_motions": analysis.resurrected(),
+            "resurrected_motions_over_1_percent": analysis.resurrected(WIDE),
         }
     return facts
 
@@ -302,12 +302,12 @@ def _verdicts(result: Any) -> list[str]:
     return [f"{', '.join(names)}: {text}{where}" for text, names in states.items()]
 
 
-def _regression(found: Any) -> str:
+def _regression(analysis: Any) -> str:
     try:
-        line = found.regression
+        line = analysis.regression
     except InvalidValueError as error:
         return f"No line of the rotation over the measure: {error}"
     return (
         f"Of {line.count} histories that rocked and stayed standing, ln(theta/alpha) grows with slope {line.slope:.3g} "
-        f"over ln({found.subject.measure.name}), scatter {line.scatter:.3g}, R squared {line.determination:.3g}."
+        f"over ln({analysis.subject.measure.name}), scatter {line.scatter:.3g}, R squared {line.determination:.3g}."
     )

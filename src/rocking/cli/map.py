@@ -85,17 +85,17 @@ def _table(arguments: "Arguments", x: str, y: str, refine: int | None) -> tuple[
     """Return the table [map], and the units that axes were written in, by their name."""
     from rocking.errors import InvalidValueError
 
-    typed = arguments.options["restitution"] or ()
+    restitutions = arguments.options["restitution"] or ()
     axes, written = {}, {}
     for option, text in (("x", x), ("y", y)):
         axes[option], unit = _axis(f"--{option}", text)
         if unit:
             written[axes[option]["axis"]] = unit
-    if typed and "restitution" in {axes["x"]["axis"], axes["y"]["axis"]}:
+    if restitutions and "restitution" in {axes["x"]["axis"], axes["y"]["axis"]}:
         raise InvalidValueError("--restitution is an axis of this map: leave the option out")
     if refine is not None and not 1 <= refine <= 12:
         raise InvalidValueError(f"--refine must be in [1, 12], got {refine}")
-    if refine is not None and len(typed) > 1:
+    if refine is not None and len(restitutions) > 1:
         raise InvalidValueError("--refine is for one --restitution: several are compared cell by cell")
     return arguments.table("map", {**axes, "refine": refine}), written
 
@@ -141,7 +141,7 @@ class MapAnswer:
         written: dict[str, str],
         length: str,
         exports: Exports,
-        tell: Any,
+        progress: Any,
         threads: int | None,
     ) -> "MapAnswer":
         """Compute a map."""
@@ -158,14 +158,14 @@ class MapAnswer:
             )
         if "picture" in exports.names and min(x.values.size, y.values.size) < 2:
             raise InvalidValueError("a picture needs at least two values along --x and along --y, got one")
-        found = problem.answer(tell, threads)
+        result = problem.answer(progress, threads)
         several = len(problem.restitutions) > 1
         if several:
-            first = next(iter(found.datasets.values()))
+            first = next(iter(result.datasets.values()))
             variables = {str(name): each.to_numpy() for name, each in first.data_vars.items()}
             arrays = MapArrays((x, y), variables, first.attrs)
-            return cls(problem, (x, y), arrays, found, written, length)
-        return cls(problem, (x, y), found, None, written, length)
+            return cls(problem, (x, y), arrays, result, written, length)
+        return cls(problem, (x, y), result, None, written, length)
 
     @property
     def table(self) -> MapTable:

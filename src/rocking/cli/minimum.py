@@ -30,12 +30,13 @@ _COLUMNS = {
 """What there is of every transition: key in JSON, and head in CSV; width: of its bracket, ratio: over what lifts."""
 
 
-def _columns(found: "Transitions") -> tuple[Any, ...]:
-    return found.acceleration, found.acceleration / g, found.ratio, found.scale, found.width, *found.modes.T
+def _columns(transitions: "Transitions") -> tuple[Any, ...]:
+    acceleration, ratio, scale = transitions.acceleration, transitions.ratio, transitions.scale
+    return acceleration, acceleration / g, ratio, scale, transitions.width, *transitions.modes.T
 
 
 def _write_csv(answer: "MinimumAnswer", path: "Path") -> None:
-    columns = zip(_COLUMNS.values(), _columns(answer.found), strict=True)
+    columns = zip(_COLUMNS.values(), _columns(answer.transitions), strict=True)
     write_columns(path, {name: (values, "") for name, values in columns})
 
 
@@ -95,7 +96,7 @@ class MinimumAnswer:
     """All accelerations at which the verdict on a body changes under a motion."""
 
     problem: "StudyProblem"
-    found: "Transitions"
+    transitions: "Transitions"
     length: str  # units of lengths and of accelerations
     acceleration: str
 
@@ -104,7 +105,7 @@ class MinimumAnswer:
 
         problem = self.problem
         subject = (problem.bodies[0], problem.motions[0], problem.restitution)
-        return transitions_picture(self.found, *subject, **problem.stated)
+        return transitions_picture(self.transitions, *subject, **problem.stated)
 
     @property
     def label(self) -> str:
@@ -114,7 +115,7 @@ class MinimumAnswer:
     def facts(self) -> dict[str, Any]:
         from rocking.cli.study import motion_facts
 
-        found, problem = self.found, self.problem
+        transitions, problem = self.transitions, self.problem
         return {
             "body": repr(problem.bodies[0]),
             "assumed": list(problem.bodies[0].assumed),
@@ -122,77 +123,78 @@ class MinimumAnswer:
             "restitution": self.label,
             "gravity_m_s2": problem.settings.gravity,
             "linear": problem.settings.linear,
-            "crossings": transitions_facts(found),
-            "minimum_m_s2": found.minimum,
-            "certain_m_s2": found.certain,
-            "overturning_intervals_m_s2": found.overturning_intervals,
-            "safe_intervals_m_s2": found.safe_intervals,
-            "lowest_m_s2": found.lowest,
-            "highest_m_s2": found.highest,
-            "uplift_acceleration_m_s2": found.uplift_acceleration,
-            "resolution": found.resolution,
-            "resolution_below": found.resolution_below if found.minimum is not None else None,
-            "starts_overturned": found.starts_overturned,
-            "samples": found.samples,
-            "failed": found.failed,
-            "contact": found.contact,
-            "sentence": stretches(found),
+            "crossings": transitions_facts(transitions),
+            "minimum_m_s2": transitions.minimum,
+            "certain_m_s2": transitions.certain,
+            "overturning_intervals_m_s2": transitions.overturning_intervals,
+            "safe_intervals_m_s2": transitions.safe_intervals,
+            "lowest_m_s2": transitions.lowest,
+            "highest_m_s2": transitions.highest,
+            "uplift_acceleration_m_s2": transitions.uplift_acceleration,
+            "resolution": transitions.resolution,
+            "resolution_below": transitions.resolution_below if transitions.minimum is not None else None,
+            "starts_overturned": transitions.starts_overturned,
+            "samples": transitions.samples,
+            "failed": transitions.failed,
+            "contact": transitions.contact,
+            "sentence": stretches(transitions),
         }
 
     def show(self, page: Page) -> None:
         from rocking.cli.study import body_lines
 
-        problem, found, unit = self.problem, self.found, beside_g(self.acceleration)
-        lifts = found.uplift_acceleration
+        problem, transitions, unit = self.problem, self.transitions, beside_g(self.acceleration)
+        lifts = transitions.uplift_acceleration
         page.facts(body_lines(problem.bodies[0], problem.settings.gravity, self.length))
         page.line(f"motion:       {problem.motions[0].name}, scaled")
         page.line(f"restitution:  {self.label}")
         page.line(f"lifts it:     {_g(lifts)}, {in_unit(lifts, unit, '.6g')}")
         page.line()
-        page.line(sentence(stretches(found)), "bold")
-        if len(found):
+        page.line(sentence(stretches(transitions)), "bold")
+        if len(transitions):
             head = ("PGA [g]", f"[{unit}]", "/ uplift", "below", "above")
             page.line()
-            page.table(head, [_row(one, ACCELERATION_UNITS[unit]) for one in transitions_facts(found)])
-        if found.failed:
-            page.warn([f"{found.failed} of {found.samples} histories could not be computed"])
-        page.warn(filter(None, [found.contact]))
+            page.table(head, [_row(one, ACCELERATION_UNITS[unit]) for one in transitions_facts(transitions)])
+        if transitions.failed:
+            page.warn([f"{transitions.failed} of {transitions.samples} histories could not be computed"])
+        page.warn(filter(None, [transitions.contact]))
 
 
-def stretches(found: "Transitions") -> str:
+def stretches(transitions: "Transitions") -> str:
     """Return where the body overturns, in words: with many stretches the first and the last."""
-    falls = found.overturning_intervals
-    scanned = f"scanned from {_g(found.lowest)} to {_g(found.highest)}, resolution {percent(found.resolution)}"
-    if found.minimum is not None and found.resolution_below < 0.5 * found.resolution:
-        scanned += f" ({percent(found.resolution_below)} below the first crossing); thinner stretches may exist"
+    falls = transitions.overturning_intervals
+    ends = f"{_g(transitions.lowest)} to {_g(transitions.highest)}"
+    scanned = f"scanned from {ends}, resolution {percent(transitions.resolution)}"
+    if transitions.minimum is not None and transitions.resolution_below < 0.5 * transitions.resolution:
+        scanned += f" ({percent(transitions.resolution_below)} below the first crossing); thinner stretches may exist"
     if not falls:
         return f"survives everything; {scanned}"
-    if falls == ((found.lowest, found.highest),):
+    if falls == ((transitions.lowest, transitions.highest),):
         return f"overturns at every acceleration; {scanned}"
-    parts = [_stretch(found, falls, k) for k in range(len(falls))]
-    if len(parts) > _SPOKEN:
-        left_out = len(parts) - _SPOKEN
-        last = _stretch(found, falls[-1:], 0)  # it names its own beginning
-        parts = [*parts[: _SPOKEN - 1], f"{left_out} more such stretches follow", last]
-    return f"{', '.join(parts)}; {scanned}"
+    texts = [_stretch(transitions, falls, k) for k in range(len(falls))]
+    if len(texts) > _SPOKEN:
+        left_out = len(texts) - _SPOKEN
+        last = _stretch(transitions, falls[-1:], 0)  # it names its own beginning
+        texts = [*texts[: _SPOKEN - 1], f"{left_out} more such stretches follow", last]
+    return f"{', '.join(texts)}; {scanned}"
 
 
-def _stretch(found: "Transitions", falls: tuple[tuple[float, float], ...], k: int) -> str:
+def _stretch(transitions: "Transitions", falls: tuple[tuple[float, float], ...], k: int) -> str:
     """Return one stretch of overturning in words, and how far it then survives."""
     low, high = falls[k]
-    if k == len(falls) - 1 and high == found.highest:
+    if k == len(falls) - 1 and high == transitions.highest:
         return "overturns above" if k else f"overturns above {_g(low)}"
-    words = f"overturns from {_g(low)} to {_g(high)}"
-    return words + (", survives above" if k == len(falls) - 1 else f", survives to {_g(falls[k + 1][0])}")
+    text = f"overturns from {_g(low)} to {_g(high)}"
+    return text + (", survives above" if k == len(falls) - 1 else f", survives to {_g(falls[k + 1][0])}")
 
 
 def _g(acceleration: float) -> str:
     return f"{acceleration / g:.4g} g"
 
 
-def transitions_facts(found: "Transitions") -> list[dict[str, float | int]]:
+def transitions_facts(transitions: "Transitions") -> list[dict[str, float | int]]:
     """Return every transition as plain values."""
-    rows = zip(*(values.tolist() for values in _columns(found)), strict=True)
+    rows = zip(*(values.tolist() for values in _columns(transitions)), strict=True)
     return [dict(zip(_COLUMNS, row, strict=True)) for row in rows]
 
 

@@ -92,11 +92,11 @@ def _periods(text: str) -> list[float]:
     >>> _periods("0.1, 0.5,1")
     [0.1, 0.5, 1.0]
     """
-    parts = [part.strip() for part in text.split(",") if part.strip()]
-    if not 1 <= len(parts) <= _MOST_PERIODS:
+    texts = [part.strip() for part in text.split(",") if part.strip()]
+    if not 1 <= len(texts) <= _MOST_PERIODS:
         raise InvalidValueError(f"periods must be 1 to {_MOST_PERIODS} numbers such as 0.1,0.5,1, got {text[:60]!r}")
     try:
-        numbers = [float(part) for part in parts]
+        numbers = [float(part) for part in texts]
     except ValueError as error:
         raise InvalidValueError(f"periods must be numbers such as 0.1,0.5,1 [s], got {text[:60]!r}") from error
     hint = checks.decimal_comma(text).removeprefix("; ")
@@ -144,10 +144,10 @@ class MotionPage:
         motion: Any = self.motion.motion
         if not hasattr(motion, "metadata"):
             return [("kind", "pulse, known at every instant"), ("duration", f"{motion.duration:.6g} s")]
-        stated = motion.metadata
+        metadata = motion.metadata
         keys = ("format", "event", "date", "station", "component", "vertical component")
-        facts = [(key.replace("vertical component", "vertical"), stated[key]) for key in keys if stated.get(key)]
-        samples = f"{len(motion)} at {motion.time_step:.6g} s, the file in {stated.get('unit', 'm/s2')}"
+        facts = [(key.replace("vertical component", "vertical"), metadata[key]) for key in keys if metadata.get(key)]
+        samples = f"{len(motion)} at {motion.time_step:.6g} s, the file in {metadata.get('unit', 'm/s2')}"
         facts += [("samples", samples), ("duration", f"{motion.duration:.6g} s")]
         if motion.vertical is not None:
             peak = f"{in_unit(motion.peak_vertical, unit)} ({motion.peak_vertical / g:.4g} g) at most"

@@ -51,19 +51,19 @@ def values_table(name: str, text: str, unit: str, spacing: str = "linear") -> tu
     >>> values_table("periods", "1,2,4", "s")
     ({'values': [1.0, 2.0, 4.0]}, '')
     """
-    parts = text.split(":")
-    if len(parts) == 1:
+    pieces = text.split(":")
+    if len(pieces) == 1:
         values, written = _quantities(name, text.split(","), unit)
         return {"values": values}, written
-    if len(parts) not in {3, 4} or (len(parts) == 4 and parts[3].strip() not in {"linear", "log"}):
+    if len(pieces) not in {3, 4} or (len(pieces) == 4 and pieces[3].strip() not in {"linear", "log"}):
         raise InvalidValueError(f"{name} must be FIRST:LAST:COUNT, or that with :log, or A,B,C, got {text!r:.60}")
-    (first, last), written = _quantities(name, parts[:2], unit)
-    if not re.fullmatch(r"\s*[0-9]{1,9}\s*", parts[2]) or not 2 <= int(parts[2]) <= MOST_VALUES:
-        raise InvalidValueError(f"{name} must have a COUNT from 2 to {MOST_VALUES}, got {parts[2]!r:.60}")
-    spacing = parts[3].strip() if len(parts) == 4 else spacing
+    (first, last), written = _quantities(name, pieces[:2], unit)
+    if not re.fullmatch(r"\s*[0-9]{1,9}\s*", pieces[2]) or not 2 <= int(pieces[2]) <= MOST_VALUES:
+        raise InvalidValueError(f"{name} must have a COUNT from 2 to {MOST_VALUES}, got {pieces[2]!r:.60}")
+    spacing = pieces[3].strip() if len(pieces) == 4 else spacing
     if spacing == "log" and min(first, last) <= 0.0:
         raise InvalidValueError(f"{name} must be above 0 to be spaced by equal ratios, got {text!r:.60}")
-    return {"from": first, "to": last, "count": int(parts[2]), "spacing": spacing}, written
+    return {"from": first, "to": last, "count": int(pieces[2]), "spacing": spacing}, written
 
 
 def row(name: str, text: str, unit: str, spacing: str = "linear") -> tuple[FloatArray, str]:
@@ -118,3 +118,11 @@ def in_unit(value: float, unit: str, digits: str = ".4g") -> str:
 def beside_g(unit: str) -> str:
     """Return the unit in which an acceleration is written where it stands in g too: m/s2 in place of g."""
     return "m/s2" if unit == "g" else unit
+
+
+def side_line(side: Any, length: str) -> str:
+    """Return what decides how a body rocks about one foot; length: the unit in which it is written."""
+    return (
+        f"alpha = {side.slenderness_angle:.4g} rad ({math.degrees(side.slenderness_angle):.3g} deg), "
+        f"R = {in_unit(side.semi_diagonal, length)}, p = {side.frequency_parameter:.4g} rad/s"
+    )

@@ -66,7 +66,7 @@ def out(kinds: dict[str, Any]) -> Any:
 
 
 _TO_OUT = ("--csv", "--mat", "--netcdf", "--picture", "--animation", "--stages", "--p58", "--nrml", "--excel")
-_SAID_NOW = {
+_RENAMED = {
     "--contact": "--friction VALUE alone, with which a body slides, hops and flies",
     "--motion-y": "--motion y=FILE",
     "--motion-z": "--motion z=FILE",
@@ -94,10 +94,10 @@ _SAID_NOW = {
 }
 
 
-def said_now(option: str) -> str:
+def renamed(option: str) -> str:
     """Return how an option of earlier is said now; empty if there was none.
 
     >>> said_now("--gravity")
     'is now --set settings.gravity=VALUE'
     """
-    return f"is now {_SAID_NOW[option]}" if option in _SAID_NOW else ""
+    return f"is now {_RENAMED[option]}" if option in _RENAMED else ""

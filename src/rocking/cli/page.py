@@ -35,9 +35,9 @@ class Page:
         """Write a line."""
         self._console.print(text, style=style, markup=False)
 
-    def rich(self, made: Any, **options: Any) -> None:
+    def rich(self, renderable: Any, **options: Any) -> None:
         """Write what rich has made."""
-        self._console.print(made, **options)
+        self._console.print(renderable, **options)
 
     def facts(self, facts: Facts, width: int = 13) -> None:
         """Write a line for each fact, its name before it."""
@@ -114,10 +114,10 @@ def deliver(answer: CommandAnswer, exports: "Exports | None" = None, *, as_json:
 
 
 @contextmanager
-def bar(what: str, total: int | None = None, *, quiet: bool = False) -> Iterator[Callable[[int], None]]:
-    """Show on a terminal how far it is; what is yielded takes the number done since it was last called."""
+def bar(what: str, total: int | None = None, *, quiet: bool = False) -> Iterator[Callable[..., None]]:
+    """Show on a terminal how far it is; what is yielded takes the number done since, and what is done now."""
     if quiet or not sys.stderr.isatty():
-        yield lambda done: None
+        yield lambda done, now="": None
         return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
@@ -125,4 +125,4 @@ def bar(what: str, total: int | None = None, *, quiet: bool = False) -> Iterator
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as shown:
         task = shown.add_task(what, total=total)
-        yield lambda done: shown.update(task, advance=done)
+        yield lambda done, now=what: shown.update(task, advance=done, description=now)

@@ -1,14 +1,12 @@
 """`rocking paper`: Mao et al. 2024, recomputed from the published measurements, with a verdict on each claim."""
 
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking.cli.page import Page, print_json
+from rocking.cli.page import Page, bar, print_json
 
 if TYPE_CHECKING:
     from rocking.reports.paper_document import Reproduction
@@ -32,10 +30,10 @@ def paper(
         if not as_json:
             _show(result)
         return
-    from rocking.reports.paper_folder import write_folder
+    from rocking.reports.paper_folder import steps, write_folder
 
-    with _progress(quiet=as_json) as step:
-        written, left_out = write_folder(result, out, step)
+    with bar("", steps(), quiet=as_json) as progress:
+        written, left_out = write_folder(result, out, lambda name: progress(1, name))
     for sentence in left_out:
         print(f"rocking: note: {sentence}", file=sys.stderr)
     if not as_json:
@@ -74,25 +72,6 @@ def _show(result: "Reproduction") -> None:
     _league(page, result)
     page.line("\nVerdict", "bold")
     page.rich(Padding(Text("\n".join(result.verdict)), (0, 0, 0, 2)), soft_wrap=False)
-
-
-@contextmanager
-def _progress(*, quiet: bool) -> Iterator[Callable[[str], None]]:
-    """Show a progress bar, and give the function that moves it: it takes the name of the step that begins."""
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    from rocking.reports.paper_folder import steps
-
-    columns = (TextColumn("{task.description:24}"), BarColumn(), TextColumn("{task.completed}/{task.total}"))
-    bar = Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True), transient=True, disable=quiet)
-    with bar:
-        task = bar.add_task("", total=steps())
-
-        def step(name: str) -> None:
-            bar.update(task, description=name, advance=1)
-
-        yield step
 
 
 def _claims(result: "Reproduction") -> Any:

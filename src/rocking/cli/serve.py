@@ -65,8 +65,8 @@ def _show(server: "Started", *, as_json: bool) -> None:
     import json
 
     if as_json:
-        told = {"url": server.url, "token": server.token, "port": server.port, "key_file": str(server.key_file)}
-        print(json.dumps(told), flush=True)
+        facts = {"url": server.url, "token": server.token, "port": server.port, "key_file": str(server.key_file)}
+        print(json.dumps(facts), flush=True)
     else:
         print(f"{server.link}   (works once; Ctrl-C stops the server)", flush=True)
 

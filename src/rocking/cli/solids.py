@@ -237,11 +237,11 @@ def edge_facts(edge: EdgeImpact) -> dict[str, Any]:
         "lands_on": edge.onto,
         "coefficients": {
             name: {
-                "coefficient": found.coefficient,
-                "energy_ratio": found.energy_ratio,
-                "flags": {flag.name.lower(): flag.value for flag in found.flags},
+                "coefficient": result.coefficient,
+                "energy_ratio": result.energy_ratio,
+                "flags": {flag.name.lower(): flag.value for flag in result.flags},
             }
-            for name, found in edge.results.items()
+            for name, result in edge.results.items()
         },
     }
 

@@ -118,20 +118,20 @@ class SpectrumAnswer:
         return rocking_spectrum_picture(self.dataset)
 
     def facts(self) -> dict[str, Any]:
-        found = self.dataset
+        dataset = self.dataset
         return {
-            "motions": [str(name) for name in found["motion"].values.tolist()],
-            "restitution": found.attrs["restitution"],
-            "scale": float(found.attrs["scale"]),
-            "linear": bool(found.attrs["setting_linear"]),
-            "gravity_m_s2": float(found.attrs["setting_gravity"]),
-            "slenderness_angle_rad": found["slenderness_angle"].values,
-            "period_s": found["period"].values,
-            "semi_diagonal_m": found["semi_diagonal"].values,
-            "mode": found["mode"].values,
-            "peak_ratio": found["peak_ratio"].values,
+            "motions": [str(name) for name in dataset["motion"].values.tolist()],
+            "restitution": dataset.attrs["restitution"],
+            "scale": float(dataset.attrs["scale"]),
+            "linear": bool(dataset.attrs["setting_linear"]),
+            "gravity_m_s2": float(dataset.attrs["setting_gravity"]),
+            "slenderness_angle_rad": dataset["slenderness_angle"].values,
+            "period_s": dataset["period"].values,
+            "semi_diagonal_m": dataset["semi_diagonal"].values,
+            "mode": dataset["mode"].values,
+            "peak_ratio": dataset["peak_ratio"].values,
             "curves": self.curves(),
-            "contact": found.attrs["contact"],
+            "contact": dataset.attrs["contact"],
         }
 
     def curves(self) -> list[dict[str, Any]]:
@@ -147,15 +147,15 @@ class SpectrumAnswer:
         ]
 
     def show(self, page: Page) -> None:
-        found, curves = self.dataset, self.curves()
-        periods, sizes = found["period"].values, found["semi_diagonal"].values
-        page.line(f"restitution:  {found.attrs['restitution']}")
+        dataset, curves = self.dataset, self.curves()
+        periods, sizes = dataset["period"].values, dataset["semi_diagonal"].values
+        page.line(f"restitution:  {dataset.attrs['restitution']}")
         page.line(
             f"blocks:       2 pi / p from {periods[0]:.4g} to {periods[-1]:.4g} s, R from {sizes[0]:.4g} to "
             f"{sizes[-1]:.4g} m, {periods.size} sizes"
         )
         head = ("h/b", "alpha deg", "not lifted", "rocked", "overturned", "peak/alpha", "falls up to [s]")
-        each = found.sizes["slenderness_angle"]
+        each = dataset.sizes["slenderness_angle"]
         for first in range(0, len(curves), each):
             page.line(f"\n{curves[first]['motion']}", "bold")
             page.table(head, [_row(one) for one in curves[first : first + each]])
@@ -165,7 +165,7 @@ class SpectrumAnswer:
         )
         failed = sum(one["failed"] for one in curves)
         page.warn([f"{failed} histories could not be computed"] if failed else [])
-        page.warn(filter(None, [found.attrs["contact"]]))
+        page.warn(filter(None, [dataset.attrs["contact"]]))
 
 
 def _curve(one: "xr.Dataset") -> dict[str, Any]:

@@ -1,13 +1,12 @@
 """What the commands of many histories have in common: their document, its problem, and the head of their pages."""
 
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from rocking.bodies import Body
 from rocking.cli.arguments import NO_MOTION, Arguments, hinted, parsed_sets
-from rocking.cli.numbers import in_unit
+from rocking.cli.numbers import side_line
 from rocking.conventions import FEET, Foot
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Motion
@@ -100,26 +99,13 @@ def family(arguments: Arguments, usual: Mapping[str, Any]) -> dict[str, Any] | N
     return {**usual, **arguments.table("motion", options)}
 
 
-def body_line(body: Body, gravity: float, length: str = "m") -> str:
-    """Return kind and mass of a plane body, and what decides how it rocks, of both feet where they differ.
-
-    gravity: acceleration of gravity [m/s2].
-    """
-    feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
-    sides = {foot: body.side(foot, gravity) for foot in feet}
-    shape = "; ".join(
-        f"{'' if body.is_symmetric else f'{foot} '}alpha = {side.slenderness_angle:.4g} rad "
-        f"({math.degrees(side.slenderness_angle):.3g} deg), R = {in_unit(side.semi_diagonal, length)}, "
-        f"p = {side.frequency_parameter:.4g} rad/s"
-        for foot, side in sides.items()
-    )
-    return f"{type(body).__name__}, {body.mass:.4g} kg, {shape}"
-
-
 def body_lines(body: Body, gravity: float, length: str = "m") -> list[tuple[str, str]]:
     """Return what is printed of the body of a study; gravity: acceleration of gravity [m/s2]."""
+    feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
+    sides = {foot: side_line(body.side(foot, gravity), length) for foot in feet}
+    shape = "; ".join(f"{'' if body.is_symmetric else f'{foot} '}{line}" for foot, line in sides.items())
     assumed = [("density", each.removeprefix("density ")) for each in body.assumed]
-    return [("body", body_line(body, gravity, length)), *assumed]
+    return [("body", f"{type(body).__name__}, {body.mass:.4g} kg, {shape}"), *assumed]
 
 
 def motion_facts(motion: Motion) -> dict[str, Any]:

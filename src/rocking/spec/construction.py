@@ -77,17 +77,17 @@ def _drawn(
     seed = seed if table.seed is None else table.seed
     how: dict[str, Any] = {"seed": seed, "times": times}
     if table.posterior:
-        drawn, words = _posterior(table, seed, bodies)
+        drawn, label = _posterior(table, seed, bodies)
     elif table.values is not None:
-        drawn, words = law.of_sample(table.values, **how), f"{len(table.values)} values"
-        words += f" from {min(table.values):g} to {max(table.values):g}"
+        drawn, label = law.of_sample(table.values, **how), f"{len(table.values)} values"
+        label += f" from {min(table.values):g} to {max(table.values):g}"
     else:
         mean, deviation = table.mean or 0.0, table.deviation or 0.0  # both are there: checked by the table
-        drawn, words = law.normal(mean, deviation, **how), f"{mean:g} +- {deviation:g}"
+        drawn, label = law.normal(mean, deviation, **how), f"{mean:g} +- {deviation:g}"
     # of many bodies, the one of which most is cut off
     cuts = [cut_of(drawn, body) for body in bodies]
     most = {foot: max((cut[foot] for cut in cuts), default=0.0) for foot in FEET}
-    return f"drawn per {table.each}: {words}, seed {seed}{cut_words(most)}", drawn
+    return f"drawn per {table.each}: {label}, seed {seed}{cut_words(most)}", drawn
 
 
 def _posterior(table: "RandomTable", seed: int, bodies: Sequence[Any]) -> tuple[Any, str]:

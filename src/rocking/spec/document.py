@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from rocking.conventions import DEFAULT_FRICTION
-from rocking.spec.fields import JobTable, Names, Numbers, Positive, Seed, Values, Words, in_list, refused
+from rocking.spec.fields import JobTable, Names, Numbers, Positive, Seed, Text, Values, in_list, refused
 
 NEEDS: dict[str, str] = {
     "overturning-map": "map",
@@ -53,11 +53,11 @@ class RandomTable(JobTable):
 
     @model_validator(mode="after")
     def _one_distribution(self) -> "RandomTable":
-        names = ("mean", "deviation", "values", "posterior")
-        given = [name for name in names if getattr(self, name) is not None]
-        if given not in (["mean", "deviation"], ["values"], ["posterior"]):
-            told = " and ".join(given) or "none"
-            raise refused(f"give mean and deviation, or values alone, or posterior alone; got {told}")
+        ways = ("mean", "deviation", "values", "posterior")
+        stated = [name for name in ways if getattr(self, name) is not None]
+        if stated not in (["mean", "deviation"], ["values"], ["posterior"]):
+            names = " and ".join(stated) or "none"
+            raise refused(f"give mean and deviation, or values alone, or posterior alone; got {names}")
         if self.posterior is None and self.count is not None:
             raise refused("count goes with posterior: how many values are drawn from it")
         if self.posterior and "times" in self.model_fields_set:
@@ -68,8 +68,8 @@ class RandomTable(JobTable):
 class RestitutionTable(JobTable):
     """What an impact costs."""
 
-    model: Words | None = _key("a model as in rocking models, or my_file.py:MyModel")
-    models: Annotated[list[Words], Field(min_length=1)] | None = _key("several, to compare; the first is the answer")
+    model: Text | None = _key("a model as in rocking models, or my_file.py:MyModel")
+    models: Annotated[list[Text], Field(min_length=1)] | None = _key("several, to compare; the first is the answer")
     value: float | None = _key("a coefficient, velocity after over before [-]", None, ge=0.0, le=10.0)
     values: Annotated[list[Annotated[float, Field(ge=0.0, le=10.0)]], Field(min_length=1)] | None = _key(
         "several coefficients [-]"
@@ -93,7 +93,7 @@ class RestitutionTable(JobTable):
 class CampaignTable(JobTable):
     """What the campaign is called and what it computes."""
 
-    name: Words = _key("what it is called", ...)
+    name: Text = _key("what it is called", ...)
     kind: Kind = _key("which study", ...)
     note: str | None = _key("anything")
     chunk: int | None = _key("histories that are kept together", None, ge=1, le=1 << 22)
@@ -103,13 +103,13 @@ class CampaignTable(JobTable):
 class MotionKeys(JobTable):
     """What one motion, or several, are made of."""
 
-    synthetic: Words | None = _key("family of synthetic motions: firm-ground, soft-ground, point-source and more")
-    format: Words | None = _key("format of the record file, if not found by content: see rocking formats")
-    units: Words | None = _key("unit of the record where its file states none: m/s2, cm/s2, mm/s2, gal, g, g/10, mg")
+    synthetic: Text | None = _key("family of synthetic motions: firm-ground, soft-ground, point-source and more")
+    format: Text | None = _key("format of the record file, if not found by content: see rocking formats")
+    units: Text | None = _key("unit of the record where its file states none: m/s2, cm/s2, mm/s2, gal, g, g/10, mg")
     time_step: Positive | None = _key("step between samples where the file does not state it [s]")
-    component: Words | None = _key("horizontal component of the file, by name")
-    vertical: Words | None = _key("vertical component, by name")
-    vertical_file: Words | None = _key("file of the vertical component, where it has its own")
+    component: Text | None = _key("horizontal component of the file, by name")
+    vertical: Text | None = _key("vertical component, by name")
+    vertical_file: Text | None = _key("file of the vertical component, where it has its own")
     scale: float = _key("factor on the acceleration of the ground [-]", 1.0)
     seed: Seed | None = _key("seed of the synthetic motions")
     pga: Positive | None = _key("peak ground acceleration to which synthetic motions are scaled [m/s2]")
@@ -146,7 +146,7 @@ class MotionTable(MotionKeys):
 class AxisTable(Values):
     """An axis of a map."""
 
-    axis: Words = _key("what changes along it: frequency_ratio, pga, semi_diagonal and more", ...)
+    axis: Text = _key("what changes along it: frequency_ratio, pga, semi_diagonal and more", ...)
 
 
 class MapTable(JobTable):
@@ -190,10 +190,10 @@ class ThresholdsTable(JobTable):
 class InventoryTable(JobTable):
     """A list of objects, and how strong the shaking is: a number with its unit, such as 0.3g."""
 
-    objects: Words = _key("CSV file with the columns name, width_cm, depth_cm, height_cm and more", ...)
-    encoding: Words = _key("encoding of the CSV file; cp1252 for some spreadsheets", "utf-8-sig")
-    pga: Words | None = _key("peak ground acceleration of every motion: 0.3g, 2.9m/s2")
-    pgv: Words | None = _key("peak ground velocity in its place: 25cm/s, 0.25m/s")
+    objects: Text = _key("CSV file with the columns name, width_cm, depth_cm, height_cm and more", ...)
+    encoding: Text = _key("encoding of the CSV file; cp1252 for some spreadsheets", "utf-8-sig")
+    pga: Text | None = _key("peak ground acceleration of every motion: 0.3g, 2.9m/s2")
+    pgv: Text | None = _key("peak ground velocity in its place: 25cm/s, 0.25m/s")
     thresholds: ThresholdsTable = Field(
         default_factory=ThresholdsTable, description="where one light ends and the next begins"
     )
@@ -210,8 +210,8 @@ class ExportTable(JobTable):
 
     crossing: Literal["refuse", "common-dispersion"] = _key("what becomes of curves that cross", "refuse")
     bootstrap: Annotated[int, Field(ge=99, le=100_000)] | Literal[0] = _key("how often a study is repeated", 0)
-    measures: Annotated[list[Words], Field(min_length=1)] | None = _key("measures of intensity that are compared")
-    columns: list[Words] | None = _key("columns of the comparison")
+    measures: Annotated[list[Text], Field(min_length=1)] | None = _key("measures of intensity that are compared")
+    columns: list[Text] | None = _key("columns of the comparison")
 
 
 class SpectrumTable(JobTable):
@@ -231,7 +231,7 @@ class HistoriesTable(JobTable):
 class FragilityTable(JobTable):
     """Measure, levels and limit states of a fragility analysis."""
 
-    measure: Words = _key("measure of intensity: pga, pgv, arias, sa(0.5) and more", "pga")
+    measure: Text = _key("measure of intensity: pga, pgv, arias, sa(0.5) and more", "pga")
     levels: Numbers | None = _key("levels of the measure [its unit]")
     states: list[Positive] = _key("rotations over the slenderness angle that count [-]", [0.5])
     tolerance: float | None = _key("width of the last brackets over the level [-]", None, ge=0.0, le=0.1)
@@ -312,8 +312,8 @@ class CampaignDocument(JobTable):
             odd = sorted({"pga", "pgv", "time_step"} & table.model_fields_set)
             if odd:
                 raise refused(f"motions.{odd[0]} does not go with an inventory; how strong it is stands in [inventory]")
-        told = self.inventory
-        if families and told is not None and told.pga is None and told.pgv is None:
+        inventory = self.inventory
+        if families and inventory is not None and inventory.pga is None and inventory.pgv is None:
             raise refused('how strong is the shaking? [inventory] needs pga = "0.3g" or pgv = "25cm/s"')
 
     @staticmethod
@@ -351,8 +351,8 @@ class ResponseTable(JobTable):
 class OneMotionTable(MotionKeys):
     """One pulse, one record, or one motion of a synthetic family."""
 
-    pulse: Words | None = _key("a pulse such as sine:amplitude=3,period=0.8")
-    record: Words | None = _key("a record file")
+    pulse: Text | None = _key("a pulse such as sine:amplitude=3,period=0.8")
+    record: Text | None = _key("a record file")
     member: Annotated[int, Field(ge=0, lt=10_000_000)] | None = _key("which motion of the synthetic family, from 0")
 
     @model_validator(mode="after")

@@ -11,12 +11,12 @@ from rocking.conventions import FloatArray
 
 Positive = Annotated[float, Field(gt=0.0)]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
-Words = Annotated[str, Field(min_length=1, max_length=200)]
+Text = Annotated[str, Field(min_length=1, max_length=200)]
 
 
-def refused(words: str) -> PydanticCustomError:
-    """Return an error whose words are a sentence already."""
-    return PydanticCustomError("contradiction", "{words}", {"words": words})
+def refused(sentence: str, kind: Literal["contradiction", "unknown_key"] = "contradiction") -> PydanticCustomError:
+    """Return an error that is a sentence already."""
+    return PydanticCustomError(kind, "{sentence}", {"sentence": sentence})
 
 
 class JobTable(BaseModel):
@@ -26,21 +26,19 @@ class JobTable(BaseModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _known_keys(cls, given: Any) -> Any:
+    def _known_keys(cls, stated: Any) -> Any:
         known = [field.alias or name for name, field in cls.model_fields.items()]
-        for key in given if isinstance(given, dict) else ():
+        for key in stated if isinstance(stated, dict) else ():
             if key not in known:
-                words = f"unknown key {key!r:.60}{suggestion(key, known)}"
-                raise PydanticCustomError("unknown_key", "{words}", {"words": words})
-        return given
+                raise refused(f"unknown key {key!r:.60}{suggestion(key, known)}", "unknown_key")
+        return stated
 
     def chosen(self, *names: str) -> str:
         """Return which one of several keys is there."""
-        found = [name for name in names if getattr(self, name) is not None]
-        if len(found) != 1:
-            words = f"exactly one of {', '.join(names)} is needed, got {' and '.join(found) or 'none'}"
-            raise PydanticCustomError("contradiction", "{words}", {"words": words})
-        return found[0]
+        stated = [name for name in names if getattr(self, name) is not None]
+        if len(stated) != 1:
+            raise refused(f"exactly one of {', '.join(names)} is needed, got {' and '.join(stated) or 'none'}")
+        return stated[0]
 
 
 class Values(JobTable):
@@ -55,11 +53,11 @@ class Values(JobTable):
     @model_validator(mode="after")
     def _whole(self) -> "Values":
         ends = {"from": self.start, "to": self.stop, "count": self.count}
-        given = [name for name, value in ends.items() if value is not None]
-        if self.values is not None and (given or "spacing" in self.model_fields_set):
-            raise refused(f"values stand alone, without {', '.join(given) or 'spacing'}")
-        if self.values is None and len(given) < len(ends):
-            raise refused(f"give values = [...], or from, to and count; got {', '.join(given) or 'none of them'}")
+        stated = [name for name, value in ends.items() if value is not None]
+        if self.values is not None and (stated or "spacing" in self.model_fields_set):
+            raise refused(f"values stand alone, without {', '.join(stated) or 'spacing'}")
+        if self.values is None and len(stated) < len(ends):
+            raise refused(f"give values = [...], or from, to and count; got {', '.join(stated) or 'none of them'}")
         if self.values is None and self.spacing == "log" and min(self.start or 0.0, self.stop or 0.0) <= 0.0:
             raise refused(f"from and to must be > 0 where the spacing is log, got {self.start!r} and {self.stop!r}")
         if self.count == 1 and self.start != self.stop:
@@ -76,20 +74,17 @@ class Values(JobTable):
         return np.linspace(start, stop, count)
 
 
-def _in_table(given: Any) -> Any:
-    if isinstance(given, list):
-        return {"values": given}
-    return {"values": [given]} if isinstance(given, (int, float)) and not isinstance(given, bool) else given
+def _in_table(stated: Any) -> Any:
+    if isinstance(stated, list):
+        return {"values": stated}
+    return {"values": [stated]} if isinstance(stated, (int, float)) and not isinstance(stated, bool) else stated
 
 
-def in_list(given: Any) -> Any:
-    """Return a single table or word as a list of one.
-
-    Returns the list; everything else as it is.
-    """
-    return [given] if isinstance(given, (dict, str)) else given
+def in_list(stated: Any) -> Any:
+    """Return a single table or text as a list of one, and everything else as it is."""
+    return [stated] if isinstance(stated, (dict, str)) else stated
 
 
 Numbers = Annotated[Values, BeforeValidator(_in_table)]
 
-Names = Annotated[list[Words], Field(min_length=1), BeforeValidator(in_list)]
+Names = Annotated[list[Text], Field(min_length=1), BeforeValidator(in_list)]

@@ -49,14 +49,14 @@ class InputFiles:
         path = self.folder / name
         try:
             with path.open("rb") as stream:
-                made, size = hashlib.sha256(), 0
+                digest, size = hashlib.sha256(), 0
                 while piece := stream.read(_PIECE):
-                    made.update(piece)
+                    digest.update(piece)
                     size += len(piece)
         except (OSError, ValueError) as error:
             why = getattr(error, "strerror", None) or error
             raise InvalidValueError(f"{name}: {why}; files are relative to the job file, here {self.folder}") from error
-        self.files[name] = InputFile(name, made.hexdigest(), size)
+        self.files[name] = InputFile(name, digest.hexdigest(), size)
         return path
 
     def named(self, pattern: str) -> list[str]:
@@ -71,17 +71,14 @@ class InputFiles:
             self.folder, Path(pattern).parts,
         )  # fmt: skip
         try:
-            found = sorted(path for path in root.glob("/".join(rest)) if path.is_file())
+            paths = sorted(path for path in root.glob("/".join(rest)) if path.is_file())
         except (ValueError, OSError, NotImplementedError) as error:
             raise InvalidValueError(f"{pattern!r:.80} is no pattern of files ({error})") from error
-        if not found:
+        if not paths:
             raise InvalidValueError(f"{pattern!r:.80} finds no file in {self.folder}")
-        return [path.as_posix() if Path(pattern).is_absolute() else self._relative(path) for path in found]
+        return [(path if Path(pattern).is_absolute() else path.relative_to(self.folder)).as_posix() for path in paths]
 
-    def _relative(self, path: Path) -> str:
-        return path.relative_to(self.folder).as_posix()
-
-    def told(self) -> list[dict[str, Any]]:
+    def facts(self) -> list[dict[str, Any]]:
         """Return the files as plain values, in the order of their names."""
         return [{"path": f.path, "sha256": f.sha256, "bytes": f.size} for _, f in sorted(self.files.items())]
 
@@ -96,17 +93,17 @@ class CommandFiles(InputFiles):
 
 def refuse_changes(before: list[dict[str, Any]], now: list[dict[str, Any]]) -> None:
     """Refuse files that are not what they were when the campaign began."""
-    was, found = ({item["path"]: item for item in items} for items in (before, now))
+    was, here = ({item["path"]: item for item in items} for items in (before, now))
     advice = "restore it, or begin a new campaign in another folder"
     for path, item in was.items():
-        if path not in found:
+        if path not in here:
             raise InvalidValueError(f"{path}: was there when the campaign began and is missing now; {advice}")
-        if found[path]["sha256"] != item["sha256"]:
+        if here[path]["sha256"] != item["sha256"]:
             raise InvalidValueError(
                 f"{path}: has changed since the campaign began (SHA-256 {item['sha256'][:12]}... then, "
-                f"{found[path]['sha256'][:12]}... now); {advice}"
+                f"{here[path]['sha256'][:12]}... now); {advice}"
             )
-    added = sorted(set(found) - set(was))
+    added = sorted(set(here) - set(was))
     if added:
         raise InvalidValueError(f"{added[0]}: was not there when the campaign began; remove it, or begin a new one")
 
@@ -176,21 +173,21 @@ def checked(kind: "type[_Kind]", tables: dict[str, Any]) -> "_Kind":
         raise InvalidValueError(_nearest(sentence(error, None), error.errors(include_url=False)[0])) from error
 
 
-def _nearest(words: str, problem: object) -> str:
+def _nearest(text: str, problem: object) -> str:
     """Say it in plain words, and add the nearest known word where one of several was expected."""
     import difflib
     import re
 
     assert isinstance(problem, dict)
-    given, kind = problem.get("input"), problem["type"]
+    value, kind = problem.get("input"), problem["type"]
     if kind in _PLAIN:
-        return words.replace(f"is refused ({problem['msg']})", _PLAIN[kind])
-    if kind != "literal_error" or not isinstance(given, str):
-        return words
+        return text.replace(f"is refused ({problem['msg']})", _PLAIN[kind])
+    if kind != "literal_error" or not isinstance(value, str):
+        return text
     known = re.findall(r"'([^']+)'", problem["ctx"]["expected"])
-    near = difflib.get_close_matches(given[:60], known, n=1)
-    head, mark, tail = words.partition(" (and ")
-    return f"{head}; did you mean {near[0]}?{mark}{tail}" if near else words
+    near = difflib.get_close_matches(value[:60], known, n=1)
+    head, mark, tail = text.partition(" (and ")
+    return f"{head}; did you mean {near[0]}?{mark}{tail}" if near else text
 
 
 def tables_in(path: Path) -> dict[str, Any] | None:

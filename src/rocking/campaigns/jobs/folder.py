@@ -129,7 +129,7 @@ class JobFolder:
             files = InputFiles(base)
             for item in content["files"]:  # before they are read: what has changed may not be readable
                 files.file(item["path"])
-            refuse_changes(content["files"], files.told())
+            refuse_changes(content["files"], files.facts())
         job = Job.of_text(text, content["job_file"], base)
         with located(str(path)):
             refuse_changes(content["files"], job.inputs)

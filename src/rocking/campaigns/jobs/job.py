@@ -122,7 +122,7 @@ class Job:
     @property
     def inputs(self) -> list[dict[str, Any]]:
         """The files that it names: path, sha256 and bytes of each."""
-        return self.problem.inputs.told()
+        return self.problem.inputs.facts()
 
     @cached_property
     def provenance(self) -> dict[str, Any]:

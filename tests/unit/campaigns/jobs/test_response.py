@@ -45,7 +45,7 @@ def test_a_record_lies_beside_the_file(tmp_path):
     files = InputFiles(tmp_path)
     problem = problem_of(f'[response]\n{BODY}[motion]\nrecord = "a.txt"\nunits = "g"\n', tmp_path, files)
     assert np.array_equal(problem.motion.acceleration, rk.read_motion(tmp_path / "a.txt", units="g").acceleration)
-    assert [item["path"] for item in files.told()] == ["a.txt"]
+    assert [item["path"] for item in files.facts()] == ["a.txt"]
 
 
 def test_free_rocking_starts_at_a_share_of_the_slenderness_angle():
