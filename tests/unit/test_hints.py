@@ -40,14 +40,6 @@ def test_a_map_prints_without_the_packages_of_files(tmp_path):
     assert "Overturning begins at" in done.stdout
 
 
-def test_the_slow_engine_is_said_once(tmp_path):
-    """Without the compiled engine a command that computes several histories says so in one line, not in two."""
-    command = "simulate --width 0.5 --height 2 sine:amplitude=3,period=0.8"
-    words = [sys.executable, "-c", BLOCKED, "rocking.dynamics._engine", *command.split()]
-    done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=True)
-    assert done.stderr.count("was not built") == 1
-
-
 def test_extras_exist():
     """Every extra that a hint names is one of the project's and has the package."""
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]

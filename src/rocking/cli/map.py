@@ -1,7 +1,8 @@
 """`rocking map`: how a body ends over two parameters of it and its motion."""
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -77,8 +78,31 @@ def map(
         table, written = _table(arguments, x, y, refine)
         problem = body_and_motion(arguments, "overturning-map", table, restitution or ["ked"])
     with bar("histories", quiet=as_json) as progress, as_typed():
-        answer = MapAnswer.of(problem, written, length or "m", exports, progress, threads)
-    deliver(answer, exports, as_json=as_json)
+        arrays, compared = _computed(problem, progress, threads, picture="picture" in exports.names)
+    deliver(MapAnswer(problem, arrays, compared, written, length or "m"), exports, as_json=as_json)
+
+
+def _computed(problem: "StudyProblem", progress: Any, threads: int | None, *, picture: bool) -> "tuple[MapArrays, Any]":
+    """Return the map with the first restitution, and, where there are several, what differs."""
+    from rocking.errors import InvalidValueError
+    from rocking.spec.study import axes_of
+    from rocking.studies._overturning_map import MapArrays
+
+    assert problem.document.map is not None  # the document refuses to be without
+    axes = axes_of(problem.document.map)
+    sizes = [axis.values.size for axis in axes]
+    if math.prod(sizes) > MOST_CELLS:
+        raise InvalidValueError(
+            f"a map must have at most {MOST_CELLS} cells, got {sizes[0]} x {sizes[1]}; rocking campaign computes more"
+        )
+    if picture and min(sizes) < 2:
+        raise InvalidValueError("a picture needs at least two values along --x and along --y, got one")
+    result = problem.answer(progress, threads)
+    if len(problem.restitutions) == 1:
+        return result, None
+    first = next(iter(result.datasets.values()))
+    variables = {str(name): each.to_numpy() for name, each in first.data_vars.items()}
+    return MapArrays(axes, variables, first.attrs), result
 
 
 def _table(arguments: "Arguments", x: str, y: str, refine: int | None) -> tuple[dict[str, Any], dict[str, str]]:
@@ -128,50 +152,15 @@ class MapAnswer:
     """A map with the first restitution, its safe islands, and how the restitution changes it."""
 
     problem: "StudyProblem"
-    axes: "tuple[Axis, Axis]"
     arrays: "MapArrays"  # with the first restitution
     compared: Any  # maps with all restitutions, where there are several
-    written: dict[str, str] = field(default_factory=dict)  # units that axes were written in, by their name
-    length: str = "m"  # unit of lengths
-
-    @classmethod
-    def of(
-        cls,
-        problem: "StudyProblem",
-        written: dict[str, str],
-        length: str,
-        exports: Exports,
-        progress: Any,
-        threads: int | None,
-    ) -> "MapAnswer":
-        """Compute a map."""
-        from rocking.errors import InvalidValueError
-        from rocking.spec.study import axes_of
-        from rocking.studies._overturning_map import MapArrays
-
-        assert problem.document.map is not None
-        x, y = axes_of(problem.document.map)
-        if x.values.size * y.values.size > MOST_CELLS:
-            raise InvalidValueError(
-                f"a map must have at most {MOST_CELLS} cells, got {x.values.size} x {y.values.size}; "
-                "rocking campaign computes more"
-            )
-        if "picture" in exports.names and min(x.values.size, y.values.size) < 2:
-            raise InvalidValueError("a picture needs at least two values along --x and along --y, got one")
-        result = problem.answer(progress, threads)
-        several = len(problem.restitutions) > 1
-        if several:
-            first = next(iter(result.datasets.values()))
-            variables = {str(name): each.to_numpy() for name, each in first.data_vars.items()}
-            arrays = MapArrays((x, y), variables, first.attrs)
-            return cls(problem, (x, y), arrays, result, written, length)
-        return cls(problem, (x, y), result, None, written, length)
+    written: dict[str, str]  # units that axes were written in, by their name
+    length: str  # unit of lengths
 
     @property
-    def table(self) -> MapTable:
-        """What was asked."""
-        assert self.problem.document.map is not None
-        return self.problem.document.map
+    def axes(self) -> "tuple[Axis, Axis]":
+        """Axes x and y."""
+        return self.arrays.axes
 
     @property
     def islands(self) -> Any:
@@ -206,9 +195,10 @@ class MapAnswer:
         from rocking.studies.boundaries import boundary
 
         problem = self.problem
+        assert problem.document.map is not None  # the document refuses to be without
         lines = boundary(
             problem.bodies[0], problem.motions[0], *self.axes, problem.restitution,
-            levels=self.table.refine or 0, tolerance=_LINE, **problem.stated,
+            levels=problem.document.map.refine or 0, tolerance=_LINE, **problem.stated,
         ) if str(self.arrays.attributes["engine"]).startswith("fast") else []  # fmt: skip
         figure = overturning_map_picture(self.arrays.to_xarray(), lines)
         for which, axis in zip(("x", "y"), self.axes, strict=True):
@@ -217,15 +207,13 @@ class MapAnswer:
         return figure
 
     def facts(self) -> dict[str, Any]:
-        from rocking.cli.study import motion_facts
+        from rocking.cli.study import subject_facts
 
         arrays, problem, islands = self.arrays, self.problem, self.islands
         axes = [{"name": axis.name, "unit": axis.unit, "values": axis.values} for axis in self.axes]
         names = ("cells", "area", "x", "y")
         return {
-            "body": repr(problem.bodies[0]),
-            "assumed": list(problem.bodies[0].assumed),
-            "motion": motion_facts(problem.motions[0]),
+            **subject_facts(problem),
             "restitution": arrays.attributes["restitution"],
             "engine": arrays.attributes["engine"],
             "gravity_m_s2": problem.settings.gravity,

@@ -113,13 +113,11 @@ class MinimumAnswer:
         return str(getattr(self.problem.restitution, "label", self.problem.restitution))
 
     def facts(self) -> dict[str, Any]:
-        from rocking.cli.study import motion_facts
+        from rocking.cli.study import subject_facts
 
         transitions, problem = self.transitions, self.problem
         return {
-            "body": repr(problem.bodies[0]),
-            "assumed": list(problem.bodies[0].assumed),
-            "motion": motion_facts(problem.motions[0]),
+            **subject_facts(problem),
             "restitution": self.label,
             "gravity_m_s2": problem.settings.gravity,
             "linear": problem.settings.linear,

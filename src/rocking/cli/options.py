@@ -46,8 +46,7 @@ Record = Annotated[
     str | None, typer.Argument(help="Record file, file#COMPONENT, or a pulse such as sine:amplitude=3,period=0.8.")
 ]
 Motion = Annotated[
-    list[str] | None,
-    typer.Option(help="The same, as an option; along an axis x=FILE, y=FILE and z=FILE, which is up."),
+    list[str] | None, typer.Option(help="The same, as an option; along an axis x=FILE, y=FILE and z=FILE, which is up.")
 ]
 Motions = Annotated[list[str] | None, typer.Option("--motion", help="The same, as an option; again for more.")]
 Restitution = Annotated[str, typer.Option(help="Model as in rocking models, my_file.py:MyModel, or a coefficient.")]
@@ -97,7 +96,7 @@ _RENAMED = {
 def renamed(option: str) -> str:
     """Return how an option of earlier is said now; empty if there was none.
 
-    >>> said_now("--gravity")
+    >>> renamed("--gravity")
     'is now --set settings.gravity=VALUE'
     """
     return f"is now {_RENAMED[option]}" if option in _RENAMED else ""

@@ -27,10 +27,7 @@ def serve(
     from rocking.app.settings import ServerSettings, default_folder
 
     settings = ServerSettings(
-        host=host,
-        folder=(data or default_folder()).expanduser().absolute(),
-        allow_remote=allow_remote,
-        workers=workers,
+        host=host, folder=(data or default_folder()).expanduser().absolute(), allow_remote=allow_remote, workers=workers
     )
     _serve(settings, port, quiet=no_browser or as_json, as_json=as_json)
 

@@ -13,7 +13,7 @@ from rocking.cli.numbers import in_unit
 from rocking.cli.page import Page
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import GeometryError
-from rocking.restitution.space import SpatialModel, SpatialRestitution, impact_in_space, spatial_model, spatial_models
+from rocking.restitution.space import SpatialModel, impact_in_space, spatial_model, spatial_models
 
 PARALLEL = 1e-3
 """Edges of a mesh whose directions differ by less count as parallel: files round coordinates [rad]."""
@@ -35,28 +35,11 @@ _MOST = 12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class EdgeImpact:
-    """One edge of a base, the body that turns about it, and what follows when it falls back."""
-
-    name: str  # number of the edge, or direction of the point of a round base
-    edge: Edge  # where it turns
-    # corners (x, y) of the edge; the point of a round base twice [m]
-    ends: tuple[tuple[float, float], tuple[float, float]]
-    onto: str  # what it lands on when it falls back
-    # slenderness_angle, semi_diagonal, frequency_parameter: alpha [rad], R [m] and p = sqrt(m g R / I) [rad/s] of the
-    # turn about the edge
-    slenderness_angle: float
-    semi_diagonal: float
-    frequency_parameter: float
-    results: dict[str, SpatialRestitution]  # by model
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class SolidAnswer:
     """A body in space and its edges."""
 
     solid: Solid
-    edges: tuple[EdgeImpact, ...]  # edges of the base, at most `MOST_EDGES`; of a round one, directions
+    edges: list[dict[str, Any]]  # edges of the base, at most `MOST_EDGES`; of a round one, directions
     gravity: float  # acceleration of gravity [m/s2]
     length: str  # unit of lengths
 
@@ -65,7 +48,7 @@ class SolidAnswer:
         """Compute the impacts; gravity: acceleration of gravity [m/s2]."""
         pull = checks.positive("gravity", gravity, "m/s2")
         chosen = [spatial_model(name) for name in models or spatial_models()]
-        return cls(solid, tuple(_edges(solid, chosen, pull)), pull, length)
+        return cls(solid, _edges(solid, chosen, pull), pull, length)
 
     @property
     def left_out(self) -> int:
@@ -83,7 +66,7 @@ class SolidAnswer:
             "body": body_facts(self.solid),
             "base": base_facts(self.solid.base),
             "gravity_m_s2": self.gravity,
-            "edges": [edge_facts(edge) for edge in self.edges],
+            "edges": self.edges,
             "edges_left_out": self.left_out,
             "repairs": list(self.solid.repairs),
             "notes": self.notes,
@@ -97,7 +80,7 @@ class SolidAnswer:
     def write_csv(self, path: Path) -> None:
         from rocking.cli.exports import write_records
 
-        write_records(path, [_record(edge, name) for edge in self.edges for name in edge.results])
+        write_records(path, [_record(edge, name) for edge in self.edges for name in edge["coefficients"]])
 
     def show(self, page: Page) -> None:
         show_body(page, self.solid, self.length)
@@ -109,11 +92,12 @@ class SolidAnswer:
         page.table(head, [_geometry(edge, self.length) for edge in self.edges], ("edge",))
         page.line()
         page.line("Coefficient of restitution, angular velocity after / before", "bold")
-        rows = [
-            (edge.name, edge.onto, *(f"{r.coefficient:.6f}{' !' if r.flags else ''}" for r in edge.results.values()))
-            for edge in self.edges
-        ]
-        page.table(("from edge", "onto", *self.edges[0].results), rows, ("from edge", "onto"))
+        rows = []
+        for edge in self.edges:
+            results = edge["coefficients"].values()
+            values = (f"{r['coefficient']:.6f}{' !' if r['flags'] else ''}" for r in results)
+            rows.append((edge["edge"], edge["lands_on"], *values))
+        page.table(("from edge", "onto", *self.edges[0]["coefficients"]), rows, ("from edge", "onto"))
         if self.left_out:
             page.line(f"{self.left_out} edges that are less slender are left out", "dim")
         page.warn(self._flags())
@@ -123,45 +107,63 @@ class SolidAnswer:
     def _flags(self) -> list[str]:
         edges_of: dict[tuple[str, str], list[str]] = {}
         for edge in self.edges:
-            for name, result in edge.results.items():
-                for flag in result.flags:
-                    edges_of.setdefault((name, flag.value), []).append(edge.name)
+            for name, result in edge["coefficients"].items():
+                for meaning in result["flags"].values():
+                    edges_of.setdefault((name, meaning), []).append(edge["edge"])
         return [
             f"{name}, from {', '.join(edges[:_MOST])}{' ...' if len(edges) > _MOST else ''}: {sentence}"
             for (name, sentence), edges in edges_of.items()
         ]
 
 
-def _edges(solid: Solid, models: list[SpatialModel], gravity: float) -> list[EdgeImpact]:
+def _edges(solid: Solid, models: list[SpatialModel], gravity: float) -> list[dict[str, Any]]:
+    """Return every edge, and what follows when the body falls back from it, as plain values."""
     base = solid.base
-    if isinstance(base, SupportPolygon):
-        edges = base.edges
-        slender = sorted(range(len(edges)), key=lambda i: round(_arm(solid, edges[i])[0], 9))
-        chosen = sorted(slender[:MOST_EDGES])
-        return [_edge(solid, str(i), edges[i], _landing(base, i), models, gravity) for i in chosen]
-    turns = [k * 2.0 * math.pi / DIRECTIONS for k in range(DIRECTIONS)]
+    if not isinstance(base, SupportPolygon):
+        turns = [k * 2.0 * math.pi / DIRECTIONS for k in range(DIRECTIONS)]
+        places = [(f"{math.degrees(t):.0f} deg", base.edge(t), "far side", base.edge(t + math.pi)) for t in turns]
+        return [_edge(solid, *place, models, gravity) for place in places]
+    edges, corners = base.edges, base.vertices.tolist()
+    slender = sorted(range(len(edges)), key=lambda i: round(_arm(solid, edges[i])[0], 9))
     return [
-        _edge(solid, f"{math.degrees(t):.0f} deg", base.edge(t), ("far side", base.edge(t + math.pi)), models, gravity)
-        for t in turns
+        _edge(solid, str(i), edges[i], *_landing(base, i), models, gravity, corners[(i + 1) % len(corners)])
+        for i in sorted(slender[:MOST_EDGES])
     ]
 
 
 def _edge(
-    solid: Solid, name: str, edge: Edge, landing: tuple[str, Edge | Corner], models: list[SpatialModel], gravity: float
-) -> EdgeImpact:
-    onto, where = landing
-    slenderness_angle, semi_diagonal = _arm(solid, edge)
+    solid: Solid,
+    name: str,
+    edge: Edge,
+    onto: str,
+    where: Edge | Corner,
+    models: list[SpatialModel],
+    gravity: float,
+    end: list[float] | None = None,
+) -> dict[str, Any]:
+    """Return one edge; end: its second corner (x, y) [m], none for the point of a round base."""
+    alpha, semi_diagonal = _arm(solid, edge)
     inertia = float(edge.direction @ solid.inertia @ edge.direction) + solid.mass * semi_diagonal**2
-    return EdgeImpact(
-        name,
-        edge,
-        _ends(solid.base, name, edge),
-        onto,
-        slenderness_angle,
-        semi_diagonal,
-        math.sqrt(solid.mass * gravity * semi_diagonal / inertia),
-        {m.name: impact_in_space(solid, -edge.direction, pivot=edge, onto=where, model=m) for m in models},
-    )
+    start = edge.point[:2].tolist()
+    results = {m.name: impact_in_space(solid, -edge.direction, pivot=edge, onto=where, model=m) for m in models}
+    return {
+        "edge": name,
+        "from_m": start,
+        "to_m": start if end is None else end,
+        "slenderness_angle_rad": alpha,
+        "slenderness_ratio": 1.0 / math.tan(alpha),
+        "semi_diagonal_m": semi_diagonal,
+        "frequency_parameter_rad_s": math.sqrt(solid.mass * gravity * semi_diagonal / inertia),
+        "lands_on": onto,
+        "coefficients": {
+            model: {
+                "coefficient": result.coefficient,
+                "energy_ratio": result.energy_ratio,
+                "flags": {flag.name.lower(): flag.value for flag in result.flags},
+            }
+            for model, result in results.items()
+        },
+    }
 
 
 def _arm(solid: Solid, edge: Edge) -> tuple[float, float]:
@@ -181,14 +183,6 @@ def _landing(base: SupportPolygon, which: int) -> tuple[str, Edge | Corner]:
     depth = (base.vertices - edge.point[:2]) @ inward
     number = int(np.argmax(depth))
     return f"corner {number}", base.corners[number]
-
-
-def _ends(base: Base, name: str, edge: Edge) -> tuple[tuple[float, float], tuple[float, float]]:
-    point = (float(edge.point[0]), float(edge.point[1]))
-    if not isinstance(base, SupportPolygon):
-        return point, point
-    x, y = base.vertices[(int(name) + 1) % len(base.vertices)].tolist()
-    return point, (x, y)
 
 
 def body_facts(solid: Solid) -> dict[str, Any]:
@@ -221,39 +215,15 @@ def base_facts(base: Base) -> dict[str, Any]:
     raise GeometryError(f"a base is a polygon or a circle, got {base!r:.60}")
 
 
-def edge_facts(edge: EdgeImpact) -> dict[str, Any]:
-    """Return one edge as plain values.
-
-    Returns Geometry, what it lands on, and by model ``coefficient``, ``energy_ratio`` and ``flags``.
-    """
+def _record(edge: dict[str, Any], name: str) -> dict[str, Any]:
+    """Return an edge under one model as a row of a table."""
+    result, start, end = edge["coefficients"][name], edge["from_m"], edge["to_m"]
     return {
-        "edge": edge.name,
-        "from_m": list(edge.ends[0]),
-        "to_m": list(edge.ends[1]),
-        "slenderness_angle_rad": edge.slenderness_angle,
-        "slenderness_ratio": 1.0 / math.tan(edge.slenderness_angle),
-        "semi_diagonal_m": edge.semi_diagonal,
-        "frequency_parameter_rad_s": edge.frequency_parameter,
-        "lands_on": edge.onto,
-        "coefficients": {
-            name: {
-                "coefficient": result.coefficient,
-                "energy_ratio": result.energy_ratio,
-                "flags": {flag.name.lower(): flag.value for flag in result.flags},
-            }
-            for name, result in edge.results.items()
-        },
-    }
-
-
-def _record(edge: EdgeImpact, name: str) -> dict[str, Any]:
-    facts = edge_facts(edge)
-    result = facts.pop("coefficients")[name]
-    start, end = facts.pop("from_m"), facts.pop("to_m")
-    places = {"from_x_m": start[0], "from_y_m": start[1], "to_x_m": end[0], "to_y_m": end[1]}
-    return {
-        **facts,
-        **places,
+        **{key: value for key, value in edge.items() if key not in {"coefficients", "from_m", "to_m"}},
+        "from_x_m": start[0],
+        "from_y_m": start[1],
+        "to_x_m": end[0],
+        "to_y_m": end[1],
         "model": name,
         "coefficient_of_restitution": result["coefficient"],
         "energy_ratio": result["energy_ratio"],
@@ -295,13 +265,14 @@ def _rounded(place: float, length: str) -> str:
     return f"{(round(place, 9) + 0.0) / LENGTH_UNITS[length]:.5g}"
 
 
-def _geometry(edge: EdgeImpact, length: str) -> tuple[str, ...]:
+def _geometry(edge: dict[str, Any], length: str) -> tuple[str, ...]:
+    alpha, unit = edge["slenderness_angle_rad"], LENGTH_UNITS[length]
     return (
-        edge.name,
-        *(f"{_rounded(x, length)}, {_rounded(y, length)}" for x, y in edge.ends),
-        f"{edge.slenderness_angle:.4f}",
-        f"{math.degrees(edge.slenderness_angle):.2f}",
-        f"{1.0 / math.tan(edge.slenderness_angle):.3f}",
-        f"{edge.semi_diagonal / LENGTH_UNITS[length]:.{4 if length == 'm' else 2}f}",
-        f"{edge.frequency_parameter:.4f}",
+        edge["edge"],
+        *(f"{_rounded(x, length)}, {_rounded(y, length)}" for x, y in (edge["from_m"], edge["to_m"])),
+        f"{alpha:.4f}",
+        f"{math.degrees(alpha):.2f}",
+        f"{edge['slenderness_ratio']:.3f}",
+        f"{edge['semi_diagonal_m'] / unit:.{4 if length == 'm' else 2}f}",
+        f"{edge['frequency_parameter_rad_s']:.4f}",
     )

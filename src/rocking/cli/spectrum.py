@@ -38,8 +38,7 @@ def spectrum(
         str, typer.Option(help="h/b: 4,6,8 or 4:8:5; with deg or rad the angle alpha: 10deg,15deg.")
     ] = "4,6,8",
     periods: Annotated[
-        str,
-        options.key(SpectrumTable, "periods", ": FIRST:LAST:COUNT in equal ratios, or with :linear, or A,B,C"),
+        str, options.key(SpectrumTable, "periods", ": FIRST:LAST:COUNT in equal ratios, or with :linear, or A,B,C")
     ] = "1:10:100",
     restitution: options.Restitution = "ked",
     scale: Annotated[float, options.key(SpectrumTable, "scale")] = 1.0,

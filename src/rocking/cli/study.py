@@ -9,7 +9,7 @@ from rocking.cli.arguments import NO_MOTION, Arguments, hinted, parsed_sets
 from rocking.cli.numbers import side_line
 from rocking.conventions import FEET, Foot
 from rocking.errors import InvalidValueError
-from rocking.motions.pulse import Motion
+from rocking.motions.pulse import Pulse
 from rocking.spec.document import NEEDS, OF_FILES, CampaignDocument
 from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
 from rocking.spec.study import StudyProblem
@@ -108,10 +108,13 @@ def body_lines(body: Body, gravity: float, length: str = "m") -> list[tuple[str,
     return [("body", f"{type(body).__name__}, {body.mass:.4g} kg, {shape}"), *assumed]
 
 
-def motion_facts(motion: Motion) -> dict[str, Any]:
-    """Return a motion as plain values for JSON."""
-    from rocking.motions.pulse import Pulse
-
-    kind = "pulse" if isinstance(motion, Pulse) else "record"
+def subject_facts(problem: StudyProblem) -> dict[str, Any]:
+    """Return the body and the motion of a study of one of each as plain values for JSON."""
+    body, motion = problem.bodies[0], problem.motions[0]
     facts = {"duration_s": motion.duration, "peak_acceleration_m_s2": motion.peak}
-    return {"kind": kind, "name": motion.name, **facts, "warnings": list(motion.doubts)}
+    kind = "pulse" if isinstance(motion, Pulse) else "record"
+    return {
+        "body": repr(body),
+        "assumed": list(body.assumed),
+        "motion": {"kind": kind, "name": motion.name, **facts, "warnings": list(motion.doubts)},
+    }

@@ -30,6 +30,12 @@ _OWN_BODIES = {
 }
 _MANY_BODIES = {"histories", "minimum-acceleration", *_OWN_BODIES}
 _ANALYSES = [kind for kind, table in NEEDS.items() if table == "fragility"]
+_ONLY = {
+    "export.columns": "cloud",
+    "export.measures": "cloud",
+    "fragility.factor": "cloud",
+    "fragility.tolerance": "incremental",
+}
 OF_FILES = {"format", "units", "time_step", "component", "vertical", "vertical_file"}
 """Keys of a motion that are for record files only."""
 
@@ -292,11 +298,14 @@ class CampaignDocument(JobTable):
             raise refused(f'[[body]] can be given once only with kind = "{kind}", got {len(self.body or ())}')
         if self.export is not None and kind not in _ANALYSES:
             raise refused(f'[export] goes with {", ".join(_ANALYSES)}, this is "{kind}"')
-        odd = sorted({"measures", "columns"} & (set() if self.export is None else self.export.model_fields_set))
-        if odd and kind != "cloud":
-            raise refused(f'export.{odd[0]} goes with kind = "cloud" only, this is "{kind}"')
-        if kind in _ANALYSES:
-            self._analysis_fits(kind, self.fragility or FragilityTable())
+        levels = None if self.fragility is None else self.fragility.levels
+        if kind in _ANALYSES and (levels is None) != (kind == "cloud"):
+            what = "is missing" if levels is None else "makes no sense: a cloud takes the motions as they are"
+            raise refused(f"fragility.levels {what}")
+        for place, only in _ONLY.items():
+            table, _, key = place.partition(".")
+            if getattr(getattr(self, table), key, None) is not None and kind != only:
+                raise refused(f'{place} goes with kind = "{only}" only, this is "{kind}"')
         if kind == "inventory":
             self._inventory_fits()
         return self
@@ -315,16 +324,6 @@ class CampaignDocument(JobTable):
         inventory = self.inventory
         if families and inventory is not None and inventory.pga is None and inventory.pgv is None:
             raise refused('how strong is the shaking? [inventory] needs pga = "0.3g" or pgv = "25cm/s"')
-
-    @staticmethod
-    def _analysis_fits(kind: str, table: FragilityTable) -> None:
-        if (table.levels is None) != (kind == "cloud"):
-            what = "is missing" if table.levels is None else "makes no sense: a cloud takes the motions as they are"
-            raise refused(f"fragility.levels {what}")
-        if table.factor is not None and kind != "cloud":
-            raise refused(f'fragility.factor goes with kind = "cloud" only, this is "{kind}"')
-        if table.tolerance is not None and kind != "incremental":
-            raise refused(f'fragility.tolerance goes with kind = "incremental" only, this is "{kind}"')
 
 
 class ResponseTable(JobTable):

@@ -7,7 +7,6 @@ import math
 import pytest
 
 import rocking as rk
-from rocking.cli import main
 from rocking.studies import SyntheticSet, cloud, compare_measures
 
 HEAD = '[campaign]\nname = "a cloud"\nkind = "cloud"\n[body]\nunits = "m"\nwidth = 0.4\nheight = 2.0\n'
@@ -15,21 +14,13 @@ MOTIONS = '[motions]\nsynthetic = "point-source"\ncount = 30\nseed = 1\n[restitu
 REST = '[fragility]\nmeasure = "pga"\nfactor = 2.0\n[export]\nmeasures = ["pga", "pgv", "arias"]\n'
 
 
-@pytest.fixture
-def run(tmp_path, monkeypatch, capsys):
-    """Run the command in a folder of its own: exit code, what it printed, what it complained of."""
+COMMAND = "campaign"
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """A folder of its own."""
     monkeypatch.chdir(tmp_path)
-
-    def call(*words):
-        try:
-            main(["campaign", *words])
-            code = 0
-        except SystemExit as stop:
-            code = stop.code or 0
-        told = capsys.readouterr()
-        return code, told.out, told.err
-
-    return call
 
 
 def made(run, tmp_path, models='["ked"]'):

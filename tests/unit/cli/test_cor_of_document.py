@@ -4,8 +4,6 @@ import json
 
 import pytest
 
-from rocking.cli import main
-
 BODY = '[body]\nunits = "cm"\nwidth = 50\nheight = 200\n'
 TAKEN = f"""[response]
 friction = 0.5
@@ -20,14 +18,6 @@ models = ["ked", "housner"]
 """
 
 
-def run(capsys, *words):
-    """Exit code, standard output and standard error of `rocking WORDS`."""
-    with pytest.raises(SystemExit) as stop:
-        main([str(word) for word in words])
-    printed = capsys.readouterr()
-    return stop.value.code or 0, printed.out, printed.err
-
-
 @pytest.fixture
 def taken(tmp_path):
     """Return a file to take away, without the record beside it."""
@@ -36,29 +26,29 @@ def taken(tmp_path):
     return path
 
 
-def test_the_body_is_taken_and_the_rest_is_for_simulate(capsys, taken):
+def test_the_body_is_taken_and_the_rest_is_for_simulate(run, taken):
     """The table is that of the block itself, below a sentence that says what is not used."""
-    code, out, err = run(capsys, "cor", taken)
+    code, out, err = run("cor", taken)
     assert (code, err) == (0, "")
     first, _, rest = out.partition("\n")
     assert first.endswith("everything else it says is for `rocking simulate`.")
-    assert rest == run(capsys, "cor", "--width", 0.5, "--height", 2)[1]
+    assert rest == run("cor", "--width", 0.5, "--height", 2)[1]
 
 
-def test_json_stays_alone_on_its_stream(capsys, taken):
+def test_json_stays_alone_on_its_stream(run, taken):
     """With --json the sentence goes to the other stream, and the numbers are those of the block itself."""
-    code, out, err = run(capsys, "cor", taken, "--json")
+    code, out, err = run("cor", taken, "--json")
     assert code == 0
     assert "rocking simulate" in err
-    assert json.loads(out) == json.loads(run(capsys, "cor", "--width", 0.5, "--height", 2, "--json")[1])
+    assert json.loads(out) == json.loads(run("cor", "--width", 0.5, "--height", 2, "--json")[1])
 
 
-def test_its_gravity_holds_unless_another_is_given(capsys, tmp_path):
+def test_its_gravity_holds_unless_another_is_given(run, tmp_path):
     """The settings of the file say the gravity; the option says it over them; nothing need move the body yet."""
     path = tmp_path / "moon.toml"
     path.write_text(f"[response]\n{BODY}[settings]\ngravity = 1.62\n")
     for words, gravity in (((), 1.62), (("--set", "settings.gravity=3.7"), 3.7)):
-        answer = json.loads(run(capsys, "cor", path, "--json", *words)[1])
+        answer = json.loads(run("cor", path, "--json", *words)[1])
         assert answer["body"]["gravity_m_s2"] == gravity
 
 
@@ -73,11 +63,11 @@ def test_its_gravity_holds_unless_another_is_given(capsys, tmp_path):
         ("[response]\nfree = 0.5\n", [], "body"),
     ],
 )
-def test_what_cannot_be_meant_is_refused(capsys, tmp_path, text, words, said):
+def test_what_cannot_be_meant_is_refused(run, tmp_path, text, words, said):
     """Sizes beside the file, a body that is none and other tables are refused in a sentence with the file's name."""
     path = tmp_path / "response.toml"
     path.write_text(text)
-    code, _, err = run(capsys, "cor", path, *words)
+    code, _, err = run("cor", path, *words)
     assert code != 0
     assert said in err
     assert "response.toml" in err

@@ -1,19 +1,18 @@
 """`rocking cor` of bodies in space: closed forms edge by edge, meshes with their repairs, refusals in one sentence."""
 
 import csv
-import json
 import math
 
 import numpy as np
 import pytest
 from PIL import Image
 
-import rocking as rk
 from rocking.bodies.formats import read_body
 from rocking.bodies.solid import box, extrusion
-from rocking.cli import main
 from rocking.dynamics.space import SpatialBody
 from rocking.restitution.space import edge_coefficient, impact_in_space
+
+COMMAND = "cor"
 
 G = 9.80665
 MODELS = ("housner-3d", "horizontal-momentum-3d", "ked-3d")
@@ -23,21 +22,6 @@ WEDGE = (
     'units = "m"\nname = "wedge"\n[[solid.part]]\ndensity = 2400.0\n'
     "extrusion = { outline = [[0, 0], [1.2, 0], [0.3, 0.9]], height = 1.5 }\n"
 )
-
-
-def run(capsys, *words):
-    """Exit code, standard output and standard error of `rocking cor WORDS`."""
-    with pytest.raises(SystemExit) as stop:
-        main(["cor", *(str(word) for word in words)])
-    printed = capsys.readouterr()
-    return stop.value.code or 0, printed.out, printed.err
-
-
-def answered(capsys, *words):
-    """The JSON of `rocking cor WORDS`."""
-    code, out, err = run(capsys, *words, "--json")
-    assert (code, err) == (0, "")
-    return json.loads(out, parse_constant=pytest.fail)
 
 
 @pytest.fixture
@@ -68,9 +52,9 @@ def mesh(tmp_path):
     return write
 
 
-def test_prism_edge_by_edge(capsys, file):
+def test_prism_edge_by_edge(answered, file):
     """Prism 1 x 1 x 4: Housner 31/34, horizontal momentum 16/17, KED 0.9473668350323697 (1.4), p^2 = 3 g / (4 R)."""
-    answer = answered(capsys, file(PRISM))
+    answer = answered(file(PRISM))
     assert answer["body"]["mass_kg"] == pytest.approx(9600.0, rel=1e-14)
     assert answer["body"]["centre_height_m"] == pytest.approx(2.0, rel=1e-14)
     assert len(answer["edges"]) == 4
@@ -87,9 +71,9 @@ def test_prism_edge_by_edge(capsys, file):
         assert r[2] != pytest.approx(0.940898907220637169, rel=1e-3)
 
 
-def test_round_base(capsys, file):
+def test_round_base(run, answered, file):
     """A drum with H / D = 2 has the same values in all directions: 0.696202, 0.810127, 0.837211 (1.6)."""
-    answer = answered(capsys, file(DRUM))
+    answer = answered(file(DRUM))
     assert answer["base"] == {"kind": "circle", "centre_m": [0.0, 0.0], "radius_m": 0.5}
     assert [edge["edge"] for edge in answer["edges"]] == ["0 deg", "90 deg", "180 deg", "270 deg"]
     for edge in answer["edges"]:
@@ -98,26 +82,26 @@ def test_round_base(capsys, file):
         assert edge["frequency_parameter_rad_s"] == pytest.approx(
             math.sqrt(G * math.hypot(0.5, 1.0) / (0.25 / 4.0 + 4.0 / 12.0 + 1.25)), rel=1e-12
         )  # I / m = R2 / 4 + H2 / 12 + R2 + H2 / 4
-    page = run(capsys, file(DRUM), "--restitution", "housner")[1]
+    page = run(file(DRUM), "--restitution", "housner")[1]
     assert "Directions it may be tipped in" in page
     assert "a circle of radius 0.5 m" in page
 
 
-def test_round_base_says_that_it_rolls(capsys, file):
+def test_round_base_says_that_it_rolls(run, answered, file):
     """Page and JSON say that the values of a drum hold in one plane only (3.5); a prism needs no such words."""
     drum, prism = file(DRUM, "drum.toml"), file(PRISM, "prism.toml")
-    (note,) = answered(capsys, drum)["notes"]
+    (note,) = answered(drum)["notes"]
     assert "rolls round its rim" in note
     assert "one vertical plane" in note
-    assert f"! {note}" in run(capsys, drum)[1]
-    assert answered(capsys, prism)["notes"] == []
-    assert "rolls" not in run(capsys, prism)[1]
+    assert f"! {note}" in run(drum)[1]
+    assert answered(prism)["notes"] == []
+    assert "rolls" not in run(prism)[1]
 
 
-def test_edge_without_a_parallel_one_lands_on_a_corner(capsys, file):
+def test_edge_without_a_parallel_one_lands_on_a_corner(answered, file):
     """On a triangle the body falls from an edge onto the corner that faces it, with the flags of the models."""
     path = file(WEDGE)
-    answer, solid = answered(capsys, path), read_body(path)
+    answer, solid = answered(path), read_body(path)
     assert [edge["lands_on"] for edge in answer["edges"]] == ["corner 2", "corner 0", "corner 1"]
     base = solid.base
     for number, edge in enumerate(answer["edges"]):
@@ -131,11 +115,11 @@ def test_edge_without_a_parallel_one_lands_on_a_corner(capsys, file):
     assert least == pytest.approx(SpatialBody.of(solid).frequency(G), rel=1e-12)
 
 
-def test_options(capsys, file, tmp_path):
+def test_options(run, capsys, file, tmp_path):
     """One model, another gravity, CSV and picture: what is printed is what is written."""
     path, table, picture = file(PRISM), tmp_path / "a.csv", tmp_path / "a.png"
     code, out, err = run(
-        capsys, path, "--restitution", "ked", "--set", "settings.gravity=1.6", "--out", table, "--out", picture
+        path, "--restitution", "ked", "--set", "settings.gravity=1.6", "--out", table, "--out", picture
     )
     assert (code, err) == (0, "")
     assert f"wrote {table}" in out
@@ -151,37 +135,37 @@ def test_options(capsys, file, tmp_path):
     assert np.asarray(Image.open(picture)).std() > 1.0
 
 
-def test_meshes_and_their_repairs(capsys, mesh):
+def test_meshes_and_their_repairs(run, answered, mesh):
     """A scaled mesh with a flipped face has the prism's values, and says what was repaired."""
     path = mesh("prism.stl", scale=1000.0, turn=3)
-    answer = answered(capsys, path, "--units", "mm", "--density", "2700")
+    answer = answered(path, "--units", "mm", "--density", "2700")
     assert answer["body"]["mass_kg"] == pytest.approx(10800.0, rel=1e-6)
     assert any("turned round 1 of 12 faces" in sentence for sentence in answer["repairs"])
     r = answer["edges"][0]["coefficients"]["ked-3d"]["coefficient"]
     assert r == pytest.approx(0.947366835032369679, rel=1e-6)
-    assert "! turned round 1 of 12 faces" in run(capsys, path, "--units", "mm")[1]
+    assert "! turned round 1 of 12 faces" in run(path, "--units", "mm")[1]
 
 
-def test_edges_that_files_round_are_still_parallel(capsys, mesh):
+def test_edges_that_files_round_are_still_parallel(answered, mesh):
     """A prism turned by 0.3 rad in an STL file, whose coordinates are rounded, still lands on its far edges."""
     turned = box(1.0, 1.0, 4.0)
     c, s = math.cos(0.3), math.sin(0.3)
     shape = extrusion(turned.vertices[[0, 1, 3, 2], :2] @ np.array([[c, s], [-s, c]]), 4.0)
-    answer = answered(capsys, mesh("turned.stl", shape=shape), "--units", "m")
+    answer = answered(mesh("turned.stl", shape=shape), "--units", "m")
     assert [edge["lands_on"] for edge in answer["edges"]] == ["edge 2", "edge 3", "edge 0", "edge 1"]
     for edge in answer["edges"]:
         assert edge["coefficients"]["housner-3d"]["coefficient"] == pytest.approx(31 / 34, rel=1e-5)
 
 
-def test_bases_of_many_corners_keep_the_most_slender_edges(capsys, file):
+def test_bases_of_many_corners_keep_the_most_slender_edges(run, answered, file):
     """Of 40 edges of an oval the 16 over which it falls most easily are kept, all about its short axis; it is told."""
     angle = 2.0 * math.pi * np.arange(40) / 40.0
     outline = np.column_stack([np.cos(angle), 0.5 * np.sin(angle)]).round(6).tolist()
     path = file(f'units = "m"\n[[solid.part]]\nextrusion = {{ outline = {outline}, height = 3.0 }}\n')
-    answer = answered(capsys, path, "--restitution", "housner")
+    answer = answered(path, "--restitution", "housner")
     assert (len(answer["edges"]), answer["edges_left_out"]) == (16, 24)
     assert all(abs(edge["from_m"][1]) > 0.35 for edge in answer["edges"])
-    assert "24 edges that are less slender are left out" in run(capsys, path, "--restitution", "housner")[1]
+    assert "24 edges that are less slender are left out" in run(path, "--restitution", "housner")[1]
 
 
 REFUSED = {
@@ -213,7 +197,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("words", "sentence"), REFUSED.values(), ids=list(REFUSED))
-def test_bad_input_gives_one_sentence_and_exit_code_2(capsys, words, sentence, mesh, file, tmp_path, monkeypatch):
+def test_bad_input_gives_one_sentence_and_exit_code_2(refuses, words, sentence, mesh, file, tmp_path, monkeypatch):
     """Bad input: one sentence on standard error, exit code 2, no number on standard output."""
     mesh("a.stl", scale=1000.0)
     mesh("hole.obj", keep=slice(1, None))
@@ -221,16 +205,4 @@ def test_bad_input_gives_one_sentence_and_exit_code_2(capsys, words, sentence, m
     file(PRISM)
     file(PRISM.replace("width = 1.0", "width = -1.0"), "bad.toml")
     monkeypatch.chdir(tmp_path)
-    code, out, err = run(capsys, *words)
-    assert (code, out) == (2, "")
-    assert sentence in err
-    assert err.startswith("rocking: ")
-    assert err.count("\n") == 1
-
-
-def test_plane_bodies_are_as_before(capsys):
-    """A block on the command line still has its table of plane models."""
-    answer = answered(capsys, "--width", "1", "--height", "4")
-    (rows,) = answer["coefficients"].values()
-    found = {row["model"]: row["coefficient_of_restitution"] for row in rows}
-    assert found["ked"] == rk.coefficient_of_restitution(rk.Block(width=1.0, height=4.0), "ked")
+    refuses(words, sentence)

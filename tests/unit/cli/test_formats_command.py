@@ -2,23 +2,12 @@
 
 import json
 
-import pytest
-
-from rocking.cli import main
 from rocking.motions.formats import formats
 
 
-def run(capsys, *words):
-    """Exit code, standard output and standard error of `rocking WORDS`."""
-    with pytest.raises(SystemExit) as stop:
-        main([str(word) for word in words])
-    printed = capsys.readouterr()
-    return stop.value.code or 0, printed.out, printed.err
-
-
-def test_table_names_every_format(capsys):
+def test_table_names_every_format(run):
     """Every format stands in the table with its endings; only columns leave both unit and step to the user."""
-    code, out, err = run(capsys, "formats")
+    code, out, err = run("formats")
     assert (code, err) == (0, "")
     rows = {line.split()[0]: line for line in out.splitlines() if line[:1].strip()}
     assert set(formats()) <= set(rows)
@@ -29,9 +18,9 @@ def test_table_names_every_format(capsys):
     assert max(len(line) for line in out.splitlines()) <= 100
 
 
-def test_json_is_what_the_formats_say(capsys):
+def test_json_is_what_the_formats_say(run):
     """JSON holds title, endings, unit, step and notes of each format, in the order in which they are tried."""
-    code, out, _ = run(capsys, "formats", "--json")
+    code, out, _ = run("formats", "--json")
     answer = json.loads(out)
     assert code == 0
     assert list(answer) == list(formats())
@@ -41,11 +30,3 @@ def test_json_is_what_the_formats_say(capsys):
     assert all(
         set(entry) == {"title", "suffixes", "states_unit", "states_time_step", "notes"} for entry in answer.values()
     )
-
-
-def test_arguments_are_refused(capsys):
-    """It takes no argument: exit code 2, one sentence."""
-    code, out, err = run(capsys, "formats", "peer")
-    assert (code, out) == (2, "")
-    assert err.startswith("rocking: ")
-    assert err.count("\n") == 1

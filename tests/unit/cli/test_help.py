@@ -11,15 +11,8 @@ from rocking.cli.application import application
 
 COMMANDS = typer.main.get_command(application()).commands
 LENGTH = "[m, or --units]"
-SIZES = {
-    **dict.fromkeys(("--width", "--height", "--depth"), LENGTH),
-    "--density": "[kg/m3]",
-}
-UNITS = {
-    "cor": SIZES,
-    "simulate": {**SIZES, "--friction": "[-]", "--scale": "[-]"},
-    "motion": {"--periods": "[s]"},
-}
+SIZES = {**dict.fromkeys(("--width", "--height", "--depth"), LENGTH), "--density": "[kg/m3]"}
+UNITS = {"cor": SIZES, "simulate": {**SIZES, "--friction": "[-]", "--scale": "[-]"}, "motion": {"--periods": "[s]"}}
 
 
 def shown(capsys, monkeypatch, command):

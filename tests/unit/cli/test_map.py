@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.cli import main
 from rocking.cli.numbers import row
 from rocking.cli.page import bar
 from rocking.studies._overturning_map import overturning_map
 from rocking.studies.axis import axes
 from rocking.studies.islands import safe_islands
 from rocking.studies.sensitivity import map_sensitivity
+
+COMMAND = "map"
 
 G = 9.80665
 SIZE = ("--width", "0.5", "--height", "2")
@@ -27,17 +28,9 @@ SINE = rk.pulses.sine(amplitude=3.0, period=0.6)
 RATIOS = (("frequency_ratio", np.linspace(1, 7, 13)), ("amplitude_ratio", np.linspace(1, 10, 19)))
 
 
-def run(capsys, *words):
-    """Exit code, standard output and standard error of `rocking map WORDS`."""
-    with pytest.raises(SystemExit) as stop:
-        main(["map", *(str(word) for word in words)])
-    printed = capsys.readouterr()
-    return stop.value.code or 0, printed.out, printed.err
-
-
-def test_json_is_the_python_call(capsys):
+def test_json_is_the_python_call(run):
     """Modes, peaks, shares and islands are those of the study, bit by bit."""
-    code, out, err = run(capsys, *SIZE, "--motion", PULSE, *AXES, "--restitution", "0.9", "--json")
+    code, out, err = run(*SIZE, "--motion", PULSE, *AXES, "--restitution", "0.9", "--json")
     assert (code, err) == (0, "")
     told, found = json.loads(out), overturning_map(BLOCK, SINE, *RATIOS, 0.9)
     assert told["mode"] == found["mode"].values.tolist()
@@ -51,24 +44,17 @@ def test_json_is_the_python_call(capsys):
     assert (told["refined_points"], told["sensitivity"]) == (None, None)
 
 
-def test_overturning_begins_at_the_closed_form(capsys):
+def test_overturning_begins_at_the_closed_form(run):
     """Under a constant acceleration the linear block falls from g alpha / (1 - exp(-pT)); refined, it begins there."""
     block = rk.Block.from_angle(0.2, 1.0)
     p, time = block.frequency_parameter, 0.5
     exact = 1.0 / (1.0 - math.exp(-p * time))
-    words = (
-        "--set",
-        "body.slenderness_angle=0.2",
-        "--set",
-        "body.semi_diagonal=1",
-        f"rectangular:amplitude=2,duration={time}",
-        "--set",
-        "settings.linear=true",
-    )
+    body = ("--set", "body.slenderness_angle=0.2", "--set", "body.semi_diagonal=1")
+    words = (*body, f"rectangular:amplitude=2,duration={time}", "--set", "settings.linear=true")
     over = ("--x", "restitution=0.5,0.9", "--y", "amplitude_ratio=1:3:41")
     found = {}
     for levels in ((), ("--refine", 6)):
-        code, out, _ = run(capsys, *words, *over, *levels, "--json")
+        code, out, _ = run(*words, *over, *levels, "--json")
         assert code == 0
         found[bool(levels)] = json.loads(out)["overturning"]["first"]["y"]
     # the first point above it on a grid of 0.05, and of 0.05 / 64
@@ -78,47 +64,35 @@ def test_overturning_begins_at_the_closed_form(capsys):
     assert not 0.0 <= found[True] - wrong <= 0.05 / 64
 
 
-def test_page(capsys):
-    """The table has a line for each way to end, with shares that are counts over cells, and sentences below."""
-    code, out, _ = run(capsys, *SIZE, PULSE, *AXES, "--restitution", "0.9")
-    mode = overturning_map(BLOCK, SINE, *RATIOS, 0.9)["mode"].values
-    count = int((mode == 0).sum())
-    row = next(line for line in out.splitlines() if line.startswith("overturns without impact"))
-    assert row.split()[-3:] == [str(count), f"{100 * count / mode.size:.2f}", "%"]
-    assert code == 0
-    assert "Overturning begins at amplitude_ratio = " in out
-    assert "afe islands" in out
-
-
-def test_late_modes_are_one_line(capsys, tmp_path):
+def test_late_modes_are_one_line(run, tmp_path):
     """Under a long record all that overturns after more than 3 impacts is one line; JSON parts it."""
     time = np.arange(1500) * 0.01
     shaking = 2.0 * np.sin(6.0 * time) * np.exp(-(((time - 6.0) / 3.0) ** 2))
     np.savetxt(tmp_path / "record.txt", np.stack([time, shaking], axis=1))
     over = ("--x", "pga=0.3g:1g:15", "--y", "semi_diagonal=0.5:2:10")
     words = (*SIZE, tmp_path / "record.txt", "--units", "m/s2", *over)
-    told = json.loads(run(capsys, *words, "--json")[1])
+    told = json.loads(run(*words, "--json")[1])
     late = [one["count"] for one in told["modes"] if one["mode"] > 3]
     assert len(late) > 1
-    row = next(line for line in run(capsys, *words)[1].splitlines() if "4 or more impacts" in line)
+    row = next(line for line in run(*words)[1].splitlines() if "4 or more impacts" in line)
     assert int(row.split()[-3]) == sum(late)
 
 
-def test_nothing_overturns(capsys):
+def test_nothing_overturns(run):
     """At or below g tan alpha nothing is lifted: the page says so, and JSON has no overturning."""
     over = ("--x", "frequency_ratio=1,2,3", "--y", "amplitude_ratio=0.2:1:5")
-    _, out, _ = run(capsys, *SIZE, PULSE, *over)
+    _, out, _ = run(*SIZE, PULSE, *over)
     assert "Nothing on this map overturns." in out
-    told = json.loads(run(capsys, *SIZE, PULSE, *over, "--json")[1])
+    told = json.loads(run(*SIZE, PULSE, *over, "--json")[1])
     assert told["overturning"] is None
     assert [(one["mode"], one["share"]) for one in told["modes"]] == [(-2, 1.0)]
 
 
-def test_several_restitutions(capsys, tmp_path):
+def test_several_restitutions(run, tmp_path):
     """Flips between every two are those of `map_sensitivity`; files hold every map."""
     models = ("--restitution", "ked", "--restitution", "housner", "--restitution", "0.8")
     words = (*SIZE, PULSE, *AXES, *models)
-    told = json.loads(run(capsys, *words, "--json")[1])["sensitivity"]
+    told = json.loads(run(*words, "--json")[1])["sensitivity"]
     found = map_sensitivity(BLOCK, SINE, *RATIOS, {"ked": "ked", "housner": "housner", "0.8": 0.8})
     assert told["baseline"] == "ked"
     pairs = {(one["first"], one["second"]): one for one in told["pairs"]}
@@ -128,7 +102,7 @@ def test_several_restitutions(capsys, tmp_path):
         assert one["count"] == int((falls[0] != falls[1]).sum())
         assert one["share"] == one["count"] / (13 * 19)
     assert pairs["ked", "0.8"]["count"] > 0
-    code, out, _ = run(capsys, *words, "--out", tmp_path / "a.csv", "--out", tmp_path / "a.nc")
+    code, out, _ = run(*words, "--out", tmp_path / "a.csv", "--out", tmp_path / "a.nc")
     assert code == 0
     assert "The choice between ked and housner changes the verdict" in out
     with (tmp_path / "a.csv").open(newline="", encoding="utf-8") as file:
@@ -141,12 +115,12 @@ def test_several_restitutions(capsys, tmp_path):
         assert (kept["mode"].sel(restitution="0.8") == found.datasets["0.8"]["mode"]).all()
 
 
-def test_files(capsys, tmp_path):
+def test_files(run, tmp_path):
     """Picture, table and netCDF are written and named; the table holds all digits."""
     files = [tmp_path / name for name in ("a.png", "a.csv", "a.nc")]
     options = [word for name, path in zip(("--out", "--out", "--out"), files, strict=True)
                for word in (name, path)]  # fmt: skip
-    code, out, _ = run(capsys, *SIZE, PULSE, *AXES, "--refine", 2, *options)
+    code, out, _ = run(*SIZE, PULSE, *AXES, "--refine", 2, *options)
     assert code == 0
     assert all(f"wrote {path}" in out and path.stat().st_size > 2000 for path in files)
     found = overturning_map(BLOCK, SINE, *RATIOS, refine=2)
@@ -210,37 +184,23 @@ REFUSALS = [
     (("--density", "-5"), "density"),
     (("--units", "g"), "a pulse takes no --units"),
     (("--no-such-option",), "No such option"),
+    (("--motion", PULSE), "one motion along x"),
 ]
+LACKING = [
+    (SIZE, "what moves the ground?"),
+    ((PULSE,), "what moves the ground?"),
+    (("--width", "0.5", PULSE), "--width and --height"),
+    ((*SIZE, "no-such-file.txt"), "no such file"),
+    (("no-such-body.toml", PULSE), "no-such-body.toml"),
+    ((*SIZE, "sine:amplitude=3"), "period"),
+]
+CASES = [((*SIZE, PULSE, *words), sentence) for words, sentence in REFUSALS] + LACKING
 
 
-@pytest.mark.parametrize(("words", "sentence"), REFUSALS, ids=[" ".join(words) for words, _ in REFUSALS])
-def test_refusals(capsys, words, sentence):
+@pytest.mark.parametrize(("words", "sentence"), CASES, ids=[" ".join(words[4:]) for words, _ in CASES])
+def test_refusals(refuses, words, sentence):
     """Bad input is one sentence on standard error, exit code 2, and nothing on standard output."""
-    code, out, err = run(capsys, *SIZE, PULSE, *words)
-    assert (code, out) == (2, "")
-    assert err.startswith("rocking: ")
-    assert sentence in err
-    assert err.count("\n") == 1
-
-
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        (SIZE, "what moves the ground?"),
-        ((PULSE,), "what moves the ground?"),
-        (("--width", "0.5", PULSE), "--width and --height"),
-        ((*SIZE, PULSE, "--motion", PULSE), "one motion along x"),
-        ((*SIZE, "no-such-file.txt"), "no such file"),
-        (("no-such-body.toml", PULSE), "no-such-body.toml"),
-        ((*SIZE, "sine:amplitude=3"), "period"),
-    ],
-)
-def test_body_and_motion_are_needed(capsys, words, sentence):
-    """A body or motion that is missing, given twice or not there is refused."""
-    code, out, err = run(capsys, *words)
-    assert (code, out) == (2, "")
-    assert sentence in err
-    assert err.count("\n") == 1
+    refuses(words, sentence)
 
 
 def test_bar_on_a_terminal_only(monkeypatch):

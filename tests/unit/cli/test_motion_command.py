@@ -1,35 +1,20 @@
 """`rocking motion`: numbers against closed forms, files against what was typed, and refusals in one sentence."""
 
 import csv
-import json
 import math
 
 import pytest
 
-from rocking.cli import main
 from rocking.cli.application import application
 from rocking.errors import InvalidValueError, RecordError, UnknownModelError
+
+COMMAND = "motion"
 
 G = 9.80665
 # 0, 1, 0 m/s2 at 0.5 s: a triangle, whose integrals are 0.5 m/s, 0.25 m and 1/3 m2/s3
 TRIANGLE = "0.0 0.0\n0.5 1.0\n1.0 0.0\n"
 FOUR = "0.0 0.0 0.0 0.1\n0.5 1.0 -2.0 0.3\n1.0 0.0 0.0 -0.2\n"
 PEER = "A DATABASE\nSOMEWHERE 01/17/94, CELLAR, 360\nACCELERATION IN UNITS OF G\nNPTS= 3, DT= .5 SEC\n 0.0 0.1 -0.2\n"
-
-
-def run(capsys, *words):
-    """Exit code, standard output and standard error of `rocking WORDS`."""
-    with pytest.raises(SystemExit) as stop:
-        main([str(word) for word in words])
-    printed = capsys.readouterr()
-    return stop.value.code or 0, printed.out, printed.err
-
-
-def measured(capsys, *words):
-    """The JSON of `rocking motion WORDS`."""
-    code, out, err = run(capsys, "motion", *words, "--json")
-    assert (code, err) == (0, "")
-    return json.loads(out)
 
 
 @pytest.fixture
@@ -40,9 +25,9 @@ def triangle(tmp_path):
     return path
 
 
-def test_record_by_closed_form(capsys, triangle):
+def test_record_by_closed_form(answered, triangle):
     """The triangle: PGA 1, PGV 1/2, PGD 1/4, CAV 1/2, Arias pi/(4 g) by its samples; and what the file is."""
-    answer = measured(capsys, triangle, "--units", "m/s2")
+    answer = answered(triangle, "--units", "m/s2")
     found = answer["intensity"]
     expected = {"pga_m_s2": 1.0, "pgv_m_s": 0.5, "pgd_m": 0.25, "cav_m_s": 0.5, "arias_m_s": math.pi / (4.0 * G)}
     assert {key: found[key] for key in expected} == pytest.approx(expected, rel=1e-12)
@@ -50,12 +35,12 @@ def test_record_by_closed_form(capsys, triangle):
     assert (answer["samples"], answer["time_step_s"], answer["duration_s"]) == (3, 0.5, 1.0)
     assert "SHA-256" in answer["provenance"][0]
     # negative control: the same file in g is not the same motion
-    assert measured(capsys, triangle, "--units", "g")["intensity"]["pga_m_s2"] == pytest.approx(G)
+    assert answered(triangle, "--units", "g")["intensity"]["pga_m_s2"] == pytest.approx(G)
 
 
-def test_pulse_by_closed_form(capsys):
+def test_pulse_by_closed_form(answered):
     """One sine of 3 m/s2 and 0.8 s: PGV 2a/w, PGD aT/w to rounding; CAV 4a/w, Arias pi a2 T/(4 g) to 1e-5."""
-    answer = measured(capsys, "sine:amplitude=3,period=0.8")
+    answer = answered("sine:amplitude=3,period=0.8")
     found, w = answer["intensity"], 2.0 * math.pi / 0.8
     assert found["pga_m_s2"] == pytest.approx(3.0, rel=1e-12)
     assert found["pgv_m_s"] == pytest.approx(6.0 / w, rel=1e-12)
@@ -65,54 +50,54 @@ def test_pulse_by_closed_form(capsys):
     assert (answer["kind"], answer["duration_s"], answer["format"]) == ("pulse", 0.8, None)
 
 
-def test_jumps_at_the_ends_of_a_pulse_are_kept(capsys):
+def test_jumps_at_the_ends_of_a_pulse_are_kept(answered):
     """A constant a for 0.5 s: CAV a t and Arias exact, not one step longer; undamped PSA 2 a, with 5 % 1.8545 a."""
-    found = measured(capsys, "rectangular:amplitude=2,duration=0.5", "--periods", "0.2", "--damping", 0)
+    found = answered("rectangular:amplitude=2,duration=0.5", "--periods", "0.2", "--damping", 0)
     assert found["intensity"]["cav_m_s"] == pytest.approx(1.0, rel=1e-12)
     assert found["intensity"]["arias_m_s"] == pytest.approx(math.pi / (2.0 * G) * 4.0 * 0.5, rel=1e-12)
     # the solver misses peaks by up to 1e-4
     assert found["spectrum"]["psa_m_s2"] == pytest.approx([4.0], rel=1e-4)
-    damped = measured(capsys, "rectangular:amplitude=2,duration=0.5", "--periods", "0.2")["spectrum"]
+    damped = answered("rectangular:amplitude=2,duration=0.5", "--periods", "0.2")["spectrum"]
     overshoot = 1.0 + math.exp(-0.05 * math.pi / math.sqrt(1.0 - 0.05**2))
     assert damped["psa_m_s2"] == pytest.approx([2.0 * overshoot], rel=1e-4)
     assert damped["damping_ratio"] == 0.05
 
 
-def test_periods_are_those_asked_for(capsys, triangle):
+def test_periods_are_those_asked_for(answered, triangle):
     """--periods gives these periods and no others; a very slow oscillator feels a blow of PGV."""
-    spectrum = measured(capsys, triangle, "--units", "m/s2", "--periods", "0.5, 1000", "--damping", "0.02")["spectrum"]
+    spectrum = answered(triangle, "--units", "m/s2", "--periods", "0.5, 1000", "--damping", "0.02")["spectrum"]
     assert (spectrum["period_s"], spectrum["damping_ratio"]) == ([0.5, 1000.0], 0.02)
     # to so slow an oscillator the record is a blow of 0.5 m/s, and its first swing loses exp(-z acos(z) / sqrt(1 - z2))
     kept = math.exp(-0.02 * math.acos(0.02) / math.sqrt(1.0 - 0.02**2))
     assert spectrum["psv_m_s"][1] == pytest.approx(0.5 * kept, rel=1e-3)
 
 
-def test_scale_multiplies(capsys, triangle):
+def test_scale_multiplies(answered, triangle):
     """--scale -2 doubles all peaks and makes Arias four times as large, for files and for pulses."""
     for words in ([triangle, "--units", "m/s2"], ["ricker:amplitude=1,period=0.5"]):
-        one, two = (measured(capsys, *words, *more)["intensity"] for more in ([], ["--scale", "-2"]))
+        one, two = (answered(*words, *more)["intensity"] for more in ([], ["--scale", "-2"]))
         assert two["pgd_m"] == pytest.approx(2.0 * one["pgd_m"], rel=1e-9)
         assert two["arias_m_s"] == pytest.approx(4.0 * one["arias_m_s"], rel=1e-9)
 
 
-def test_printed_page(capsys, tmp_path):
+def test_printed_page(run, tmp_path):
     """The page names format, station, component, samples, step, duration, every measure with its unit, and PSA in g."""
     path = tmp_path / "cellar.at2"
     path.write_text(PEER, encoding="utf-8")
-    code, out, err = run(capsys, "motion", path)
+    code, out, err = run(path)
     assert (code, err) == (0, "")
     for words in ("peer", "CELLAR", "360", "3 at 0.5 s", "in g", "1 s", "m/s2", "PSA [g]", "5 % damping", "0.2 g"):
         assert words in out
     # peak 0.2 g = 1.96133 m/s2
     assert "1.961" in out
-    code, out, _ = run(capsys, "motion", "half-sine:amplitude=1,period=1")
+    code, out, _ = run("half-sine:amplitude=1,period=1")
     assert "pulse, known at every instant" in out
 
 
-def test_csv(capsys, tmp_path, triangle):
+def test_csv(run, tmp_path, triangle):
     """The CSV holds time, acceleration, velocity, displacement at the samples: those of the triangle, by hand."""
     path = tmp_path / "out.csv"
-    code, out, _ = run(capsys, "motion", triangle, "--units", "m/s2", "--out", path)
+    code, out, _ = run(triangle, "--units", "m/s2", "--out", path)
     assert code == 0
     assert f"wrote {path}" in out
     with path.open(encoding="utf-8") as file:
@@ -122,10 +107,10 @@ def test_csv(capsys, tmp_path, triangle):
     assert [[float(word) for word in row] for row in rows] == [pytest.approx(row, abs=1e-15) for row in expected]
 
 
-def test_csv_of_a_pulse_is_exact(capsys, tmp_path):
+def test_csv_of_a_pulse_is_exact(run, tmp_path):
     """The CSV of a sine holds a sin(wt), its integrals, and ends with the pulse."""
     path = tmp_path / "out.csv"
-    assert run(capsys, "motion", "sine:amplitude=3,period=0.8", "--out", path)[0] == 0
+    assert run("sine:amplitude=3,period=0.8", "--out", path)[0] == 0
     with path.open(encoding="utf-8") as file:
         rows = [[float(word) for word in row] for row in list(csv.reader(file))[1:]]
     w = 2.0 * math.pi / 0.8
@@ -135,43 +120,43 @@ def test_csv_of_a_pulse_is_exact(capsys, tmp_path):
     assert rows[-1][0] == pytest.approx(0.8, rel=1e-12)
 
 
-def test_picture(capsys, tmp_path, triangle):
+def test_picture(run, tmp_path, triangle):
     """--picture writes an SVG with the axes' units in it."""
     path = tmp_path / "motion.svg"
-    assert run(capsys, "motion", triangle, "--units", "g", "--out", path)[0] == 0
+    assert run(triangle, "--units", "g", "--out", path)[0] == 0
     text = path.read_text(encoding="utf-8")
     assert "time [s]" in text
     assert "PSA [g]" in text
 
 
-def test_components(capsys, tmp_path):
+def test_components(run, answered, tmp_path):
     """Several components: the refusal says what to type, and typed so it works, vertical part included."""
     path = tmp_path / "four.txt"
     path.write_text(FOUR, encoding="utf-8")
-    code, out, err = run(capsys, "motion", path, "--units", "m/s2")
+    code, out, err = run(path, "--units", "m/s2")
     assert (code, out) == (2, "")
     assert f"say which one: {' or '.join(repr(f'{path}#column {k}') for k in (2, 3, 4))}" in err
     assert "component=" not in err
     assert err.count("\n") == 1
-    left = run(capsys, "motion", path, f"z={path}#column 4", "--units", "m/s2")[2]
+    left = run(path, f"z={path}#column 4", "--units", "m/s2")[2]
     assert f"{path}#column 3" in left
     assert f"{path}#column 4" not in left
     words = [f"{path}#column 3", f"z={path}#column 4", "--units", "m/s2"]
-    answer = measured(capsys, *words, "--out", tmp_path / "out.csv")
+    answer = answered(*words, "--out", tmp_path / "out.csv")
     assert (answer["component"], answer["vertical_component"]) == ("column 3", "column 4")
     assert answer["intensity"]["pga_m_s2"] == 2.0
     assert answer["peak_vertical_acceleration_m_s2"] == 0.3
     assert "vertical_acceleration_m_s2" in (tmp_path / "out.csv").read_text(encoding="utf-8").splitlines()[0]
-    assert "upwards" in run(capsys, "motion", *words)[1]
+    assert "upwards" in run(*words)[1]
 
 
-def test_a_file_wins_over_a_pulse(capsys, tmp_path, monkeypatch):
+def test_a_file_wins_over_a_pulse(answered, tmp_path, monkeypatch):
     """A file that is called like a pulse is read as a file; without it the word is the pulse."""
     monkeypatch.chdir(tmp_path)
     word = "sine:amplitude=3,period=0.8"
-    assert measured(capsys, word)["intensity"]["pga_m_s2"] == pytest.approx(3.0, rel=1e-12)
+    assert answered(word)["intensity"]["pga_m_s2"] == pytest.approx(3.0, rel=1e-12)
     (tmp_path / word).write_text(TRIANGLE, encoding="utf-8")
-    assert measured(capsys, word, "--units", "m/s2")["intensity"]["pga_m_s2"] == 1.0
+    assert answered(word, "--units", "m/s2")["intensity"]["pga_m_s2"] == 1.0
 
 
 REFUSED = {
@@ -201,16 +186,12 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("words", "sentence"), REFUSED.values(), ids=list(REFUSED))
-def test_bad_input_gives_one_sentence_and_exit_code_2(capsys, words, sentence):
+def test_bad_input_gives_one_sentence_and_exit_code_2(refuses, words, sentence):
     """Bad input: one sentence on standard error, exit code 2, no number on standard output."""
-    code, out, err = run(capsys, "motion", *words)
-    assert (code, out) == (2, "")
-    assert sentence in err
-    assert err.startswith("rocking: ")
-    assert err.count("\n") == 1
+    refuses(words, sentence)
 
 
-def test_unit_and_format_are_asked_for_by_option(capsys, triangle):
+def test_unit_and_format_are_asked_for_by_option(refuses, run, triangle):
     """What the file leaves open is asked for in the words of the command line, and never guessed."""
     for words, sentence in (
         ([], "say --units one of m/s2"),
@@ -218,10 +199,8 @@ def test_unit_and_format_are_asked_for_by_option(capsys, triangle):
         (["--units", "g", "--set", "motion.time_step=0.25"], "the file states a time step of 0.5 s, you say 0.25"),
         (["--units", "g", "--set", "motion.format=nope"], "one of peer"),
     ):
-        code, out, err = run(capsys, "motion", triangle, *words)
-        assert (code, out) == (2, "")
-        assert sentence in err
-    assert "got 'north'" in run(capsys, "motion", f"{triangle}#north", "--units", "g")[2]
+        refuses((triangle, *words), sentence)
+    assert "got 'north'" in run(f"{triangle}#north", "--units", "g")[2]
 
 
 def test_errors_keep_their_kind(tmp_path):

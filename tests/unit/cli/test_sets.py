@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.cli import main
 
 SIZE = "--width 0.5 --height 2"
 PULSE = "sine:amplitude=3.2,period=0.8"
@@ -38,14 +37,6 @@ def folder(tmp_path, monkeypatch):
     Path("stripes.toml").write_text(STRIPES)
     Path("free.toml").write_text('[response]\nfree = 30\n[body]\nunits = "m"\nwidth = 0.5\nheight = 2\n')
     return tmp_path
-
-
-def run(capsys, words):
-    """Exit code, standard output and standard error of `rocking WORDS`."""
-    with pytest.raises(SystemExit) as stop:
-        main(words.split())
-    printed = capsys.readouterr()
-    return stop.value.code or 0, printed.out, printed.err
 
 
 ALONG = "simulate prism.toml x=record.txt --motion y=other.txt --units m/s2 --set motion.time_step=0.02"
@@ -93,12 +84,9 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("words", "sentence"), REFUSED.items(), ids=REFUSED)
-def test_refusals(capsys, words, sentence):
+def test_refusals(refuses, words, sentence):
     """What is said twice, or would be ignored, is refused in one sentence that says what to do."""
-    code, out, err = run(capsys, words)
-    assert (code, out) == (2, "")
-    assert sentence in err
-    assert err.count("\n") == 1
+    refuses(words.split(), sentence)
 
 
 SAME = {
@@ -121,23 +109,23 @@ SAME = {
 
 
 @pytest.mark.parametrize(("one", "other"), SAME.values(), ids=SAME)
-def test_two_ways_to_say_it(capsys, one, other):
+def test_two_ways_to_say_it(run, one, other):
     """A key that is set is the option, digit by digit."""
-    (code, first, _), (_, second, _) = (run(capsys, f"{words} --json") for words in (one, other))
+    (code, first, _), (_, second, _) = (run(*f"{words} --json".split()) for words in (one, other))
     assert code == 0
     assert json.loads(first) == json.loads(second)
 
 
-def test_step_and_scale_hold_along_every_axis(capsys):
+def test_step_and_scale_hold_along_every_axis(run):
     """What is set of files holds for both components, and a scale for the motion as a whole."""
-    code, out, _ = run(capsys, f"{ALONG} --set motion.scale=1.5 --json")
+    code, out, _ = run(*f"{ALONG} --set motion.scale=1.5 --json".split())
     x, y = (rk.read_motion(name, units="m/s2", time_step=0.02) for name in ("record.txt", "other.txt"))
     expected = rk.simulate(rk.read_body("prism.toml"), {"x": x, "y": y}, scale=1.5)
     answer = json.loads(out)
     assert (code, answer["peak_tilt_rad"], answer["summary"]) == (0, expected.peak_tilt, expected.summary)
 
 
-def test_a_file_says_how_curves_that_cross_are_written(capsys, monkeypatch):
+def test_a_file_says_how_curves_that_cross_are_written(refuses, run, monkeypatch):
     """`[export] crossing` of a file holds unless `--crossing` says otherwise; what needs a campaign is refused."""
     from rocking.cli.fragility_answer import FragilityAnswer
 
@@ -146,16 +134,14 @@ def test_a_file_says_how_curves_that_cross_are_written(capsys, monkeypatch):
     export = '[export]\ncrossing = "common-dispersion"\n'
     Path("stripes.toml").write_text(STRIPES + export)
     for more in ("", " --crossing refuse --name vase"):
-        run(capsys, f"fragility stripes.toml --out p58=curves.csv{more}")
+        run(*f"fragility stripes.toml --out p58=curves.csv{more}".split())
     assert seen == [("common-dispersion", None), ("refuse", "vase")]
     Path("stripes.toml").write_text(f"{STRIPES}{export}bootstrap = 99\n")
-    code, out, err = run(capsys, "fragility stripes.toml")
-    assert (code, out) == (2, "")
-    assert "export.bootstrap is for files of rocking campaign" in err
+    refuses(("fragility", "stripes.toml"), "export.bootstrap is for files of rocking campaign")
 
 
-def test_numbers_are_whole_in_a_narrow_terminal(capsys, monkeypatch):
+def test_numbers_are_whole_in_a_narrow_terminal(run, monkeypatch):
     """`rocking motion` folds words, never a value."""
     monkeypatch.setenv("COLUMNS", "46")
-    rows = run(capsys, f"motion {PULSE}")[1].splitlines()
+    rows = run(*f"motion {PULSE}".split())[1].splitlines()
     assert next(row for row in rows if row.startswith("peak ground velocity")).split()[-2:] == ["0.8149", "m/s"]

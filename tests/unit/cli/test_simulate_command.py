@@ -1,7 +1,6 @@
 """`rocking simulate`: the same numbers as Python, closed forms, every option, and refusals in one sentence."""
 
 import csv
-import json
 import math
 import sys
 from pathlib import Path
@@ -16,6 +15,8 @@ from rocking.cli.page import Page, plain
 from rocking.cli.responses import RockingAnswer
 from rocking.evidence._coefficient_table import default_models
 from rocking.spec.response import ResponseProblem
+
+COMMAND = "simulate"
 
 G = 9.80665
 BLOCK = rk.Block(width=0.5, height=2.0)
@@ -35,21 +36,6 @@ class Mine(rk.restitution.RestitutionModel):
 BODY = 'units = "m"\n[block]\nwidth = 0.5\nheight = 2.0\n'
 DECIDES = ("sine:amplitude=4.25,period=0.6", rk.pulses.sine(4.25, 0.6))
 """Here Housner's block stays standing and KED's falls."""
-
-
-def run(capsys, *words):
-    """Exit code, standard output and standard error of `rocking simulate WORDS`."""
-    with pytest.raises(SystemExit) as stop:
-        main(["simulate", *(str(word) for word in words)])
-    printed = capsys.readouterr()
-    return stop.value.code or 0, printed.out, printed.err
-
-
-def answered(capsys, *words):
-    """The JSON of `rocking simulate WORDS`."""
-    code, out, err = run(capsys, *words, "--json")
-    assert (code, err) == (0, "")
-    return json.loads(out, parse_constant=pytest.fail)
 
 
 def same(answer, response):
@@ -86,26 +72,21 @@ def record(tmp_path):
     return path
 
 
-def test_json_is_python_to_the_last_digit(capsys, body):
+def test_json_is_python_to_the_last_digit(answered, capsys, body):
     """Size on the command line, body file with the pulse as word or option: all are rk.simulate, bit by bit."""
     expected = rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8))
     for words in ((*SIZE, "--motion", PULSE), (*SIZE, PULSE), (body, PULSE), (body, "--motion", PULSE)):
-        answer = answered(capsys, *words)
+        answer = answered(*words)
         assert same(answer, expected)
         assert answer["body"]["sides"]["left"]["slenderness_angle_rad"] == pytest.approx(ALPHA, rel=1e-15)
         assert answer["motion"]["peak_acceleration_m_s2"] == pytest.approx(3.2, rel=1e-12)
     angle = answered(
-        capsys,
-        "--set",
-        f"body.slenderness_angle={ALPHA}",
-        "--set",
-        f"body.semi_diagonal={0.5 * math.hypot(0.5, 2.0)}",
-        PULSE,
+        "--set", f"body.slenderness_angle={ALPHA}", "--set", f"body.semi_diagonal={0.5 * math.hypot(0.5, 2.0)}", PULSE
     )
     assert angle["peak_rotation_rad"] == pytest.approx(expected.peak_rotation, rel=1e-9)
-    assert same(answered(capsys, "--width", 50, "--height", 200, "--units", "cm", PULSE), expected)
+    assert same(answered("--width", 50, "--height", 200, "--units", "cm", PULSE), expected)
     # negative control: another pulse is another response
-    assert not same(answered(capsys, *SIZE, "sine:amplitude=3.3,period=0.8"), expected)
+    assert not same(answered(*SIZE, "sine:amplitude=3.3,period=0.8"), expected)
 
 
 OPTIONS = {
@@ -120,33 +101,33 @@ OPTIONS = {
 
 
 @pytest.mark.parametrize(("words", "options"), OPTIONS.values(), ids=list(OPTIONS))
-def test_each_option_reaches_the_engine(capsys, words, options):
+def test_each_option_reaches_the_engine(answered, words, options):
     """With each option the answer is that of Python with the same argument, and not the one without it."""
-    answer = answered(capsys, *SIZE, PULSE, *words)
+    answer = answered(*SIZE, PULSE, *words)
     assert same(answer, rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8), **options))
     assert not same(answer, rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8)))
 
 
-def test_size_in_three_dimensions_changes_the_mass_alone(capsys):
+def test_size_in_three_dimensions_changes_the_mass_alone(answered):
     """Depth 2 m and 1000 kg/m3 make 2000 kg of 0.5 x 2 m; it rocks as any other."""
-    answer = answered(capsys, *SIZE, PULSE, "--depth", 2, "--density", 1000)
+    answer = answered(*SIZE, PULSE, "--depth", 2, "--density", 1000)
     assert answer["body"]["mass_kg"] == pytest.approx(2000.0)
     assert answer["peak_rotation_rad"] == rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8)).peak_rotation
 
 
-def test_own_model_from_a_file(capsys, tmp_path):
+def test_own_model_from_a_file(answered, tmp_path):
     """A class in the user's file is a model like the others."""
     path = tmp_path / "mine.py"
     path.write_text(MINE, encoding="utf-8")
-    answer = answered(capsys, *SIZE, PULSE, "--restitution", f"{path}:Mine")
+    answer = answered(*SIZE, PULSE, "--restitution", f"{path}:Mine")
     assert answer["peak_rotation_rad"] == rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8), 0.9).peak_rotation
 
 
-def test_free_rocking_by_closed_form(capsys):
+def test_free_rocking_by_closed_form(answered):
     """Let go at 0.6 alpha the linear block lands after acosh(2.5) / p at p alpha sqrt(1 - 0.16), leftwards mirrored."""
     p = math.sqrt(3.0 * G / (4.0 * 0.5 * math.hypot(0.5, 2.0)))
     for share, onto in ((0.6, "left"), (-0.6, "right")):
-        answer = answered(capsys, *SIZE, "--free", share, "--set", "settings.linear=true", "--restitution", "0.9")
+        answer = answered(*SIZE, "--free", share, "--set", "settings.linear=true", "--restitution", "0.9")
         first = answer["impacts"][0]
         assert first["time_s"] == pytest.approx(math.acosh(2.5) / p, rel=1e-10)
         assert abs(first["velocity_before_rad_s"]) == pytest.approx(p * ALPHA * math.sqrt(1.0 - 0.16), rel=1e-10)
@@ -154,33 +135,31 @@ def test_free_rocking_by_closed_form(capsys):
         assert answer["initial_rotation_rad"] == pytest.approx(share * ALPHA, rel=1e-15)
         assert answer["motion"] is None
         assert answer["peak_rotation_over_alpha"] == pytest.approx(0.6, rel=1e-12)
-    assert same(answered(capsys, *SIZE, "--free", "0.6"), rk.free_rocking(BLOCK, 0.6 * BLOCK.slenderness_angle))
+    assert same(answered(*SIZE, "--free", "0.6"), rk.free_rocking(BLOCK, 0.6 * BLOCK.slenderness_angle))
 
 
-def test_record_options(capsys, body, record):
+def test_record_options(run, answered, capsys, body, record):
     """Units, format, component, vertical component of a record are those of read_motion; a step at odds is refused."""
     words, part = ["--units", "m/s2"], f"{record}#column 2"
     motion = rk.read_motion(record, "columns", "m/s2", component="column 2", vertical="column 3")
-    both = answered(
-        capsys, body, f"x={part}", *words, "--motion", f"z={record}#column 3", "--set", "motion.format=columns"
-    )
+    both = answered(body, f"x={part}", *words, "--motion", f"z={record}#column 3", "--set", "motion.format=columns")
     assert same(both, rk.simulate(BLOCK, motion))
     assert (both["motion"]["kind"], both["motion"]["name"]) == ("record", motion.name)
-    assert not same(answered(capsys, body, part, *words), rk.simulate(BLOCK, motion))
-    assert run(capsys, body, part, *words, "--set", "motion.time_step=0.5")[0] == 2
-    in_g = answered(capsys, body, part, "--units", "g", "--scale", "0.1")
+    assert not same(answered(body, part, *words), rk.simulate(BLOCK, motion))
+    assert run(body, part, *words, "--set", "motion.time_step=0.5")[0] == 2
+    in_g = answered(body, part, "--units", "g", "--scale", "0.1")
     peak = max(abs(3.0 * math.sin(0.2 * k)) for k in range(60))
     assert in_g["motion"]["peak_acceleration_m_s2"] == pytest.approx(0.1 * G * peak, rel=1e-6)
-    page = run(capsys, body, part, *words, "--scale", "2", "--set", "settings.linear=true")[1]
+    page = run(body, part, *words, "--scale", "2", "--set", "settings.linear=true")[1]
     assert f"2 times {motion.name}, 1.18 s, peak {2.0 * peak:.4g} m/s2" in page
     assert "slender-linear equations" in page
-    assert "2 times sine pulse, 3.2 m/s2, 0.8 s, peak 6.4 m/s2" in run(capsys, body, PULSE, "--scale", "2")[1]
+    assert "2 times sine pulse, 3.2 m/s2, 0.8 s, peak 6.4 m/s2" in run(body, PULSE, "--scale", "2")[1]
 
 
-def test_other_models_are_asked_too(capsys):
+def test_other_models_are_asked_too(run, answered):
     """Every model without parameters has its outcome and peak, those of Python; the page says who decides."""
     word, pulse = DECIDES
-    answer = answered(capsys, *SIZE, word)
+    answer = answered(*SIZE, word)
     others = {model.label: model for model in default_models()}
     del others["ked"]
     assert list(answer["other_models"]) == list(others)
@@ -190,50 +169,27 @@ def test_other_models_are_asked_too(capsys):
         assert found["peak_rotation_rad"] == response.peak_rotation
         assert found["coefficients"]["left"] == model.coefficient(BLOCK, "left")
     assert (answer["outcome"], answer["other_models"]["housner"]["outcome"]) == ("overturned", "rocked")
-    out = run(capsys, *SIZE, word)[1]
+    out = run(*SIZE, word)[1]
     assert "The model decides: the body overturns with ked" in out
     assert "stays standing with housner" in out
-    assert "With every one of these models the body stays standing." in run(capsys, *SIZE, PULSE)[1]
-    assert "the body is never lifted" in run(capsys, *SIZE, "sine:amplitude=1,period=1")[1]
+    assert "With every one of these models the body stays standing." in run(*SIZE, PULSE)[1]
+    assert "the body is never lifted" in run(*SIZE, "sine:amplitude=1,period=1")[1]
 
 
-def test_printed_page(capsys):
-    """Body, motion, coefficient, engine, sentence, impacts, peak, energy, friction and error are on the page."""
-    response = rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8), 0.9)
-    code, out, err = run(capsys, *SIZE, "--motion", PULSE, "--restitution", "0.9")
-    assert (code, err) == (0, "")
-    assert response.summary[1:] in out
-    # closed forms of the block, and the pulse as it was asked for
-    for words in ("2400 kg", "alpha = 0.245 rad", "R = 1.031 m", "p = 2.671 rad/s", "sine pulse, 3.2 m/s2, 0.8 s"):
-        assert words in out
-    assert f"engine:       {response.engine}" in out
-    for time in response.impacts["time"][:10]:
-        assert f"{time:.6f}" in out
-    assert f"... and {response.impacts.size - 10} more" in out
-    for words in ("of the slenderness angle", "of the largest energy", "needed, 0.5 assumed", "error estimate"):
-        assert words in out
-    statue = run(capsys, STATUE, "--free", "-0.3")[1]
-    table = statue[statue.index("With other") :].splitlines()
-    assert len(table) == 10
-    assert all(len(line) <= 80 for line in table)
-    assert "left alpha = " in statue
-    assert "let go at -6.1" in statue
-
-
-def test_warnings_are_in_plain_words(capsys):
+def test_warnings_are_in_plain_words(run, answered):
     """A body of slope 1/4 takes friction of about 1/4: with 0.2 it slides, with 0.5 not; a squat one would fly."""
     words = (*SIZE, PULSE)
-    assert answered(capsys, *words)["warnings"] == []
+    assert answered(*words)["warnings"] == []
     slip = ("--set", "response.assumed_friction=0.2")
-    slippery = answered(capsys, *words, *slip)
+    slippery = answered(*words, *slip)
     assert slippery["friction"]["given"] == 0.2
     assert "with 0.2 the body would slide" in slippery["warnings"][0]
-    assert "would slide" in run(capsys, *words, *slip)[1]
+    assert "would slide" in run(*words, *slip)[1]
     hard = ("--width", 3, "--height", 1, "sine:amplitude=40,period=1", "--restitution", "0.5")
-    flying = answered(capsys, *hard)
+    flying = answered(*hard)
     assert flying["friction"]["of_motion"] is None
     assert flying["least_vertical_force_N"] <= 0.0
-    assert "more than any surface has" in run(capsys, *hard)[1]
+    assert "more than any surface has" in run(*hard)[1]
 
 
 def test_a_model_that_does_not_fit_says_why(capsys):
@@ -247,10 +203,10 @@ def test_a_model_that_does_not_fit_says_why(capsys):
     assert plain(answer.facts())["other_models"]["odd"] == {"error": "the impact would create energy"}
 
 
-def test_files(capsys, tmp_path):
+def test_files(run, tmp_path):
     """Picture, page, GIF, CSV and MATLAB files are written and named; the CSV holds Python's rotation."""
     paths = {ending: tmp_path / f"a.{ending}" for ending in ("svg", "html", "csv", "mat")}
-    code, out, _ = run(capsys, *SIZE, PULSE, *(word for path in paths.values() for word in ("--out", path)))
+    code, out, _ = run(*SIZE, PULSE, *(word for path in paths.values() for word in ("--out", path)))
     assert code == 0
     assert out.splitlines()[-4:] == [f"wrote {path}" for path in paths.values()]
     expected = rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8))
@@ -262,18 +218,18 @@ def test_files(capsys, tmp_path):
     assert "angular" in paths["svg"].read_text(encoding="utf-8")
     assert paths["mat"].stat().st_size > 1000
     gif = tmp_path / "a.GIF"
-    assert run(capsys, *SIZE, "--free", "0.1", "--restitution", "0.1", "--out", gif)[0] == 0
+    assert run(*SIZE, "--free", "0.1", "--restitution", "0.1", "--out", gif)[0] == 0
     with Image.open(gif) as film:
         assert film.format == "GIF"
 
 
-def test_netcdf(capsys, tmp_path):
+def test_netcdf(run, tmp_path):
     """--netcdf writes what xarray reads, to the last digit."""
     pytest.importorskip("h5py")
     import xarray
 
     path = tmp_path / "a.nc"
-    assert run(capsys, *SIZE, PULSE, "--out", path)[0] == 0
+    assert run(*SIZE, PULSE, "--out", path)[0] == 0
     with xarray.open_dataset(path, engine="h5netcdf") as found:
         np.testing.assert_array_equal(found["rotation"], rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8)).rotation)
 

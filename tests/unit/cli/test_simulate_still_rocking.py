@@ -1,26 +1,16 @@
 """`rocking simulate` says so where the body still rocks at the end of what was computed."""
 
-import json
 import math
 
 import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.cli import main
 
 G = 9.80665
-SIZE = ("--width", "0.5", "--height", "2", "--restitution", "ked")
+COMMAND = "simulate --width 0.5 --height 2 --restitution ked"
 PULSE = ("--motion", "sine:amplitude=3.2,period=0.8")
 WORDS = "still rocking when the computation ends at"
-
-
-def printed(capsys: pytest.CaptureFixture[str], *words: object) -> str:
-    """Return what `rocking simulate WORDS` prints."""
-    with pytest.raises(SystemExit) as stop:
-        main(["simulate", *SIZE, *map(str, words)])
-    assert not stop.value.code
-    return capsys.readouterr().out
 
 
 @pytest.fixture
@@ -33,9 +23,9 @@ def long_record(tmp_path):
     return "--motion", path, "--units", "m/s2"
 
 
-def test_last_state_is_the_closed_form(capsys):
+def test_last_state_is_the_closed_form(answered):
     """After the last impact of the linear equations theta is alpha - alpha cosh + v / p sinh, on the right foot."""
-    told = json.loads(printed(capsys, *PULSE, "--set", "settings.linear=true", "--json"))
+    told = answered(*PULSE, "--set", "settings.linear=true")
     last, end = told["impacts"][-1], told["still_rocking"]
     alpha, p = math.atan(0.25), math.sqrt(0.75 * G / math.hypot(0.25, 1.0))
     sign, speed = math.copysign(1.0, last["velocity_after_rad_s"]), abs(last["velocity_after_rad_s"])
@@ -47,9 +37,9 @@ def test_last_state_is_the_closed_form(capsys):
     assert end["angular_velocity_rad_s"] == pytest.approx(sign * rate, rel=1e-9)
 
 
-def test_page_says_it(capsys):
+def test_page_says_it(printed, answered):
     """The page and the sentence in --json name time, angle and velocity of the last state."""
-    page, told = printed(capsys, *PULSE), json.loads(printed(capsys, *PULSE, "--json"))
+    page, told = printed(*PULSE), answered(*PULSE)
     end = told["still_rocking"]
     degrees = math.degrees(end["rotation_rad"])
     words = f"{WORDS} {end['time_s']:.4g} s, at {degrees:.3g} degrees and {end['angular_velocity_rad_s']:.3g} rad/s"
@@ -57,23 +47,23 @@ def test_page_says_it(capsys):
     assert words in end["sentence"]
 
 
-def test_what_comes_to_rest_is_not_said_to_rock(capsys, long_record):
+def test_what_comes_to_rest_is_not_said_to_rock(printed, answered, long_record):
     """Negative control: with a minute of rest after the same pulse the impacts die out, and nothing is said."""
-    told = json.loads(printed(capsys, *long_record, "--json"))
-    short = json.loads(printed(capsys, *PULSE, "--json"))
+    told = answered(*long_record)
+    short = answered(*PULSE)
     assert told["still_rocking"] is None
-    assert "still rocking" not in printed(capsys, *long_record)
+    assert "still rocking" not in printed(*long_record)
     assert len(told["impacts"]) > 5 * len(short["impacts"])
 
 
 @pytest.mark.parametrize("amplitude", [1.0, 9.0])
-def test_no_uplift_and_overturned(capsys, amplitude):
+def test_no_uplift_and_overturned(printed, answered, amplitude):
     """Negative control: neither a body at rest nor one that fell still rocks."""
     motion = "--motion", f"sine:amplitude={amplitude},period=1"
-    told = json.loads(printed(capsys, *motion, "--json"))
+    told = answered(*motion)
     assert told["outcome"] == ("no_uplift" if amplitude < 0.25 * G else "overturned")
     assert told["still_rocking"] is None
-    assert "still rocking" not in printed(capsys, *motion)
+    assert "still rocking" not in printed(*motion)
 
 
 def test_python_says_it():
@@ -87,11 +77,11 @@ def test_python_says_it():
     assert told == [True, False]
 
 
-def test_contact_says_it(capsys):
+def test_contact_says_it(printed, answered):
     """With the last state, of the energy after the last impact, is told on the page and in --json; nothing
     is said of a response that comes to rest."""
     question = ("--friction", "10")
-    told, page = json.loads(printed(capsys, *PULSE, *question, "--json")), printed(capsys, *PULSE, *question)
+    told, page = answered(*PULSE, *question), printed(*PULSE, *question)
     end, last = told["still_rocking"], told["impacts"][-1]
     alpha, p = math.atan(0.25), math.sqrt(0.75 * G / math.hypot(0.25, 1.0))
     kinetic = 0.5 * (end["angular_velocity_rad_s"] ** 2 - last["velocity_after_rad_s"] ** 2)

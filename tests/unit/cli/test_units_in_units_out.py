@@ -19,14 +19,6 @@ def drawn(monkeypatch):
     return figures
 
 
-def run(capsys, *words):
-    with pytest.raises(SystemExit) as end:
-        main(words)
-    done = capsys.readouterr()
-    assert end.value.code == 0, done.err
-    return done.out
-
-
 def numbers(axis):
     """Places of ticks within the view, and what is written at them."""
     low, high = sorted(axis.get_view_interval())
@@ -35,10 +27,10 @@ def numbers(axis):
     return {place: float(text.get_text()) for place, text in pairs if low <= place <= high and text.get_text()}
 
 
-def test_map_in_g_and_degrees(drawn, capsys, tmp_path):
+def test_map_in_g_and_degrees(printed, drawn, tmp_path):
     """A map over PGA in g and alpha in degrees has those units on its axes and in its sentences."""
     axes = ("--x", "pga=0.1g:1.5g:8", "--y", "slenderness_angle=5deg:20deg:6")
-    out = run(capsys, "map", *SIZE, PULSE, *axes, "--out", str(tmp_path / "map.png"))
+    out = printed("map", *SIZE, PULSE, *axes, "--out", str(tmp_path / "map.png"))
     assert "pga, 0.1 to 1.5 g" in out
     assert "slenderness_angle, 5 to 20 deg" in out
     assert "m/s2" not in out.replace("3 m/s2", "")
@@ -53,11 +45,11 @@ def test_map_in_g_and_degrees(drawn, capsys, tmp_path):
 
 
 @pytest.mark.parametrize("analysis", ["stripes", "incremental"])
-def test_fragility_in_g(analysis, drawn, capsys, tmp_path):
+def test_fragility_in_g(printed, analysis, drawn, tmp_path):
     """Levels in g give medians in g, and axes in g."""
     motions = ("--synthetic", "pulse-like", "--count", "12", "--seed", "1", "--levels", "0.1g:1.5g:6")
     where = str(tmp_path / "curves.png")
-    out = run(capsys, "fragility", *SIZE, *motions, "--analysis", analysis, "--out", where)
+    out = printed("fragility", *SIZE, *motions, "--analysis", analysis, "--out", where)
     assert "median [g]" in out
     (figure,) = drawn
     labels = [axes.get_xlabel() for axes in figure.axes] + [axes.get_ylabel() for axes in figure.axes]
@@ -65,10 +57,10 @@ def test_fragility_in_g(analysis, drawn, capsys, tmp_path):
     assert not any("m/s" in label for label in labels)
 
 
-def test_without_a_unit_nothing_changes(drawn, capsys, tmp_path):
+def test_without_a_unit_nothing_changes(printed, drawn, tmp_path):
     """Negative control: numbers without a unit are in m/s2, and so is the picture."""
     axes = ("--x", "pga=1:15:8", "--y", "slenderness_angle=0.1:0.3:6")
-    out = run(capsys, "map", *SIZE, PULSE, *axes, "--out", str(tmp_path / "map.png"))
+    out = printed("map", *SIZE, PULSE, *axes, "--out", str(tmp_path / "map.png"))
     assert "pga, 1 to 15 m/s2" in out
     assert drawn[0].axes[0].get_xlabel() == "peak ground acceleration [m/s$^2$]"
 
@@ -86,14 +78,14 @@ def test_ticks_on_a_logarithmic_axis():
     assert set(numbers(axes.xaxis).values()) >= {0.1, 1.0, 10.0}
 
 
-def test_one_option_for_units(capsys, tmp_path):
+def test_one_option_for_units(printed, tmp_path):
     """`--units mm,g` says the unit of the lengths and that of the record: as metres and m/s2 would be."""
     record = tmp_path / "record.txt"
     record.write_text("".join(f"{0.01 * k:.2f} {0.4 * ((k // 30) % 2) - 0.2:.3f}\n" for k in range(200)))
-    same = run(capsys, "simulate", *SIZE, str(record), "--units", "g", "--json")
+    same = printed("simulate", *SIZE, str(record), "--units", "g", "--json")
     sizes = ("--width", "500", "--height", "2000", "--density", "500")
-    assert run(capsys, "simulate", *sizes, str(record), "--units", "mm,g", "--json") == same
-    assert run(capsys, "simulate", *sizes, str(record), "--units", "G, MM", "--json") == same
+    assert printed("simulate", *sizes, str(record), "--units", "mm,g", "--json") == same
+    assert printed("simulate", *sizes, str(record), "--units", "G, MM", "--json") == same
 
 
 @pytest.mark.parametrize(
@@ -133,41 +125,41 @@ RADIUS = "alpha = 0.245 rad (14 deg), R = 1031 mm, p = 2.671 rad/s"  # R = sqrt(
         ("fragility", ("--levels", "0.2g,0.4g")),
     ],
 )
-def test_block_in_mm_is_told_in_mm(command, more, record, capsys):
+def test_block_in_mm_is_told_in_mm(printed, command, more, record):
     """A block and a record that are given in mm and g are described in mm and g, by every command alike."""
-    out = run(capsys, command, *IN_MM, "--motion", record, *more)
+    out = printed(command, *IN_MM, "--motion", record, *more)
     assert RADIUS in out
     assert " m," not in out
     if command == "simulate":
         assert "third, 1.99 s, peak 0.33 g" in out
 
 
-def test_centre_of_a_block_in_mm(capsys):
+def test_centre_of_a_block_in_mm(printed):
     """Half of 500 and of 2000 mm."""
-    out = run(capsys, "cor", *IN_MM[:-1], "mm")
+    out = printed("cor", *IN_MM[:-1], "mm")
     assert "centre of mass at x = 250 mm, y = 1000 mm" in out
     assert RADIUS in out
 
 
-def test_slip_in_mm(record, capsys):
+def test_slip_in_mm(printed, record):
     """What slides is told in the unit of lengths; the numbers are those in m, times a thousand."""
     options = ("--motion", record, "--friction", "0.2")
-    metres = run(capsys, "simulate", "--width", "1", "--height", "1", "--units", "g", *options)
-    millimetres = run(capsys, "simulate", "--width", "1000", "--height", "1000", "--units", "mm,g", *options)
+    metres = printed("simulate", "--width", "1", "--height", "1", "--units", "g", *options)
+    millimetres = printed("simulate", "--width", "1000", "--height", "1000", "--units", "mm,g", *options)
     assert ("slid [m]" in metres, "slid [mm]" in millimetres) == (True, True)
     slid = [float(out.partition("slid: ")[2].split()[0]) for out in (metres, millimetres)]
     assert slid[1] == pytest.approx(1000.0 * slid[0], rel=1e-5)
 
 
 @pytest.mark.parametrize("command", ["cor", "simulate"])
-def test_mesh_in_mm_is_told_in_mm(command, record, capsys, tmp_path):
+def test_mesh_in_mm_is_told_in_mm(printed, command, record, tmp_path):
     """A mesh of 500 x 600 x 2000 mm: its size, centre, base and edges in mm."""
     shape = box(500.0, 600.0, 2000.0)
     lines = [f"v {x} {y} {z}" for x, y, z in shape.vertices] + [f"f {a} {b} {c}" for a, b, c in shape.faces + 1]
     path = tmp_path / "box.obj"
     path.write_text("\n".join(lines))
     ground = (record, "--units", "mm,g") if command == "simulate" else ("--units", "mm")
-    out = run(capsys, command, str(path), *ground)
+    out = printed(command, str(path), *ground)
     assert "500 x 600 x 2000 mm" in out
     assert "1000 mm above the ground" in out
     assert "(-250, -300)" in out
@@ -176,12 +168,12 @@ def test_mesh_in_mm_is_told_in_mm(command, record, capsys, tmp_path):
         assert "1030.78" in out  # sqrt(250^2 + 1000^2)
 
 
-def test_accelerations_stand_in_the_unit_of_the_record_beside_g(record, capsys):
+def test_accelerations_stand_in_the_unit_of_the_record_beside_g(printed, record):
     """A record in gal: its peak, its spectrum, and what lifts and overturns a block are in gal; one in g, in m/s2."""
-    out = run(capsys, "motion", record, "--units", "gal")
+    out = printed("motion", record, "--units", "gal")
     assert ("PSA [gal]" in out, "m/s2" in out) == (True, False)
     assert "0.33  gal" in out
-    assert "PSA [m/s2]" in run(capsys, "motion", record, "--units", "g")
-    out = run(capsys, "minimum", *IN_MM[:-1], "mm,gal", "--motion", record, "--points", "12", "--levels", "1")
+    assert "PSA [m/s2]" in printed("motion", record, "--units", "g")
+    out = printed("minimum", *IN_MM[:-1], "mm,gal", "--motion", record, "--points", "12", "--levels", "1")
     assert "lifts it:     0.25 g, 245.166 gal" in out  # g tan(alpha) = 980.665 / 4
     assert "m/s2" not in out

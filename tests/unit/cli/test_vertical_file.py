@@ -1,32 +1,14 @@
 """`--motion x=FILE --motion z=FILE` and `rocking motion x=FILE z=FILE`: the vertical component in a file of its own."""
 
-import json
-
 import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.cli import main
 from rocking.motions.formats import Component, Record, write_record
 
 SIZE = ("--width", "0.5", "--height", "2")
 TIME = np.arange(100) * 0.02
 ALONG, UP = 3.2 * np.sin(2.5 * np.pi * TIME), 2.0 * np.cos(4.0 * np.pi * TIME)
-
-
-def run(capsys, *words):
-    """Exit code, standard output and standard error of `rocking WORDS`."""
-    with pytest.raises(SystemExit) as stop:
-        main([str(word) for word in words])
-    printed = capsys.readouterr()
-    return stop.value.code or 0, printed.out, printed.err
-
-
-def answered(capsys, *words):
-    """The JSON of `rocking WORDS`."""
-    code, out, err = run(capsys, *words, "--json")
-    assert (code, err) == (0, "")
-    return json.loads(out)
 
 
 @pytest.fixture
@@ -40,46 +22,41 @@ def files(tmp_path):
     return paths
 
 
-def test_both_files_reach_the_engine(capsys, files):
+def test_both_files_reach_the_engine(answered, files):
     """The response is that of Python with both files, to the last digit, and not the one without the second."""
     along, up = files
     motion = rk.read_motion(along, vertical_path=up)
     expected = rk.simulate(rk.Block(width=0.5, height=2.0), motion)
-    assert answered(capsys, "simulate", *SIZE, along, "--motion", f"z={up}")["peak_rotation_rad"] == (
-        expected.peak_rotation
-    )
-    assert answered(capsys, "simulate", *SIZE, along)["peak_rotation_rad"] != expected.peak_rotation
+    assert answered("simulate", *SIZE, along, "--motion", f"z={up}")["peak_rotation_rad"] == (expected.peak_rotation)
+    assert answered("simulate", *SIZE, along)["peak_rotation_rad"] != expected.peak_rotation
 
 
-def test_motion_tells_both(capsys, files, tmp_path):
+def test_motion_tells_both(run, answered, files, tmp_path):
     """`rocking motion` tells the peak and the name of the vertical part, both files, and writes its samples."""
     along, up = files
-    answer = answered(capsys, "motion", along, f"z={up}", "--out", tmp_path / "out.csv")
+    answer = answered("motion", along, f"z={up}", "--out", tmp_path / "out.csv")
     assert answer["intensity"]["pga_m_s2"] == pytest.approx(np.abs(ALONG).max(), rel=1e-6)
     assert answer["peak_vertical_acceleration_m_s2"] == pytest.approx(2.0, rel=1e-6)
     assert answer["vertical_component"] == "UP"
     assert [name in line for name, line in zip(("90.at2", "UP.at2"), answer["provenance"], strict=True)] == [True] * 2
     assert "vertical_acceleration_m_s2" in (tmp_path / "out.csv").read_text(encoding="utf-8")
-    assert "upwards" in run(capsys, "motion", along, f"z={up}")[1]
-    assert answered(capsys, "motion", along)["peak_vertical_acceleration_m_s2"] is None
+    assert "upwards" in run("motion", along, f"z={up}")[1]
+    assert answered("motion", along)["peak_vertical_acceleration_m_s2"] is None
 
 
-def test_a_file_of_several_components(capsys, files, tmp_path):
+def test_a_file_of_several_components(refuses, answered, files, tmp_path):
     """Components of one file or of two are chosen apart, by their names after the files."""
     table = tmp_path / "table.txt"
     table.write_text("\n".join(f"{t:.2f} {a:.7f} {b:.7f}" for t, a, b in zip(TIME, ALONG, UP, strict=True)))
     units = ("--units", "m/s2")
-    both = answered(capsys, "motion", f"{table}#column 2", f"z={table}#column 3", *units)
+    both = answered("motion", f"{table}#column 2", f"z={table}#column 3", *units)
     assert both["peak_vertical_acceleration_m_s2"] == pytest.approx(2.0, rel=1e-6)
-    code, out, err = run(capsys, "motion", table, f"z={table}#column 3", *units)
-    assert (code, out) == (2, "")
-    assert f"say which one: '{table}#column 2'" in err
-    code, out, err = run(capsys, "motion", f"{table}#column 2", f"z={table}", *units)
-    assert (code, out) == (2, "")
-    assert f"the file has the components column 2, column 3; say which one: '{table}#column 2' or" in err
+    refuses(("motion", table, f"z={table}#column 3", *units), f"say which one: '{table}#column 2'")
+    components = "the file has the components column 2, column 3; "
+    refuses(("motion", f"{table}#column 2", f"z={table}", *units), f"{components}say which one: '{table}#column 2' or")
 
 
-def test_refusals(capsys, files, tmp_path):
+def test_refusals(refuses, files, tmp_path):
     """A pulse or free rocking takes no such file; a missing, equal or ill-timed one is refused in one sentence."""
     along, up = files
     slow = tmp_path / "slow.at2"
@@ -95,8 +72,4 @@ def test_refusals(capsys, files, tmp_path):
         (("motion", along, f"z={along}"), "cannot be the vertical one"),
         (("motion", along, f"z={slow}"), "0.02 s, got 0.04 s; resample one first"),
     ):
-        code, out, err = run(capsys, *words)
-        assert (code, out) == (2, "")
-        assert sentence in err
-        assert err.startswith("rocking: ")
-        assert err.count("\n") == 1
+        refuses(words, sentence)

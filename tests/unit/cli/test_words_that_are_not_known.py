@@ -17,13 +17,6 @@ SIZE = ("--width", "0.5", "--height", "2")
 PULSE = "sine:amplitude=3,period=0.8"
 
 
-def run(capsys, *words):
-    with pytest.raises(SystemExit) as end:
-        main(words)
-    done = capsys.readouterr()
-    return end.value.code, done.out, done.err
-
-
 @pytest.mark.parametrize(
     "same",
     [
@@ -84,33 +77,31 @@ def test_nothing_is_guessed_from_far():
         (("map", "quake.at2", "statue.stl"), "the body comes first, then the motion: statue.stl quake.at2"),
     ],
 )
-def test_sentences_of_the_command_line(words, said, capsys):
+def test_sentences_of_the_command_line(refuses, words, said):
     """Decimal commas, mistyped commands and words in the wrong order get a sentence that helps."""
-    code, _, err = run(capsys, *words)
-    assert code == 2
-    assert said in err
+    refuses(words, said)
 
 
 @pytest.mark.filterwarnings("default::rocking.errors.PlausibilityWarning")
-def test_share_of_the_slenderness_angle(capsys):
+def test_share_of_the_slenderness_angle(run):
     """`--free 10` says what the number is, and how an angle of 10 degrees is written; that one is taken."""
-    code, _, err = run(capsys, "simulate", *SIZE, "--free", "10")
+    code, _, err = run("simulate", *SIZE, "--free", "10")
     alpha = Block(width=0.5, height=2.0).slenderness_angle
     share = 10.0 * 3.141592653589793 / 180.0 / alpha
     assert code == 2
     assert f"An angle of 10 degrees is --free {share:.3g}" in err
-    assert run(capsys, "simulate", *SIZE, "--free", f"{share:.3g}")[0] == 0
+    assert run("simulate", *SIZE, "--free", f"{share:.3g}")[0] == 0
     # 5 alpha is no right angle, and doubted all the same: it can only fall
-    code, _, err = run(capsys, "simulate", *SIZE, "--free", "5")
+    code, _, err = run("simulate", *SIZE, "--free", "5")
     assert (code, f"An angle of 5 degrees is --free {0.5 * share:.3g}" in err) == (0, True)
 
 
-def test_models_in_space_are_listed_and_shown(capsys):
+def test_models_in_space_are_listed_and_shown(run):
     """Every model that `cor` prints for a solid is one of `rocking models`, with its facts; capitals do not matter."""
-    code, out, _ = run(capsys, "models")
+    code, out, _ = run("models")
     assert code == 0
     assert all(f"\n{name}: " in f"\n{out}" for name in spatial_models())
-    code, out, _ = run(capsys, "models", "KED-3D")
+    code, out, _ = run("models", "KED-3D")
     assert code == 0
     assert out.startswith("ked-3d: ")
     assert "known defects" in out
