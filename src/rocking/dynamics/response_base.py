@@ -123,41 +123,10 @@ class Exportable(ABC):
         return to_netcdf(self.to_xarray(), target_of(path))
 
 
-class Drawable(Exportable):
-    """A response that can be drawn."""
-
-    def plot(self, path: str | Path | None = None, **options: Any) -> "Figure":
-        """Draw the response.
-
-        Parameters
-        ----------
-        path : str or Path, optional
-            Where to write the picture, too: .png, .svg or .pdf.
-        **options
-            Of the picture of this kind of response in `rocking.plots`: `friction` where it rocks alone.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The picture.
-
-        Raises
-        ------
-        MissingExtraError
-            If matplotlib is not installed.
-        RockingError
-            If the ending of the path is another.
-        """
-        figure: Figure = presenter(f"picture of {type(self).__name__}")(self, **options)
-        if path is not None:
-            presenter("writer of pictures")(figure, Path(path))
-        return figure
-
-
 _ROUNDING = 1e-9
 
 
-class ResponseBase(Drawable):
+class ResponseBase(Exportable):
     """One history: how it ends, in words, in a picture, and on its way out."""
 
     settings: Settings
@@ -234,6 +203,33 @@ class ResponseBase(Drawable):
     @abstractmethod
     def _facts(self) -> dict[str, Any]:
         """What was computed from what, beside software, engine, outcome and settings, as plain values."""
+
+    def plot(self, path: str | Path | None = None, **options: Any) -> "Figure":
+        """Draw the response.
+
+        Parameters
+        ----------
+        path : str or Path, optional
+            Where to write the picture, too: .png, .svg or .pdf.
+        **options
+            Of the picture of this kind of response in `rocking.plots`: `friction` where it rocks alone.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The picture.
+
+        Raises
+        ------
+        MissingExtraError
+            If matplotlib is not installed.
+        RockingError
+            If the ending of the path is another.
+        """
+        figure: Figure = presenter(f"picture of {type(self).__name__}")(self, **options)
+        if path is not None:
+            presenter("writer of pictures")(figure, Path(path))
+        return figure
 
     def exported(self) -> "Table":
         """Return what the files of this response hold.

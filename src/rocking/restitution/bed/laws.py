@@ -199,7 +199,6 @@ class HuntCrossley(ContactLaw):
     ------
     InvalidValueError
         If a value is outside its range.
-
     """
 
     stiffness: float
@@ -269,7 +268,6 @@ class PlasticUnloading(ContactLaw):
     ------
     InvalidValueError
         If a value is outside its range.
-
     """
 
     stiffness: float
