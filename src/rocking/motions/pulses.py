@@ -79,7 +79,8 @@ type_a = _shape(
     "type A pulse", 0.0, 1.0,
 )  # fmt: skip
 type_b = _shape(
-    "type_b", "Return a forward-and-back pulse, type B of Makris and Chang (2000): the ground comes back; a cosine.",
+    "type_b",
+    "Return a forward-and-back pulse, type B of Makris and Chang (2000): the ground comes back; a whole cosine.",
     "type B pulse", _QUARTER, 1.0,
 )  # fmt: skip
 
