@@ -14,8 +14,7 @@ from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Motion
 from rocking.studies.axis import Axis, axis_of
-from rocking.studies.question import Question
-from rocking.studies.variations import Case
+from rocking.studies.question import Case, Question
 
 
 @dataclass(frozen=True)

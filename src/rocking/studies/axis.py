@@ -15,8 +15,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion, Ricker, Sinusoids
-from rocking.studies.question import Question
-from rocking.studies.variations import Case
+from rocking.studies.question import Case, Question
 
 BODY, RESTITUTION, TIME, AMPLITUDE, VELOCITY = range(5)
 """Stages in which axes are applied, in this order."""

@@ -5,7 +5,7 @@ import json
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -201,7 +201,7 @@ class Histories(ABC):
                     rows.stream[chosen],
                 )  # fmt: skip
                 batch = Batch(self._laid_out(some.tolist()), self.law, self.settings, threads, self.engine)
-                for name, values in batch.run(len(local), partial(part, local))[0].items():
+                for name, values in batch.run(len(local), local.part)[0].items():
                     results[name][start - first + chosen] = values
         return results
 
@@ -229,12 +229,6 @@ def results_of(
         if progress is not None:
             progress(last - first)
     return results
-
-
-def part(rows: Rows, first: int, last: int) -> Rows:
-    """Return some of the rows."""
-    values = {name: rows.values[name][first:last] for name in ROWS}
-    return Rows(values, rows.motion[first:last], rows.stream[first:last])
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies import axes
 from rocking.studies.adaptive_grid import Plane
 from rocking.studies.axis import axis_of, main_period, peak_velocity
-from rocking.studies.variations import changed_body, reference_side
+from rocking.studies.question import changed_body, reference_side
 
 BLOCK = rk.Block(width=0.6, height=2.4, depth=0.5, density=2000.0)
 PULSE = rk.pulses.sine(3.0, 0.6)

@@ -27,8 +27,7 @@ from rocking.spec.reading import InputFiles
 from rocking.spec.response import ResponseProblem
 from rocking.studies.adaptive_grid import Plane
 from rocking.studies.axis import axis_of
-from rocking.studies.question import Question
-from rocking.studies.variations import changed_body
+from rocking.studies.question import Question, changed_body
 
 _ACROSS = {
     "rocking-spectrum": ("period", "slenderness_angle"),

@@ -58,6 +58,11 @@ class Rows:
         """Return the number of histories."""
         return int(self.motion.size)
 
+    def part(self, first: int, last: int) -> "Rows":
+        """Return some of the rows."""
+        values = {name: self.values[name][first:last] for name in ROWS}
+        return Rows(values, self.motion[first:last], self.stream[first:last])
+
 
 @dataclass(frozen=True)
 class Batch:

@@ -143,5 +143,5 @@ def test_memory_of_an_analysis(monkeypatch, kind, most):
     # the measure of a motion takes longer than its history; what it is does not matter here
     monkeypatch.setattr(IntensityMeasure, "values", lambda _, motions, body: np.linspace(2.0, 9.0, len(motions)))
     peak_of(kind, 8000)  # libraries are loaded
-    few, many = peak_of(kind, 80_000), peak_of(kind, 480_000)
-    assert (many - few) / 400_000 < most
+    few, many = peak_of(kind, 40_000), peak_of(kind, 200_000)
+    assert (many - few) / 160_000 < most
