@@ -2,15 +2,11 @@
 
 `amplitude` is the peak ground acceleration a_p [m/s2] and `period` the period T_p of the sinusoid [s], whatever part
 of it the pulse lasts.
-
->>> pulse = sine(amplitude=3.0, period=0.8)
->>> round(pulse.acceleration(0.2).item(), 12), round(pulse.velocity(0.8).item(), 12)
-(3.0, 0.0)
 """
 
 import math
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 from rocking import checks, plausibility
 from rocking.errors import InvalidValueError, UnknownModelError
@@ -33,56 +29,6 @@ __all__ = [
     "type_b",
     "type_c",
 ]
-
-
-class _Shape(Protocol):
-    """A pulse that is given by its peak acceleration a_p [m/s2] and period T_p [s]."""
-
-    def __call__(self, amplitude: float, period: float) -> Sinusoids:
-        """Return the pulse."""
-
-
-def _shape(name: str, sentence: str, title: str, phase: float, cycles: float) -> _Shape:
-    """Return the function of a pulse that is a sine from a phase [rad] on for some of its periods."""
-
-    def shape(amplitude: float, period: float) -> Sinusoids:
-        return _windowed(title, amplitude, period, phase, cycles)
-
-    shape.__name__ = shape.__qualname__ = name
-    shape.__doc__ = f"{sentence}\n{_OF_SHAPE}"
-    return shape
-
-
-_OF_SHAPE = """
-    Parameters
-    ----------
-    amplitude, period : float
-        Peak acceleration a_p [m/s2] and period T_p of the whole sinusoid [s].
-
-    Returns
-    -------
-    Sinusoids
-        The pulse.
-    """
-_QUARTER = 0.5 * math.pi
-half_sine = _shape(
-    "half_sine", "Return half a period of a sine: ``a_p sin(2 pi t / T_p)`` up to T_p / 2.", "half-sine pulse", 0.0, 0.5
-)
-sine = _shape("sine", "Return one period of a sine: ``a_p sin(2 pi t / T_p)``.", "sine pulse", 0.0, 1.0)
-half_cosine = _shape(
-    "half_cosine", "Return half a period of a cosine: ``a_p cos(2 pi t / T_p)`` up to T_p / 2.", "half-cosine pulse",
-    _QUARTER, 0.5,
-)  # fmt: skip
-cosine = _shape("cosine", "Return one period of a cosine: ``a_p cos(2 pi t / T_p)``.", "cosine pulse", _QUARTER, 1.0)
-type_a = _shape(
-    "type_a", "Return a forward pulse, type A of Makris and Chang (2000): the ground ends displaced; a whole sine.",
-    "type A pulse", 0.0, 1.0,
-)  # fmt: skip
-type_b = _shape(
-    "type_b",
-    "Return a forward-and-back pulse, type B of Makris and Chang (2000): the ground comes back; a whole cosine.",
-    "type B pulse", _QUARTER, 1.0,
-)  # fmt: skip
 
 
 def rectangular(amplitude: float, duration: float) -> Sinusoids:
@@ -112,6 +58,108 @@ def rectangular(amplitude: float, duration: float) -> Sinusoids:
         duration,
         abs(amplitude),
     )
+
+
+def half_sine(amplitude: float, period: float) -> Sinusoids:
+    """Return half a period of a sine: ``a_p sin(2 pi t / T_p)`` up to T_p / 2.
+
+    Parameters
+    ----------
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p of the whole sine [s].
+
+    Returns
+    -------
+    Sinusoids
+        The pulse.
+    """
+    return _windowed("half-sine pulse", amplitude, period, 0.0, 0.5)
+
+
+def sine(amplitude: float, period: float) -> Sinusoids:
+    """Return one period of a sine: ``a_p sin(2 pi t / T_p)``.
+
+    Parameters
+    ----------
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p [s].
+
+    Returns
+    -------
+    Sinusoids
+        The pulse.
+
+    Examples
+    --------
+    >>> pulse = sine(amplitude=3.0, period=0.8)
+    >>> round(pulse.acceleration(0.2).item(), 12), round(pulse.velocity(0.8).item(), 12)
+    (3.0, 0.0)
+    """
+    return _windowed("sine pulse", amplitude, period, 0.0, 1.0)
+
+
+def half_cosine(amplitude: float, period: float) -> Sinusoids:
+    """Return half a period of a cosine: ``a_p cos(2 pi t / T_p)`` up to T_p / 2.
+
+    Parameters
+    ----------
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p of the whole cosine [s].
+
+    Returns
+    -------
+    Sinusoids
+        The pulse.
+    """
+    return _windowed("half-cosine pulse", amplitude, period, 0.5 * math.pi, 0.5)
+
+
+def cosine(amplitude: float, period: float) -> Sinusoids:
+    """Return one period of a cosine: ``a_p cos(2 pi t / T_p)``.
+
+    Parameters
+    ----------
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p [s].
+
+    Returns
+    -------
+    Sinusoids
+        The pulse.
+    """
+    return _windowed("cosine pulse", amplitude, period, 0.5 * math.pi, 1.0)
+
+
+def type_a(amplitude: float, period: float) -> Sinusoids:
+    """Return a forward pulse, type A of Makris and Chang (2000): the ground ends displaced; a whole sine.
+
+    Parameters
+    ----------
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p [s].
+
+    Returns
+    -------
+    Sinusoids
+        The pulse.
+    """
+    return _windowed("type A pulse", amplitude, period, 0.0, 1.0)
+
+
+def type_b(amplitude: float, period: float) -> Sinusoids:
+    """Return a forward-and-back pulse, type B of Makris and Chang (2000): the ground comes back; a whole cosine.
+
+    Parameters
+    ----------
+    amplitude, period : float
+        Peak acceleration a_p [m/s2] and period T_p [s].
+
+    Returns
+    -------
+    Sinusoids
+        The pulse.
+    """
+    return _windowed("type B pulse", amplitude, period, 0.5 * math.pi, 1.0)
 
 
 def type_c(amplitude: float, period: float, n: int = 1) -> Sinusoids:
