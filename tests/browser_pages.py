@@ -9,8 +9,7 @@ from typing import Any
 import pytest
 
 from rocking.bodies import Block
-from rocking.dynamics import simulate
-from rocking.dynamics.response import Response
+from rocking.dynamics import Response, simulate
 from rocking.motions.pulses import pulse
 
 PHONE = {"width": 360, "height": 740}

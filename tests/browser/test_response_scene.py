@@ -16,8 +16,7 @@ from playwright.sync_api import expect
 
 from rocking.bodies import Block, Region, Section
 from rocking.bodies.shapes import trapezoid
-from rocking.dynamics import simulate
-from rocking.dynamics.response import Response
+from rocking.dynamics import Response, simulate
 from rocking.motions import GroundMotion
 from rocking.motions.pulses import pulse
 from rocking.outcome import Outcome

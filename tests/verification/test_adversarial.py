@@ -17,9 +17,8 @@ from engines import built
 from scipy.special import ellipk, ellipkinc
 
 from rocking.conventions import g
-from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics import ConstantRestitution, Settings
 from rocking.dynamics.plane.batch import Batch, Rows
-from rocking.dynamics.settings import Settings
 from rocking.motions import Segments
 
 CASES = 10_000 if os.environ.get("ROCKING_CAMPAIGN") else 1_000

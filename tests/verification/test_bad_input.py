@@ -17,11 +17,9 @@ import numpy as np
 import pytest
 from engines import every_engine
 
-from rocking.dynamics import Outcome, Status
-from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics import ConstantRestitution, Outcome, Settings, Status
 from rocking.dynamics.plane import batch, fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
-from rocking.dynamics.settings import Settings
 from rocking.errors import RockingError
 from rocking.motions import Segments
 

@@ -11,12 +11,18 @@ import pytest
 from engines import built
 
 import rocking as rk
-from rocking.dynamics import RockingParameters, RockingSide
-from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
+from rocking.dynamics import (
+    ConstantRestitution,
+    ImpactLaw,
+    RandomRestitution,
+    RockingParameters,
+    RockingSide,
+    Settings,
+    SpeedRestitution,
+)
 from rocking.dynamics.plane import batch, fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import run
-from rocking.dynamics.settings import Settings
 from rocking.motions import Segments
 
 pytestmark = built

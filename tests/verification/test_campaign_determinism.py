@@ -14,7 +14,7 @@ import pytest
 from engines import built
 
 from rocking.campaigns import Campaign, CampaignInterrupted, Progress
-from rocking.dynamics.impact_laws import RandomRestitution
+from rocking.dynamics import RandomRestitution
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.studies import HistoryTable
 

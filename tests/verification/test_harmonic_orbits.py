@@ -18,11 +18,9 @@ from scipy.optimize import minimize_scalar
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics.impact_laws import ConstantRestitution
-from rocking.dynamics.parameters import RockingParameters, RockingSide
+from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind
-from rocking.dynamics.settings import Settings
 
 ENGINES = ("fast", "reference")
 ALPHA, P = 0.22, 2.3

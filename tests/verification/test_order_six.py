@@ -5,9 +5,8 @@ import pytest
 from engines import built
 
 from rocking.conventions import g
-from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics import ConstantRestitution, Settings
 from rocking.dynamics.plane.batch import Batch, Rows
-from rocking.dynamics.settings import Settings
 from rocking.motions import Segments
 
 pytestmark = built

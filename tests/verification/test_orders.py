@@ -14,13 +14,11 @@ import pytest
 from scipy.optimize import brentq
 
 from rocking import conventions
-from rocking.dynamics.impact_laws import ConstantRestitution
-from rocking.dynamics.parameters import RockingParameters, RockingSide
+from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.reference import Reference
 from rocking.dynamics.plane.trajectory import EventKind
-from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions import Segments
 from rocking.outcome import Outcome

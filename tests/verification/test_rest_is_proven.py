@@ -5,11 +5,9 @@ import pytest
 from engines import every_engine
 
 from rocking.conventions import g
-from rocking.dynamics.impact_laws import ConstantRestitution
-from rocking.dynamics.parameters import RockingParameters, RockingSide
+from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
 from rocking.dynamics.plane import fast_engine, reference
 from rocking.dynamics.plane.trajectory import EventKind
-from rocking.dynamics.settings import Settings
 from rocking.motions import Segments
 
 COUNT = 40

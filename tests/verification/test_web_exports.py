@@ -34,7 +34,8 @@ from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
 from rocking.motions import GroundMotion
 from rocking.motions.formats import read_motion
-from rocking.reports.document import Cell, Document, Listing, Pair, Paragraph, Picture, ReportSection, ReportTable
+from rocking.reports import Document
+from rocking.reports.document import Cell, Listing, Pair, Paragraph, Picture, ReportSection, ReportTable
 from rocking.reports.render import response_pdf
 
 SVG = "{http://www.w3.org/2000/svg}"

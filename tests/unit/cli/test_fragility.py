@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.studies import SyntheticSet
 from rocking.studies.fragility import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
-from rocking.studies.motion_sets import SyntheticSet
 
 COMMAND = "fragility"
 

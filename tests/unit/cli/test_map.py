@@ -12,9 +12,7 @@ import pytest
 import rocking as rk
 from rocking.cli.numbers import row
 from rocking.cli.page import bar
-from rocking.studies._overturning_map import overturning_map
-from rocking.studies.axis import axes
-from rocking.studies.islands import safe_islands
+from rocking.studies import axes, overturning_map, safe_islands
 from rocking.studies.sensitivity import map_sensitivity
 
 COMMAND = "map"

@@ -9,7 +9,8 @@ import pytest
 
 import rocking as rk
 from rocking.cli.minimum import stretches as sentence
-from rocking.studies.minimum_acceleration import Transitions, minimum_overturning_acceleration
+from rocking.studies import minimum_overturning_acceleration
+from rocking.studies.minimum_acceleration import Transitions
 
 COMMAND = "minimum"
 

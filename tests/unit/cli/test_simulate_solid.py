@@ -8,7 +8,7 @@ from PIL import Image
 
 import rocking as rk
 from rocking.bodies.formats import read_body
-from rocking.dynamics.space.response import SpatialResponse
+from rocking.dynamics.space import SpatialResponse
 from rocking.outcome import Status
 
 COMMAND = "simulate"

@@ -10,7 +10,7 @@ import pytest
 import rocking as rk
 from rocking.cli.spectrum import _angles, _periods
 from rocking.spec.fields import Values
-from rocking.studies._rocking_spectrum import rocking_spectrum
+from rocking.studies import rocking_spectrum
 
 COMMAND = "spectrum"
 

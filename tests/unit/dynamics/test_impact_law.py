@@ -10,8 +10,9 @@ from engines import built, every_engine
 from scipy import stats
 
 import rocking as rk
+from rocking.dynamics import ConstantRestitution
 from rocking.dynamics.content import hash_of
-from rocking.dynamics.impact_laws import ConstantRestitution, interpolated, uniform
+from rocking.dynamics.impact_laws import interpolated, uniform
 from rocking.errors import InvalidValueError
 
 # these take rows, whatever their type

@@ -10,12 +10,10 @@ from numpy.polynomial import Polynomial
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics import Outcome, RockingParameters, RockingSide
-from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics import ConstantRestitution, Outcome, RockingParameters, RockingSide, Settings
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.reference import Reference
 from rocking.dynamics.plane.trajectory import EventKind, Trajectory
-from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import first_fall, last_fall, turning_points
 from rocking.errors import InvalidValueError
 from rocking.motions import Segments

@@ -9,12 +9,10 @@ from engines import every_engine
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics import Outcome, RockingParameters, RockingSide
-from rocking.dynamics.impact_laws import ConstantRestitution, SpeedRestitution
+from rocking.dynamics import ConstantRestitution, Outcome, RockingParameters, RockingSide, Settings, SpeedRestitution
 from rocking.dynamics.plane.event_functions import Push, RestoringMoments, comes_to_rest
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.reference import Reference
-from rocking.dynamics.settings import Settings
 from rocking.motions import Segments
 
 ALPHA, P = 0.25, 2.0

@@ -13,8 +13,8 @@ from rocking.plots import overturning_map_picture, write
 from rocking.plots.labels import axis_label, geometric, plain, wrapped
 from rocking.plots.map_labels import FINE, place_in, rastered
 from rocking.plots.overturning_map import CLASSES, FIRST, ISLAND, ROCKED, SECOND, classes_of
-from rocking.studies._overturning_map import overturning_map
-from rocking.studies.boundaries import Polyline, boundary
+from rocking.studies import boundary, overturning_map
+from rocking.studies.boundaries import Polyline
 
 BLOCK = rk.Block.from_angle(0.2, 1.0)
 PULSE = rk.pulses.sine(1.0, 1.0)

@@ -10,7 +10,7 @@ import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.plots import rocking_spectrum_picture
 from rocking.plots.rocking_spectrum import fractiles
-from rocking.studies._rocking_spectrum import rocking_spectrum
+from rocking.studies import rocking_spectrum
 
 G = 9.80665
 PERIODS = np.geomspace(0.8, 12.0, 40)

@@ -11,7 +11,7 @@ import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.plots import transitions_picture
 from rocking.plots.overturning_map import CLASSES, FIRST, SECOND
-from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
+from rocking.studies import minimum_overturning_acceleration
 
 G = 9.80665
 BLOCK, SINE = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.0, 0.8)

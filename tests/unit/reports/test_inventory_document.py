@@ -11,10 +11,8 @@ from rocking.errors import MissingExtraError, RockingError
 from rocking.reports.inventory_document import inventory_document
 from rocking.reports.inventory_folder import write_inventory, write_spreadsheet
 from rocking.reports.render import render_html
-from rocking.studies.inventory.assessment import assess
+from rocking.studies.inventory import Thresholds, assess, parse_inventory
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
-from rocking.studies.inventory.lights import Thresholds
-from rocking.studies.inventory.reading import parse_inventory
 from rocking.studies.inventory.table import as_csv
 
 HOSTILE = '<script>alert(1)</script> #strong[x] $x$ \\ & *b* @cite ""'

@@ -10,8 +10,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from rocking import Block
 from rocking.evidence.explanation import explanation
 from rocking.plots import body_picture, paper_figure
-from rocking.reports import paper_folder
-from rocking.reports.document import Cell, Document, Paragraph, Picture, ReportSection, ReportTable
+from rocking.reports import Document, paper_folder
+from rocking.reports.document import Cell, Paragraph, Picture, ReportSection, ReportTable
 from rocking.reports.paper_document import explanation_blocks
 from rocking.reports.render import render_html, render_pdf, write_html
 

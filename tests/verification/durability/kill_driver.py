@@ -22,11 +22,10 @@ from typing import BinaryIO
 
 from workload import histories
 
-from rocking.campaigns import Campaign, disk, executors, ledger
+from rocking.campaigns import Campaign, CampaignDamagedError, CampaignWorkerError, disk, executors, ledger
 from rocking.campaigns import chunks as shard
 from rocking.campaigns import executors as pace
 from rocking.campaigns.chunks import Chunk, Plan
-from rocking.campaigns.disk import CampaignDamagedError, CampaignWorkerError
 
 CHUNK = 500
 PIECE, CUT = 130, "KILL_DRIVER_CUTS"

@@ -3,7 +3,7 @@
 import numpy as np
 
 import rocking as rk
-from rocking.dynamics.impact_laws import RandomRestitution
+from rocking.dynamics import RandomRestitution
 from rocking.studies import HistoryTable, MotionList
 
 RANGES = {"alpha": (0.08, 0.5), "p": (0.9, 5.0), "r": (0.5, 0.95)}

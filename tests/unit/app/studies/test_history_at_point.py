@@ -11,7 +11,7 @@ from rocking.motions import GroundMotion
 from rocking.motions.formats import write_motion
 from rocking.motions.pulses import catalogue, pulse
 from rocking.outcome import Outcome
-from rocking.studies.axis import axes
+from rocking.studies import axes
 
 RANGES = {
     "frequency_ratio": (1.0, 6.0), "amplitude_ratio": (0.8, 8.0), "scale": (0.5, 8.0), "pga": (2.0, 20.0),

@@ -13,10 +13,8 @@ from rocking.app.settings import Limits
 from rocking.app.studies.manager import StudyManager
 from rocking.app.studies.results import contours_of, plain, result_of
 from rocking.app.work import Remembered
-from rocking.studies._overturning_map import overturning_map
-from rocking.studies._rocking_spectrum import rocking_spectrum
-from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
-from rocking.studies.motion_sets import SyntheticSet
+from rocking.studies import SyntheticSet, overturning_map, rocking_spectrum
+from rocking.studies.fragility import multiple_stripe_analysis
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 PULSE = rk.pulses.sine(amplitude=3.0, period=0.6)

@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.bodies import Block
-from rocking.dynamics import simulate
+from rocking.dynamics import Settings, SpeedRestitution, simulate
 from rocking.dynamics.contact import (
+    GroundContact,
     Regime,
     Start,
     friction_demand,
@@ -21,9 +22,6 @@ from rocking.dynamics.contact import (
 from rocking.dynamics.contact.base import Mode, PlaneBase
 from rocking.dynamics.contact.engine import ContactEngine
 from rocking.dynamics.contact.history import History
-from rocking.dynamics.contact.impact_resolution import GroundContact
-from rocking.dynamics.impact_laws import SpeedRestitution
-from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions import GroundMotion, Segments
 from rocking.motions.pulses import rectangular, sine

@@ -18,7 +18,7 @@ from rocking.dynamics.space.ground import ground_of, joined
 from rocking.dynamics.space.impact_laws import FixedSpatial
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning, UnknownModelError
 from rocking.outcome import Status
-from rocking.plots.falling import falling_picture
+from rocking.plots import falling_picture
 
 BOX = SpatialBody.box(0.5, 0.6, 2.0)
 PULSE = rk.pulses.sine(amplitude=4.0, period=0.8)

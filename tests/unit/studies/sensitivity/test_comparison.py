@@ -154,7 +154,7 @@ def test_a_map_differs_cell_by_cell():
 
 def rk_map(restitution, **options):
     """A map of its own."""
-    from rocking.studies._overturning_map import overturning_map
+    from rocking.studies import overturning_map
 
     return overturning_map(BLOCK, PULSE, *AXES, restitution, **options)
 
