@@ -108,23 +108,25 @@ def lost_contact(results: Any) -> FloatArray:
 def flags(results: Any) -> dict[str, FloatArray]:
     """Return what is true or false of histories, as numbers.
 
-    Returns Overturned, still_rocking, lost_contact: 1, 0, NaN where there is no result [-].
+    `overturned`, `still_rocking` and `lost_contact`, each 1 or 0, and NaN where there is no result [-].
     """
     outcome = results["outcome"]
     still = of_results(outcome, np.asarray(results["still_rocking"]) == 1)
     return {"overturned": overturned(outcome), "still_rocking": still, "lost_contact": lost_contact(results)}
 
 
-def contact_words(flags: Any) -> str:
+def contact_words(lost: Any) -> str:
     """Return in how many histories the ground would have to pull, as a sentence that stands beside their verdicts.
 
     >>> contact_words([1.0, 0.0, 0.0, np.nan])
     'in 1 of 3 histories (33.3 %) the ground would have to pull; their verdicts assume contact'
     """
-    known = np.asarray(flags, dtype=np.float64)
+    known = np.asarray(lost, dtype=np.float64)
     known = known[np.isfinite(known)]
-    lost = int((known == 1.0).sum())
-    if not lost:
+    count = int((known == 1.0).sum())
+    if not count:
         return ""
-    share = percent(lost / known.size)
-    return f"in {lost} of {known.size} histories ({share}) the ground would have to pull; their verdicts assume contact"
+    share = percent(count / known.size)
+    return (
+        f"in {count} of {known.size} histories ({share}) the ground would have to pull; their verdicts assume contact"
+    )

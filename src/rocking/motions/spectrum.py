@@ -26,7 +26,7 @@ HIGH = 0.8
 """Samples whose state is so large, compared with the largest, give the first guess of the peaks [-]."""
 
 TOGETHER = 180_000
-"""Steps times periods that are held at once: they fit into the cache of a processor."""
+"""Steps times periods that are held at once: more are no quicker, and take more memory."""
 
 _BLOCK = 16  # samples of a row that follow one another in the recurrence of its states
 

@@ -150,14 +150,18 @@ class RecordFormat(ABC):
     marks: ClassVar[tuple[str, ...]] = ()  # patterns of text with which lines near the top begin
     top: ClassVar[int] = 0  # how many lines are looked at for them
 
+    def __init_subclass__(cls) -> None:
+        """Refuse a format that nothing recognises."""
+        super().__init_subclass__()
+        if not (cls.marks and cls.top) and cls.recognises is RecordFormat.recognises:
+            raise TypeError(f"{cls.__name__}: say marks and top, or write recognises")
+
     def recognises(self, source: Source) -> bool:
         """Return whether the content looks like this format: all marks but one are there; never raises.
 
         A damaged header must not turn a file into a nameless table of numbers.
         """
-        if not source.is_text or not self.marks:
-            return False
-        top = source.lines[: self.top]
+        top = source.lines[: self.top] if source.is_text else []
         return sum(any(re.match(mark, line) for line in top) for mark in self.marks) >= len(self.marks) - 1
 
     def refusal(self, source: Source) -> RecordError | None:
