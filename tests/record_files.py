@@ -11,7 +11,7 @@ from rocking.motions.formats import Record, RecordFormat, Source
 
 
 def refused(kind: RecordFormat, text: str, damages: Sequence[tuple[str, str, str]], *, once: bool = True) -> None:
-    """A good file of which some words (the first of them, if not `once` in it) become others is refused by a sentence."""
+    """A good file of which some words (not always `once` in it) become others is refused by a sentence."""
     kind.read(Source("good", text.encode("latin-1")))
     for old, new, message in damages:
         changed = text.replace(old, new, 1)

@@ -64,10 +64,13 @@ def _transitions(folder: JobFolder, labels: list[str]) -> "Figure":
         for k in range(len(problem.motions)) for body in range(len(problem.bodies))
     ]  # fmt: skip
     every = answer(folder).value  # the body changes fastest, then the restitution
-    places = range(0, len(every), len(problem.bodies))
+    bodies, restitutions = len(problem.bodies), list(problem.restitutions)
     found = {
-        label: [each for k in places[number :: len(problem.restitutions)] for each in every[k : k + places.step]]
-        for number, label in enumerate(problem.restitutions) if label in labels
+        label: [
+            every[(motion * len(restitutions) + restitutions.index(label)) * bodies + body]
+            for motion in range(len(problem.motions)) for body in range(bodies)
+        ]
+        for label in restitutions if label in labels
     }  # fmt: skip
     for label, row in found.items():
         if None in row:

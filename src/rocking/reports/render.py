@@ -18,12 +18,14 @@ def render_html(document: Document, pictures: Path) -> str:
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     kinds = {"table": ReportTable, "pair": Pair, "listing": Listing, "paragraph": Paragraph}
-    environment.tests |= {
-        name: partial(lambda kind, block: isinstance(block, kind), kind) for name, kind in kinds.items()
-    }
+    environment.tests |= {name: partial(_is, kind) for name, kind in kinds.items()}
     template = environment.from_string(_template("report.html.jinja").decode())
     html: str = template.render(document=document, svg=lambda stem: _inline(pictures, stem))
     return html
+
+
+def _is(kind: type, block: object) -> bool:
+    return isinstance(block, kind)
 
 
 def _inline(folder: Path, stem: str) -> object:

@@ -148,13 +148,14 @@ def _structure(table: Table, *, apart: bool) -> dict[str, Any]:
         provenance = table.provenance["provenance"]
         return {"columns": values, "names": names, "units": units, "words": meanings, "provenance": provenance}
     beside = {row: other.columns for row, other in table.beside.items()}
+
     # numbers as MATLAB's own double; text as a column of cells
-    kinds = {True: object, False: np.float64}
+    def cells(column: Column) -> Any:
+        return column.values.astype(object if column.is_text else np.float64)
+
     return {
         **values,
-        **{
-            f"{row}s": {n: c.values.astype(kinds[c.is_text]) for n, c in other.items()} for row, other in beside.items()
-        },
+        **{f"{row}s": {name: cells(c) for name, c in other.items()} for row, other in beside.items()},
         "units": units,
         **{f"{row}_units": {name: c.unit for name, c in other.items() if c.unit} for row, other in beside.items()},
         "provenance": json.dumps(table.provenance),

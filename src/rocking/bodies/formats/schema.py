@@ -137,10 +137,10 @@ def _refused(kind: Literal["unknown_key", "contradiction"], words: str) -> Pydan
 
 
 def _check_one(table: StrictTable, owner: str, keys: tuple[str, ...], shown: str = "{}") -> None:
-    present = " and ".join(shown.format(key) for key in keys if getattr(table, key) is not None) or "none"
-    if present == "none" or " and " in present:
+    present = [shown.format(key) for key in keys if getattr(table, key) is not None]
+    if len(present) != 1:
         choice = ", ".join(map(shown.format, keys))
-        raise _refused("contradiction", f"{owner} has exactly one of {choice}, got {present}")
+        raise _refused("contradiction", f"{owner} has exactly one of {choice}, got {' and '.join(present) or 'none'}")
 
 
 Cut = Annotated[float, Field(ge=0.0)]

@@ -164,13 +164,14 @@ def _table(source: Source, text: ColumnText) -> FloatArray:
     if commas and points and text.separator not in {"", ","}:
         raise source.error(commas[0], f"decimal commas here and decimal points on line {points[0] + 1}: write one kind")
     hint = "; where commas part the columns, decimals need a point" if text.separator == "," else ""
-    columns, like = len(text.rows[0][1]), " as on the first line, found {}"
-    if text.names is not None:
-        columns, like = len(text.names), f", as many as there are names, found {{}}{hint}"
+    if text.names is None:
+        columns, why = len(text.rows[0][1]), " as on the first line"
+    else:
+        columns, why = len(text.names), ", as many as there are names"
     values = np.empty((len(text.rows), columns))
     for row, (line, cells) in enumerate(text.rows):
         if len(cells) != columns:
-            raise source.error(line, f"{columns} numbers expected{like.format(len(cells))}")
+            raise source.error(line, f"{columns} numbers expected{why}, found {len(cells)}{hint}")
         values[row] = [_value(source, line, cell) for cell in cells]
     if len(text.rows) < 2:
         raise source.error(None, "at least 2 samples are needed, found 1")
