@@ -123,10 +123,12 @@ def contact_words(lost: Any) -> str:
     """
     known = np.asarray(lost, dtype=np.float64)
     known = known[np.isfinite(known)]
-    count = int((known == 1.0).sum())
-    if not count:
+    return contact_sentence(int((known == 1.0).sum()), known.size)
+
+
+def contact_sentence(lost: int, known: int) -> str:
+    """Return the same of two counts: where the ground would have to pull, and all that have a result."""
+    if not lost:
         return ""
-    share = percent(count / known.size)
-    return (
-        f"in {count} of {known.size} histories ({share}) the ground would have to pull; their verdicts assume contact"
-    )
+    share = percent(lost / known)
+    return f"in {lost} of {known} histories ({share}) the ground would have to pull; their verdicts assume contact"

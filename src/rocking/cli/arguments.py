@@ -99,6 +99,21 @@ def parsed_sets(texts: Sequence[str] | None, known: Iterable[str]) -> Tables:
     return tables
 
 
+def with_sets(tables: Mapping[str, Any], sets: Mapping[str, Tables], *, lists: bool = False) -> Tables:
+    """Return the tables of a file with the keys that ``--set`` changes; lists: a table may stand as a list of one."""
+    changed = dict(tables)
+    for table, keys in sets.items():
+        name = "motions" if lists and table == "motion" else table
+        stated = tables.get(name, {})
+        if lists and isinstance(stated, list) and len(stated) == 1:
+            (stated,) = stated
+        if not isinstance(stated, dict):
+            why = f"it has several [[{name}]]" if isinstance(stated, list) else f"its {name} is no table"
+            raise InvalidValueError(f"--set {table}.{next(iter(keys))}: {why}; change the file")
+        changed[name] = {**stated, **keys}
+    return changed
+
+
 def typed(context: "typer.Context", *names: str) -> list[str]:
     """Return which of some parameters were typed, as they are spelt."""
     spelt = {"record": "second word", "motions": "second word", "sets": "--set"}

@@ -9,7 +9,7 @@ import typer
 
 from rocking.bodies import Solid
 from rocking.cli import options
-from rocking.cli.arguments import Arguments, document_file, hinted
+from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
 from rocking.cli.exports import PICTURES, Export, Exports, draw, write_records
 from rocking.cli.numbers import in_unit, side_line
 from rocking.cli.page import Page, deliver
@@ -106,13 +106,11 @@ def _body(arguments: Arguments, *, quiet: bool) -> tuple[Any, float]:
     word, sets = arguments.options["body"], arguments.sets
     beside = ("onto", "restitution", "eta", "identities")
     if file := document_file(arguments.context, word, ("response",), beside, "has a table [body] and "):
+        with located(word):
+            made = _made(with_sets(tables_in(file) or {}, sets), InputFiles(file.parent))
         note = "body and gravity are taken from it; everything else it says is for `rocking simulate`."
         print(f"{file.name}: {note}", file=sys.stderr if quiet else sys.stdout)
-        with located(word):
-            tables = dict(tables_in(file) or {})
-            for name, keys in sets.items():
-                tables[name] = {**tables.get(name, {}), **keys}
-            return _made(tables, InputFiles(file.parent))
+        return made
     with hinted(word, None):
         tables = {"body": arguments.body_table(word), "settings": sets.get("settings", {})}
         return _made(tables, CommandFiles(Path()))

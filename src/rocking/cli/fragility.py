@@ -177,7 +177,9 @@ def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
     checks.one_of("--analysis", kind, ANALYSES)
     sets = arguments.sets.get("fragility", {})
     measure = arguments.table("fragility", {"measure": arguments.options["measure"]}, keys={"measure"})
-    wanted = measure_of(str(measure["measure"]))
+    if not isinstance(measure["measure"], str):
+        raise InvalidValueError(f"fragility.measure must be text, got {measure['measure']!r:.60}")
+    wanted = measure_of(measure["measure"])
     if len(arguments.options["restitution"] or ()) > 1 and kind != "stripes":
         raise InvalidValueError(f"several --restitution are compared by --analysis stripes, not by {kind}")
     own: dict[str, Any] = {**measure, "states": row("--states", states, "1")[0].tolist()}

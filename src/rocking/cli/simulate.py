@@ -10,7 +10,7 @@ import typer
 from rocking import plausibility
 from rocking.bodies import Body
 from rocking.cli import options
-from rocking.cli.arguments import Arguments, document_file, hinted, parsed_sets
+from rocking.cli.arguments import Arguments, document_file, hinted, parsed_sets, with_sets
 from rocking.cli.exports import PICTURES, Export, Exports, draw
 from rocking.cli.page import deliver
 from rocking.errors import InvalidValueError
@@ -79,9 +79,7 @@ def simulate(
     acceleration: str | None = None
     if file := document_file(context, body, ("response",), has="has a table [response] and "):
         with located(str(file)):
-            tables = dict(tables_in(file) or {})
-            for name, keys in parsed_sets(sets, _TABLES).items():
-                tables[name] = {**tables.get(name, {}), **keys}
+            tables = with_sets(tables_in(file) or {}, parsed_sets(sets, _TABLES))
             problem = response_problem(checked(ResponseDocument, tables), InputFiles(file.parent))
     else:
         arguments = Arguments(context, *_TABLES)

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from rocking.bodies import Body
-from rocking.cli.arguments import NO_MOTION, Arguments, hinted, parsed_sets
+from rocking.cli.arguments import NO_MOTION, Arguments, hinted, parsed_sets, with_sets
 from rocking.cli.numbers import side_line
 from rocking.conventions import FEET, Foot
 from rocking.errors import InvalidValueError
@@ -25,15 +25,7 @@ def problem_in(file: Path, own: str, sets: Sequence[str] | None = None) -> Study
         tables = dict(tables_in(file) or {})
         if len(kinds) == 1:
             tables.setdefault("campaign", {"name": own, "kind": kinds[0]})
-        for table, keys in parsed_sets(sets, (*TABLES, own)).items():
-            name = "motions" if table == "motion" else table
-            stated = tables.get(name, {})
-            if isinstance(stated, list) and len(stated) == 1:
-                (stated,) = stated
-            if not isinstance(stated, dict):
-                raise InvalidValueError(f"--set {table}.{next(iter(keys))}: it has several [[{name}]]; change the file")
-            tables[name] = {**stated, **keys}
-        document = checked(CampaignDocument, tables)
+        document = checked(CampaignDocument, with_sets(tables, parsed_sets(sets, (*TABLES, own)), lists=True))
         if NEEDS[document.campaign.kind] != own:
             raise InvalidValueError(f'it is of kind "{document.campaign.kind}": rocking campaign run computes it')
         return _in_memory(document, InputFiles(file.parent))

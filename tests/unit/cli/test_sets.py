@@ -35,12 +35,18 @@ def folder(tmp_path, monkeypatch):
         Path(name).write_text("\n".join(f"{value:.6f}" for value in 3.2 * np.sin(rate * k)))
     Path("prism.toml").write_text(PRISM)
     Path("stripes.toml").write_text(STRIPES)
+    Path("odd.toml").write_text("body = 3\n[response]\nfree = 0.5\n[[settings]]\ngravity = 9.81\n")
     Path("free.toml").write_text('[response]\nfree = 30\n[body]\nunits = "m"\nwidth = 0.5\nheight = 2\n')
     return tmp_path
 
 
 ALONG = "simulate prism.toml x=record.txt --motion y=other.txt --units m/s2 --set motion.time_step=0.02"
 REFUSED = {
+    # what a file says is no table
+    "simulate odd.toml --set body.width=1": "odd.toml: --set body.width: its body is no table; change the file",
+    "cor odd.toml --set body.width=1": "--set body.width: its body is no table; change the file",
+    "simulate odd.toml --set settings.gravity=3": "--set settings.gravity: it has several [[settings]]",
+    f"fragility {SIZE} --motion {PULSE} --set fragility.measure=3": "fragility.measure must be text, got 3",
     # the same key, typed twice
     f"simulate {SIZE} {PULSE} --set body.width=1": "--width and --set body.width say the same: leave one out",
     f"simulate {SIZE} {PULSE} --units cm --set body.units=mm": "--units and --set body.units say the same",

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from rocking.app.errors import TooLarge
 from rocking.app.inputs import MOTION_KEYS, BodyInput, levels
 from rocking.app.plain_text import toml_of
-from rocking.bodies.formats.words import sentence, suggestion
+from rocking.bodies.formats.words import sentence
 from rocking.errors import InvalidValueError
 from rocking.restitution.from_file import file_of
 from rocking.spec.document import CampaignDocument, MotionTable
@@ -142,7 +142,7 @@ def _refuse_files(tables: dict[str, Any]) -> None:
             if key in _FILES:
                 raise InvalidValueError(f"body: {key} names a file, which a page cannot do; upload the file instead")
             if key not in _BODY_KEYS:
-                raise InvalidValueError(f"body: unknown key {key!r:.60}{suggestion(key, _BODY_KEYS)}")
+                raise InvalidValueError(f"body: a body on a page has no key {key!r:.60}")
     for word in chain.from_iterable(levels(tables.get("restitution"))):
         if isinstance(word, str) and file_of(word.strip()):  # it would be run
             raise InvalidValueError(

@@ -27,7 +27,7 @@ from rocking.campaigns.jobs.rounds import finished_rounds
 from rocking.campaigns.jobs.study import TYPES, pieces_of
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
-from rocking.outcome import contact_words, lost_contact
+from rocking.outcome import contact_sentence, lost_contact
 from rocking.spec.document import ExportTable
 from rocking.statistics.goodness import FEWEST
 from rocking.studies.fragility.curves import Crossing, check_crossing, nested
@@ -241,7 +241,8 @@ def _write_study(
         def pieces() -> Iterator[tuple[int, int, Arrays]]:
             return pieces_of(study, folder.campaign.pieces(), progress)
 
-        attributes = {**attributes, "contact": _contact_words(folder)}
+        if suffix != ".csv":  # which has no attributes
+            attributes = {**attributes, "contact": _contact_words(folder)}
         FORMATS[suffix](Grid("histories", study.dims, study.coordinates, TYPES, pieces, attributes), path)
         if suffix != ".nc" or "refined" not in study.exports:
             return
@@ -256,7 +257,7 @@ def _contact_words(folder: JobFolder) -> str:
     for piece in folder.campaign.pieces():
         lost = lost_contact(piece.results)
         counts += np.bincount(lost[np.isfinite(lost)].astype(np.int64), minlength=2)
-    return contact_words(np.repeat([0.0, 1.0], counts))
+    return contact_sentence(int(counts[1]), int(counts.sum()))
 
 
 def _write_tables(tables: list[Table], path: Path, attributes: dict[str, Any]) -> None:

@@ -90,7 +90,7 @@ def test_only_keys_that_are_known_to_name_no_file_are_taken(map_job, monkeypatch
     monkeypatch.setattr(job_document, "MOTION_KEYS", MOTION_KEYS - {"pga"})
     with pytest.raises(InvalidValueError, match=r"motions\.pga names a file"):
         JobDocument.of(map_job(motions=motion))
-    with pytest.raises(InvalidValueError, match="body: unknown key 'mesh'"):
+    with pytest.raises(InvalidValueError, match="body: a body on a page has no key 'mesh'"):
         JobDocument.of(map_job(body={"units": "m", "mesh": "/etc/passwd"}))
 
 

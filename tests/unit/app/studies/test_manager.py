@@ -72,7 +72,7 @@ def test_a_study_that_does_not_listen_is_killed(manager, long_job, monkeypatch, 
     assert manager.get(study)["histories_done"] >= done
 
 
-def test_one_runs_and_the_othersuntil(manager, long_job, map_job, until):
+def test_one_runs_and_the_others_wait(manager, long_job, map_job, until):
     """The second begins when the first is out of the way; one that waits is cancelled at once."""
     first, second, third = (manager.create(None, job) for job in (long_job, map_job(), map_job()))
     until(manager, first, "running")
@@ -156,7 +156,7 @@ def test_too_many_histories_are_refused_with_the_number(tmp_path, map_job, idle)
     assert len(list((tmp_path / "studies").iterdir())) == 1
 
 
-def test_only_so_manyuntil(map_job, idle):
+def test_only_so_many_wait(map_job, idle):
     """The line has an end; a place that is given up can be taken."""
     manager = idle(studies_waiting=2)
     first, _ = manager.create(None, map_job()), manager.create(None, map_job())

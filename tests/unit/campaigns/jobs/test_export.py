@@ -50,6 +50,7 @@ def heading(name):
 def from_csv(path):
     """Nothing stands for what is no number, and the provenance beside the file."""
     rows = list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+    assert "nan" not in {row[heading(name)] for row in rows for name in TYPES}
     columns = {name: np.array([float(row[heading(name)] or "nan") for row in rows]) for name in TYPES}
     return columns, path.with_name("r.csv.provenance.json").read_text()
 
