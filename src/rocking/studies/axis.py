@@ -33,8 +33,10 @@ class Axis:
     words: str  # what it means
     sets: str  # what it decides; two axes of a map cannot decide the same thing
     stage: int  # when it is applied
-    changes: Callable[[Case, FloatArray], dict[str, Any]]  # what a value for each variation changes in a case
-    check_kind: Callable[["Axis", Question], object] | None = None  # refuses a question that has no such parameter
+    # what a value for each variation changes in a case
+    changes: Callable[[Case, FloatArray], dict[str, Any]] = field(repr=False)
+    # refuses a question that has no such parameter
+    check_kind: Callable[["Axis", Question], object] | None = field(default=None, repr=False)
     low: float = 0.0
     high: float = 1e9
     low_is_allowed: bool = False
@@ -59,7 +61,7 @@ class Axis:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Travel as name and values: functions of a table cannot be pickled."""
-        return axis_of, ((self.name, self.values),)
+        return (axis_of, ((self.name, self.values),)) if self.values.size else (_without_values, (self.name,))
 
     def applied(self, case: Case, values: FloatArray) -> Case:
         """Return a case with this parameter changed, to a value for each of its variations."""
@@ -251,13 +253,19 @@ def axes() -> dict[str, Axis]:
     return {axis.name: axis for axis in _ALL}
 
 
+def _without_values(name: str) -> Axis:
+    return axes()[name]
+
+
 def axis_of(axis: Any) -> Axis:
-    """Return an axis, or the one of a name and values.
+    """Return an axis, or the one of a name and values; one without values is refused.
 
     >>> axis_of(("pga", [1.0, 2.0])).unit
     'm/s2'
     """
     if isinstance(axis, Axis):
+        if not axis.values.size:
+            raise InvalidValueError(f"the axis {axis.name} has no values: call it with them, in {axis.unit}")
         return axis
     if not isinstance(axis, Sequence) or isinstance(axis, str) or len(axis) != 2 or not isinstance(axis[0], str):
         raise InvalidValueError(f'an axis is written as ("scale", values), got {axis!r:.60}')

@@ -1,6 +1,8 @@
 """Axes: what each changes, in what order, and what is refused."""
 
+import copy
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -42,6 +44,20 @@ def test_what_is_no_axis_is_refused(bad):
     """A word alone, an unknown name and a number are refused in one sentence."""
     with pytest.raises(InvalidValueError, match="axis"):
         axis_of(bad)
+
+
+@pytest.mark.parametrize("name", axes())
+def test_an_axis_without_values_is_none_of_a_map(name):
+    """A row of the registry is refused by a map before it has values; it can be copied, pickled and read."""
+    bare = axes()[name]
+    with pytest.raises(InvalidValueError, match=f"the axis {name} has no values"):
+        axis_of(bare)
+    for again in (pickle.loads(pickle.dumps(bare)), copy.copy(bare), copy.deepcopy(bare)):
+        assert again is bare
+    assert pickle.loads(pickle.dumps(bare([0.3, 0.6]))).values.tolist() == [0.3, 0.6]
+    assert " at 0x" not in repr(bare)
+    with pytest.raises(InvalidValueError, match=f"the axis {name} has no values"):
+        rk.overturning_map(BLOCK, PULSE, bare, ("scale", [1.0]), "housner")
 
 
 @pytest.mark.parametrize(
