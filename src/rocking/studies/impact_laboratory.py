@@ -1,5 +1,6 @@
 """The bed that a study varies, and the coefficients that emerge from it."""
 
+import inspect
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -182,12 +183,15 @@ def study(
 ) -> "xr.Dataset":
     """Return what emerges as one thing of `STUDIES` changes; NaN where an impact failed.
 
-    Options: ``shape`` and ``seed`` of uneven bases by ``"amplitude"``, ``amplitude`` of random ones by ``"seed"``.
+    Options: ``shape`` of uneven bases by ``"amplitude"``, with ``seed`` where that is random; ``amplitude`` of random
+    ones by ``"seed"``. Other studies have none.
 
     >>> study("slenderness", [2.0, 4.0]).coefficient.round(2).values.tolist()
     [0.84, 0.96]
     """
+    extra("xarray", "the impact laboratory")
     unit, change = STUDIES[checks.one_of("varied", varied, tuple(STUDIES))]
+    _check_options(varied, options)
     row = np.atleast_1d(checks.real_array(varied, values))
     if row.ndim != 1 or row.size == 0 or not bool(np.isfinite(row).all()):
         raise InvalidValueError(f"{varied} must be a row of finite numbers [{unit}], got shape {row.shape}")
@@ -208,6 +212,19 @@ def study(
         "audit": ("1", impacts.audit),
     }
     return _labelled(varied, row, results, start)
+
+
+def _check_options(varied: str, options: Mapping[str, Any]) -> None:
+    """Refuse options that a study does not have, and one that it needs and was not given."""
+    _, _, *known = inspect.signature(STUDIES[varied][1]).parameters.values()
+    names = [option.name for option in known]
+    for name in options:
+        if name not in names:
+            has = f"has the options {', '.join(names)}" if names else "has no options"
+            raise InvalidValueError(f"the study of {varied} {has}, got {name}")
+    for option in known:
+        if option.default is option.empty and option.name not in options:
+            raise InvalidValueError(f"the study of {varied} needs {option.name}")
 
 
 def _labelled(
@@ -247,6 +264,7 @@ def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laborat
     >>> bool((found.hollow.diff("width") > 0.0).all())
     True
     """
+    extra("xarray", "the impact laboratory")
     results = large_bodies(widths, hollow=hollow, laboratory=laboratory)
     results["hollow_minus_ked"] = results["hollow"] - results["ked"]
     row = np.atleast_1d(np.asarray(widths, dtype=np.float64))

@@ -2,14 +2,16 @@
 
 import csv
 import math
+import sys
 
 import numpy as np
 import pytest
 import xarray as xr
 
 import rocking as rk
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, MissingExtraError
 from rocking.restitution.bed import fast
+from rocking.studies import impact_laboratory
 from rocking.studies.impact_laboratory import (
     SHAPES,
     Laboratory,
@@ -181,6 +183,11 @@ def test_profiles(shape):
         (lambda: study("seed", [0, 1.5], amplitude=1e-3), "seed must be a whole number of at least 0, got 1.5"),
         (lambda: study("seed", [-1], amplitude=1e-3), "seed must be a whole number of at least 0, got -1"),
         (lambda: study("amplitude", [1e-3], shape="random", seed=-1), "seed must be a whole number"),
+        (lambda: study("amplitude", [0.0]), "the study of amplitude needs shape"),
+        (lambda: study("amplitude", [0.0], seed=1), "the study of amplitude needs shape"),
+        (lambda: study("amplitude", [0.0], shape="convex", hue=1), "amplitude has the options shape, seed, got hue"),
+        (lambda: study("seed", [1]), "the study of seed needs amplitude"),
+        (lambda: study("slenderness", [2.0], shape="convex"), "the study of slenderness has no options, got shape"),
         (lambda: points_convergence((11, 20, 41)), "doubled"),
         (lambda: Laboratory(profile=(0.0,)), "profile must have 41 heights"),
     ],
@@ -188,6 +195,15 @@ def test_profiles(shape):
 def test_refusals(make, words):
     """What is no seed, count, amplitude, shape or row is refused with its range, before an impact is computed."""
     with pytest.raises(InvalidValueError, match=words):
+        make()
+
+
+@pytest.mark.parametrize("make", [lambda: study("slenderness", [2.0]), lambda: large_bodies_study([0.1])])
+def test_xarray_is_asked_for_first(make, monkeypatch):
+    """Without xarray the refusal comes before an impact is computed."""
+    monkeypatch.setitem(sys.modules, "xarray", None)
+    monkeypatch.setattr(impact_laboratory, "bed_impacts", lambda *_, **__: pytest.fail("impacts were computed"))
+    with pytest.raises(MissingExtraError, match="the impact laboratory needs xarray"):
         make()
 
 
