@@ -248,7 +248,14 @@ def test_netcdf_is_read_by_xarray(kind, tmp_path):
 
 def test_tables_are_the_response():
     """Impacts and intervals are those of the response, row by row."""
-    sliding, corner = EVERY["slide and rock"], EVERY["corner"]
+    rocked, sliding, corner = EVERY["rocked"], EVERY["slide and rock"], EVERY["corner"]
+    impacts = rocked.exported().beside["impact"].columns
+    onto = [{"right": 1, "left": -1}[foot] for foot in rocked.impacts["onto"].tolist()]
+    numbers = ("time", "velocity_before", "velocity_after", "coefficient")
+    assert list(impacts) == [*numbers, "onto"]
+    assert {1, -1} == set(onto)
+    assert impacts["onto"].values.tolist() == onto
+    assert all(impacts[name].values.tolist() == rocked.impacts[name].tolist() for name in numbers)
     tables = sliding.exported().beside
     assert tables["impact"].columns["lost"].values.tolist() == sliding.impacts["lost"].tolist()
     assert tables["impact"].columns["slips"].values.astype(bool).tolist() == sliding.impacts["slips"].tolist()
