@@ -31,8 +31,8 @@ STEPS = {4: (1 / 16, 1 / 32, 1 / 64), 6: (1 / 16, 1 / 32, 1 / 64), 8: (1 / 4, 1 
 # whose own slope is 7.87 over these steps and 7.76 from 1 / 3 to 1 / 5.
 LINEAR_STEPS = (1 / 5, 1 / 6, 1 / 7, 1 / 8, 1 / 9, 1 / 10)
 WITHIN = 0.15
-# Errors that happen to pass through zero scatter the slopes: the mean of 1500 is known to 0.02, of 600 to 0.03, and the
-# next term has taken 0.1 of what is allowed.
+# Errors that happen to pass through zero scatter the slopes: of the linear equations, where the next term has taken 0.1
+# of what is allowed, the slope of 750 histories is known to 0.03, as resampling them says.
 COUNT, COUNT_LINEAR = 150, 750
 LENGTH = 10
 UNIT = RIGHT.slenderness_angle * conventions.g

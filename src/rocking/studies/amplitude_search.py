@@ -1,7 +1,7 @@
 """Amplitudes of many bodies, sampled, zoomed where something may hide, and bracketed: always in one batch a round."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -31,12 +31,12 @@ class Samples:
 
     def joined(self, other: "Samples") -> "Samples":
         """Return these and others, sorted."""
-        both = Samples(*map(np.concatenate, zip(vars(self).values(), vars(other).values(), strict=True)))
+        both = Samples(*(np.concatenate([getattr(self, f.name), getattr(other, f.name)]) for f in fields(self)))
         return both.where(np.lexsort((both.scale, both.body)))
 
     def where(self, keep: BoolArray | IntArray) -> "Samples":
         """Return some of them."""
-        return Samples(*(values[keep] for values in vars(self).values()))
+        return Samples(*(getattr(self, f.name)[keep] for f in fields(self)))
 
     @property
     def good(self) -> "Samples":
