@@ -16,6 +16,12 @@ from typing import NamedTuple
 
 _SMALLEST = 1e-22
 
+Ground = tuple[Sequence[float], Sequence[float], float]
+"""Coefficients of a_x and of g + a_z over the unit of time [m/s2], and that unit [s]."""
+
+Acceleration = Callable[[int], float]
+"""The coefficient k of theta'', asked for in order while the series of spin and arm grow."""
+
 
 class PivotSeries(NamedTuple):
     """Series over a unit of time."""
@@ -30,7 +36,7 @@ def pivot_motion(
     inertia: float,
     arm: tuple[float, float],
     motion: tuple[float, float],
-    ground: tuple[Sequence[float], Sequence[float], float],
+    ground: Ground,
     pull: float | None,
     order: int,
 ) -> PivotSeries:
@@ -44,37 +50,15 @@ def pivot_motion(
     >>> found.rotation  # theta'' = -a_x h / (j + h^2)
     [0.0, 0.0, -0.5]
     """
-    push, lift, unit = ground
+    unit = ground[2]
     rotation, spin = [motion[0], motion[1] * unit], [motion[1] * unit]
     x, z = [arm[0]], [arm[1]]
-    acceleration: Callable[[int], float]
     if pull is None:
-        stiff = 1.0
-
-        def acceleration(k: int) -> float:
-            """Moments about a foot that does not move."""
-            moment: float = sum(map(mul, lift, x[k::-1])) - sum(map(mul, push, z[k::-1]))
-            return -moment * (unit * unit / (inertia + x[0] ** 2 + z[0] ** 2))  # Eq. 66
-
+        stiff, acceleration = 1.0, _sticking(inertia, x, z, ground)
     else:
-        level: list[float] = []
-        stiffness: list[float] = []
-        square: list[float] = []
-        force: list[float] = []
-        found: list[float] = []
         stiff = (x[0] * (x[0] + pull * z[0]) + inertia) / (inertia + x[0] ** 2)
-
-        def acceleration(k: int) -> float:
-            """Moments about the centre, with the friction of a foot that slides: a division of series."""
-            level.append(x[k] + pull * z[k])
-            stiffness.append(sum(map(mul, x, level[k::-1])) + (inertia if k == 0 else 0.0))
-            square.append(sum(map(mul, spin, spin[k::-1])))
-            force.append((lift[k] * (unit * unit) if k < len(lift) else 0.0) + sum(map(mul, z, square[k::-1])))
-            known = sum(map(mul, level, force[k::-1])) + sum(map(mul, stiffness[1:], found[::-1]))
-            found.append(-known / stiffness[0] if stiffness[0] else math.nan)  # Eq. 67
-            return found[-1]
-
-    floor, small, least = 1e-300, 0, len(push) + len(lift)
+        acceleration = _sliding(inertia, x, z, spin, ground, pull)
+    floor, small, least = 1e-300, 0, len(ground[0]) + len(ground[1])
     for k in range(order - 1):
         spin.append(acceleration(k) / (k + 1))
         rotation.append(spin[-1] / (k + 2))
@@ -87,3 +71,38 @@ def pivot_motion(
         if small == 3:
             break
     return PivotSeries(rotation, x, z, stiff)
+
+
+def _sticking(inertia: float, x: list[float], z: list[float], ground: Ground) -> Acceleration:
+    """Moments about a foot that does not move."""
+    push, lift, unit = ground
+    compliance = unit * unit / (inertia + x[0] ** 2 + z[0] ** 2)
+
+    def acceleration(k: int) -> float:
+        moment: float = sum(map(mul, lift, x[k::-1])) - sum(map(mul, push, z[k::-1]))
+        return -moment * compliance  # Eq. 66
+
+    return acceleration
+
+
+def _sliding(
+    inertia: float, x: list[float], z: list[float], spin: list[float], ground: Ground, pull: float
+) -> Acceleration:
+    """Moments about the centre, with the friction of a foot that slides: a division of series."""
+    _, lift, unit = ground
+    level: list[float] = []
+    stiffness: list[float] = []
+    square: list[float] = []
+    force: list[float] = []
+    found: list[float] = []
+
+    def acceleration(k: int) -> float:
+        level.append(x[k] + pull * z[k])
+        stiffness.append(sum(map(mul, x, level[k::-1])) + (inertia if k == 0 else 0.0))
+        square.append(sum(map(mul, spin, spin[k::-1])))
+        force.append((lift[k] * (unit * unit) if k < len(lift) else 0.0) + sum(map(mul, z, square[k::-1])))
+        known = sum(map(mul, level, force[k::-1])) + sum(map(mul, stiffness[1:], found[::-1]))
+        found.append(-known / stiffness[0] if stiffness[0] else math.nan)  # Eq. 67
+        return found[-1]
+
+    return acceleration

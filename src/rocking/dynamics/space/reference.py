@@ -67,7 +67,8 @@ class SpatialReference:
         return self.integration_state.trajectory(*ended)
 
     def _start(self) -> None:
-        self.contact, touching = contact, _ = started(self.body, self.velocity, self._up)
+        contact, touching = started(self.body, self.velocity, self._up)
+        self.contact = contact
         # the base lies with its origin at the origin of the ground, and the body leans from there
         self.place = applied(attitude.matrix(attitude.flat(self.quaternion)), contact.pivot)[:2]
         if contact.mode is ContactMode.REST or len(touching) == len(self.body.vertices) > 0:

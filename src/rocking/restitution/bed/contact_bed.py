@@ -47,8 +47,8 @@ class Sticking(BaseFriction):
 
 
 @dataclass(frozen=True)
-class Coulomb(BaseFriction):
-    """Set-valued friction: u = 0 and |T| <= mu N, or T = -mu N sign(u); the switches are located.
+class SlidingFriction(BaseFriction):
+    """What the laws share by which the base can slide.
 
     Parameters
     ----------
@@ -66,13 +66,29 @@ class Coulomb(BaseFriction):
     def __post_init__(self) -> None:
         checks.within("coefficient of friction", self.coefficient, 0.0, 100.0)
 
+
+@dataclass(frozen=True)
+class Coulomb(SlidingFriction):
+    """Set-valued friction: u = 0 and |T| <= mu N, or T = -mu N sign(u); the switches are located.
+
+    Parameters
+    ----------
+    coefficient : float
+        mu [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If it is negative.
+    """
+
     @property
     def numbers(self) -> tuple[FrictionKind, float, float]:
         return FrictionKind.COULOMB, float(self.coefficient), 0.0
 
 
 @dataclass(frozen=True)
-class RegularisedCoulomb(Coulomb):
+class RegularisedCoulomb(SlidingFriction):
     """Smooth friction: T = -mu N u / sqrt(u^2 + v^2).
 
     Where Coulomb's law sticks, this one creeps at u = v / sqrt((mu N / T)^2 - 1), less than v while T is below

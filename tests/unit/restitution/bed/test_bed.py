@@ -249,6 +249,12 @@ def test_refusals(make: Any) -> None:
         make()
 
 
+def test_a_law_that_creeps_is_not_the_one_that_sticks() -> None:
+    """Neither friction is a case of the other."""
+    assert not isinstance(RegularisedCoulomb(0.3), Coulomb)
+    assert not isinstance(Coulomb(0.3), RegularisedCoulomb)
+
+
 @pytest.mark.parametrize(
     "options",
     [
