@@ -48,6 +48,7 @@ class Fixed(RestitutionModel):
         """Refuse what is no coefficient."""
         checks.within("r", self.r, 0.0, 1.0, hint="a velocity ratio; is it an energy ratio or a percentage?")
         object.__setattr__(self, "slender_limit", self.r)
+        object.__setattr__(self, "sees_old_foot", self.r == 1.0)
         plausibility.warn(plausibility.of_coefficient(self.r))
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:

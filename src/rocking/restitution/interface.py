@@ -52,6 +52,7 @@ class Interface(RestitutionModel):
         checks.within("eta", self.eta, 0.0, 1.0, open_low=True, hint="the interface factor can only lose energy")
         for name in ("assumptions", "domain", "known_defects", "inertia_only", "keeps_energy"):
             object.__setattr__(self, name, getattr(self.model, name))
+        object.__setattr__(self, "sees_old_foot", self.eta == 1.0 and self.model.sees_old_foot)
         object.__setattr__(self, "slender_limit", self.eta * self.model.slender_limit)
 
     @property
