@@ -82,7 +82,7 @@ def unit_energies(result: SpatialRestitution | SpatialImpact, units: Units | int
     Parameters
     ----------
     result : SpatialRestitution or SpatialImpact
-        The impact.
+        The impact of a body that stands upright, with its matter.
     units : Units or int
         The units, or the divisions of `divided`.
 
@@ -90,6 +90,11 @@ def unit_energies(result: SpatialRestitution | SpatialImpact, units: Units | int
     -------
     UnitEnergies
         Energies of every unit; their sums converge to the exact integrals with the units' declared order.
+
+    Raises
+    ------
+    InvalidValueError
+        If the body leans or has no matter.
 
     Examples
     --------
@@ -103,14 +108,19 @@ def unit_energies(result: SpatialRestitution | SpatialImpact, units: Units | int
     (0.689, 0.689)
     """
     impact = result.impact if isinstance(result, SpatialRestitution) else result
-    pieces = divided(impact.solid, units) if isinstance(units, int) else units
-    fields = stage_velocities(impact, pieces.centre - impact.solid.origin)
+    solid, origin = impact.standing_solid
+    pieces = divided(solid, units) if isinstance(units, int) else units
+    fields = stage_velocities(impact, pieces.centre - solid.origin + origin)
     before, level, left = (0.5 * pieces.mass * np.square(field).sum(axis=1) for field in fields)
-    return UnitEnergies(pieces, before, level, left, impact.solid.ground)
+    return UnitEnergies(pieces, before, level, left, solid.ground)
 
 
 def lost_density(impact: SpatialImpact, part: Part, points: FloatArray) -> FloatArray:
-    """Return the energy that stages 1 and 2 take at points of a part [m], over its volume [J/m3]."""
-    before, _, left = stage_velocities(impact, checks.real_array("points", points, "m") - impact.solid.origin)
+    """Return the energy that stages 1 and 2 take at points of a part [m], over its volume [J/m3].
+
+    The body stands upright, and the points are in the user's coordinates.
+    """
+    solid, origin = impact.standing_solid
+    before, _, left = stage_velocities(impact, checks.real_array("points", points, "m") - solid.origin + origin)
     density: FloatArray = 0.5 * part.density * (np.square(before).sum(axis=1) - np.square(left).sum(axis=1))
     return density

@@ -29,4 +29,4 @@ class SpatialHorizontalMomentum(SpatialModel):
     )
 
     def angular_velocity(self, impact: SpatialImpact) -> FloatArray:
-        return impact.with_momentum(impact.level_momentum)  # Eqs. 89, 102
+        return impact.with_momentum(impact.level_momentum)

@@ -30,4 +30,4 @@ class SpatialHousner(SpatialModel):
     )
 
     def angular_velocity(self, impact: SpatialImpact) -> FloatArray:
-        return impact.with_momentum(impact.angular_momentum)  # Eqs. 88, 89
+        return impact.with_momentum(impact.angular_momentum)

@@ -24,6 +24,12 @@ NO_MATTER = (
 )
 """What a body without a solid is told."""
 
+NO_SOLID = (
+    "where the base of a body goes and what its units lose is told of a body as a solid: give the impact its matter; "
+    "the angular velocity alone is model.turned(impact)"
+)
+"""What the same is told where the base or the units are asked for."""
+
 _UNIT = 1e-9
 
 
@@ -88,9 +94,7 @@ class SpatialImpact:
     @cached_property
     def placed_solid(self) -> tuple[Solid, Corner | Edge]:
         """The body as a distribution of mass, and the landing place in the solid's own frame."""
-        if self.matter is None:
-            raise InvalidValueError(NO_MATTER)
-        solid, origin = self.matter()
+        solid, origin = self._placed
         point = self.onto.point - origin
         point[2] = 0.0 if abs(point[2]) <= _UNIT * solid.size else point[2]
         return solid, Edge(point, self.onto.direction) if isinstance(self.onto, Edge) else Corner(point)
@@ -99,6 +103,24 @@ class SpatialImpact:
     def solid(self) -> Solid:
         """The body as a distribution of mass."""
         return self.placed_solid[0]
+
+    @property
+    def standing_solid(self) -> Placed:
+        """The body as a solid that stands upright on the ground, and the origin of the solid's frame [m].
+
+        Raises
+        ------
+        InvalidValueError
+            If there is no solid, or the ground leans in its axes.
+        """
+        if self.matter is None:
+            raise InvalidValueError(NO_SOLID)
+        if not float(np.abs(self.up - UP).max()) <= _UNIT:
+            raise InvalidValueError(
+                f"the body must stand upright, its up (0, 0, 1), got up = {self.up.tolist()}: where the base goes and "
+                "what units lose is not told of a body that leans; its angular velocity is model.turned(impact)"
+            )
+        return self._placed
 
     @property
     def edge(self) -> FloatArray | None:
@@ -165,8 +187,14 @@ class SpatialImpact:
         """
         along = self.edge
         if along is None:
-            return solution(self.inertia, momentum)
-        return dot(along, momentum) / dot(along, applied(self.inertia, along)) * along
+            return solution(self.inertia, momentum)  # Eqs. 88, 102
+        return dot(along, momentum) / dot(along, applied(self.inertia, along)) * along  # Eq. 89
+
+    @cached_property
+    def _placed(self) -> Placed:
+        if self.matter is None:
+            raise InvalidValueError(NO_MATTER)
+        return self.matter()
 
     @cached_property
     def _second(self) -> FloatArray:
@@ -177,7 +205,7 @@ class SpatialImpact:
         spread = times(self._second, times(projection, self.spin).T)
         turning = np.array([spread[1, 2] - spread[2, 1], spread[2, 0] - spread[0, 2], spread[0, 1] - spread[1, 0]])
         shift = self.moments.mass * applied(skew(self.moments.centre), applied(projection, self.landing_velocity))
-        return turning + shift  # Eq. 102
+        return turning + shift  # Eqs. 88, 102
 
 
 def skew(vector: FloatArray) -> FloatArray:

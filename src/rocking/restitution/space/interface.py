@@ -92,6 +92,8 @@ def impact_in_space(solid: Solid, velocity: Any, *, pivot: Any, onto: Any, model
     ------
     InvalidValueError
         If the body does not come down, or a value is not finite.
+    UnknownModelError
+        If there is no model of that name.
     GeometryError
         If pivot or landing point are no points of the base: off the ground, or outside it.
 
@@ -107,6 +109,7 @@ def impact_in_space(solid: Solid, velocity: Any, *, pivot: Any, onto: Any, model
     """
     if not isinstance(solid, Solid):
         raise InvalidValueError(f"solid must be a Solid, got {solid!r:.60}")
+    found = spatial_model(model)
     start, landing = _local(solid, "pivot", pivot), _local(solid, "onto", onto)
     before = vector("velocity", velocity, "rad/s")
     if isinstance(start, Edge) and np.abs(np.cross(before, start.direction)).max() > 1e-9 * np.abs(before).max():
@@ -121,7 +124,7 @@ def impact_in_space(solid: Solid, velocity: Any, *, pivot: Any, onto: Any, model
             "is the sign of the angular velocity wrong? The vector points along the axis, right-handed"
         )
     impact = SpatialImpact(solid.local_moments, before, pivot, landing, matter=partial(_placed, solid))
-    return spatial_model(model).after(impact)
+    return found.after(impact)
 
 
 def _placed(solid: Solid) -> Placed:

@@ -159,12 +159,13 @@ class SpatialModel(ABC):
         return raw
 
     def after(self, impact: SpatialImpact) -> SpatialRestitution:
-        """Return what the model says about an impact.
+        """Return what the model says about an impact of a body that stands upright.
 
         Parameters
         ----------
         impact : SpatialImpact
-            The impact.
+            The impact, with its matter: the flags tell where the base goes. For a body that leans, or one known by
+            its moments alone, there is `turned`.
 
         Returns
         -------
@@ -174,11 +175,12 @@ class SpatialModel(ABC):
         Raises
         ------
         InvalidValueError
-            If the model does not give finite numbers.
+            If the body leans or has no matter, or the model does not give finite numbers.
         """
+        solid, _ = impact.standing_solid
         raw = self.turned(impact)
         flags = self.flags(impact, raw)
-        if least_rise(impact, raw) >= -_TOUCH * impact.speed * impact.solid.size:
+        if least_rise(impact, raw) >= -_TOUCH * impact.speed * solid.size:
             return SpatialRestitution(self, impact, raw, raw, flags)
         if impact.edge is not None:
             return SpatialRestitution(self, impact, raw, np.zeros(3), (*flags, SpatialFlag.STOPS))
@@ -187,9 +189,10 @@ class SpatialModel(ABC):
 
 def least_rise(impact: SpatialImpact, velocity: FloatArray) -> float:
     """Return the least vertical velocity of the base of an upright body that turns about its landing point [m/s]."""
-    base = impact.solid.local_base
-    points = base.vertices if isinstance(base, SupportPolygon) else middle_of_base(impact.solid)[None, :2]
-    arms = points - impact.onto.point[:2]
+    solid, origin = impact.standing_solid
+    base = solid.local_base
+    points = base.vertices if isinstance(base, SupportPolygon) else middle_of_base(solid)[None, :2]
+    arms = points - (impact.onto.point - origin)[:2]
     least = float((velocity[0] * arms[:, 1] - velocity[1] * arms[:, 0]).min())
     return least - base.radius * norm(velocity[:2]) if isinstance(base, RoundBase) else least
 

@@ -5,11 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from rocking.bodies.solid import Corner, Edge, Part, Solid, box, cylinder, extrusion, voxels
+from rocking.bodies.solid import Corner, Edge, Part, Solid, SolidMoments, box, cylinder, extrusion, voxels
 from rocking.errors import GeometryError, InvalidValueError, UnknownModelError
 from rocking.restitution import space
 from rocking.restitution.space import (
     SpatialFlag,
+    SpatialImpact,
     SpatialKed,
     edge_coefficient,
     impact_in_space,
@@ -17,6 +18,7 @@ from rocking.restitution.space import (
     spatial_models,
     unit_energies,
 )
+from rocking.restitution.space.energies import lost_density
 
 UP = np.array([0.0, 0.0, 1.0])
 PRISM = Solid(box(1.0, 1.0, 4.0))
@@ -124,9 +126,56 @@ def test_refusals(options, words):
 
 
 def test_unknown_model():
-    """A model that does not exist is not guessed."""
+    """A model that does not exist is not guessed, and is said before anything else that is wrong."""
     with pytest.raises(UnknownModelError, match="housner-3d"):
         edge_coefficient(PRISM, "newton")
+    with pytest.raises(UnknownModelError, match="housner-3d"):
+        impact_in_space(PRISM, [0, 0, 0], pivot=(-0.5, -0.5), onto=(0.5, 0.5), model="newton")
+
+
+def shifted(solid, shift, **changes):
+    """The impact over the diagonal in axes that begin at minus the shift."""
+    onto = Corner(np.array([0.5, 0.5, 0.0]) + shift)
+    moments = solid.local_moments
+    body = SolidMoments(moments.mass, moments.centre + shift, moments.second)
+    pivot = np.array([-0.5, -0.5, 0.0]) + shift
+    options = {"matter": lambda: (solid, shift)} | changes
+    return SpatialImpact(body, np.array([-1.0, 1.0, 0.0]), pivot, onto, **options)
+
+
+@pytest.mark.parametrize("name", spatial_models())
+@pytest.mark.parametrize("height", [0.3, 4.0])
+def test_axes_may_begin_anywhere(name, height):
+    """Velocity, flags and energies of units do not see where the axes of the body begin."""
+    solid, model = Solid(box(1.0, 1.0, height)), spatial_model(name)
+    here, there = (model.after(shifted(solid, np.array(x))) for x in ([0.0, 0.0, 0.0], [5.0, -3.0, 2.0]))
+    assert here.flags == there.flags == impact_in_space(solid, **DIAGONAL, model=name).flags
+    assert there.velocity == pytest.approx(here.velocity, rel=1e-9)
+    near, far = unit_energies(here, 6), unit_energies(there, 6)
+    for stage in ("before", "level", "left"):
+        np.testing.assert_allclose(getattr(far, stage), getattr(near, stage), rtol=1e-9)
+    # units of order 2 in 1/6
+    assert far.before.sum() == pytest.approx(there.energy_before, rel=0.05)
+    points = np.array([[0.1, 0.2, 0.2], [-0.3, 0.0, 0.1]])
+    found = [lost_density(result.impact, solid.parts[0], points) for result in (here, there)]
+    np.testing.assert_allclose(found[1], found[0], rtol=1e-9)
+
+
+def test_a_body_that_leans_has_no_flags_and_no_units():
+    """Where its base goes is not told of a leaning body or of bare moments, rather than told wrongly."""
+    leaning = shifted(PRISM, np.zeros(3), up=np.array([math.sin(0.3), 0.0, math.cos(0.3)]))
+    bare = shifted(PRISM, np.zeros(3), matter=None)
+    model = spatial_model("housner-3d")
+    for impact, words in ((leaning, "stand upright"), (bare, "give the impact its matter")):
+        for ask in (
+            model.after,
+            unit_energies,
+            lambda impact: lost_density(impact, PRISM.parts[0], np.zeros((1, 3))),
+            lambda impact: space.model.least_rise(impact, UP),
+        ):
+            with pytest.raises(InvalidValueError, match=words):
+                ask(impact)
+        assert np.isfinite(model.turned(impact)).all()
 
 
 def test_edges_by_number_and_direction():
