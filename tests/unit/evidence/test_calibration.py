@@ -1,6 +1,7 @@
 """The calibrated default: does it recover what it should, and do its intervals cover what they claim."""
 
 import dataclasses
+import os
 
 import numpy as np
 import pytest
@@ -32,14 +33,18 @@ def test_recovers_known_parameters():
 
 
 def test_intervals_cover():
-    """95 % intervals from 39 simulated rows cover new rows of the same law in 93 to 97 % (40 repetitions)."""
+    """95 % intervals from 39 simulated rows cover new rows of the same law in 93 to 97 %, of 40 repetitions or 12.
+
+    Of 12 repetitions the share has a standard deviation of about .01, three of which are allowed.
+    """
+    campaign = bool(os.environ.get("ROCKING_CAMPAIGN"))
     inside = total = 0
-    for seed in range(40):
+    for seed in range(40 if campaign else 12):
         prediction = calibrate_on(simulated(0.985, 0.57, 0.12, 0.8, seed)).predict(all_measurements().slenderness)
         new = simulated(0.985, 0.57, 0.12, 0.8, seed + 1000).coefficient
         inside += int(((prediction.low <= new) & (new <= prediction.high)).sum())
         total += new.size
-    assert 0.93 < inside / total < 0.97
+    assert abs(inside / total - 0.95) < (0.02 if campaign else 0.03)
 
 
 def test_half_the_interval_does_not_cover():

@@ -64,7 +64,7 @@ def test_the_job_file_gives_the_same_study(study, tmp_path):
     """The command line takes the TOML and has the same histories, told by their key."""
     path = _written(study, "toml", tmp_path)
     assert tomllib.loads(path.read_text())["campaign"]["name"] == NAME
-    assert Job.read(path).study.histories.key() == study.opened.campaign.key
+    assert Job.read(path).study.histories.key() == study.opened.campaign.plan.key
 
 
 def test_pictures_are_inert(study, stripes, tmp_path):
