@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from browser_pages import PHONE, pasted
 from playwright.sync_api import expect
 
 from rocking.motions import GroundMotion
@@ -15,7 +16,6 @@ from rocking.motions.formats import write_motion
 from rocking.motions.pulses import catalogue, pulse
 
 STEP, COUNT = 0.01, 801
-PHONE = {"width": 360, "height": 740}
 DROP = """([name, text]) => {
   const transfer = new DataTransfer();
   transfer.items.add(new File([text], name));
@@ -47,16 +47,6 @@ def way(page: Any, text: str) -> None:
 def fact(page: Any, word: str) -> str:
     """Return one of the facts of the motion."""
     text: str = page.locator(f"[data-testid=motion-facts] dt:text-is('{word}') + dd").inner_text()
-    return text
-
-
-def pasted(page: Any) -> str:
-    """Return what a user pastes after copying, once the page says that it has copied."""
-    page.get_by_text("paste them into Excel").wait_for()
-    page.evaluate("document.body.append(Object.assign(document.createElement('textarea'), { id: 'paste' }))")
-    page.locator("#paste").focus()
-    page.keyboard.press("Control+V")
-    text: str = page.locator("#paste").input_value()
     return text
 
 

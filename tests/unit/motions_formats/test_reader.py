@@ -18,6 +18,7 @@ from rocking.motions import GroundMotion
 from rocking.motions.formats import (
     Component,
     Record,
+    RecordFormat,
     Source,
     formats,
     read_motion,
@@ -371,3 +372,9 @@ def test_rows_of_separators_alone_are_no_columns(tmp_path: Path, shared_records:
         read_record(path, format="columns", units="g")
     with pytest.raises(RecordError, match="columns expected, found 0"):
         read_record(shared_records / "refused" / "columns" / "standard_1_pre_v0p5p4.csv", units="g")
+
+
+def test_a_format_that_nothing_recognises_is_none():
+    """A subclass with neither marks nor a way to recognise its files is refused when it is written."""
+    with pytest.raises(TypeError, match="Nameless: say marks and top, or write recognises"):
+        type("Nameless", (RecordFormat,), {"marks": ("HEADER",)})
