@@ -8,16 +8,17 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test coverage portable portable-quick lint golden engine campaign fuzz fuzz-web durability questions bench mutants gallery lock clean
+.PHONY: help demo test docs coverage portable portable-quick lint golden engine campaign fuzz fuzz-web durability questions bench mutants lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
 	@echo "make test     set up, run linters, type checker, docstring and import checks, tests"
+	@echo "make docs     the manual, with everything in it run, into build/manual"
 	@echo "make coverage the unit tests, and which lines they run"
 	@echo "make portable the tests, save those of time and of browsers, once under each of seven settings that stand for other processors"
 	@echo "make golden   compare every answer with those kept by 'make golden WHAT=keep', in all digits, on one machine"
 	@echo "make lint     the checks alone          make bench    speed, as ratios"
-	@echo "make gallery  run every example         make lock     pin the dependencies anew"
+	@echo "make lock     pin the dependencies anew"
 	@echo "make engine   build the fast engine     make fuzz     damage every kind of record file 100000 times"
 	@echo "make campaign the long verifications    make durability  kill campaigns 300 times"
 	@echo "make fuzz-web thousands of damaged requests to the web application, 50 users at once"
@@ -99,6 +100,10 @@ questions: $(VENV)/dev
 	$(BIN)/python -c "from pathlib import Path; from rocking.spec.reference import reference; page = Path('docs/questions.md'); \
 		page.write_text(page.read_text('utf-8').partition('### [response]')[0] + reference(), 'utf-8')"
 
+# A warning is an error, and so is an example that fails. `rocking serve` has it under /manual, and wheels that are built after it bring it.
+docs: $(VENV)/dev $(ENGINE)
+	$(BIN)/sphinx-build -W --keep-going -q -j 2 -b html -d build/doctrees docs build/manual
+
 WHAT ?= compare
 golden: $(VENV)/dev $(ENGINE)
 	$(BIN)/python tests/regression/golden.py $(WHAT)
@@ -127,9 +132,6 @@ bench: $(VENV)/bench $(ENGINE)
 mutants: $(VENV)/mutants $(ENGINE)
 	$(BIN)/python -m benchmarks.mutants
 
-gallery: $(VENV)/dev $(ENGINE)
-	@for example in examples/*.py; do echo "== $$example"; $(BIN)/python $$example || exit 1; done
-
 campaign: $(VENV)/dev $(ENGINE)
 	ROCKING_CAMPAIGN=1 $(BIN)/python -m pytest tests/verification tests/unit/evidence/test_calibration.py -q
 
@@ -149,4 +151,4 @@ lock: $(VENV)/created
 
 clean:
 	rm -rf src/rocking/dynamics/_*.so src/rocking/restitution/_*.so src/rocking/motions/_*.so
-	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .coverage $(OUT) gallery-output
+	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .coverage $(OUT) docs/gallery docs/reference

@@ -1,4 +1,8 @@
-"""A leaning statue on a pedestal with its feet set in: two directions, two coefficients, one energy bound."""
+"""Asymmetric statue
+=================
+
+A leaning statue on a pedestal with its feet set in: two directions, two coefficients, one energy bound.
+"""
 
 import rocking as rk
 from rocking import conventions

@@ -1,4 +1,8 @@
-"""A rotation beyond alpha alone is not overturning: a block that leans out to 1.5 alpha and comes back."""
+"""Beyond the slenderness angle
+============================
+
+A rotation beyond alpha alone is not overturning: a block that leans out to 1.5 alpha and comes back.
+"""
 
 from pathlib import Path
 

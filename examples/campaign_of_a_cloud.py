@@ -1,4 +1,8 @@
-"""Motions as they are, as a campaign: the rotations over a measure, and which measure says most, as a file."""
+"""Campaign of a cloud
+===================
+
+Motions as they are, as a campaign: the rotations over a measure, and which measure says most, as a file.
+"""
 
 import csv
 from pathlib import Path

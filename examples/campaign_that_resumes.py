@@ -1,4 +1,8 @@
-"""A campaign from a job file: stopped in the middle, resumed, and the same bytes as one that nobody disturbed."""
+"""Campaign that resumes
+=====================
+
+A campaign from a job file: stopped in the middle, resumed, and the same bytes as one that nobody disturbed.
+"""
 
 import hashlib
 from pathlib import Path

@@ -1,4 +1,8 @@
-"""The coefficient of restitution of a concrete block under every model, and what each value implies."""
+"""Coefficient of a block
+======================
+
+The coefficient of restitution of a concrete block under every model, and what each value implies.
+"""
 
 import rocking as rk
 

@@ -1,4 +1,8 @@
-"""Every acceleration at which the verdict changes, for twelve motions and two models: the least is not the last."""
+"""Crossings under many motions
+============================
+
+Every acceleration at which the verdict changes, for twelve motions and two models: the least is not the last.
+"""
 
 from pathlib import Path
 from tempfile import TemporaryDirectory

@@ -1,4 +1,8 @@
-"""The same block and the same motions with four restitutions: how many verdicts flip, and how the curves move."""
+"""Does the restitution model matter
+=================================
+
+The same block and the same motions with four restitutions: how many verdicts flip, and how the curves move.
+"""
 
 from pathlib import Path
 

@@ -1,4 +1,8 @@
-"""Where the paper's model loses energy: the three stages of an impact of a pedestal with a hollow."""
+"""Energy of the three stages
+==========================
+
+Where the paper's model loses energy: the three stages of an impact of a pedestal with a hollow.
+"""
 
 from pathlib import Path
 

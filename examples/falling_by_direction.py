@@ -1,4 +1,8 @@
-"""A bust on a pedestal under one record turned to every azimuth: how often it falls, and which way, by two models."""
+"""Falling by direction
+====================
+
+A bust on a pedestal under one record turned to every azimuth: how often it falls, and which way, by two models.
+"""
 
 from pathlib import Path
 

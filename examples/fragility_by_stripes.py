@@ -1,4 +1,8 @@
-"""How likely is a slender cabinet to overturn at a given PGA, and how well do 60 motions tell?"""
+"""Fragility by stripes
+====================
+
+How likely is a slender cabinet to overturn at a given PGA, and how well do 60 motions tell?
+"""
 
 from pathlib import Path
 

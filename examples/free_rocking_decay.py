@@ -1,4 +1,8 @@
-"""Let a block go at half its slenderness angle: Housner's closed form, and r found again from two peaks."""
+"""Free rocking decay
+==================
+
+Let a block go at half its slenderness angle: Housner's closed form, and r found again from two peaks.
+"""
 
 import math
 

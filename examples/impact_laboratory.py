@@ -1,4 +1,8 @@
-"""An impact that takes time: what the coefficient of restitution of a contact bed depends on."""
+"""Impact laboratory
+=================
+
+An impact that takes time: what the coefficient of restitution of a contact bed depends on.
+"""
 
 import numpy as np
 

@@ -1,4 +1,8 @@
-"""A stronger motion may leave standing what a weaker one overturns: fragility has two definitions then."""
+"""Incremental analysis with resurrection
+======================================
+
+A stronger motion may leave standing what a weaker one overturns: fragility has two definitions then.
+"""
 
 import math
 from pathlib import Path

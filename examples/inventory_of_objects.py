@@ -1,4 +1,8 @@
-"""An inventory of ten objects at PGA 0.3 g: which of them fall over, the worst first, in plain words."""
+"""Inventory of objects
+====================
+
+An inventory of ten objects at PGA 0.3 g: which of them fall over, the worst first, in plain words.
+"""
 
 from pathlib import Path
 

@@ -1,4 +1,8 @@
-"""Forces, friction demand, vertical motion: when the answer of a rocking model should not be believed."""
+"""Is pure rocking credible
+========================
+
+Forces, friction demand, vertical motion: when the answer of a rocking model should not be believed.
+"""
 
 import warnings
 

@@ -1,4 +1,8 @@
-"""Coefficients by side, by velocity, and drawn anew for every impact: what they do to one response."""
+"""Laws of impact
+==============
+
+Coefficients by side, by velocity, and drawn anew for every impact: what they do to one response.
+"""
 
 import numpy as np
 

@@ -1,4 +1,8 @@
-"""A model of your own among all the others, against the 39 published measurements."""
+"""League with own model
+=====================
+
+A model of your own among all the others, against the 39 published measurements.
+"""
 
 from dataclasses import dataclass
 

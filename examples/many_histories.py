@@ -1,4 +1,8 @@
-"""Thousands of histories in one call: sizes, amplitudes and restitution models, as one labelled dataset."""
+"""Many histories
+==============
+
+Thousands of histories in one call: sizes, amplitudes and restitution models, as one labelled dataset.
+"""
 
 import numpy as np
 

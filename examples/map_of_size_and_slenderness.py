@@ -1,4 +1,8 @@
-"""Which blocks a pulse overturns: size against slenderness, with the restitution of every block evaluated anew."""
+"""Map of size and slenderness
+===========================
+
+Which blocks a pulse overturns: size against slenderness, with the restitution of every block evaluated anew.
+"""
 
 from pathlib import Path
 

@@ -1,4 +1,8 @@
-"""The least acceleration that overturns is not the whole answer: beyond it the block may stand again."""
+"""Minimum overturning acceleration
+================================
+
+The least acceleration that overturns is not the whole answer: beyond it the block may stand again.
+"""
 
 import math
 from pathlib import Path

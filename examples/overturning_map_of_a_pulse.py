@@ -1,4 +1,8 @@
-"""An overturning map of a sine pulse: two ways to overturn, and survival between them where stronger is not worse."""
+"""Overturning map of a pulse
+==========================
+
+An overturning map of a sine pulse: two ways to overturn, and survival between them where stronger is not worse.
+"""
 
 from pathlib import Path
 

@@ -1,4 +1,8 @@
-"""A restitution model of your own is one class; here the base is a fan of n equal facets (multi-step impact)."""
+"""Own model
+=========
+
+A restitution model of your own is one class; here the base is a fan of n equal facets (multi-step impact).
+"""
 
 from dataclasses import dataclass
 from itertools import pairwise

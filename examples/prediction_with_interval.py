@@ -1,4 +1,8 @@
-"""A coefficient with its interval: the calibrated default for a cabinet, and a warning where evidence ends."""
+"""Prediction with interval
+========================
+
+A coefficient with its interval: the calibrated default for a cabinet, and a warning where evidence ends.
+"""
 
 from pathlib import Path
 

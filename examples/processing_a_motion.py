@@ -1,4 +1,8 @@
-"""Baseline, filter, trim, resample, rotate and scale: every step is noted in the motion's provenance."""
+"""Processing a motion
+===================
+
+Baseline, filter, trim, resample, rotate and scale: every step is noted in the motion's provenance.
+"""
 
 import numpy as np
 

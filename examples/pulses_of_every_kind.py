@@ -1,4 +1,8 @@
-"""Every pulse of the catalogue, with exact acceleration, velocity and displacement, and what it does to a block."""
+"""Pulses of every kind
+====================
+
+Every pulse of the catalogue, with exact acceleration, velocity and displacement, and what it does to a block.
+"""
 
 from pathlib import Path
 

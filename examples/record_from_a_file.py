@@ -1,4 +1,7 @@
-"""From a record file to a response: read, look, scale, compute, write for MATLAB and spreadsheets.
+"""Record from a file
+==================
+
+From a record file to a response: read, look, scale, compute, write for MATLAB and spreadsheets.
 
 The file is a synthetic motion written in PEER's format, since no real record comes with the package.
 """

@@ -1,4 +1,8 @@
-"""A map that is fine where it matters: refined along the boundaries between ways of falling, which are polylines."""
+"""Refined map with boundary
+=========================
+
+A map that is fine where it matters: refined along the boundaries between ways of falling, which are polylines.
+"""
 
 from pathlib import Path
 

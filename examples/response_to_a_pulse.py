@@ -1,4 +1,8 @@
-"""A cabinet under one sine pulse: the choice of the restitution model decides whether it overturns."""
+"""Response to a pulse
+===================
+
+A cabinet under one sine pulse: the choice of the restitution model decides whether it overturns.
+"""
 
 from pathlib import Path
 

@@ -1,4 +1,8 @@
-"""Write a response for spreadsheets, MATLAB and xarray, and read all of it back."""
+"""Results that reopen
+===================
+
+Write a response for spreadsheets, MATLAB and xarray, and read all of it back.
+"""
 
 from pathlib import Path
 

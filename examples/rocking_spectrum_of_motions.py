@@ -1,4 +1,8 @@
-"""Rocking spectra of synthetic motions: peak rotation over the size of the block, median and spread."""
+"""Rocking spectrum of motions
+===========================
+
+Rocking spectra of synthetic motions: peak rotation over the size of the block, median and spread.
+"""
 
 from pathlib import Path
 

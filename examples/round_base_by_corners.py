@@ -1,4 +1,8 @@
-"""A round base cut into corners: what it lacks of the rolling rim is halved with every doubling of their number."""
+"""Round base by corners
+=====================
+
+A round base cut into corners: what it lacks of the rolling rim is halved with every doubling of their number.
+"""
 
 from pathlib import Path
 

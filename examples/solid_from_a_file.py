@@ -1,4 +1,8 @@
-"""A vase from a scan on a marble plinth, both from one body file: mass, base, coefficients and a response in space."""
+"""Solid from a file
+=================
+
+A vase from a scan on a marble plinth, both from one body file: mass, base, coefficients and a response in space.
+"""
 
 import tempfile
 from pathlib import Path

@@ -1,4 +1,8 @@
-"""A marble bust on a pedestal in three dimensions: what an impact costs depends on which way it rocks."""
+"""Solid statue
+============
+
+A marble bust on a pedestal in three dimensions: what an impact costs depends on which way it rocks.
+"""
 
 import numpy as np
 

@@ -1,4 +1,8 @@
-"""Synthetic motions by seed: three models, and the same bits for the same seed."""
+"""Synthetic motions
+=================
+
+Synthetic motions by seed: three models, and the same bits for the same seed.
+"""
 
 from pathlib import Path
 

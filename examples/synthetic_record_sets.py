@@ -1,4 +1,8 @@
-"""Sets of motions by family and seed: a study that needs nobody's records."""
+"""Synthetic record sets
+=====================
+
+Sets of motions by family and seed: a study that needs nobody's records.
+"""
 
 from pathlib import Path
 

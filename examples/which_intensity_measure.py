@@ -1,4 +1,8 @@
-"""Which measure of intensity says most about a body: scatter of the response, and what the measure leaves out."""
+"""Which intensity measure
+=======================
+
+Which measure of intensity says most about a body: scatter of the response, and what the measure leaves out.
+"""
 
 import math
 from pathlib import Path

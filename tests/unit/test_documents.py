@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-_DOCUMENTS = ("architecture", "conventions", "theory", "gallery", "extending", "application")
+_DOCUMENTS = ("architecture", "conventions", "theory", "extending", "application")
 PAGES = ["README.md", *(f"docs/{name}.md" for name in _DOCUMENTS)]
 
 

@@ -1,0 +1,60 @@
+"""The directive `command`: lines that a user types, run when the manual is built, and what they print.
+
+They run one after the other in a folder that the commands of a page share.
+"""
+
+import os
+import shlex
+import subprocess
+import sys
+import tempfile
+from functools import cache
+from pathlib import Path
+from typing import ClassVar
+
+from docutils import nodes
+from docutils.parsers.rst import directives
+from sphinx.application import Sphinx
+from sphinx.errors import ExtensionError
+from sphinx.util.docutils import SphinxDirective
+
+WIDE = "100"  # columns of the terminal
+
+
+@cache
+def folder(page: str) -> Path:
+    """Where the commands of a page run."""
+    return Path(tempfile.mkdtemp(prefix=page.replace("/", "-")))
+
+
+def printed(line: str, where: Path, status: int) -> str:
+    """What a command prints; one that ends otherwise than it should stops the build."""
+    words = shlex.split(line)
+    words[:1] = [sys.executable, "-m", "rocking"]
+    environment = os.environ | {"COLUMNS": WIDE, "NO_COLOR": "1", "TERM": "dumb", "PYTHONWARNINGS": "ignore"}
+    ran = subprocess.run(words, cwd=where, env=environment, capture_output=True, text=True, check=False)
+    if ran.returncode != status:
+        raise ExtensionError(f"{line}: status {ran.returncode}, not {status}: {ran.stderr or ran.stdout}")
+    return "\n".join(each.rstrip() for each in (ran.stdout + ran.stderr).splitlines())
+
+
+class Command(SphinxDirective):
+    """Commands, and what they print."""
+
+    has_content = True
+    option_spec: ClassVar = {"status": int, "hide-output": directives.flag}
+
+    def run(self) -> list[nodes.Node]:
+        """Return a block of what is typed, each with its output."""
+        lines = []
+        for line in self.content:
+            output = printed(line, folder(self.env.docname), self.options.get("status", 0))
+            lines += [f"$ {line}"] + ([output, ""] if output and "hide-output" not in self.options else [])
+        text = "\n".join(lines).rstrip()
+        return [nodes.literal_block(text, text, language="console")]
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Tell Sphinx."""
+    app.add_directive("command", Command)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,71 @@
+"""How the manual is built: `make docs`. Everything in it is local, and everything that it shows was run when it was built."""
+
+import importlib.util
+import sys
+from pathlib import Path
+
+import rocking
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE / "_ext"))
+
+project = "rocking"
+author = "The rocking developers"
+copyright = "the rocking developers, BSD-3-Clause"
+release = version = rocking.__version__
+
+extensions = [
+    "myst_nb",
+    "numpydoc",
+    "sphinx.ext.autodoc",
+    "sphinx_copybutton",
+    "sphinx_gallery.gen_gallery",
+    "mathml",
+    "commands",
+    "reference",
+    "questions",
+]
+exclude_patterns = ["gallery/**.py", "gallery/**.ipynb", "gallery/**.zip", "**/README.md", "_ext"]
+nitpicky = False
+suppress_warnings = ["config.cache"]  # the gallery is configured with an object
+
+html_theme = "furo"
+html_title = f"rocking {release}"
+html_static_path = ["_static"]
+html_css_files = ["manual.css"]
+html_copy_source = False
+html_show_sphinx = False
+html_math_renderer = "mathml"
+html_theme_options = {"navigation_with_keys": True}
+
+# Pages that hold {code-cell}s are notebooks: run when the manual is built, and to download.
+nb_execution_mode = "cache"
+nb_execution_cache_path = str(HERE.parent / "build" / "notebooks")
+nb_execution_in_temp = True
+nb_execution_raise_on_error = True
+nb_execution_timeout = 120
+nb_merge_streams = True
+myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_inline"]
+myst_heading_anchors = 3
+myst_dmath_double_inline = True
+
+default_role = "code"
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"  # numpydoc's sections say them, in words
+numpydoc_show_class_members = False
+numpydoc_xref_param_type = False
+
+sphinx_gallery_conf = {
+    "examples_dirs": str(HERE.parent / "examples"),
+    "gallery_dirs": "gallery",
+    "filename_pattern": r"\.py$",
+    "download_all_examples": False,
+    "abort_on_example_error": True,
+    "remove_config_comments": True,
+    "show_memory": False,
+    "show_signature": False,
+    "min_reported_time": 10**6,
+    "image_scrapers": ("gallery_pictures.scraper",)
+    if importlib.util.find_spec("gallery_pictures")
+    else ("matplotlib",),
+}
