@@ -1,6 +1,5 @@
-"""How the manual is built: `make docs`. Everything in it is local, and everything that it shows was run when it was built."""
+"""How the manual is built: `make docs`. All of it is local, and what it shows was run when it was built."""
 
-import importlib.util
 import sys
 from pathlib import Path
 
@@ -65,7 +64,4 @@ sphinx_gallery_conf = {
     "show_memory": False,
     "show_signature": False,
     "min_reported_time": 10**6,
-    "image_scrapers": ("gallery_pictures.scraper",)
-    if importlib.util.find_spec("gallery_pictures")
-    else ("matplotlib",),
 }
