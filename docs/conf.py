@@ -23,6 +23,7 @@ extensions = [
     "commands",
     "reference",
     "questions",
+    "scripts_as_files",
 ]
 exclude_patterns = ["gallery/**.py", "gallery/**.ipynb", "gallery/**.zip", "**/README.md", "_ext"]
 nitpicky = False
@@ -62,6 +63,7 @@ sphinx_gallery_conf = {
     "abort_on_example_error": True,
     "remove_config_comments": True,
     "show_memory": False,
+    "write_computation_times": False,
     "show_signature": False,
     "min_reported_time": 10**6,
 }

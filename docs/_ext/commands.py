@@ -1,10 +1,11 @@
 """The directive `command`: lines that a user types, run when the manual is built, and what they print.
 
-They run one after the other in a folder that the commands of a page share.
+They run one after the other in a folder that the commands of a page share; `:show: FILE` shows a picture of theirs.
 """
 
 import os
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -42,16 +43,31 @@ class Command(SphinxDirective):
     """Commands, and what they print."""
 
     has_content = True
-    option_spec: ClassVar = {"status": int, "hide-output": directives.flag}
+    option_spec: ClassVar = {"status": int, "hide-output": directives.flag, "show": str, "first": int}
 
     def run(self) -> list[nodes.Node]:
         """Return a block of what is typed, each with its output."""
         lines = []
         for line in self.content:
             output = printed(line, folder(self.env.docname), self.options.get("status", 0))
+            if "first" in self.options and len(output.splitlines()) > self.options["first"]:
+                output = "\n".join([*output.splitlines()[: self.options["first"]], "..."])
             lines += [f"$ {line}"] + ([output, ""] if output and "hide-output" not in self.options else [])
         text = "\n".join(lines).rstrip()
-        return [nodes.literal_block(text, text, language="console")]
+        return [nodes.literal_block(text, text, language="console"), *self.picture()]
+
+    def picture(self) -> list[nodes.Node]:
+        """Return the picture that is to be shown."""
+        if "show" not in self.options:
+            return []
+        kept = Path(self.env.srcdir) / "pictures" / f"{self.env.docname.replace('/', '-')}-{self.options['show']}"
+        kept.parent.mkdir(exist_ok=True)
+        shutil.copyfile(folder(self.env.docname) / self.options["show"], kept)
+        return [
+            nodes.image(
+                uri=f"/{kept.relative_to(self.env.srcdir)}", alt=f"{self.options['show']}, which the command wrote"
+            )
+        ]
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

@@ -12,7 +12,7 @@ from fastapi.exceptions import RequestValidationError
 from pydantic import ValidationError
 from starlette.exceptions import HTTPException
 from starlette.middleware import Middleware
-from starlette.responses import FileResponse
+from starlette.responses import FileResponse, RedirectResponse
 from starlette.staticfiles import StaticFiles
 
 from rocking.app.answers import ERRORS, JsonAnswer, describe_api, error_answer, refusal
@@ -35,6 +35,7 @@ from rocking.version import __version__
 _SAME_AS = {"model_attributes_type": "model_type", "int_parsing": "int_type", "float_parsing": "float_type"}
 _WORDS = {404: "there is no such thing here", 405: "this takes another method"}
 STATIC = Path(__file__).parent / "static"
+_MANUALS = (Path(__file__).parent / "manual", Path(__file__).parents[3] / "build" / "manual")  # installed; of a checkout
 _ABOUT = """\
 The same API serves the pages of `rocking serve`, scripts and MATLAB. Numbers are SI, float64, with every digit.
 
@@ -135,4 +136,10 @@ def _add_pages(app: FastAPI) -> None:
     def api_docs() -> FileResponse:
         return FileResponse(STATIC / "api-docs.html")
 
+    @app.get("/manual", include_in_schema=False)
+    def manual() -> RedirectResponse:
+        return RedirectResponse("/manual/")
+
+    built = next((each for each in _MANUALS if (each / "index.html").exists()), STATIC / "manual")
+    app.mount("/manual", StaticFiles(directory=built, html=True), name="manual")
     app.mount("/", StaticFiles(directory=STATIC, html=True), name="pages")

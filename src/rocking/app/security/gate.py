@@ -190,6 +190,10 @@ CONTENT_POLICY = "; ".join((
     "form-action 'none'",
     "frame-ancestors 'none'",
 ))  # fmt: skip
+# The manual is pages of ours without input: they bring styles of their own, and a form that asks for a page of theirs.
+MANUAL_POLICY = CONTENT_POLICY.replace("form-action 'none'", "form-action 'self'").replace(
+    "style-src 'self'", "style-src 'self' 'unsafe-inline'"
+)
 _FEATURES = (
     "accelerometer", "autoplay", "camera", "clipboard-read", "display-capture", "encrypted-media", "geolocation",
     "gyroscope", "hid", "magnetometer", "microphone", "midi", "payment", "publickey-credentials-get",
@@ -248,6 +252,8 @@ class SafeHeaders:
             if message["type"] == "http.response.start":
                 headers = MutableHeaders(scope=message)
                 headers.update(HEADERS)
+                if scope["path"].startswith("/manual/"):
+                    headers["Content-Security-Policy"] = MANUAL_POLICY
                 headers["Cache-Control"] = "no-store" if scope["path"].startswith("/api/") else "no-cache"
                 del headers["Server"]
             await send(message)
