@@ -85,7 +85,7 @@ lint: $(VENV)/dev $(ENGINE)
 PYTEST := $(BIN)/python -m pytest -o faulthandler_timeout=600 -o faulthandler_exit_on_timeout=true
 
 # What measures time runs alone, and what drives a browser in a process of its own; the rest on two processes.
-test: lint
+test: lint docs
 	$(PYTEST) -n 2 --dist loadfile -m "not timed and not browser"
 	$(PYTEST) $$(grep -rl --include='test_*.py' --exclude-dir=browser timed tests) -m timed
 	$(PYTEST) tests/browser -m timed

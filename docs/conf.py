@@ -22,7 +22,7 @@ extensions = [
     "mathml",
     "commands",
     "reference",
-    "questions",
+    "section_search",
     "scripts_as_files",
 ]
 exclude_patterns = ["gallery/**.py", "gallery/**.ipynb", "gallery/**.zip", "**/README.md", "_ext"]
@@ -32,6 +32,7 @@ suppress_warnings = ["config.cache"]  # the gallery is configured with an object
 html_theme = "furo"
 html_title = f"rocking {release}"
 html_static_path = ["_static"]
+templates_path = ["_templates"]
 html_css_files = ["manual.css"]
 html_copy_source = False
 html_show_sphinx = False

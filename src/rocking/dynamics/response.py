@@ -104,7 +104,7 @@ class Response(ResponseBase):
 
     @property
     def peak_rotation(self) -> float:
-        """Largest |theta|, between the samples too; a quarter turn if it overturned [rad]."""
+        """Largest rotation, between the samples too; a quarter turn if it overturned [rad]."""
         return abs(self.trajectory.peak_rotation)
 
     @property

@@ -66,7 +66,7 @@ class Settings:
         A history with more impacts and changes of contact is stopped, with a status that says so.
     longest_step : float, optional
         Longest Taylor step as p times time [-]; .15 in the fast engine, 1 in space (.6 for many bodies, there as p +
-        |angular velocity| times time); with contact there is none.
+        ``|angular velocity|`` times time); with contact there is none.
     order : int, optional
         Order of the Taylor series. Rocking alone: 4, 6 or 8 (8), of the fast engine. With order 8, records whose
         samples are so close that order 6 leaves out less than a hundredth of what order 8 may leave out at the longest

@@ -162,7 +162,7 @@ class Ked(RestitutionModel):
 
 @singledispatch
 def projected_moment(body: Body, onto: Foot) -> float:
-    """Return the numerator of Eq. 17, the integral of y^4 / |S - O'|^2 dm.
+    """Return the numerator of Eq. 17, the integral of ``y^4 / |S - O'|^2 dm``.
 
     A new kind of body registers its own way: ``@projected_moment.register``.
 

@@ -182,12 +182,12 @@ class ContactResponse(ResponseBase):
 
     @property
     def friction_usage(self) -> float:
-        """Largest |horizontal| over mu times the vertical force; 1 where the body slides [-]."""
+        """Largest horizontal force over mu times the vertical force; 1 where the body slides [-]."""
         return self.trajectory.usage
 
     @property
     def peak_rotation(self) -> float:
-        """Largest |theta|, between the samples too; a quarter turn if it overturned [rad]."""
+        """Largest rotation, between the samples too; a quarter turn if it overturned [rad]."""
         return self.trajectory.peak
 
     @property

@@ -27,7 +27,7 @@ class BaseFriction(ABC):
     """Friction between base and bed.
 
     All points of a flat base move along the base line at one speed u, so that the bed sticks or slides as a whole:
-    the shear force is |T| <= mu N with N the sum of all normal forces. Which point takes which part of a sticking
+    the shear force is ``|T| <= mu N`` with N the sum of all normal forces. Which point takes which part of a sticking
     force is not determined; results show it in proportion to the normal forces.
     """
 
@@ -69,7 +69,7 @@ class SlidingFriction(BaseFriction):
 
 @dataclass(frozen=True)
 class Coulomb(SlidingFriction):
-    """Set-valued friction: u = 0 and |T| <= mu N, or T = -mu N sign(u); the switches are located.
+    """Set-valued friction: ``u = 0`` and ``|T| <= mu N``, or ``T = -mu N sign(u)``; the switches are located.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ class BedRocking:
     Parameters
     ----------
     rotations : ndarray
-        |theta| at the start and at each peak [rad].
+        Rotation, without its sign, at the start and at each peak [rad].
     times : ndarray
         When they are reached [s].
     coefficients : ndarray

@@ -1,0 +1,65 @@
+"""The search of the manual: sections and names of the reference that hold the most telling words of a question.
+
+What Sphinx brings finds pages that hold all of them. MiniSearch ranks (BM25), offline and from files too.
+"""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+from docutils import nodes
+from sphinx import addnodes
+from sphinx.application import Sphinx
+
+_VENDOR = Path(__file__).parents[2] / "src" / "rocking" / "app" / "static" / "vendor" / "minisearch"
+_INNER = (nodes.section, addnodes.desc)
+
+
+def texts(node: nodes.Element) -> Iterator[str]:
+    """Yield the text of a section or name, without that of those within it."""
+    for child in node.children:
+        if isinstance(child, nodes.Text):
+            yield str(child)
+        elif isinstance(child, nodes.Element) and not isinstance(child, (*_INNER, nodes.comment, nodes.raw)):
+            yield from texts(child)
+            yield " "
+
+
+def entries(tree: nodes.document, address: str) -> Iterator[dict[str, str]]:
+    """Yield every section and every documented name of a page: its title, that of the page, its address and text."""
+    page = next((title.astext() for title in tree.findall(nodes.title)), address)
+    for node in tree.findall(lambda each: isinstance(each, _INNER)):
+        heading = next(
+            (each for each in node.children if isinstance(each, (nodes.title, addnodes.desc_signature))), None
+        )
+        if heading is None:
+            continue
+        named = isinstance(heading, addnodes.desc_signature)
+        title = heading.get("fullname", heading.astext()) if named else heading.astext()
+        ids = heading.get("ids") or node.get("ids") or [""]
+        words = " ".join("".join(texts(node)).split())
+        yield {
+            "title": title,
+            "page": page,
+            "address": f"{address}#{ids[0]}",
+            "text": words.removeprefix(title).strip(),
+        }
+
+
+def finished(app: Sphinx, error: Exception | None) -> None:
+    """Write what the page of the search reads."""
+    if error is None and app.builder.format == "html":
+        every = [
+            entry
+            for name in sorted(app.env.found_docs)
+            for entry in entries(app.env.get_doctree(name), app.builder.get_target_uri(name))
+        ]
+        text = json.dumps([{"id": number, **entry} for number, entry in enumerate(every)], ensure_ascii=False)
+        (Path(app.outdir) / "_static" / "sections.js").write_text(f"const sections = {text};\n", "utf-8")
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Tell Sphinx."""
+    app.config.html_static_path.append(str(_VENDOR))
+    app.connect("build-finished", finished)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,68 @@
+// The page of the search: sections that hold the most telling words of a question, the best first.
+const ASKING = new Set(
+  ("a an and are as at be by can could did do does for from get give given gives how i if in into is it me my need of on or " +
+    "should that the there this to use was what when where which who why will with you your").split(" "),
+);
+const SPELLED = new Map([["center", "centre"], ["centers", "centres"], ["meter", "metre"], ["meters", "metres"], ["color", "colour"]]);
+const words = (term) => {
+  const word = term.toLowerCase();
+  if (ASKING.has(word)) return null;
+  const spelled = SPELLED.get(word) ?? word;
+  return spelled.length > 3 ? spelled.replace(/(?<=[^s])s$/, "") : spelled;
+};
+
+const index = new MiniSearch({
+  fields: ["title", "page", "text"],
+  storeFields: ["title", "page", "address", "text"],
+  processTerm: words,
+  searchOptions: {
+    boost: { title: 5, page: 1.5 },
+    fuzzy: (term) => (term.length > 5 ? 0.2 : false),
+    prefix: (term) => term.length > 3,
+    boostDocument: (id, term, section) => (section.address.startsWith("reference/") ? 0.5 : 1),
+  },
+});
+index.addAll(sections);
+
+const element = (name, properties, ...children) => {
+  const made = Object.assign(document.createElement(name), properties);
+  made.append(...children);
+  return made;
+};
+
+// A stretch of the text around the first of the terms, with all of them marked.
+function excerpt(text, terms) {
+  const wanted = terms.map((term) => term.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("|");
+  const marks = new RegExp(`\\b(?:${wanted})`, "gi");
+  const first = Math.max(0, text.search(marks) - 60);
+  const begin = first === 0 ? 0 : text.indexOf(" ", first) + 1;
+  const part = text.slice(begin, begin + 220);
+  const made = element("p", {}, begin ? "… " : "");
+  let last = 0;
+  for (const hit of part.matchAll(marks)) {
+    made.append(part.slice(last, hit.index), element("mark", { textContent: hit[0] }));
+    last = hit.index + hit[0].length;
+  }
+  made.append(part.slice(last), text.length > begin + 220 ? " …" : "");
+  return made;
+}
+
+const query = new URLSearchParams(location.search).get("q") ?? "";
+const hits = index.search(query).slice(0, 30);
+for (const box of document.querySelectorAll("input[name=q]")) box.value = query;
+document.getElementById("search-summary").textContent = !query.trim()
+  ? "Ask a question, or name what you look for."
+  : hits.length
+    ? `What is said of “${query}”, the best first.`
+    : `Nothing is said of “${query}”. Try other words, or fewer.`;
+document.getElementById("search-results").append(
+  ...hits.map((hit) =>
+    element(
+      "li",
+      {},
+      element("a", { href: hit.address, textContent: hit.title }),
+      hit.page === hit.title ? "" : element("small", { textContent: hit.page }),
+      excerpt(hit.text, hit.terms),
+    ),
+  ),
+);
