@@ -1,4 +1,4 @@
-"""The manual as `make docs` builds it: whole, without a broken link, found by its search, under the application's own policy."""
+"""The manual as `make docs` builds it: whole, no link broken, its search, under the application's policy."""
 
 import sys
 from html.parser import HTMLParser

@@ -35,7 +35,7 @@ from rocking.version import __version__
 _SAME_AS = {"model_attributes_type": "model_type", "int_parsing": "int_type", "float_parsing": "float_type"}
 _WORDS = {404: "there is no such thing here", 405: "this takes another method"}
 STATIC = Path(__file__).parent / "static"
-_MANUALS = (Path(__file__).parent / "manual", Path(__file__).parents[3] / "build" / "manual")  # installed; of a checkout
+_MANUALS = (Path(__file__).parent / "manual", Path(__file__).parents[3] / "build" / "manual")  # packaged, or built
 _ABOUT = """\
 The same API serves the pages of `rocking serve`, scripts and MATLAB. Numbers are SI, float64, with every digit.
 
