@@ -100,4 +100,5 @@ presenters.update({
     "animation as .html": "rocking.plots:animate_html",
     "animation as .gif": "rocking.plots:animate_gif",
     "report": "rocking.reports:response_report",
+    "recommendation": "rocking.evidence.recommending:recommendation_for",
 })  # fmt: skip

@@ -13,6 +13,7 @@ from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
 from rocking.cli.exports import PICTURES, Export, Exports, draw, write_records
 from rocking.cli.numbers import in_unit, side_line
 from rocking.cli.page import Page, deliver
+from rocking.cli.recommendation import recommendation_facts, show_recommendation
 from rocking.conventions import FEET, Foot, g
 from rocking.errors import InvalidValueError
 from rocking.spec.construction import any_body_of
@@ -64,6 +65,9 @@ def cor(
     identities: Annotated[
         bool, typer.Option("--identities", help="Also try the identities of mechanics on every model.")
     ] = False,
+    recommend: Annotated[
+        bool, typer.Option("--recommend", help="Also say which model to use for this body, and how sure that is.")
+    ] = False,
     sets: options.Set = None,
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
@@ -84,14 +88,24 @@ def cor(
             raise InvalidValueError(
                 f"a body in space rocks about every edge of its base, so it takes no {', '.join(stated)}"
             )
-        answer: Any = SolidAnswer.of(subject, restitution, gravity, length)
+        found = _recommended(subject, restitution) if recommend else None
+        answer: Any = SolidAnswer.of(subject, restitution, gravity, length, found)
     else:
         from rocking.reports.body_facts import ImpactAnswer
 
         models = None if restitution is None else [_model(text) for text in restitution]
         impact = ImpactAnswer.of(subject, models, onto=onto, eta=eta, gravity=gravity, identities=identities)
-        answer = PlaneAnswer(impact, length)
+        answer = PlaneAnswer(impact, length, _recommended(subject, models, eta) if recommend else None)
     deliver(answer, exports, as_json=as_json)
+
+
+def _recommended(body: Any, models: list[Any] | None, eta: float = 1.0) -> Any:
+    from rocking.restitution import model, recommend
+    from rocking.restitution import models as known
+
+    if eta != 1.0:
+        models = [model(each, eta=eta) for each in models or (name for name in known() if name != "fixed")]
+    return recommend(body, models=models)
 
 
 def _model(text: str) -> Any:
@@ -128,11 +142,12 @@ class PlaneAnswer:
 
     impact: "ImpactAnswer"
     length: str  # unit of lengths
+    recommendation: Any = None  # which model to use, where that was asked
 
     def facts(self) -> dict[str, Any]:
         from rocking.reports.body_facts import impact_facts
 
-        return impact_facts(self.impact)
+        return impact_facts(self.impact) | recommendation_facts(self.recommendation)
 
     def draw(self) -> Any:
         from rocking.plots import coefficient_picture
@@ -174,6 +189,7 @@ class PlaneAnswer:
             page.line(f"\n{name}: {'keeps all identities' if not broken else 'breaks identities'}", "bold")
             for check in broken:
                 page.line(f"  {check.sentence}")
+        show_recommendation(page, self.recommendation)
 
     def _body_lines(self) -> list[str]:
         from rocking.evidence._coefficient_table import outside_evidence

@@ -11,6 +11,7 @@ from rocking import checks
 from rocking.bodies.solid import Base, Corner, Edge, RoundBase, Solid, SupportPolygon
 from rocking.cli.numbers import in_unit
 from rocking.cli.page import Page
+from rocking.cli.recommendation import recommendation_facts, show_recommendation
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import GeometryError
 from rocking.restitution.space import SpatialModel, impact_in_space, spatial_model, spatial_models
@@ -42,13 +43,16 @@ class SolidAnswer:
     edges: list[dict[str, Any]]  # edges of the base, at most `MOST_EDGES`; of a round one, directions
     gravity: float  # acceleration of gravity [m/s2]
     length: str  # unit of lengths
+    recommendation: Any = None  # which model to use, where that was asked
 
     @classmethod
-    def of(cls, solid: Solid, models: list[str] | None, gravity: float, length: str) -> "SolidAnswer":
+    def of(
+        cls, solid: Solid, models: list[str] | None, gravity: float, length: str, recommendation: Any = None
+    ) -> "SolidAnswer":
         """Compute the impacts; gravity: acceleration of gravity [m/s2]."""
         pull = checks.positive("gravity", gravity, "m/s2")
         chosen = [spatial_model(name) for name in models or spatial_models()]
-        return cls(solid, _edges(solid, chosen, pull), pull, length)
+        return cls(solid, _edges(solid, chosen, pull), pull, length, recommendation)
 
     @property
     def left_out(self) -> int:
@@ -70,7 +74,7 @@ class SolidAnswer:
             "edges_left_out": self.left_out,
             "repairs": list(self.solid.repairs),
             "notes": self.notes,
-        }
+        } | recommendation_facts(self.recommendation)
 
     def draw(self) -> Any:
         from rocking.plots.solid import solid_picture
@@ -103,6 +107,7 @@ class SolidAnswer:
         page.warn(self._flags())
         for sentence in self.notes:
             page.line(f"! {sentence}")
+        show_recommendation(page, self.recommendation)
 
     def _flags(self) -> list[str]:
         edges_of: dict[tuple[str, str], list[str]] = {}

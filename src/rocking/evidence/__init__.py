@@ -12,10 +12,13 @@ if TYPE_CHECKING:
     from rocking.evidence._restitution_distribution import RestitutionDistribution, restitution_distribution
     from rocking.evidence.calibration import Calibration, calibrate, interval_for
     from rocking.evidence.measurements import DataSet, all_measurements, datasets
+    from rocking.evidence.recommendation import ModelForBody, Recommendation
 
 __all__ = [
     "Calibration",
     "DataSet",
+    "ModelForBody",
+    "Recommendation",
     "RestitutionDistribution",
     "all_measurements",
     "calibrate",
@@ -34,6 +37,8 @@ __getattr__, __dir__ = exports(
     {
         "Calibration": "rocking.evidence.calibration",
         "DataSet": "rocking.evidence.measurements",
+        "ModelForBody": "rocking.evidence.recommendation",
+        "Recommendation": "rocking.evidence.recommendation",
         "RestitutionDistribution": "rocking.evidence._restitution_distribution",
         "all_measurements": "rocking.evidence.measurements",
         "calibrate": "rocking.evidence.calibration",

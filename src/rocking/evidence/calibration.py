@@ -202,6 +202,7 @@ def keep(path: Path) -> None:
         "summary": [list(facts.values()) for facts in calibration.summary.values()],
         "predictions": predictions,
         "misfits": [fit_scatter(data, each)[:2] for each in predictions],
+        "unseen": _unseen(data),
     }
     for name, (grid, weight) in calibration.marginals.items():
         arrays |= {f"{name}_grid": grid, f"{name}_weight": weight}
@@ -237,6 +238,23 @@ def posterior_grid(data: DataSet) -> PosteriorGrid:
     return PosteriorGrid(eta[:, None, None, None] + k[None, :, None, None], terms, mean, sd)
 
 
+@lru_cache(maxsize=8)
+def unseen(data: DataSet) -> FloatArray:
+    """Return the expected coefficients of all rows, each by a calibration that has not seen its data set [-]."""
+    with np.load(KEPT) as kept:
+        return np.array(kept["unseen"]) if kept["inputs"] == fingerprint(data) else _unseen(data)
+
+
+def _unseen(data: DataSet) -> FloatArray:
+    grid, expected = posterior_grid(data), np.empty(len(data))
+    whole, mean = grid.log_prior + grid.terms.sum(axis=-1), grid.mean[:, :, 0, 0]
+    for name in dict.fromkeys(data.group):
+        rows = [i for i, group in enumerate(data.group) if group == name]
+        weight = normalised(whole - grid.terms[..., rows].sum(axis=-1)).sum(axis=(2, 3))
+        expected[rows] = (weight[..., None] * mean[..., rows]).sum(axis=(0, 1))
+    return expected
+
+
 def marginal_quantiles(grid: FloatArray, weight: FloatArray, levels: tuple[float, ...]) -> list[float]:
     """Return quantiles of a marginal posterior at some probabilities [-] between the nodes of its grid.
 
@@ -260,8 +278,10 @@ def normalised(log_weight: FloatArray) -> FloatArray:
     return np.asarray(weight / weight.sum())  # Eq. 136
 
 
-def interval_for(model: RestitutionModel, body: Body, *, onto: Foot = "right") -> Prediction:
-    """Return a model's coefficient with an interval from its own misfit to the 39 measurements.
+def interval_for(
+    model: RestitutionModel, body: Body, *, onto: Foot = "right", measurements: DataSet | None = None
+) -> Prediction:
+    """Return a model's coefficient with an interval from its own misfit to the measurements.
 
     The interval is the coefficient plus and minus the normal quantile of the scatter around the model's own
     predictions, bias included: it says how far one measured body may lie from this model.
@@ -274,18 +294,21 @@ def interval_for(model: RestitutionModel, body: Body, *, onto: Foot = "right") -
         The body.
     onto : {"left", "right"}
         The foot on which it lands.
+    measurements : DataSet, optional
+        What was measured; the 39 published ones if not given.
 
     Returns
     -------
     Prediction
         Coefficient and interval, within [0, energy bound].
     """
+    data = all_measurements() if measurements is None else measurements
     _, bound = _geometry(body, onto)
     r = np.asarray(model.coefficient(body, onto))
     if isinstance(model, Fixed):
         floor, slope = (calibrate().summary[name]["mean"] for name in ("s", "gamma"))
     else:
-        floor, slope = _misfit(model.of_slenderness(all_measurements().slenderness).tobytes())
+        floor, slope = _misfit(model.of_slenderness(data.slenderness).tobytes(), data)
     sd = scatter(r, floor, slope)
     reach = 1.959963984540054 * sd
     top = np.maximum(bound, r)
@@ -293,8 +316,8 @@ def interval_for(model: RestitutionModel, body: Body, *, onto: Foot = "right") -
 
 
 @lru_cache(maxsize=1024)
-def _misfit(predictions: bytes) -> tuple[float, float]:
-    data, predicted = all_measurements(), np.frombuffer(predictions)
+def _misfit(predictions: bytes, data: DataSet) -> tuple[float, float]:
+    predicted = np.frombuffer(predictions)
     with np.load(KEPT) as kept:
         if kept["inputs"] == fingerprint(data):
             same = np.abs(kept["predictions"] - predicted).max(axis=1) < 1e-12

@@ -98,7 +98,7 @@ def _compared(
     one, other = (resampled(each, weight) for each in squares)
     with np.errstate(invalid="ignore"):
         low, high = np.nanquantile(one - other, [0.025, 0.975]).tolist()
-    if np.unique(weight, axis=1).shape[1] < _FEWEST:
+    if len({column.tobytes() for column in weight.T}) < _FEWEST:
         low, high = -np.inf, np.inf
     by_group = {name: _compared([each[rows] for each in squares], own, {}) for name, (rows, own) in groups.items()}
     return Comparison(first, second, low, high, by_group)

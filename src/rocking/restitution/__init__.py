@@ -6,6 +6,7 @@ from rocking.lazy import exports
 from rocking.restitution.impact import ImpactGeometry
 from rocking.restitution.implied import Implication, implied
 from rocking.restitution.model import Flag, InertiaModel, Restitution, RestitutionModel
+from rocking.restitution.recommendation import recommend
 from rocking.restitution.registry import coefficient_of_restitution, homes, model, models, register
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ __all__ = [
     "model",
     "models",
     "projected_moment",
+    "recommend",
     "register",
 ]
 

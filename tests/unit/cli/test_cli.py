@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import rocking as rk
 from rocking.evidence import league
 from rocking.reports.paper_document import reproduce
 
@@ -173,3 +174,21 @@ def test_help_is_quick(run):
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "LOADED []" in done.stdout
+
+
+def test_cor_says_which_model_to_use(run):
+    """With --recommend page and JSON say what Python says; without it neither does; a value by hand is no model."""
+    words = ("cor", "--width", 2, "--height", 16, "--units", "cm")
+    found = rk.restitution.recommend(rk.Block(width=0.02, height=0.16))
+    code, out, err = run(*words, "--recommend")
+    assert (code, err) == (0, "")
+    for sentence in (*found.evidence, *found.advice):
+        assert sentence in out
+    told = json.loads(run(*words, "--recommend", "--json")[1])["recommendation"]
+    assert told["prediction"] == found.prediction
+    assert told["envelope"] == list(found.envelope)
+    assert [row["model"] for row in told["models"]] == [each.name for each in found.models]
+    assert "recommendation" not in json.loads(run(*words, "--json")[1])
+    code, out, err = run(*words, "--recommend", "--restitution", "fixed:r=0.9")
+    assert (code, out) == (2, "")
+    assert "a value given by hand" in err

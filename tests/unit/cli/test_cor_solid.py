@@ -206,3 +206,11 @@ def test_bad_input_gives_one_sentence_and_exit_code_2(refuses, words, sentence, 
     file(PRISM.replace("width = 1.0", "width = -1.0"), "bad.toml")
     monkeypatch.chdir(tmp_path)
     refuses(words, sentence)
+
+
+def test_a_solid_has_no_recommendation_from_measurements(printed, file):
+    """What is known is said: no measurement of a body in space, and two models to run."""
+    out = printed(file(PRISM), "--recommend")
+    assert "every measurement is of a block that rocks in one plane" in out
+    assert "run housner-3d (r = 0.9118) and ked-3d" in out
+    assert "every measurement" not in printed(file(PRISM))

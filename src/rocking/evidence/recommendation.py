@@ -1,0 +1,304 @@
+"""Which restitution model to use for a body, side by side with what speaks for and against every other."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking.conventions import FEET, Foot, percent
+from rocking.evidence import recommendation_words as words
+from rocking.evidence.judgement import Judgement, Standing, TrackRecord
+from rocking.outcome import Outcome
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+    from rocking.tables import Table
+
+
+def product(coefficients: Mapping[str, float]) -> float:
+    """Return the product of coefficients, by the foot landed on [-]."""
+    return math.prod(coefficients.values())
+
+
+@dataclass(frozen=True, eq=False)
+class ModelForBody:
+    """A model and one body: what it gives, how it stands, what to know.
+
+    Parameters
+    ----------
+    name, title : str
+        Name with parameters, and the model in one line.
+    standing : Standing
+        Closest to the measurements, not resolved from the closest, further off, does not hold for this body, or not
+        measured.
+    coefficients : dict of str to float
+        theta_dot_after / theta_dot_before by the foot, or the edge, landed on; empty where there is none [-].
+    low, high : dict of str to float
+        Ends of the 95 % interval of one measured body, by foot; empty where nothing was measured [-].
+    record : TrackRecord or None
+        Errors on the measurements of bodies like this one; None where the model was not judged.
+    reasons : tuple of str
+        Why the model does not hold for this body; empty if it does.
+    concerns : tuple of str
+        Which of its known defects matters for this body, and how much.
+    outcome : Outcome or None
+        How the body ends under the motion, if one was given.
+    peak_ratio : float
+        Peak rotation over the slenderness angle of its side, NaN without a motion [-].
+    """
+
+    name: str
+    title: str
+    standing: Standing
+    coefficients: Mapping[str, float]
+    low: Mapping[str, float] = field(default_factory=dict)
+    high: Mapping[str, float] = field(default_factory=dict)
+    record: TrackRecord | None = None
+    reasons: tuple[str, ...] = ()
+    concerns: tuple[str, ...] = ()
+    outcome: Outcome | None = None
+    peak_ratio: float = math.nan
+
+    @property
+    def energy_left(self) -> float:
+        """Share of the energy left after an impact onto each foot; NaN where a coefficient is not known [-]."""
+        return product(self.coefficients) ** 2 if len(self.coefficients) == len(FEET) else math.nan  # Eq. 113
+
+    def scatter(self, onto: Foot) -> float:
+        """Return how far one measured body may lie from the model: from the longer side of its interval.
+
+        Parameters
+        ----------
+        onto : {"left", "right"}
+            The foot on which it lands.
+
+        Returns
+        -------
+        float
+            Standard deviation [-].
+        """
+        # the shorter side may have been cut at 0 or at the energy bound
+        r = self.coefficients[onto]
+        return max(self.high[onto] - r, r - self.low[onto]) / 1.959963984540054
+
+    @property
+    def impacts_to_half(self) -> float:
+        """Impacts that halve the energy, and with it the amplitude of small rotations; 0 where the body stops [-]."""
+        kept = self.energy_left
+        return 0.0 if kept == 0.0 else math.inf if kept >= 1.0 else 2.0 * math.log(0.5) / math.log(kept)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the row as plain values.
+
+        Returns
+        -------
+        dict
+            None where something does not exist.
+        """
+        record = self.record
+        return {
+            "model": self.name,
+            "title": self.title,
+            "standing": self.standing.value,
+            "coefficient_of_restitution": dict(self.coefficients),
+            "low_95": dict(self.low),
+            "high_95": dict(self.high),
+            "energy_left_after_both_feet": self.energy_left,
+            "impacts_to_half_energy": self.impacts_to_half,
+            "bias": None if record is None else record.bias,
+            "rmse": None if record is None else record.rmse,
+            "loss_rmse": None if record is None else record.loss_rmse,
+            "behind_closest": None if record is None else [record.behind.value, record.behind.low, record.behind.high],
+            "reasons": list(self.reasons),
+            "concerns": list(self.concerns),
+            "outcome": None if self.outcome is None else self.outcome.name.lower(),
+            "peak_rotation_over_alpha": self.peak_ratio,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Overturned:
+    """How many histories overturn whose coefficients scatter as bodies do about the model for a number."""
+
+    count: int  # of them
+    draws: int  # all histories
+    low: float  # low, high: ends of the 95 % interval of the share [-]
+    high: float
+
+    def __str__(self) -> str:
+        """Return the share and its interval."""
+        share = percent(self.count / self.draws)
+        return f"{share} of {self.draws} draws overturn (95 % interval {percent(self.low)} to {percent(self.high)})"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Recommendation:
+    """Which restitution model to use for a body, and how sure that is.
+
+    Parameters
+    ----------
+    body : Body or Solid
+        The body.
+    models : tuple of ModelForBody
+        The calibrated default and every model, closest to the measurements first, what does not hold last.
+    judgement : Judgement or None
+        By which measurements they were judged; None for a body in space.
+    outside : tuple of str
+        Why the body is outside of what was measured, so that the measurements set no model aside; empty if it is not.
+    notes : tuple of str
+        What else is not known.
+    prediction : str
+        The model for a number; empty where nothing was measured.
+    envelope : tuple of str
+        The models for a decision, of the lowest and of the highest coefficient of those that remain.
+    overturned : Overturned or None
+        Under the motion, with coefficients that scatter; None without one.
+    """
+
+    body: Any
+    models: tuple[ModelForBody, ...]
+    judgement: Judgement | None
+    outside: tuple[str, ...]
+    notes: tuple[str, ...]
+    prediction: str
+    envelope: tuple[str, ...]
+    overturned: Overturned | None = None
+
+    def __getitem__(self, name: str) -> ModelForBody:
+        """Return a model by its name."""
+        found = next((each for each in self.models if each.name == name), None)
+        if found is None:
+            raise KeyError(f"{name!r} is none of {', '.join(each.name for each in self.models)}")
+        return found
+
+    @property
+    def remaining(self) -> tuple[str, ...]:
+        """Names of the models that hold and that nothing sets aside."""
+        return tuple(each.name for each in self.models if self._remains(each))
+
+    def _remains(self, each: ModelForBody) -> bool:
+        aside = each.standing is Standing.SET_ASIDE and not self.outside
+        return not (aside or each.standing is Standing.EXCLUDED)
+
+    @property
+    def evidence(self) -> tuple[str, ...]:
+        """What the measurements say of the models, and which do not hold, in sentences."""
+        return tuple(words.evidence(self))
+
+    @property
+    def advice(self) -> tuple[str, ...]:
+        """What to use, for a number and for a decision, and what would settle it, in sentences."""
+        return tuple(words.advice(self))
+
+    @property
+    def table(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+        """Heading and rows of words."""
+        return words.table(self)
+
+    @property
+    def _legend(self) -> list[str]:
+        return [] if self.judgement is None else [words.LEGEND]
+
+    def __str__(self) -> str:
+        """Return the table and the sentences."""
+        head, rows = self.table
+        widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
+        lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in (head, *rows)]
+        return "\n".join([*(line.rstrip() for line in lines), *self._legend, "", *self.evidence, *self.advice])
+
+    __repr__ = __str__
+
+    def _repr_markdown_(self) -> str:
+        head, rows = self.table
+        lines = ["| " + " | ".join(row) + " |" for row in (head, ("---",) * len(head), *rows)]
+        return "\n".join([*lines, "", *self._legend, "", *(f"- {each}" for each in (*self.evidence, *self.advice))])
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return everything as plain values.
+
+        Returns
+        -------
+        dict
+            None where something does not exist.
+        """
+        judged = self.judgement
+        return {
+            "prediction": self.prediction or None,
+            "envelope": list(self.envelope),
+            "judged_by": None if judged is None else {"rows": len(judged.rows), "rounding": judged.rounding},
+            "outside": list(self.outside),
+            "notes": list(self.notes),
+            "models": [each.as_dict() for each in self.models],
+            "overturned": None if self.overturned is None else [self.overturned.count, self.overturned.draws],
+            "evidence": list(self.evidence),
+            "advice": list(self.advice),
+        }
+
+    def exported(self) -> "Table":
+        """Return what files and frames of it hold.
+
+        Returns
+        -------
+        Table
+            One row a model, with units.
+        """
+        from rocking.tables import Column, Table, text_array
+
+        def column(values: list[Any], meaning: str) -> Column:
+            if any(isinstance(value, str) for value in values):
+                return Column(text_array(values), "", meaning)
+            return Column(np.array(values, dtype=np.float64), "1", meaning)
+
+        each = self.models
+        places = list(dict.fromkeys(place for row in each for place in row.coefficients))
+        columns = {
+            "model": column([row.name for row in each], "restitution model"),
+            "standing": column([row.standing.value for row in each], "how it stands against the measurements"),
+        }
+        for name, meaning in (("coefficients", "coefficient of restitution"), ("low", "2.5 %"), ("high", "97.5 %")):
+            for place in places:
+                values = [getattr(row, name).get(place, math.nan) for row in each]
+                key = "coefficient" if name == "coefficients" else name
+                columns[f"{key}_{place.replace(' ', '_')}"] = column(values, f"{meaning}, landing on {place}")
+        columns["energy_left"] = column([row.energy_left for row in each], "energy left after both feet")
+        columns["impacts_to_half"] = column([row.impacts_to_half for row in each], "impacts that halve the energy")
+        for name, meaning in (("bias", "mean of model minus measurement"), ("rmse", "root mean square error of r")):
+            values = [math.nan if row.record is None else getattr(row.record, name) for row in each]
+            columns[name] = column(values, meaning)
+        for end in ("value", "low", "high"):
+            values = [math.nan if row.record is None else getattr(row.record.behind, end) for row in each]
+            columns["behind" if end == "value" else f"behind_{end}"] = column(values, "rmse less that of the closest")
+        provenance = {
+            "prediction": self.prediction,
+            "envelope": ", ".join(self.envelope),
+            "advice": " ".join(self.advice),
+        }
+        return Table("model", columns, provenance)
+
+    def to_xarray(self) -> "xr.Dataset":
+        """Return the models as a labelled dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over `model`, with units; what is recommended is in its attributes.
+        """
+        from rocking.tables import to_dataset
+
+        return to_dataset(self.exported())
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Return the models as a table.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row a model, units in the column names.
+        """
+        from rocking.tables import to_dataframe
+
+        return to_dataframe(self.exported())
