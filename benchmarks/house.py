@@ -22,7 +22,7 @@ FLOORS = (
     ("quantities",),
     ("tables", "statistics"),
     ("bodies", "motions"),
-    ("restitution",),
+    ("restitution", "examples"),
     ("dynamics",),
     ("studies",),
     ("evidence",),

@@ -10,11 +10,12 @@ from tempfile import TemporaryDirectory
 
 import xarray
 
+from rocking import examples
 from rocking.campaigns import CampaignInterrupted
 from rocking.campaigns.jobs import Job, JobFolder, export, forecast
 from rocking.plots import overturning_map_picture, write
 
-job = Job.read(Path(__file__).parent / "jobs" / "overturning_map.toml")
+job = Job.read(examples.path("overturning-map"))
 print(f"{job.document.campaign.name}: {dict(job.study.dims)}")
 ahead = forecast(job)
 print(f"{ahead.histories} histories, {ahead.chunks} chunk(s), {ahead.disk / 1e6:.1f} MB")

@@ -6,13 +6,14 @@ An inventory of ten objects at PGA 0.3 g: which of them fall over, the worst fir
 
 from pathlib import Path
 
+from rocking import examples
 from rocking.plots import inventory_picture, write
 from rocking.reports.inventory_folder import write_inventory
 from rocking.studies.inventory import assess, read_inventory
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.table import advice, model_note, sentence
 
-inventory = read_inventory(Path(__file__).with_name("inventory.csv"))
+inventory = read_inventory(examples.path("objects"))
 hazard = Hazard.of_family("point-source", IntensityLevel.of("PGA", "0.3g"), count=200, seed=1)
 assessment = assess(inventory, hazard)
 

@@ -10,7 +10,7 @@ import rocking as rk
 from rocking.evidence._coefficient_table import outside_evidence
 from rocking.plots import coefficient_picture, write
 
-statue = rk.read_body(Path(__file__).parent / "bodies" / "statue_on_pedestal.toml")
+statue = rk.examples.body("statue")
 prediction = rk.evidence.calibrate().predict(statue)
 print(f"r = {prediction.coefficient:.3f}, 95 % interval {prediction.low:.3f} to {prediction.high:.3f}")
 assert prediction.low < prediction.coefficient < prediction.high

@@ -31,8 +31,8 @@ spectrum = response_spectrum(motion, np.geomspace(0.05, 4.0, 60))
 print(f"  largest Sa {spectrum.pseudo_acceleration.max():.3g} m/s2")
 write(ground_motion_picture(motion), folder / "record.png")
 
-statue = rk.read_body(Path(__file__).parent / "bodies" / "stele.toml")
-response = rk.simulate(statue, scaled_to(motion, "pga", 0.4 * conventions.g), restitution="ked")
+stele = rk.examples.body("stele")
+response = rk.simulate(stele, scaled_to(motion, "pga", 0.4 * conventions.g), restitution="ked")
 print(response.summary)
 response.to_csv(folder / "response.csv")
 assert len((folder / "response.csv").read_text(encoding="utf-8").splitlines()) > response.time.size

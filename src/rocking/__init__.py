@@ -6,7 +6,7 @@ from rocking.lazy import exports, presenters
 from rocking.version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from rocking import bodies, dynamics, errors, evidence, motions, plots, reports, restitution, studies
+    from rocking import bodies, dynamics, errors, evidence, examples, motions, plots, reports, restitution, studies
     from rocking.bodies import Block, MassPoints, Region, Section, Solid
     from rocking.bodies.formats import read_body
     from rocking.campaigns import Campaign
@@ -36,6 +36,7 @@ __all__ = [
     "dynamics",
     "errors",
     "evidence",
+    "examples",
     "fragility",
     "free_rocking",
     "inventory",
@@ -72,6 +73,7 @@ __getattr__, __dir__ = exports(
         "dynamics": "rocking.dynamics",
         "errors": "rocking.errors",
         "evidence": "rocking.evidence",
+        "examples": "rocking.examples",
         "fragility": "rocking.studies.fragility",
         "free_rocking": "rocking.dynamics",
         "inventory": "rocking.studies.inventory",

@@ -19,7 +19,6 @@ import rocking as rk
 from rocking import conventions
 
 ROOT = Path(__file__).parents[2]
-EXAMPLES = ROOT / "examples"
 Case = Callable[[Path], Any]
 
 STEP = 0.015625
@@ -309,10 +308,10 @@ ASKED = {
 
 def inputs(folder: Path) -> None:
     """Put the files that commands read into a folder."""
-    shutil.copy(EXAMPLES / "bodies" / "statue_on_pedestal.toml", folder / "statue.toml")
-    shutil.copy(EXAMPLES / "responses" / "block_under_a_pulse.toml", folder / "response.toml")
-    shutil.copy(EXAMPLES / "responses" / "statue_let_go.toml", folder / "free.toml")
-    shutil.copy(EXAMPLES / "inventory.csv", folder / "inventory.csv")
+    shutil.copy(rk.examples.path("statue"), folder / "statue.toml")
+    shutil.copy(rk.examples.path("block-under-a-pulse"), folder / "response.toml")
+    shutil.copy(rk.examples.path("statue-let-go"), folder / "free.toml")
+    shutil.copy(rk.examples.path("objects"), folder / "inventory.csv")
     (folder / "record.txt").write_text(RECORD, encoding="utf-8")
     (folder / "solid.toml").write_text(SOLID_FILE, encoding="utf-8")
 
@@ -355,7 +354,7 @@ def examples() -> dict[str, Case]:
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         return {"code": done.returncode, "out": done.stdout.splitlines(), "files": trees.of_files(folder)}
 
-    scripts = sorted(EXAMPLES.glob("*.py"))
+    scripts = sorted((ROOT / "examples").glob("*.py"))
     return {path.stem: lambda folder, path=path: run(path, folder) for path in scripts}
 
 
@@ -412,7 +411,7 @@ def campaigns() -> dict[str, Case]:
     """Campaigns by the command line: what is said, every export that there is, and the bytes of the folder."""
 
     def run(name: str, folder: Path) -> Any:
-        shutil.copy(EXAMPLES / "inventory.csv", folder / "inventory.csv")
+        shutil.copy(rk.examples.path("objects"), folder / "inventory.csv")
         (folder / "job.toml").write_text(_toml(job(name) if name in STUDIES else INVENTORY), encoding="utf-8")
         said: dict[str, Any] = {}
 

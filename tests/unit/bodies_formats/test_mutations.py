@@ -5,22 +5,22 @@ import math
 import random
 import re
 import tomllib
-from pathlib import Path
 
 import pytest
 
+from rocking import examples
 from rocking.bodies import Body
 from rocking.bodies.formats import body_file, body_from_toml, read_body, section_from_geojson, section_from_wkt
 from rocking.errors import RockingError
 
-EXAMPLES = Path(__file__).parents[3] / "examples" / "bodies"
+EXAMPLES = examples.path("statue").parent
 TOML = [path.read_text(encoding="utf-8") for path in sorted(EXAMPLES.glob("*.toml"))] + [
     'units = "m"\n[mass_points]\npoints = [[0, 1], [0.5, 2]]\nmasses = [1, 2.5]\nfeet = [-1, 1]\ncontact = [[-1, 0]]',
     'units = "in"\nname = "x"\n[block]\nwidth = 10\nheight = 20.5\ndensity = 1e3\nfeet = [1, 9]',
     'units = "ft"\n[ellipse]\nwidth = 1\nheight = 2\nsides = 12',
     'units = "m"\n[[section.region]]\nwkt = "POLYGON ((0 0, 1 0, 1 2, 0 2, 0 0))"',
 ]
-WKT = [(EXAMPLES / "transformer_cabinet.wkt").read_text(encoding="utf-8"), "MULTIPOLYGON (((0 0, 1 0, 1 2, 0 0)))"]
+WKT = [(EXAMPLES / "cabinet.wkt").read_text(encoding="utf-8"), "MULTIPOLYGON (((0 0, 1 0, 1 2, 0 0)))"]
 RING = [[0, 0], [1, 0], [1.5, 2], [0, 2], [0, 0]]
 SQUARE = {"type": "Polygon", "coordinates": [RING, [[0.2, 0.5], [0.8, 0.5], [0.5, 1], [0.2, 0.5]]]}
 FEATURE = {"type": "Feature", "properties": {"density": 2400.0}, "geometry": SQUARE}

@@ -33,7 +33,7 @@ def own(tmp_path):
 def test_cor_json_and_csv(run, tmp_path):
     """JSON and CSV hold the same numbers as each other, for both feet of an asymmetric body."""
     path = tmp_path / "cor.csv"
-    statue = ROOT / "examples" / "bodies" / "statue_on_pedestal.toml"
+    statue = rk.examples.path("statue")
     code, out, _ = run("cor", statue, "--json", "--out", path)
     answer = json.loads(out)
     assert code == 0

@@ -3,13 +3,13 @@
 import csv
 import math
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
 import rocking as rk
+from rocking import examples
 from rocking.cli import main
 from rocking.cli.page import Page, plain
 from rocking.cli.responses import RockingAnswer
@@ -23,7 +23,7 @@ BLOCK = rk.Block(width=0.5, height=2.0)
 SIZE = ("--width", "0.5", "--height", "2")
 PULSE = "sine:amplitude=3.2,period=0.8"
 ALPHA = math.atan(0.25)
-STATUE = Path(__file__).parents[3] / "examples" / "bodies" / "statue_on_pedestal.toml"
+STATUE = examples.path("statue")
 MINE = """import rocking as rk
 
 

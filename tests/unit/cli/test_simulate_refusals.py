@@ -1,10 +1,9 @@
 """`rocking simulate` refuses bad input in one sentence with exit code 2."""
 
-from pathlib import Path
-
 import pytest
 
 import rocking as rk
+from rocking import examples
 from rocking.evidence import _coefficient_table
 from rocking.restitution import model
 from rocking.spec.response import ResponseProblem
@@ -12,7 +11,7 @@ from rocking.spec.response import ResponseProblem
 COMMAND = "simulate"
 
 SIZE = ("--width", "0.5", "--height", "2")
-STATUE = Path(__file__).parents[3] / "examples" / "bodies" / "statue_on_pedestal.toml"
+STATUE = examples.path("statue")
 PULSE = "sine:amplitude=3.2,period=0.8"
 
 

@@ -4,11 +4,13 @@ from pathlib import Path
 
 import pytest
 
-JOBS = Path(__file__).parents[3] / "examples" / "jobs"
+from rocking import examples
+
+JOBS = examples.path("overturning-map").parent
 KINDS = {
-    "map": ["overturning_map", "refined_map"],
-    "minimum": ["minimum_acceleration"],
-    "spectrum": ["rocking_spectrum"],
+    "map": ["overturning-map", "refined-map"],
+    "minimum": ["minimum-acceleration"],
+    "spectrum": ["rocking-spectrum"],
     "fragility": ["stripes", "cloud", "incremental"],
     "inventory": ["inventory"],
 }

@@ -28,7 +28,7 @@ from rocking.errors import RockingError
 
 router = APIRouter(prefix="/api/studies", tags=["studies"])
 _JOB = """\
-The tables of a job file (`examples/jobs/*.toml`) as JSON. Records are named by the SHA-256 under which they were
+The tables of a job file (`rocking.examples`) as JSON. Records are named by the SHA-256 under which they were
 uploaded, `{"records": ["64 hexadecimal digits"]}`; bodies are given as they are, not by the names of files."""
 Whole = Annotated[int, Field(ge=0, le=10_000_000)]
 _ONE = answered(StudyFacts, "State and progress.")

@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rocking import examples
 from rocking.app.errors import TooLarge
 from rocking.app.inputs import MOTION_KEYS
 from rocking.app.plain_text import shown
@@ -28,7 +29,7 @@ from rocking.spec.document import MotionTable
 
 pytestmark = pytest.mark.timed
 
-EXAMPLES = Path(__file__).parents[4] / "examples" / "jobs"
+EXAMPLES = examples.path("overturning-map").parent
 LAUNCHED = [
     path for path in sorted(EXAMPLES.glob("*.toml")) if tomllib.loads(path.read_text())["campaign"]["kind"] in KINDS
 ]

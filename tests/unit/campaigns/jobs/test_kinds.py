@@ -1,11 +1,10 @@
 """Every kind of job: the same bits as the Python call that a user would have made."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import rocking as rk
+from rocking import examples
 from rocking.campaigns.jobs import Job, analyses, export
 from rocking.errors import InvalidValueError
 from rocking.spec import document
@@ -202,10 +201,9 @@ def test_key_knows_what_decides(text):
         assert Job.of_text(whole.replace(old, new)).study.histories.key() != key
 
 
-EXAMPLES = sorted((Path(__file__).parents[4] / "examples" / "jobs").glob("*.toml"))
+EXAMPLES = sorted(examples.path("stripes").parent.glob("*.toml"))
 
 
-@pytest.mark.skipif(not EXAMPLES, reason="the examples are in the repository only")
 def test_examples():
     """There is an example of every kind; each is taken, and computes without a failed history."""
     kinds = set()

@@ -2,19 +2,19 @@
 
 import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import rocking as rk
+from rocking import examples
 from rocking.cli import main
 from rocking.errors import InvalidValueError
 from rocking.spec.document import ResponseDocument
 from rocking.spec.reading import InputFiles, is_response, located, read_text, validated
 from rocking.spec.response import ResponseProblem, response_problem
 
-EXAMPLES = sorted((Path(__file__).parents[4] / "examples" / "responses").glob("*.toml"))
+EXAMPLES = sorted(examples.path("statue-let-go").parent.glob("*.toml"))
 BODY = '[body]\nunits = "cm"\nwidth = 50\nheight = 200\n'
 TEXT = f'[response]\nassumed_friction = 0.4\n{BODY}[motion]\npulse = "sine:amplitude=3,period=0.8"\nscale = 1.2\n'
 

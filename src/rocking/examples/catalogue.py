@@ -1,0 +1,80 @@
+"""What there is, as a table that prints well on a terminal and in a notebook."""
+
+from collections.abc import Iterator, Mapping
+from html import escape
+
+from rocking.examples.table import EXAMPLES, Example
+
+
+class Catalogue(Mapping[str, Example]):
+    """Examples by name; it prints as a table.
+
+    Parameters
+    ----------
+    examples : mapping of str to Example
+        What it holds.
+    """
+
+    def __init__(self, examples: Mapping[str, Example]) -> None:
+        self._examples = dict(examples)
+
+    def __getitem__(self, name: str) -> Example:
+        """Return one example."""
+        return self._examples[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Go through the names."""
+        return iter(self._examples)
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self._examples)
+
+    def __repr__(self) -> str:
+        """Return a line for each: name, kind, what it is."""
+        rows = [(each.name, each.kind, each.title) for each in self.values()]
+        name, kind = (max((len(row[k]) for row in rows), default=0) for k in (0, 1))
+        return "\n".join(f"{row[0]:<{name}}  {row[1]:<{kind}}  {row[2]}" for row in rows)
+
+    def _repr_html_(self) -> str:
+        head = "".join(f"<th>{word}</th>" for word in ("name", "kind", "what it is"))
+        rows = "".join(
+            f"<tr><td><code>{each.name}</code></td><td>{each.kind}</td><td>{escape(each.title)}</td></tr>"
+            for each in self.values()
+        )
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+
+
+def catalogue(kind: str | None = None) -> Catalogue:
+    """Return the examples of the package, or those of one kind.
+
+    Parameters
+    ----------
+    kind : {"body", "list", "question", "job"}, optional
+        Which ones; all if not given.
+
+    Returns
+    -------
+    Catalogue
+        By name, in the order in which they are shown.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such kind.
+
+    Examples
+    --------
+    >>> catalogue("body")
+    statue   body  a marble figure that leans, on a pedestal of brick with its feet set in
+    stele    body  a tapered stele of limestone that leans to the right
+    pier     body  a masonry pier with a shaft inside it
+    cabinet  body  a cabinet whose equipment stands on its left, drawn in WKT without a unit
+    >>> list(catalogue("list"))
+    ['objects']
+    """
+    from rocking import checks
+
+    kinds = {each.kind for each in EXAMPLES.values()}
+    kind = None if kind is None else checks.one_of("kind", kind, sorted(kinds))
+    return Catalogue({name: each for name, each in EXAMPLES.items() if kind in {None, each.kind}})
