@@ -12,7 +12,7 @@ from rocking.version import SOFTWARE
 _MODULES = {"models": "catalogues", "formats": "catalogues"}
 COMMANDS = (
     "cor", "simulate", "map", "minimum", "spectrum", "fragility", "inventory", "paper", "models", "motion", "formats",
-    "serve",
+    "serve", "example",
 )  # fmt: skip
 
 

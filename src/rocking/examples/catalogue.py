@@ -2,8 +2,10 @@
 
 from collections.abc import Iterator, Mapping
 from html import escape
+from typing import get_args
 
-from rocking.examples.table import EXAMPLES, Example
+from rocking import checks
+from rocking.examples.table import EXAMPLES, Example, Kind
 
 
 class Catalogue(Mapping[str, Example]):
@@ -50,7 +52,7 @@ def catalogue(kind: str | None = None) -> Catalogue:
 
     Parameters
     ----------
-    kind : {"body", "list", "question", "job"}, optional
+    kind : {"body", "motion", "list", "question", "job"}, optional
         Which ones; all if not given.
 
     Returns
@@ -65,16 +67,15 @@ def catalogue(kind: str | None = None) -> Catalogue:
 
     Examples
     --------
-    >>> catalogue("body")
-    statue   body  a marble figure that leans, on a pedestal of brick with its feet set in
-    stele    body  a tapered stele of limestone that leans to the right
-    pier     body  a masonry pier with a shaft inside it
-    cabinet  body  a cabinet whose equipment stands on its left, drawn in WKT without a unit
-    >>> list(catalogue("list"))
-    ['objects']
+    >>> catalogue("motion")
+    near-fault        motion  one long pulse of velocity, 0.9 m/s in 1.2 s, within ordinary shaking
+    far-field         motion  an earthquake of magnitude 6.8 at 40 km on firm ground, scaled to 0.35 g
+    long              motion  a minute of strong shaking, scaled to 0.35 g
+    soft-soil         motion  a soft layer that swings at 0.8 Hz, scaled to 0.35 g
+    three-components  motion  motions along x, y and z, scaled to 0.4 g, 0.35 g and 0.2 g upwards
+    pulse             motion  a symmetric Ricker wavelet of 0.5 g and 1 s alone
+    >>> list(catalogue("body"))
+    ['statue', 'stele', 'pier', 'cabinet', 'transformer', 'rack', 'bust', 'column']
     """
-    from rocking import checks
-
-    kinds = {each.kind for each in EXAMPLES.values()}
-    kind = None if kind is None else checks.one_of("kind", kind, sorted(kinds))
+    kind = None if kind is None else checks.one_of("kind", kind, get_args(Kind))
     return Catalogue({name: each for name, each in EXAMPLES.items() if kind in {None, each.kind}})

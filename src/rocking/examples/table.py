@@ -1,79 +1,171 @@
 """The one table of examples: what each is, its files, and the commands that show it."""
 
-from collections.abc import Mapping
+import shlex
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any, Literal
 
-Kind = Literal["body", "list", "question", "job"]
+from rocking.examples import motions
+
+Kind = Literal["body", "motion", "list", "question", "job"]
 
 
 @dataclass(frozen=True)
 class Example:
-    """One example of the package.
+    """One example of the package; everything in it is invented for illustration.
 
     Parameters
     ----------
     name : str
         By which it is asked for.
-    kind : {"body", "list", "question", "job"}
-        A body file, a list of objects, a question of one response, or a job of many.
+    kind : {"body", "motion", "list", "question", "job"}
+        A body, a ground motion, a list of objects, a question of one response, or a job of many.
     title : str
         What it is, on one line.
-    files : tuple of str
-        Its files, that of the example itself first; a path within the package.
     commands : tuple of str
-        What to type, where these files are, to see it.
+        What to type in a folder with its files, to see it.
+    files : tuple of str
+        Its files within the package, that of the example itself first; a motion is computed and has none.
+    records : tuple of str
+        Names of the motions whose records the commands need too.
     options : mapping
         What `read_body` is told beside the file, where that does not state it.
+    make : callable, optional
+        What makes a motion; takes the seed, or nothing.
+    model : str
+        By which model a motion is made, with its source.
+    seed : int, optional
+        Seed of a motion unless asked otherwise; None for one without chance.
     """
 
     name: str
     kind: Kind
     title: str
-    files: tuple[str, ...]
     commands: tuple[str, ...]
+    files: tuple[str, ...] = ()
+    records: tuple[str, ...] = ()
     options: Mapping[str, Any] = field(default_factory=dict)
+    make: Callable[..., Any] | None = None
+    model: str = ""
+    seed: int | None = None
+
+    @property
+    def writes(self) -> tuple[str, ...]:
+        """Its files, and records of its motions, as they are called in a folder of the user."""
+        return (*(file.rpartition("/")[2] for file in self.files), *(f"{name}.csv" for name in self.records))
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Files and folders that the commands write."""
+        words = [word for command in self.commands for word in shlex.split(command)]
+        return tuple(after for word, after in pairwise(words) if word == "--out")
 
 
-def _body(name: str, title: str) -> Example:
-    commands = (f"rocking cor {name}.toml --out {name}.png",)
-    return Example(name, "body", title, (f"bodies/{name}.toml",), commands)
+def _body(
+    name: str, shaking: str, title: str, *, options: Mapping[str, Any] | None = None, ending: str = "toml"
+) -> Example:
+    """Return a body; shaking: what stands behind it in `rocking simulate`."""
+    file, options = f"{name}.{ending}", options or {}
+    stated = "".join(f" --{key} {value}" for key, value in options.items())
+    commands = f"rocking cor {file}{stated}", f"rocking simulate {file} {shaking}{stated} --out {name}.png"
+    records = tuple(each for each in _MOTIONS if f"{each}.csv" in shaking)
+    return Example(name, "body", title, commands, (f"bodies/{file}",), records, options)
+
+
+def _motion(name: str, make: Callable[..., Any], model: str, title: str, seed: int | None = 1) -> Example:
+    commands = (f"rocking motion {name}.csv --out {name}.png",)
+    return Example(name, "motion", title, commands, records=(name,), make=make, model=model, seed=seed)
 
 
 def _question(name: str, title: str) -> Example:
-    commands = (f"rocking simulate {name}.toml --out {name}.png",)
-    return Example(name, "question", title, (f"questions/{name}.toml",), commands)
+    return Example(
+        name, "question", title, (f"rocking simulate {name}.toml --out {name}.png",), (f"questions/{name}.toml",)
+    )
 
 
 def _job(name: str, command: str, title: str) -> Example:
-    return Example(name, "job", title, (f"jobs/{name}.toml",), (f"rocking {command} {name}.toml --out {name}.png",))
+    return Example(name, "job", title, (f"rocking {command} {name}.toml --out {name}.png",), (f"jobs/{name}.toml",))
 
+
+def _campaign(name: str, ending: str, title: str) -> Example:
+    """Return a job of several bodies or restitutions, which takes a folder of its own; ending: of what is exported."""
+    commands = (
+        f"rocking campaign run {name}.toml --out {name}",
+        f"rocking campaign export {name} --out {name}.{ending}",
+    )
+    return Example(name, "job", title, commands, (f"jobs/{name}.toml",))
+
+
+_AXES = " ".join(f"--motion {axis}=three-components.csv#{axis}" for axis in "xyz")
+_MOTIONS = {
+    each.name: each
+    for each in (
+        _motion(
+            "near-fault",
+            motions.near_fault,
+            f"pulse of Mavroeidis & Papageorgiou (2003) on {motions.FILTERED}",
+            "one long pulse of velocity, 0.9 m/s in 1.2 s, within ordinary shaking",
+        ),
+        _motion(
+            "far-field",
+            motions.far_field,
+            "stochastic point source (Boore 2003)",
+            "an earthquake of magnitude 6.8 at 40 km on firm ground, scaled to 0.35 g",
+        ),
+        _motion("long", motions.long, motions.FILTERED, "a minute of strong shaking, scaled to 0.35 g"),
+        _motion(
+            "soft-soil",
+            motions.soft_soil,
+            "layer of soil on white noise (Kanai 1957, Tajimi 1960)",
+            "a soft layer that swings at 0.8 Hz, scaled to 0.35 g",
+        ),
+        Example(
+            "three-components",
+            "motion",
+            "motions along x, y and z, scaled to 0.4 g, 0.35 g and 0.2 g upwards",
+            (
+                "rocking motion x=three-components.csv#x z=three-components.csv#z --out three-components.png",
+                "rocking motion three-components.csv#y",
+            ),
+            records=("three-components",),
+            make=motions.three_components,
+            model=motions.FILTERED,
+            seed=1,
+        ),
+        _motion("pulse", motions.pulse, "Ricker wavelet", "a symmetric Ricker wavelet of 0.5 g and 1 s alone", None),
+    )
+}
 
 _ALL = (
-    _body("statue", "a marble figure that leans, on a pedestal of brick with its feet set in"),
-    _body("stele", "a tapered stele of limestone that leans to the right"),
-    _body("pier", "a masonry pier with a shaft inside it"),
-    Example(
+    _body("statue", "near-fault.csv", "a marble figure that leans, on a pedestal of brick with its feet set in"),
+    _body("stele", "far-field.csv", "a tapered stele of limestone that leans to the right"),
+    _body("pier", "near-fault.csv --scale 1.3", "a masonry pier with a shaft inside it"),
+    _body(
         "cabinet",
-        "body",
+        "soft-soil.csv --scale 1.2",
         "a cabinet whose equipment stands on its left, drawn in WKT without a unit",
-        ("bodies/cabinet.wkt",),
-        ("rocking cor cabinet.wkt --units mm --density 300 --out cabinet.png",),
-        {"units": "mm", "density": 300.0},
+        options={"units": "mm", "density": 300},
+        ending="wkt",
     ),
+    _body("transformer", "near-fault.csv --scale 1.5", "a power transformer: tank, radiators, conservator, bushings"),
+    _body("rack", "near-fault.csv --scale 1.5", "a rack of instruments as seven masses, the heaviest low on the left"),
+    _body("bust", _AXES, "in space: a marble bust of typical proportions on a pedestal, looking to one side"),
+    _body("column", "pulse.csv", "in space: three marble drums off their axis as one body, on a round base that rolls"),
+    *_MOTIONS.values(),
     Example(
         "objects",
         "list",
         "ten objects of a museum, in centimetres and kilograms",
-        ("jobs/objects.csv",),
         ("rocking inventory objects.csv --pga 0.3g --count 80 --out objects.html",),
+        ("jobs/objects.csv",),
     ),
     _question("block-under-a-pulse", "a cabinet under one sine, where the model of the impact decides"),
     _question("statue-let-go", "a statue that stands off its middle, let go to the left"),
     _job("overturning-map", "map", "which sine pulses overturn a block, and how: 60 x 60 pulses"),
     _job("refined-map", "map", "the same, refined along the boundaries, which come as polylines"),
-    _job("minimum-acceleration", "minimum", "every amplitude at which motions begin or cease to overturn two blocks"),
-    _job("rocking-spectrum", "spectrum", "how far blocks of all sizes rock on soft ground, under two models"),
+    _campaign("minimum-acceleration", "png", "every amplitude at which motions begin or cease to overturn two blocks"),
+    _campaign("rocking-spectrum", "png", "how far blocks of all sizes rock on soft ground, under two models"),
     _job("stripes", "fragility", "how likely a column is to rock and to overturn at twelve levels"),
     _job("cloud", "fragility", "what peak ground velocity says about a statue under motions as they are"),
     _job("incremental", "fragility", "levels at which pulses overturn a block, and those at which it stands again"),
@@ -81,19 +173,10 @@ _ALL = (
         "inventory",
         "job",
         "which objects of a list stay standing in eighty motions of 0.3 g",
-        ("jobs/inventory.toml", "jobs/objects.csv"),
         ("rocking inventory inventory.toml --out inventory.html",),
+        ("jobs/inventory.toml", "jobs/objects.csv"),
     ),
-    Example(
-        "histories",
-        "job",
-        "two blocks, two pulses, fifty scales, coefficients drawn anew at every impact",
-        ("jobs/histories.toml",),
-        (
-            "rocking campaign run histories.toml --out histories",
-            "rocking campaign export histories --out histories.csv",
-        ),
-    ),
+    _campaign("histories", "csv", "two blocks, two pulses, fifty scales, coefficients drawn anew at every impact"),
 )
 
 EXAMPLES: dict[str, Example] = {each.name: each for each in _ALL}

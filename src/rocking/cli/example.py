@@ -1,0 +1,77 @@
+"""`rocking example`: what comes with the package, and one of it run in the current folder."""
+
+import shlex
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from rocking import checks, examples
+from rocking.cli.page import Page, deliver
+from rocking.errors import InvalidValueError
+
+
+def example(
+    name: Annotated[str | None, typer.Argument(help="One example; all are listed if left out.")] = None,
+    listed: Annotated[bool, typer.Option("--list", help="Only say what it would write and run.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Write over files of the same names.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print as JSON what there is, and run nothing.")] = False,
+) -> None:
+    """Run an example in this folder: write its files, show the commands and what they answer; or list what there is."""
+    known = examples.catalogue()
+    if name is None or listed or as_json:
+        chosen = known if name is None else {name: known[checks.one_of("example", name, known)]}
+        deliver(_Listed(chosen, whole=name is None), as_json=as_json)
+        return
+    _run(known[checks.one_of("example", name, known)], force=force)
+
+
+@dataclass(frozen=True)
+class _Listed:
+    """Some examples; whole: as a table of all of them."""
+
+    chosen: Mapping[str, examples.Example]
+    whole: bool
+
+    def facts(self) -> list[dict[str, Any]]:
+        names = ("name", "kind", "title", "writes", "commands", "outputs")
+        return [{name: getattr(one, name) for name in names} for one in self.chosen.values()]
+
+    def show(self, page: Page) -> None:
+        if self.whole:
+            rows = [(one.name, one.kind, one.title) for one in self.chosen.values()]
+            page.table(("name", "kind", "what it is"), rows, ("name", "kind", "what it is"), whole={0, 1})
+            page.line("\nrocking example NAME runs one in this folder; in Python rk.examples has them too.")
+            return
+        for one in self.chosen.values():
+            page.line(f"{one.name}: {one.title}")
+            page.line(f"writes {', '.join(one.writes)}, and by its commands {', '.join(one.outputs)}")
+            for command in one.commands:
+                page.line(f"$ {command}", "bold")
+
+
+def _run(chosen: examples.Example, *, force: bool) -> None:
+    """Write the files and run the commands, one after the other as if they were typed; the first that fails ends it."""
+    from rocking.cli import main
+
+    page = Page()
+    there = [name for name in chosen.outputs if Path(name).exists()]
+    if folder := next((name for name in there if Path(name).is_dir()), None):
+        raise InvalidValueError(f"{folder}: a folder of that name is there already; take another folder")
+    if there and not force:
+        raise InvalidValueError(f"{', '.join(there)}: there already; take another folder, or write over it with force")
+    written = examples.write(chosen.name, force=force)
+    page.line(f"{chosen.name}: {chosen.title}\n")
+    for path in written:
+        page.line(f"wrote {path}")
+    for command in chosen.commands:
+        page.line(f"\n$ {command}", "bold")
+        sys.stdout.flush()
+        try:
+            main(shlex.split(command)[1:])
+        except SystemExit as end:
+            if end.code:
+                raise
