@@ -62,7 +62,7 @@ def _run(chosen: examples.Example, *, force: bool) -> None:
     if folder := next((name for name in there if Path(name).is_dir()), None):
         raise InvalidValueError(f"{folder}: a folder of that name is there already; take another folder")
     if there and not force:
-        raise InvalidValueError(f"{', '.join(there)}: there already; take another folder, or write over it with force")
+        raise InvalidValueError(f"{', '.join(there)}: there already; take another folder, or --force")
     written = examples.write(chosen.name, force=force)
     page.line(f"{chosen.name}: {chosen.title}\n")
     for path in written:
