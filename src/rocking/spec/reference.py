@@ -2,10 +2,13 @@
 
 import types
 from collections.abc import Iterator
+from itertools import chain
 from typing import Any, Literal, Union, get_args, get_origin
 
+from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
+from rocking.bodies.formats import schema
 from rocking.spec import document
 from rocking.spec.fields import JobTable, Values
 
@@ -25,22 +28,45 @@ _TABLES: dict[str, tuple[type[JobTable], str]] = {
     "export": (document.ExportTable, "`rocking campaign export`"),
 }  # fmt: skip
 
+_BODIES: dict[str, type[BaseModel]] = {
+    "the file": schema.BodyFile,
+    "block": schema.BlockTable,
+    "trapezoid": schema.TrapezoidTable,
+    "ellipse": schema.EllipseTable,
+    "regular_polygon": schema.RegularPolygonTable,
+    "section": schema.SectionTable,
+    "[section.region]": schema.RegionTable,
+    "mass_points": schema.MassPointsTable,
+    "solid": schema.SolidTable,
+    "[solid.part]": schema.PartTable,
+    "box": schema.BoxTable,
+    "cylinder] and [cone": schema.UprightTable,
+    "frustum": schema.FrustumTable,
+    "sphere": schema.SphereTable,
+    "ellipsoid": schema.EllipsoidTable,
+    "extrusion": schema.ExtrusionTable,
+    "revolution": schema.RevolutionTable,
+    "mesh": schema.MeshTable,
+    "turned": schema.TurnTable,
+}
+
 
 def reference() -> str:
-    """Return a table of keys for every table of a question: name, kind, what it has if left out, meaning and unit."""
-    return "\n".join(_lines()) + "\n"
+    """Return a table of keys for every table of a question and of a body file: name, kind, usual value, meaning."""
+    questions = [_table(name, table, f" Of {where}.") for name, (table, where) in _TABLES.items()]
+    bodies = [_table(name, table) for name, table in _BODIES.items()]
+    return "\n".join([*chain(*questions), "## The keys of body files\n", *chain(*bodies)]) + "\n"
 
 
-def _lines() -> Iterator[str]:
-    for name, (table, where) in _TABLES.items():
-        yield f"### [{name}]"
-        yield f"\n{(table.__doc__ or '').splitlines()[0]} Of {where}.\n"
-        yield "| key | kind | if left out | meaning |"
-        yield "|---|---|---|---|"
-        for key, field in table.model_fields.items():
-            usual = "needed" if field.is_required() else _usual(field.default)
-            yield f"| `{field.alias or key}` | {_kind(field.annotation)} | {usual} | {field.description or ''} |"
-        yield ""
+def _table(name: str, table: type[BaseModel], where: str = "") -> Iterator[str]:
+    yield "### The file" if name == "the file" else f"### [{name}]"
+    yield f"\n{(table.__doc__ or '').splitlines()[0]}{where}\n"
+    yield "| key | kind | if left out | meaning |"
+    yield "|---|---|---|---|"
+    for key, field in table.model_fields.items():
+        usual = "needed" if field.is_required() else _usual(field.default)
+        yield f"| `{field.alias or key}` | {_kind(field.annotation)} | {usual} | {field.description or ''} |"
+    yield ""
 
 
 def _usual(value: Any) -> str:
@@ -55,11 +81,13 @@ def _kind(annotation: Any) -> str:
         return ", ".join(str(one).lower() if isinstance(one, bool) else str(one) for one in inner)
     if origin in {Union, types.UnionType}:
         return " or ".join(dict.fromkeys(_kind(one) for one in inner if one is not type(None)))
+    if origin is dict:
+        return "table"
     if origin is list:
         return f"list of {_kind(inner[0])}"
     if isinstance(annotation, type) and issubclass(annotation, Values):
         return "numbers" if annotation is Values else "axis and numbers"
-    if isinstance(annotation, type) and issubclass(annotation, JobTable):
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return "table"
     names = {str: "text", float: "number", int: "whole number", bool: "true or false"}
     return names.get(annotation, _kind(inner[0]) if inner else "any")

@@ -31,53 +31,57 @@ class StrictTable(BaseModel):
 class ShapeTable(StrictTable):
     """What every section-like shape has beside its dimensions, in the file's unit and kg/m3."""
 
-    density: Positive | None = None
-    depth: Positive | None = None
-    feet: Pair | None = None
+    density: Positive | None = Field(None, description="density; 2400 if neither the file nor the user says [kg/m3]")
+    depth: Positive | None = Field(None, description="depth out of the plane; 1 m if left out [unit of the file]")
+    feet: Pair | None = Field(
+        None, description="positions of the left and right foot; the ends of the base if left out [unit of the file]"
+    )
 
 
 class BlockTable(ShapeTable):
     """A rectangle; with feet it becomes a `Section`."""
 
-    width: Positive
-    height: Positive
+    width: Positive = Field(description="full width [unit of the file]")
+    height: Positive = Field(description="full height [unit of the file]")
 
 
 class TrapezoidTable(ShapeTable):
     """A trapezoid, upright or leaning."""
 
-    base: Positive
-    top: Positive
-    height: Positive
-    lean: float = 0.0
+    base: Positive = Field(description="width at the ground [unit of the file]")
+    top: Positive = Field(description="width at the top [unit of the file]")
+    height: Positive = Field(description="height [unit of the file]")
+    lean: float = Field(
+        0.0, description="how far the middle of the top lies to the right of that of the base [unit of the file]"
+    )
 
 
 class EllipseTable(ShapeTable):
     """An ellipse as an inscribed polygon."""
 
-    width: Positive
-    height: Positive
-    sides: Annotated[int, Field(ge=3, le=100_000)] = 64
+    width: Positive = Field(description="full width [unit of the file]")
+    height: Positive = Field(description="full height [unit of the file]")
+    sides: Annotated[int, Field(ge=3, le=100_000)] = Field(64, description="sides of the polygon in its place")
 
 
 class RegularPolygonTable(ShapeTable):
     """A regular polygon on one of its sides."""
 
-    sides: Annotated[int, Field(ge=3, le=100_000)]
-    radius: Positive
+    sides: Annotated[int, Field(ge=3, le=100_000)] = Field(description="number of sides")
+    radius: Positive = Field(description="from the centre to a corner [unit of the file]")
 
 
 class RegionTable(StrictTable):
     """A polygon, or the polygons of a text or of a file beside the body file."""
 
-    outline: Ring | None = None
-    holes: list[Ring] | None = None
-    wkt: str | None = None
-    geojson: str | None = None
-    dxf: str | None = None
-    units: UnitName | None = None
-    layers: dict[str, Positive] | None = None
-    density: Positive | None = None
+    outline: Ring | None = Field(None, description="corners, either way round [unit of the file]")
+    holes: list[Ring] | None = Field(None, description="rings cut out [unit of the file]")
+    wkt: str | None = Field(None, description="a POLYGON or MULTIPOLYGON, as text")
+    geojson: str | None = Field(None, description="a file of GeoJSON beside the body file")
+    dxf: str | None = Field(None, description="a drawing beside the body file")
+    units: UnitName | None = Field(None, description="unit of that text or file, where it differs")
+    layers: dict[str, Positive] | None = Field(None, description="densities by layer of the drawing [kg/m3]")
+    density: Positive | None = Field(None, description="density of this region [kg/m3]")
 
     @model_validator(mode="after")
     def _one_source(self) -> "RegionTable":
@@ -94,33 +98,37 @@ class RegionTable(StrictTable):
 class SectionTable(StrictTable):
     """Regions, feet, depth and ground."""
 
-    region: Annotated[list[RegionTable], Field(min_length=1)]
-    depth: Positive | None = None
-    feet: Pair | None = None
-    ground: float = 0.0
+    region: Annotated[list[RegionTable], Field(min_length=1)] = Field(
+        description="the regions, one table [[section.region]] each"
+    )
+    depth: Positive | None = Field(None, description="depth out of the plane [unit of the file]")
+    feet: Pair | None = Field(None, description="positions of the left and right foot [unit of the file]")
+    ground: float = Field(0.0, description="height of the ground [unit of the file]")
 
 
 class MassPointsTable(StrictTable):
     """Points, masses and feet, and where the base is flat."""
 
-    points: Annotated[list[Pair], Field(min_length=1)]
-    masses: Annotated[list[Mass], Field(min_length=1)]
-    feet: Pair
-    contact: list[Pair] | None = None
+    points: Annotated[list[Pair], Field(min_length=1)] = Field(description="positions [unit of the file]")
+    masses: Annotated[list[Mass], Field(min_length=1)] = Field(description="their masses [kg]")
+    feet: Pair = Field(description="positions of the left and right foot [unit of the file]")
+    contact: list[Pair] | None = Field(
+        None, description="stretches of the ground where the base is flat [unit of the file]"
+    )
 
 
 class BodyFile(StrictTable):
     """A body file: a unit, and one table that says what the body is."""
 
-    units: UnitName
-    name: str | None = None
-    note: str | None = None
-    block: BlockTable | None = None
-    trapezoid: TrapezoidTable | None = None
-    ellipse: EllipseTable | None = None
-    regular_polygon: RegularPolygonTable | None = None
-    section: SectionTable | None = None
-    mass_points: MassPointsTable | None = None
+    units: UnitName = Field(description="unit of all lengths")
+    name: str | None = Field(None, description="what the body is called")
+    note: str | None = Field(None, description="anything")
+    block: BlockTable | None = Field(None, description="what the body is, one a file")
+    trapezoid: TrapezoidTable | None = Field(None, description="what the body is, one a file")
+    ellipse: EllipseTable | None = Field(None, description="what the body is, one a file")
+    regular_polygon: RegularPolygonTable | None = Field(None, description="what the body is, one a file")
+    section: SectionTable | None = Field(None, description="what the body is, one a file")
+    mass_points: MassPointsTable | None = Field(None, description="what the body is, one a file")
 
     @model_validator(mode="after")
     def _one_body(self) -> "BodyFile":
@@ -152,87 +160,89 @@ MOST_PARTS = 500
 class BoxTable(StrictTable):
     """A box on z = 0, centred over the origin."""
 
-    width: Positive
-    depth: Positive
-    height: Positive
+    width: Positive = Field(description="along x [unit of the file]")
+    depth: Positive = Field(description="along y [unit of the file]")
+    height: Positive = Field(description="along z, upwards [unit of the file]")
 
 
 class UprightTable(StrictTable):
     """A cylinder or a cone on z = 0, its axis through the origin."""
 
-    diameter: Positive
-    height: Positive
+    diameter: Positive = Field(description="diameter, of a cone at the ground [unit of the file]")
+    height: Positive = Field(description="height [unit of the file]")
 
 
 class FrustumTable(StrictTable):
     """A cone cut off level."""
 
-    lower_diameter: Positive
-    upper_diameter: Positive
-    height: Positive
+    lower_diameter: Positive = Field(description="diameter below [unit of the file]")
+    upper_diameter: Positive = Field(description="diameter above [unit of the file]")
+    height: Positive = Field(description="height [unit of the file]")
 
 
 class SphereTable(StrictTable):
     """A sphere, or what level cuts leave of it, its lowest point on z = 0."""
 
-    diameter: Positive
-    cut_below: Cut = 0.0
-    cut_above: Cut = 0.0
+    diameter: Positive = Field(description="diameter [unit of the file]")
+    cut_below: Cut = Field(0.0, description="height cut off below [unit of the file]")
+    cut_above: Cut = Field(0.0, description="height cut off above [unit of the file]")
 
 
 class EllipsoidTable(BoxTable):
     """An ellipsoid, or what level cuts leave of it, its lowest point on z = 0."""
 
-    cut_below: Cut = 0.0
-    cut_above: Cut = 0.0
+    cut_below: Cut = Field(0.0, description="height cut off below [unit of the file]")
+    cut_above: Cut = Field(0.0, description="height cut off above [unit of the file]")
 
 
 class ExtrusionTable(StrictTable):
     """A plan outline with holes, drawn up from z = 0."""
 
-    outline: Ring
-    height: Positive
-    holes: list[Ring] | None = None
+    outline: Ring = Field(description="corners of the plan [unit of the file]")
+    height: Positive = Field(description="height [unit of the file]")
+    holes: list[Ring] | None = Field(None, description="rings cut out [unit of the file]")
 
 
 class RevolutionTable(StrictTable):
     """A profile of (radius, height) turned about the z axis."""
 
-    profile: Annotated[list[Pair], Field(min_length=2)]
+    profile: Annotated[list[Pair], Field(min_length=2)] = Field(
+        description="points (radius, height), from below [unit of the file]"
+    )
 
 
 class MeshTable(StrictTable):
     """A surface mesh in a file beside the body file."""
 
-    file: str
-    units: UnitName | None = None
-    up: Literal["z", "y"] = "z"
-    weld_tolerance: Positive | None = None
-    fill_holes: bool = False
+    file: str = Field(description="STL, OBJ, PLY or GLB beside the body file")
+    units: UnitName | None = Field(None, description="its unit, where it differs from that of the file")
+    up: Literal["z", "y"] = Field("z", description="which axis of the mesh points upwards")
+    weld_tolerance: Positive | None = Field(None, description="corners this close are one [unit of the file]")
+    fill_holes: bool = Field(False, description="close holes, and say so")
 
 
 class TurnTable(StrictTable):
     """A turn about an axis through the origin, counter-clockwise seen against it."""
 
-    axis: Triple
-    degrees: float
+    axis: Triple = Field(description="direction of the axis")
+    degrees: float = Field(description="angle [degrees]")
 
 
 class PartTable(StrictTable):
     """One shape of one material: turned, in the order that is written, then moved."""
 
-    box: BoxTable | None = None
-    cylinder: UprightTable | None = None
-    cone: UprightTable | None = None
-    frustum: FrustumTable | None = None
-    sphere: SphereTable | None = None
-    ellipsoid: EllipsoidTable | None = None
-    extrusion: ExtrusionTable | None = None
-    revolution: RevolutionTable | None = None
-    mesh: MeshTable | None = None
-    density: Positive | None = None
-    turned: list[TurnTable] | None = None
-    at: Triple | None = None
+    box: BoxTable | None = Field(None, description="a shape, one a part")
+    cylinder: UprightTable | None = Field(None, description="a shape, one a part")
+    cone: UprightTable | None = Field(None, description="a shape, one a part")
+    frustum: FrustumTable | None = Field(None, description="a shape, one a part")
+    sphere: SphereTable | None = Field(None, description="a shape, one a part")
+    ellipsoid: EllipsoidTable | None = Field(None, description="a shape, one a part")
+    extrusion: ExtrusionTable | None = Field(None, description="a shape, one a part")
+    revolution: RevolutionTable | None = Field(None, description="a shape, one a part")
+    mesh: MeshTable | None = Field(None, description="a shape, one a part")
+    density: Positive | None = Field(None, description="density of this part [kg/m3]")
+    turned: list[TurnTable] | None = Field(None, description="turns, one after the other")
+    at: Triple | None = Field(None, description="where its origin is moved then [unit of the file]")
 
     @model_validator(mode="after")
     def _one_shape(self) -> "PartTable":
@@ -247,16 +257,22 @@ SHAPES = ("box", "cylinder", "cone", "frustum", "sphere", "ellipsoid", "extrusio
 class SolidTable(StrictTable):
     """Parts, and on what they stand."""
 
-    part: Annotated[list[PartTable], Field(min_length=1, max_length=MOST_PARTS)]
-    base: Annotated[list[Pair], Field(min_length=3)] | None = None
-    ground: float | None = None
-    base_tolerance: Positive | None = None
+    part: Annotated[list[PartTable], Field(min_length=1, max_length=MOST_PARTS)] = Field(
+        description="the parts, one table [[solid.part]] each"
+    )
+    base: Annotated[list[Pair], Field(min_length=3)] | None = Field(
+        None, description="points (x, y) that it stands on; its corners on the ground if left out [unit of the file]"
+    )
+    ground: float | None = Field(None, description="height of the ground [unit of the file]")
+    base_tolerance: Positive | None = Field(
+        None, description="corners this close to the ground stand on it [unit of the file]"
+    )
 
 
 class SolidDocument(StrictTable):
     """A file of a body in space: a unit and the table [solid]."""
 
-    units: UnitName
-    name: str | None = None
-    note: str | None = None
-    solid: SolidTable
+    units: UnitName = Field(description="unit of all lengths")
+    name: str | None = Field(None, description="what the body is called")
+    note: str | None = Field(None, description="anything")
+    solid: SolidTable = Field(description="parts, and on what they stand")
