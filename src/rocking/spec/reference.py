@@ -81,13 +81,11 @@ def _kind(annotation: Any) -> str:
         return ", ".join(str(one).lower() if isinstance(one, bool) else str(one) for one in inner)
     if origin in {Union, types.UnionType}:
         return " or ".join(dict.fromkeys(_kind(one) for one in inner if one is not type(None)))
-    if origin is dict:
-        return "table"
     if origin is list:
         return f"list of {_kind(inner[0])}"
     if isinstance(annotation, type) and issubclass(annotation, Values):
         return "numbers" if annotation is Values else "axis and numbers"
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+    if origin is dict or (isinstance(annotation, type) and issubclass(annotation, BaseModel)):
         return "table"
     names = {str: "text", float: "number", int: "whole number", bool: "true or false"}
     return names.get(annotation, _kind(inner[0]) if inner else "any")
