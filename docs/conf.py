@@ -33,6 +33,7 @@ html_theme = "furo"
 html_title = f"rocking {release}"
 html_static_path = ["_static"]
 templates_path = ["_templates"]
+html_favicon = "../src/rocking/app/static/style/icon.svg"
 html_css_files = ["manual.css"]
 html_copy_source = False
 html_show_sphinx = False

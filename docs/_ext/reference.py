@@ -13,6 +13,7 @@ from sphinx.application import Sphinx
 
 ROOMS = {
     "rocking": "The front door",
+    "rocking.examples": "Examples",
     "rocking.bodies": "Bodies",
     "rocking.bodies.solid": "Solids",
     "rocking.bodies.formats": "Files of bodies",
