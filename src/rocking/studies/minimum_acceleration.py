@@ -24,7 +24,7 @@ from rocking.studies.question import FAILED, Question
 Interval = tuple[float, float]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Transitions:
     """Where a body under a motion of growing amplitude begins and ceases to overturn.
 
@@ -53,7 +53,15 @@ class Transitions:
     # widest relative gap between samples below the minimum; NaN if there is no minimum [-]
     resolution_below: float = math.nan
     # 1 for histories in which the ground would have to pull, 0 for others, NaN for those that have no result [-]
-    lost_contact: FloatArray = field(default_factory=lambda: np.empty(0), repr=False)
+    lost_contact: FloatArray = field(default_factory=lambda: np.empty(0))
+
+    def __repr__(self) -> str:
+        """Where it overturns, and how closely that was looked for."""
+        falls = " and ".join(f"from {low:.4g} to {high:.4g}" for low, high in self.overturning_intervals)
+        searched = (
+            f"searched from {self.lowest:.4g} to {self.highest:.4g} m/s2 with a resolution of {self.resolution:.2%}"
+        )
+        return f"<Transitions: overturns {falls} m/s2; {searched}>" if falls else f"<Transitions: stands; {searched}>"
 
     def __len__(self) -> int:
         return int(self.acceleration.size)

@@ -227,3 +227,13 @@ def test_samples_up_to_the_first_fall():
     assert found[0].tolist() == [1.0, 1.5, 1.8]
     assert below_minimum(Samples(*(np.empty(0, dtype=np.int64) for _ in range(7)))) == {}
     assert math.isnan(minimum_overturning_acceleration(BLOCK, SINE, 0.85, highest=2.0, threads=1).resolution_below)
+
+
+def test_what_is_printed_says_where_it_overturns():
+    """Between the numbers that it has, and where the search went; no array is printed."""
+    found = minimum_overturning_acceleration(BLOCK, SINE, "housner")
+    low, high = found.overturning_intervals[0]
+    assert repr(found).startswith(f"<Transitions: overturns from {low:.4g} to {high:.4g}")
+    little = minimum_overturning_acceleration(BLOCK, SINE, "housner", highest=1.01 * found.uplift_acceleration)
+    assert repr(little).startswith("<Transitions: stands; searched from ")
+    assert "array" not in repr(found) + repr(rk.simulate(BLOCK, SINE.scaled(3.0)).contact)

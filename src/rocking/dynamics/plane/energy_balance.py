@@ -13,7 +13,7 @@ from rocking.dynamics.plane.trajectory import EventKind, Trajectory
 from rocking.dynamics.settings import Settings
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ResponseEnergy:
     """Energy of a response at its samples."""
 
@@ -22,6 +22,10 @@ class ResponseEnergy:
     potential: FloatArray
     work: FloatArray  # done by the ground since the start [J]
     lost: FloatArray  # at impacts since the start [J]
+
+    def __repr__(self) -> str:
+        """How much is lost, and how well the sum closes."""
+        return f"<ResponseEnergy: {self.lost[-1]:.4g} J lost at impacts; closes to {self.closure:.1e}>"
 
     @property
     def gap(self) -> FloatArray:
@@ -68,7 +72,7 @@ LEAVES = "the body would leave the ground, which pure rocking cannot do"
 _FOLLOWS = "simulate(body, motion, friction=...) follows it"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class GroundForces:
     """Forces of the ground at the samples, and the friction that rocking without slip takes."""
 
@@ -81,6 +85,10 @@ class GroundForces:
     # largest |horizontal / vertical| until then; infinite where the vertical force vanishes [-]
     friction_of_motion: float
     friction_of_impacts: float  # largest ratio of the impulses at an impact [-]
+
+    def __repr__(self) -> str:
+        """Whether pure rocking is credible, and what it takes."""
+        return f"<GroundForces: {'; '.join(self.warnings()) or f'friction {self.friction_demand:.3g} needed'}>"
 
     @property
     def friction_demand(self) -> float:
