@@ -29,7 +29,9 @@ def numbered(page: str) -> list[Equation]:
     found, start = [], 0
     for mark in re.finditer(r"^\$\$([^$]+)\$\$ \(eq-(\d+)\)$", page, flags=re.M):
         names = re.findall(r"\*\*(.+?)\*\*", page[start : mark.start()], flags=re.S)
-        found.append(Equation(int(mark[2]), " ".join(names[-1].split()).rstrip(".,:") if names else "", mark[1].strip()))
+        found.append(
+            Equation(int(mark[2]), " ".join(names[-1].split()).rstrip(".,:") if names else "", mark[1].strip())
+        )
         start = mark.end()
     return found
 

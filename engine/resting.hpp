@@ -108,7 +108,7 @@ bool Kernel<G, U, N, D, Z, L>::window(int i, std::int64_t stretches, double most
 }
 
 // After an impact with a small speed: do the impacts to come add up to rest before the body could rise again? If so,
-// that is proven (docs/theory.md, Rest), and nothing is lost by not resolving them one by one.
+// that is proven (docs/theory/rest.md), and nothing is lost by not resolving them one by one.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [rad per stretch]
     const Lane& lane = lanes[i];

@@ -14,7 +14,9 @@ def faults(theory: dict[str, str], code: dict[str, str]) -> list[str]:
     found = [f"numbers must be 1, 2, 3, ..., got {listed}"] if listed != list(range(1, len(listed) + 1)) else []
     found += [f"Eq. {equation.number} has no name" for equation in equations if not equation.name]
     for name, page in theory.items():
-        found += [f"{name} refers to Eq. {number}, which no page has" for number in referred(page) if number not in listed]
+        found += [
+            f"{name} refers to Eq. {number}, which no page has" for number in referred(page) if number not in listed
+        ]
         if page.count("(eq-") != len(numbered(page)):
             found.append(f"{name} has labels that are not those of displayed equations")
     ours: set[int] = set()
@@ -31,8 +33,8 @@ def test_every_citation_is_listed_and_every_number_is_cited():
 
 
 PAGE = (
-    "The **ratio**\n\n$$ r = a / b $$ (eq-1)\n\nand, by Eq. {eq}`eq-1`, without a number\n\n$$ r = 1 $$\n\nthe **sum**\nof"
-    " **two\nlines**:\n\n$$ \\begin{split} r &= c \\\\ &+ d \\end{split} $$ (eq-2)\n"
+    "The **ratio**\n\n$$ r = a / b $$ (eq-1)\n\nand by Eq. {eq}`eq-1`, with no number\n\n$$ r = 1 $$\n\nthe **sum**\n"
+    "of **two\nlines**:\n\n$$ \\begin{split} r &= c \\\\ &+ d \\end{split} $$ (eq-2)\n"
 )
 OTHER = "**Arias intensity.**\n\n$$ \\pi/(2 g) $$ (eq-3)\n"
 THEORY = {"one": PAGE, "two": OTHER}

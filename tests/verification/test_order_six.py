@@ -1,4 +1,4 @@
-"""Order 6 takes the place of order 8 only where it is as good, under many g too (docs/theory.md, Engines)."""
+"""Order 6 takes the place of order 8 only where it is as good, under many g too (docs/theory/engines.md)."""
 
 import numpy as np
 import pytest

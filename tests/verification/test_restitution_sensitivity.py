@@ -214,7 +214,7 @@ def test_the_size_of_the_change_is_that_of_two_analyses_apart(comparison):
 
 
 def test_cos_squared_is_horizontal_momentum():
-    """The model cos^2(alpha) of section 5 is the registered horizontal-momentum, to 1e-15 for any rectangle."""
+    """For any rectangle cos^2(alpha) is the registered horizontal-momentum, to 1e-15."""
     for width, height in ((0.4, 1.2), (1.0, 1.0), (0.1, 3.0), (2.0, 0.5)):
         block = rk.Block(width=width, height=height)
         r = rk.coefficient_of_restitution(block, "horizontal-momentum")

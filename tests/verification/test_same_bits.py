@@ -1,7 +1,7 @@
 """The same bits on every processor: results under settings that stand for others, each in a process of its own.
 
-The settings are those of `portable.py`. What has the same bits under all of them, and what has not, says section 9
-of docs/theory.md; this test fails where that says too much.
+The settings are those of `portable.py`. What has the same bits under all of them, and what has not, says
+docs/theory/engines.md; this test fails where that says too much.
 """
 
 import importlib.util

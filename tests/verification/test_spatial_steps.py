@@ -168,7 +168,7 @@ def test_steps_keep_momentum_about_the_impulse_and_create_no_energy(name):
             wrong = of_mass(solid, old, new, velocity, -k)
             gains += 0.5 * wrong @ impact.inertia @ wrong > impact.energy
     assert gains > 1000
-    assert pulls < (0.12 if name == "squat" else 0.06) * 4000  # as docs/theory.md says
+    assert pulls < (0.12 if name == "squat" else 0.06) * 4000  # as docs/theory/space_impacts.md says
     assert moved < 0.02 * 4000
 
 

@@ -47,7 +47,7 @@ class DistributedImpulse(InertiaModel):
     colour, linestyle = "#56B4E9", (0, (5, 1, 1, 1, 1, 1))
     legend = "distributed, q = 1"
     title = "contact pressure over the flat base follows the downward speed to the power q"
-    reference = "derived in this project (theory, section 5); no publication yet"
+    reference = "derived in this project (theory, Distributed impulse); no publication yet"
     assumptions = (
         "flat base, sticking, instantaneous impact",
         "contact neither pulls nor pushes back: pressure only while a point descends",

@@ -37,7 +37,7 @@ class PlasticWinkler(InertiaModel):
     short_name = "plastic Winkler"
     colour, linestyle = "#E69F00", (0, (6, 2))
     title = "flat base on a bed of plastic springs that do not push back"
-    reference = "derived in this project (theory, section 6); no publication yet"
+    reference = "derived in this project (theory, Plastic Winkler bed); no publication yet"
     assumptions = (
         "flat base, sticking, impact much shorter than the motion",
         "the bed is uniform and gives nothing back while it unloads",

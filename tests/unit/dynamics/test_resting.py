@@ -274,7 +274,7 @@ def test_the_proof_of_rest_under_changing_moments() -> None:
 @pytest.mark.parametrize("sign", [1, -1])
 def test_heights_of_flights_bound_what_is_put_to_rest(sign: int) -> None:
     """On ground that stays still the fastest body put to rest is one whose flights, with d = v^2 e^0.1 / (p alpha)^2,
-    add 2.2 d (1 + r_2^2) / (1 - r_1^2 r_2^2) = 0.1 to the logarithm of its gain: theory, Rest."""
+    add 2.2 d (1 + r_2^2) / (1 - r_1^2 r_2^2) = 0.1 to the logarithm of its gain: docs/theory/rest.md."""
     body = RockingParameters(
         RockingSide(0.25, 2.0, 1.8, 0.9), RockingSide(0.40, 2.5, 1.8, 0.7), ConstantRestitution(), ""
     )

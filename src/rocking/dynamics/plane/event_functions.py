@@ -136,7 +136,7 @@ def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine
     """Return whether the impacts to come provably add up to rest before the body could rise again.
 
     Flights take disjoint times, so that the speed gained by moments that change is bounded by their total variation;
-    the sum of the flights is a geometric series. The proof is in the theory, "Rest".
+    the sum of the flights is a geometric series. The proof is in docs/theory/rest.md.
 
     after: speed after the impact [rad/s]; rest_speed: speed over p alpha above which the question is not asked; below
     `NOTHING` it always is [-].

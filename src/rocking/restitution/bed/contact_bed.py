@@ -39,7 +39,7 @@ class BaseFriction(ABC):
 
 @dataclass(frozen=True)
 class Sticking(BaseFriction):
-    """The base cannot slide (u = 0 always): the setting of docs/theory.md, Sections 5, 6 and 13."""
+    """The base cannot slide (u = 0 always), as in docs/theory/restitution.md and docs/theory/contact_bed.md."""
 
     @property
     def numbers(self) -> tuple[FrictionKind, float, float]:

@@ -59,8 +59,8 @@ def force(law: LawNumbers, depth: FloatArray, speed: FloatArray, deepest: FloatA
     """Return the force of one copy of a law, written without its branches.
 
     Kelvin-Voigt ``F = max(0, k d + c d')``, Hunt-Crossley ``F = k d^n max(0, 1 + chi d')``, plastic unloading ``F =
-    max(0, min(k d, k / e^2 (d - d_p)))`` with the set ``d_p = (1 - e^2) d_max``; zero for d <= 0. docs/theory.md,
-    Section 13; Walton and Braun (1986) for the unloading branch.
+    max(0, min(k d, k / e^2 (d - d_p)))`` with the set ``d_p = (1 - e^2) d_max``; zero for d <= 0. See
+    docs/theory/contact_bed.md; Walton and Braun (1986) for the unloading branch.
 
     depth: depths d of the points [m]; speed: their rates d', positive while they sink [m/s]; deepest: greatest depths
     so far; only plastic unloading remembers them [m]. Returns forces on the body, upwards [N].
@@ -142,7 +142,7 @@ class KelvinVoigt(ContactLaw):
     def from_layer(
         cls, modulus: float, area: float, thickness: float, *, damping_ratio: float = 0.0, confinement: float = 1.0
     ) -> Self:
-        """Return the law of an elastic layer under the whole base: k = E_eff A / t (docs/theory.md, Section 13).
+        """Return the law of an elastic layer under the whole base: k = E_eff A / t (docs/theory/contact_bed.md).
 
         Parameters
         ----------
@@ -254,8 +254,8 @@ class PlasticUnloading(ContactLaw):
     """Linear loading, steeper unloading: k while new ground is pressed, k / e^2 on the way back and in again.
 
     A point that drops alone comes back with the velocity ratio e; each point keeps its own greatest depth. With
-    e = 0 nothing comes back (the plastic Winkler bed of docs/theory.md, Section 6), which only an impulsive impact can
-    use: a load that stays would make the contact chatter.
+    e = 0 nothing comes back (the plastic Winkler bed of docs/theory/restitution.md), which only an impulsive impact
+    can use: a load that stays would make the contact chatter.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ def bed_free_rocking(
     """Let a body go on one foot and follow it over several impacts, hops and vibration carried along.
 
     With light damping (zeta <= 0.1) what an impact leaves in hops goes into the next, and the ratio from peak to peak
-    scatters: it is not a property of the body then (docs/theory.md, Section 13).
+    scatters: it is not a property of the body then (docs/theory/contact_bed.md).
 
     Parameters
     ----------

@@ -309,7 +309,7 @@ LAWS = {
 
 
 def by_branches(name: str, d: float, v: float, deepest: float) -> float:
-    """Return the force of one point (docs/theory.md, Section 13; plastic unloading after Walton & Braun 1986)."""
+    """Return the force of one point (docs/theory/contact_bed.md; plastic unloading after Walton & Braun 1986)."""
     if d <= 0.0:
         return 0.0
     if name == "kelvin-voigt":
