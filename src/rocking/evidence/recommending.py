@@ -1,6 +1,7 @@
 """The rule: which restitution model to use for one body, by the measurements of bodies like it (`judgement`)."""
 
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -10,7 +11,7 @@ import numpy as np
 
 from rocking.bodies import Body, Solid
 from rocking.conventions import FEET, FloatArray, Foot
-from rocking.errors import GeometryError, InvalidValueError, RockingError
+from rocking.errors import GeometryError, InvalidValueError, PlausibilityWarning, RockingError
 from rocking.evidence._coefficient_table import CALIBRATED, default_models
 from rocking.evidence.calibration import Calibration, Prediction, calibrate, calibrate_on, interval_for
 from rocking.evidence.judgement import Judgement, Standing, TrackRecord, judge
@@ -187,7 +188,10 @@ def _moved(made: Recommendation, motion: Any, posterior: Calibration) -> Recomme
     drawn = _draws(made, posterior)
     pairs = [dict(each.coefficients) for each in holds]
     pairs += [dict(zip(FEET, each, strict=True)) for each in drawn.T.tolist()]
-    found = simulate_many(body, motion, pairs).squeeze(["body", "motion", "scale"])
+    with warnings.catch_warnings():
+        # what scatters below what was ever measured was not given by anybody
+        warnings.simplefilter("ignore", PlausibilityWarning)
+        found = simulate_many(body, motion, pairs).squeeze(["body", "motion", "scale"])
     outcomes = [list(Outcome)[code] for code in found["outcome"].values.tolist()]
     moved: dict[str, Any] = {}
     for each, outcome, peak in zip(holds, outcomes, found["peak_rotation"].values.tolist(), strict=False):
