@@ -171,6 +171,17 @@ def starts() -> list[Any]:
     ]
 
 
+def of_examples() -> list[Any]:
+    """Motions of the package, and what its plane bodies lose under the paper's model."""
+    made = [rk.examples.motion(name) for name in rk.examples.catalogue("motion")]
+    motions = [part for one in made for part in (one.values() if isinstance(one, dict) else [one])]
+    bodies = [body for body in map(rk.examples.body, rk.examples.catalogue("body")) if not isinstance(body, rk.Solid)]
+    return [
+        [motion.acceleration for motion in motions],
+        [rk.coefficient_of_restitution(each, "ked", onto="left") for each in bodies],
+    ]
+
+
 RESULTS: dict[str, Callable[[], list[Any]]] = {
     "space, polygon, reference": lambda: space(tower()),
     "space, round base, reference": lambda: space(tower(0.3)),
@@ -184,6 +195,7 @@ RESULTS: dict[str, Callable[[], list[Any]]] = {
     "plane, contact": contact,
     "plane, coefficients": coefficients,
     "motions, corrected": corrected,
+    "examples": of_examples,
     "bed, reference": lambda: bed("reference"),
     "bed, fast": lambda: bed("fast"),
 }

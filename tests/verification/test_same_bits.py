@@ -46,6 +46,7 @@ OTHER = {
 QUICK = [
     "space, polygon, reference", "space, round base, reference", "space, batch", "plane, reference", "plane, fast",
     "plane, contact", "plane, coefficients", "motions, corrected", "space, impacts and moments", "bed, fast",
+    "examples",
 ]  # fmt: skip
 NAMES = QUICK if os.environ.get("ROCKING_CAMPAIGN") != "1" else []
 

@@ -140,7 +140,7 @@ _MOTIONS = {
 _ALL = (
     _body("statue", "near-fault.csv", "a marble figure that leans, on a pedestal of brick with its feet set in"),
     _body("stele", "far-field.csv", "a tapered stele of limestone that leans to the right"),
-    _body("pier", "near-fault.csv --scale 1.3", "a masonry pier with a shaft inside it"),
+    _body("pier", "near-fault.csv --scale 1.3", "a masonry pier with a shaft left of its middle"),
     _body(
         "cabinet",
         "soft-soil.csv --scale 1.2",
@@ -163,7 +163,7 @@ _ALL = (
     _question("block-under-a-pulse", "a cabinet under one sine, where the model of the impact decides"),
     _question("statue-let-go", "a statue that stands off its middle, let go to the left"),
     _job("overturning-map", "map", "which sine pulses overturn a block, and how: 60 x 60 pulses"),
-    _job("refined-map", "map", "the same, refined along the boundaries, which come as polylines"),
+    _campaign("refined-map", "png", "the same, refined along the boundaries, which come as polylines"),
     _campaign("minimum-acceleration", "png", "every amplitude at which motions begin or cease to overturn two blocks"),
     _campaign("rocking-spectrum", "png", "how far blocks of all sizes rock on soft ground, under two models"),
     _job("stripes", "fragility", "how likely a column is to rock and to overturn at twelve levels"),
