@@ -26,9 +26,9 @@ class Equations(SphinxDirective):
             title = text.removeprefix("# ").split("\n", 1)[0]
             for equation in house_citations.numbered(text):
                 files = ", ".join(f"`{shown(path)}`" for path in computed.get(equation.number, []))
-                rows[equation.number] = (
-                    f"| {{eq}}`eq-{equation.number}` | {equation.name} | [{title}]({name}.md) | {files} |"
-                )
+                named = equation.name[:1].upper() + equation.name[1:]
+                cells = (f"{{eq}}`eq-{equation.number}`", named, f"[{title}]({name}.md)", files)
+                rows[equation.number] = f"| {' | '.join(cells)} |"
         head = "| Number | Equation | Page | Computed in |\n|---|---|---|---|\n"
         return self.parse_text_to_nodes(head + "\n".join(rows[number] for number in sorted(rows)))
 

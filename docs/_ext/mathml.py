@@ -126,10 +126,10 @@ def inline(self: HTML5Translator, node: nodes.math) -> None:
 def displayed(self: HTML5Translator, node: nodes.math_block) -> None:
     """Write an equation on a line of its own, with its number."""
     label = node.get("label") or ""
-    self.body.append(f'<div class="equation"{f""" id="equation-{html.escape(label)}" """ if label else ""}>')
+    place, number = f"equation-{html.escape(label)}", number_of(label)
+    self.body.append(f'<div class="equation" id="{place}">' if label else '<div class="equation">')
     self.body.append(mathml(node.astext(), "block"))
-    number = number_of(label)
-    self.body.append(f'<span class="eqno">({number})</span></div>' if number else "</div>")
+    self.body.append(f'<a class="eqno" href="#{place}">({number})</a></div>' if number else "</div>")
     raise nodes.SkipNode
 
 

@@ -13,6 +13,8 @@ from sphinx.application import Sphinx
 
 _VENDOR = Path(__file__).parents[2] / "src" / "rocking" / "app" / "static" / "vendor" / "minisearch"
 _INNER = (nodes.section, addnodes.desc)
+_UNREAD = (*_INNER, nodes.comment, nodes.raw, nodes.math_block)
+_LATEX = str.maketrans("", "", "\\{}$")
 
 
 def texts(node: nodes.Element) -> Iterator[str]:
@@ -20,7 +22,9 @@ def texts(node: nodes.Element) -> Iterator[str]:
     for child in node.children:
         if isinstance(child, nodes.Text):
             yield str(child)
-        elif isinstance(child, nodes.Element) and not isinstance(child, (*_INNER, nodes.comment, nodes.raw)):
+        elif isinstance(child, nodes.math):  # \theta is found as theta
+            yield child.astext().translate(_LATEX)
+        elif isinstance(child, nodes.Element) and not isinstance(child, _UNREAD):
             yield from texts(child)
             yield " "
 

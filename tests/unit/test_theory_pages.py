@@ -1,5 +1,6 @@
 """The pages of the theory as the manual shows them: every equation becomes MathML that browsers draw."""
 
+import io
 import re
 import sys
 from importlib import import_module
@@ -7,6 +8,7 @@ from xml.etree import ElementTree
 
 import pytest
 from benchmarks.house_citations import ROOT, numbered, pages
+from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
 sys.path.append(str(ROOT / "docs" / "_ext"))
@@ -79,3 +81,40 @@ def test_operators_have_the_space_of_a_book(latex, expected):
 def test_letters_and_signs_are_those_of_a_book(latex, expected):
     """Bold by a class, since browsers know no other; capitals of Greek upright; a sign with what follows it."""
     assert expected in mathml(latex)
+
+
+def built(folder, pages):
+    """Build a small manual; return its pages, and what was warned of."""
+    (folder / "conf.py").write_text("")
+    for name, text in pages.items():
+        (folder / f"{name}.md").write_text(text)
+    warnings = io.StringIO()
+    settings = {
+        "extensions": ["myst_parser", "mathml"],
+        "myst_enable_extensions": ["dollarmath"],
+        "html_math_renderer": "mathml",
+        "html_theme": "basic",
+    }
+    paths = [str(folder), str(folder), str(folder / "html"), str(folder / "trees")]
+    Sphinx(*paths, "html", settings, status=None, warning=warnings).build()
+    return {name: (folder / "html" / f"{name}.html").read_text("utf-8") for name in pages}, warnings.getvalue()
+
+
+MANUAL = {
+    "index": "# One\n\n```{toctree}\nother\n```\n\n$$ b = 2 $$ (eq-7)\n\nSee {eq}`eq-3` and {eq}`eq-7`.\n",
+    "other": "# Two\n\n$$ a = 1 $$ (eq-3)\n",
+}
+
+
+def test_a_number_is_that_of_its_label_wherever_it_stands(tmp_path):
+    pages, warnings = built(tmp_path, MANUAL)
+    assert warnings == ""
+    assert re.search(r'href="other.html#equation-eq-3"[^>]*>\(3\)<', pages["index"])
+    assert re.search(r'href="#equation-eq-7"[^>]*>\(7\)<', pages["index"])
+    assert 'id="equation-eq-3"' in pages["other"]
+
+
+def test_a_reference_to_no_equation_is_warned_of(tmp_path):
+    """Negative control: with `make docs` a warning is an error."""
+    _, warnings = built(tmp_path, MANUAL | {"other": "# Two\n\n$$ a = 1 $$ (eq-4)\n"})
+    assert "equation not found: eq-3" in warnings
