@@ -39,12 +39,12 @@ class Catalogue(Mapping[str, Example]):
         return "\n".join(f"{row[0]:<{name}}  {row[1]:<{kind}}  {row[2]}" for row in rows)
 
     def _repr_html_(self) -> str:
-        head = "".join(f"<th>{word}</th>" for word in ("name", "kind", "what it is"))
-        rows = "".join(
-            f"<tr><td><code>{each.name}</code></td><td>{each.kind}</td><td>{escape(each.title)}</td></tr>"
-            for each in self.values()
+        rows = [("th", ("name", "kind", "what it is"))]
+        rows += [("td", (each.name, each.kind, each.title)) for each in self.values()]
+        lines = (
+            "".join(f'<{tag} style="text-align: left">{escape(word)}</{tag}>' for word in words) for tag, words in rows
         )
-        return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+        return f"<table>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
 
 
 def catalogue(kind: str | None = None) -> Catalogue:
@@ -69,7 +69,7 @@ def catalogue(kind: str | None = None) -> Catalogue:
     --------
     >>> catalogue("motion")
     near-fault        motion  one long pulse of velocity, 0.9 m/s in 1.2 s, within ordinary shaking
-    far-field         motion  an earthquake of magnitude 6.8 at 40 km on firm ground, scaled to 0.35 g
+    far-field         motion  as of magnitude 6.8 at 40 km on firm ground, scaled to 0.35 g
     long              motion  a minute of strong shaking, scaled to 0.35 g
     soft-soil         motion  a soft layer that swings at 0.8 Hz, scaled to 0.35 g
     three-components  motion  motions along x, y and z, scaled to 0.4 g, 0.35 g and 0.2 g upwards

@@ -111,7 +111,7 @@ _MOTIONS = {
             "far-field",
             motions.far_field,
             "stochastic point source (Boore 2003)",
-            "an earthquake of magnitude 6.8 at 40 km on firm ground, scaled to 0.35 g",
+            "as of magnitude 6.8 at 40 km on firm ground, scaled to 0.35 g",
         ),
         _motion("long", motions.long, motions.FILTERED, "a minute of strong shaking, scaled to 0.35 g"),
         _motion(
@@ -138,20 +138,32 @@ _MOTIONS = {
 }
 
 _ALL = (
-    _body("statue", "near-fault.csv", "a marble figure that leans, on a pedestal of brick with its feet set in"),
-    _body("stele", "far-field.csv", "a tapered stele of limestone that leans to the right"),
-    _body("pier", "near-fault.csv --scale 1.3", "a masonry pier with a shaft left of its middle"),
+    _body(
+        "statue",
+        "near-fault.csv",
+        "a marble figure that leans on a pedestal of brick with its feet set in, 2.55 m high",
+    ),
+    _body("stele", "far-field.csv", "a tapered stele of limestone that leans to the right, 2.35 m high"),
+    _body("pier", "near-fault.csv --scale 1.3", "a masonry pier with a shaft left of its middle, 7.5 m high"),
     _body(
         "cabinet",
         "soft-soil.csv --scale 1.2",
-        "a cabinet whose equipment stands on its left, drawn in WKT without a unit",
+        "a cabinet whose equipment stands on its left, 2.1 m high; in WKT, without a unit",
         options={"units": "mm", "density": 300},
         ending="wkt",
     ),
-    _body("transformer", "near-fault.csv --scale 1.5", "a power transformer: tank, radiators, conservator, bushings"),
-    _body("rack", "near-fault.csv --scale 1.5", "a rack of instruments as seven masses, the heaviest low on the left"),
-    _body("bust", _AXES, "in space: a marble bust of typical proportions on a pedestal, looking to one side"),
-    _body("column", "pulse.csv", "in space: three marble drums off their axis as one body, on a round base that rolls"),
+    _body(
+        "transformer",
+        "near-fault.csv --scale 1.5",
+        "a power transformer: tank, radiators, conservator, bushings; 4.1 m high",
+    ),
+    _body(
+        "rack",
+        "near-fault.csv --scale 1.5",
+        "a rack of instruments as seven masses, the heaviest low on the left; 1.85 m high",
+    ),
+    _body("bust", _AXES, "in space: a marble bust of typical proportions on a pedestal, 1.78 m high"),
+    _body("column", "pulse.csv", "in space: three marble drums off their axis as one body on a round base, 2.7 m high"),
     *_MOTIONS.values(),
     Example(
         "objects",

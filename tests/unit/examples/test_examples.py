@@ -107,6 +107,20 @@ def test_mass_and_centre_of_sections(name):
     assert math.isclose(body.centre[0], x, rel_tol=1e-12)
 
 
+@pytest.mark.parametrize("name", BODIES)
+def test_titles_state_the_height(name):
+    """The highest point of the body, to the digits of the title."""
+    body, said = rk.examples.body(name), re.search(r"([\d.]+) m high", ALL[name].title)
+    if isinstance(body, Solid):
+        highest = max(part.box()[1, 2] for part in body.parts)
+    elif isinstance(body, rk.MassPoints):
+        highest = body.points[:, 1].max()
+    else:
+        highest = max(region.outline[:, 1].max() for region in body.regions)
+    assert said is not None
+    assert math.isclose(highest, float(said[1]), abs_tol=1e-9)
+
+
 @pytest.mark.parametrize("name", MOTIONS)
 def test_records_are_read_back_to_the_last_bit(name, tmp_path):
     """Samples, step and unit: nothing has to be told to the reader."""

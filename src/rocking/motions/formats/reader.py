@@ -143,6 +143,16 @@ def read_motion(
     RecordError
         If a file is missing, of no known format or of more than one, damaged, or at odds with its own header, or
         the two files state different starts.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from rocking import examples
+    >>> with TemporaryDirectory() as folder:
+    ...     (path,) = examples.write("three-components", folder)
+    ...     motion = read_motion(path, component="x", vertical="z")
+    >>> motion
+    <GroundMotion 'three-components': 3801 samples at 0.01 s, peak 3.923 m/s2, with vertical>
     """
     source = Source.of_path(Path(path))
     record = _read(source, format, units, time_step)

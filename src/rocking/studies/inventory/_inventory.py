@@ -90,12 +90,9 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.inventory import InventoryObject
-    >>> sizes = {"tall vase": 0.12, "chest": 1.2}
-    >>> objects = [InventoryObject(name=name, width=w, depth=w, height=1.0) for name, w in sizes.items()]
-    >>> ranking = rk.inventory(objects, "point-source", pga="0.3g", count=5)
-    >>> ranking["object"].values.tolist(), ranking["light"].values.tolist()
-    (['tall vase', 'chest'], ['red', 'green'])
+    >>> ranking = rk.inventory(rk.examples.path("objects"), "point-source", pga="0.3g", count=5)
+    >>> ranking["object"].values[[0, -1]].tolist(), ranking["light"].values[[0, -1]].tolist()
+    (['tall clock', 'low stone chest'], ['red', 'green'])
     """
     everything = read_inventory(objects) if isinstance(objects, (str, Path)) else objects
     hazard = _hazard(motions, pga, pgv, count, seed)
