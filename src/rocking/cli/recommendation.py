@@ -20,7 +20,7 @@ def show_recommendation(page: Page, found: Any) -> None:
     head, rows = found.table
     if found.judgement is not None:
         # coefficients and intervals stand above
-        shown = [k for k, name in enumerate(head) if name != "95 %" and name.split()[0] != "r"]
+        shown = [k for k, name in enumerate(head) if name.split()[0] != "r"]
         chosen = {k for k, row in enumerate(rows) if row[0] == found.prediction}
         words = [[row[k] for k in shown] for row in rows]
         page.table([head[k] for k in shown], words, ("model", "standing"), bold=chosen)

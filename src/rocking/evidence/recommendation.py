@@ -199,23 +199,21 @@ class Recommendation:
         """Heading and rows of words."""
         return words.table(self)
 
-    @property
-    def _legend(self) -> list[str]:
-        return [] if self.judgement is None else [words.LEGEND]
-
     def __str__(self) -> str:
         """Return the table and the sentences."""
         head, rows = self.table
         widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
         lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in (head, *rows)]
-        return "\n".join([*(line.rstrip() for line in lines), *self._legend, "", *self.evidence, *self.advice])
+        return "\n".join([*(line.rstrip() for line in lines), words.legend(self), "", *self.evidence, *self.advice])
 
     __repr__ = __str__
 
     def _repr_markdown_(self) -> str:
         head, rows = self.table
         lines = ["| " + " | ".join(row) + " |" for row in (head, ("---",) * len(head), *rows)]
-        return "\n".join([*lines, "", *self._legend, "", *(f"- {each}" for each in (*self.evidence, *self.advice))])
+        return "\n".join(
+            [*lines, "", words.legend(self), "", *(f"- {each}" for each in (*self.evidence, *self.advice))]
+        )
 
     def as_dict(self) -> dict[str, Any]:
         """Return everything as plain values.

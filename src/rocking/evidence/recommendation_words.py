@@ -15,7 +15,7 @@ LEGEND = (
     "kept: energy left after an impact onto each foot; to half: impacts that halve the energy; bias, error: mean and "
     "root mean square of r less the measurement."
 )
-"""What the columns of the table are."""
+"""What the columns of the table are, those of r apart."""
 
 APART = 3.92
 """Standard errors between two values, so that 97.5 % of measurements lie nearer to the right one."""
@@ -121,19 +121,14 @@ def table(made: "Recommendation") -> tuple[tuple[str, ...], list[tuple[str, ...]
     places = list(dict.fromkeys(place for each in made.models for place in each.coefficients))
     same = all(len({f"{v:.12f}" for v in each.coefficients.values()}) <= 1 for each in made.models)
     shown = places[:1] if same else places
-    head = ["model", *(["r", "95 %"] if same else [w for p in shown for w in (f"r {p}", "95 %")])]
+    head = ["model", *(["r"] if same else [f"r {place}" for place in shown])]
     judged = made.judgement is not None
     head += ["kept", "to half", "bias", "error"] if judged else []
     head += ["standing", *(["peak", "ends"] if made.overturned else [])]
     rows = []
     for each in made.models:
         cells = [each.name]
-        for place in shown:
-            known = place in each.coefficients
-            cells += [
-                f"{each.coefficients[place]:.4f}" if known else "-",
-                f"{each.low[place]:.3f} to {each.high[place]:.3f}" if place in each.low else "-",
-            ]
+        cells += [_with_interval(each, place) for place in shown]
         if judged:
             known = bool(each.coefficients)
             cells += [f"{100.0 * each.energy_left:.1f} %", f"{each.impacts_to_half:.1f}"] if known else ["-", "-"]
@@ -141,9 +136,23 @@ def table(made: "Recommendation") -> tuple[tuple[str, ...], list[tuple[str, ...]
         cells.append(each.standing.value)
         if made.overturned:
             ends = "-" if each.outcome is None else each.outcome.name.lower().replace("_", " ")
-            cells += ["-" if each.outcome is None else f"{each.peak_ratio:.2f}", ends]
+            stood = each.outcome not in (None, Outcome.OVERTURNED)
+            cells += [f"{each.peak_ratio:.2f}" if stood else "-", ends]
         rows.append(tuple(cells))
     return tuple(head), rows
+
+
+def legend(made: "Recommendation") -> str:
+    """Return what the columns of the table are; nothing of a body in space."""
+    peak = " peak: largest rotation over the slenderness angle." if made.overturned else ""
+    return "" if made.judgement is None else f"r: coefficient and half of its 95 % interval; {LEGEND}{peak}"
+
+
+def _with_interval(each: "ModelForBody", place: str) -> str:
+    if place not in each.coefficients:
+        return "-"
+    half = f" +- {0.5 * (each.high[place] - each.low[place]):.3f}" if place in each.low else ""
+    return f"{each.coefficients[place]:.4f}{half}"
 
 
 def _errors(each: "ModelForBody") -> list[str]:
