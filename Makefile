@@ -84,9 +84,10 @@ lint: $(VENV)/dev $(ENGINE)
 # A test that hangs for ten minutes fails, and says where.
 PYTEST := $(BIN)/python -m pytest -o faulthandler_timeout=600 -o faulthandler_exit_on_timeout=true
 
-# What measures time runs alone, and what drives a browser in a process of its own; the rest on two processes.
+# What measures time runs alone, and what drives a browser in a process of its own; the rest on two processes, and what
+# it measures goes into the manual that is built next (docs/verified.md).
 test: lint docs
-	$(PYTEST) -n 2 --dist loadfile -m "not timed and not browser"
+	$(PYTEST) -n 2 --dist loadfile -m "not timed and not browser" --junitxml=build/tests.xml -o junit_family=xunit1
 	$(PYTEST) $$(grep -rl --include='test_*.py' --exclude-dir=browser timed tests) -m timed
 	$(PYTEST) tests/browser -m timed
 	$(PYTEST) tests/browser -n 2 --dist loadfile -m "not timed"

@@ -25,6 +25,7 @@ extensions = [
     "reference",
     "section_search",
     "scripts_as_files",
+    "verified",
 ]
 exclude_patterns = ["gallery/**.py", "gallery/**.ipynb", "gallery/**.zip", "**/README.md", "_ext"]
 nitpicky = False

@@ -71,7 +71,7 @@ def settled(page: Any, name: str, expected: float, column: int = 0, rel: float =
     while time.monotonic() < deadline:
         found = facts(page).get(name)
         seen = float(found[column]) if found and column < len(found) else math.nan
-        if seen == pytest.approx(expected, rel=rel):
+        if seen == pytest.approx(expected, rel=rel, abs=0.0):
             return
         page.wait_for_timeout(20)
     raise AssertionError(f"{name}: {seen}, expected {expected}")

@@ -2,6 +2,7 @@
 
 import os
 import signal
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -25,3 +26,14 @@ def shared_records() -> Path:
     if not folder.is_dir():
         pytest.skip("shared ground motions are absent")
     return folder
+
+
+@pytest.fixture
+def agreement(record_property: Callable[[str, object], None]) -> Callable[[float, float], None]:
+    """Ask that a deviation stays below a bound, and record it for the manual's page of verification."""
+
+    def below(deviation: float, bound: float) -> None:
+        record_property("deviation", float(deviation))
+        assert deviation < bound
+
+    return below

@@ -12,9 +12,12 @@ sys.path.append(str(Path(__file__).parents[2]))  # what counts lives beside the 
 from benchmarks.engine_batch import Fast, Histories, histories
 from benchmarks.engine_operations import Operations, counted
 
-pytestmark = pytest.mark.skipif(
-    not any(map(shutil.which, ("c++", "g++", "clang++"))), reason="no C++ compiler to build the engine that counts"
-)
+pytestmark = [
+    pytest.mark.verifies(room="benchmarks"),
+    pytest.mark.skipif(
+        not any(map(shutil.which, ("c++", "g++", "clang++"))), reason="no C++ compiler to build the engine that counts"
+    ),
+]
 SAMPLES = 30
 
 
@@ -44,6 +47,9 @@ def flying(p: float) -> tuple[Operations, int]:
     return found, 3 * (SAMPLES - 1)
 
 
+@pytest.mark.verifies(
+    "computed anew", "operations of a step, read off the source by hand", within="every operation", control="within"
+)
 @pytest.mark.parametrize(("p", "order"), [(1.0, 6), (3.0, 8)])
 def test_a_step_takes_what_is_written(p: float, order: int) -> None:
     """p dt = 0.01 takes order 6, 0.03 order 8."""
@@ -54,6 +60,7 @@ def test_a_step_takes_what_is_written(p: float, order: int) -> None:
     assert found.total - found.fused != steps * by_hand(order)  # multiply-adds are two
 
 
+@pytest.mark.verifies("same bits", "the fast engine that does not count")
 def test_landings_are_counted_and_histories_are_the_same() -> None:
     """Histories with impacts: the same steps and outcomes as the fast engine, and more operations than the steps."""
     batch = histories(40)

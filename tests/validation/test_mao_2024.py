@@ -14,23 +14,28 @@ from rocking.evidence.claim import FAILS, HOLDS, IN_PART, UNRESOLVED
 from rocking.evidence.comparison import correlation, relative_error
 from rocking.restitution import Housner, Ked
 
+pytestmark = pytest.mark.verifies(against="Mao et al. 2024", doi="10.3390/buildings14072119", room="evidence")
 
-def test_table_2_to_eight_digits():
+
+@pytest.mark.verifies("published", "Table 2, column r_r, Mao et al. 2024", within="0.51e-8", control="within")
+def test_table_2_to_eight_digits(agreement):
     """r_r of Table 2 is reproduced in all 8 printed digits; a model one per mille off is not."""
     data = datasets()["table2"]
     r = Ked().of_slenderness(data.slenderness)
-    assert np.abs(r - data.printed["ked"]).max() <= 0.51e-8
+    agreement(np.abs(r - data.printed["ked"]).max(), 0.51e-8)
     assert np.abs(1.001 * r - data.printed["ked"]).min() > 0.51e-8
 
 
-def test_table_3_to_three_digits():
+@pytest.mark.verifies("published", "Table 3, columns r_r and r_H, Mao et al. 2024", within="0.51e-3")
+def test_table_3_to_three_digits(agreement):
     """r_r and r_H of Table 3 are reproduced in all 3 printed digits."""
     for name in "SML":
         data = datasets()[name]
         for key, model in (("ked", Ked()), ("housner", Housner())):
-            assert np.abs(model.of_slenderness(data.slenderness) - data.printed[key]).max() <= 0.51e-3
+            agreement(np.abs(model.of_slenderness(data.slenderness) - data.printed[key]).max(), 0.51e-3)
 
 
+@pytest.mark.verifies("published", "Tables 1 and 2, measured r, Mao et al. 2024", within="1e-6")
 def test_means_of_table_1_are_table_2():
     """Table 2 holds the means of Table 1 at equal slenderness, to the printed digits."""
     first, second = datasets()["table1"], datasets()["table2"]
@@ -38,6 +43,11 @@ def test_means_of_table_1_are_table_2():
     assert means == pytest.approx(second.coefficient.tolist(), abs=1e-6)
 
 
+@pytest.mark.verifies(
+    "published",
+    "correlations of section 3.2, Mao et al. 2024; for Housner's model four digits",
+    within="1.1e-3; 5.1e-5",
+)
 def test_correlations():
     """Correlations of section 3.2 (0.946, 0.998, 0.996, 0.998) to one unit of the last digit, and Housner's."""
     printed = {"table2": 0.946, "S": 0.998, "M": 0.996, "L": 0.998}
@@ -49,6 +59,9 @@ def test_correlations():
         assert found == pytest.approx(housner[name], abs=5.1e-5)
 
 
+@pytest.mark.verifies(
+    "measured", "errors against the measured coefficients: Figure 6 and section 3.2, Mao et al. 2024", within="5e-4"
+)
 def test_largest_errors():
     """Largest relative errors: 4.0 % at slenderness 3 (Fig. 6), 10.8 % at M, 1.5 (section 3.2)."""
     data = datasets()["table2"]
@@ -61,6 +74,7 @@ def test_largest_errors():
     assert (error > 0.10).sum() == 1
 
 
+@pytest.mark.verifies("measured", "all measured coefficients of Tables 1 and 3, Mao et al. 2024")
 def test_rows_won():
     """KED is closer in 21 of 39 rows, 13 of 27 of Table 3, 0 of 10 above slenderness 6."""
     won = {name: closer_rows(datasets()[name]) for name in ("table1", "S", "M", "L")}
@@ -75,6 +89,7 @@ def test_rows_won():
     assert (sum(slender), len(slender)) == (0, 10)
 
 
+@pytest.mark.verifies("published", "the printed tables, Mao et al. 2024", control="test_errata_need_the_errors")
 def test_every_erratum_is_found():
     """All errata are found by computation on the printed tables."""
     assert [each.name for each in errata() if not each.found] == []
@@ -84,6 +99,7 @@ def test_every_erratum_is_found():
     assert "0.0011" in evidence["Table 1, last relative error"]
 
 
+@pytest.mark.verifies("negative control", "another printed number")
 @pytest.mark.parametrize(
     ("table", "column", "value", "lost"),
     [
@@ -101,6 +117,7 @@ def test_errata_need_the_errors(table, column, value, lost):
     assert not next(each for each in errata(tables) if each.name == lost).found
 
 
+@pytest.mark.verifies("negative control", "other measurements")
 def test_errata_need_the_measurements():
     """Negative control: other measurements take away what was found in them."""
 
@@ -126,6 +143,7 @@ def test_errata_need_the_measurements():
     assert not found_with("table2", "Correlation", beside)
 
 
+@pytest.mark.verifies("measured", "claims of the paper, judged on its measurements")
 def test_claims_have_numbers_and_are_judged_both_ways():
     """Every claim names section, number and test; the paper's exact counts come out; verdicts differ."""
     found = {claim.quote: claim for claim in claims()}
@@ -282,6 +300,9 @@ def judged_by_hand():
     }  # fmt: skip
 
 
+@pytest.mark.verifies(
+    "computed anew", "both models and all counts written out on the printed tables", within="every printed digit"
+)
 def test_verdicts_and_their_numbers_are_those_counted_by_hand():
     """Each verdict, and each number of its evidence, is that of the printed tables with both models written out."""
     found = claims()
@@ -294,6 +315,7 @@ def test_verdicts_and_their_numbers_are_those_counted_by_hand():
     assert len(found) - len(expected) == 4
 
 
+@pytest.mark.verifies("behaviour")
 def test_entry_agreement_is_of_printed_digits():
     """A printed value agrees if it is the recomputed one rounded to its digits, and not one unit beyond."""
     assert Entry(0.912, 0.9118, 3).agrees
@@ -301,8 +323,9 @@ def test_entry_agreement_is_of_printed_digits():
     assert {row.entries["ked"].agrees for row in recomputed("table2")} == {True}
 
 
+@pytest.mark.verifies("published", "masses of Table 3 against slenderness, Mao et al. 2024", within="0.06")
 def test_masses_are_those_of_one_section():
-    """Masses of a group are proportional to slenderness (physics.md 2): a slip in the data would show."""
+    """Masses of a group are proportional to slenderness: a slip in the data would show."""
     for name in "SML":
         data = datasets()[name]
         per_ratio = data.mass / data.slenderness

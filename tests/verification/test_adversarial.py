@@ -27,7 +27,7 @@ DISCRETE = ("outcome", "status", "side", "impacts", "uplifts")
 LARGEST_SHARE_OF_EDGES = {"grazing": 0.5, "threshold": 0.5, "critical": 0.5, "at the end": 0.5, "restitution": 0.2}
 SPEEDS_OF_REST = (0.01, 1e-4, 1e-6)
 
-pytestmark = built
+pytestmark = [pytest.mark.verifies(room="rocking in the plane"), built]
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class Maker:
         return self.case("grazing", np.full(count, push), step=step, rotation=start, velocity=-speed)
 
     def on_a_sample(self, end: bool = False) -> Case:
-        """Free rocking whose first impact falls on a sample, or on the end of the record (closed form of 3.2)."""
+        """Free rocking whose first impact falls on a sample, or on the end of the record."""
         start = self.between(0.05, 0.9) * self.alpha
         m = math.cos(0.5 * (self.alpha - start)) ** 2
         angle = math.asin(min(1.0, math.cos(0.5 * self.alpha) / math.sqrt(m)))
@@ -251,6 +251,12 @@ def disagreements(cases: list[Case], settings: Settings) -> tuple[list[str], int
     return bad, edges, doubted
 
 
+@pytest.mark.verifies(
+    "second engine",
+    "the reference engine, wherever inputs moved by 1e-12 do not change its own mind",
+    within="1e-8 rad in peaks; outcomes, sides and counts equal",
+    control="test_a_wrong_engine_is_caught",
+)
 @pytest.mark.parametrize("kind", KINDS)
 def test_adversarial_cases(kind: str, record_property: Callable[[str, object], None]) -> None:
     """The engines agree on every case of a kind that the reference itself can settle."""
@@ -270,6 +276,7 @@ def test_adversarial_cases(kind: str, record_property: Callable[[str, object], N
     assert short <= (0.3 if kind == "spike" else 0.05) * total + 1
 
 
+@pytest.mark.verifies("negative control", "a coefficient off by 1e-4")
 def test_a_wrong_engine_is_caught() -> None:
     """Negative control: a coefficient of restitution off by 1e-4 moves the peaks that follow an impact."""
     cases = [KINDS["strong"](Maker(number)) for number in range(60)]

@@ -23,6 +23,8 @@ from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.errors import RockingError
 from rocking.motions import Segments
 
+pytestmark = pytest.mark.verifies("damage", room="rocking in the plane")
+
 # how the mass is spread may be unknown
 ROWS = tuple(name for name in batch.ROWS if not name.startswith("q_"))
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
@@ -86,6 +88,7 @@ def false_success(found: dict[str, Any], *, linear: bool = False) -> Any:
 # ---- poison ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.verifies(against="NaN and infinities in 1,000 rows; rows between them keep their bits")
 @every_engine
 def test_poisoned_rows(name: str) -> None:
     """1,000 rows with NaN or infinity in one of their numbers are refused; the rows between them keep their bits."""
@@ -104,6 +107,7 @@ def test_poisoned_rows(name: str) -> None:
     assert all(np.delete(found[key], ill).tobytes() == clean[key].tobytes() for key in fast_engine.RESULTS)
 
 
+@pytest.mark.verifies(against="NaN and infinities in samples; other motions keep their bits")
 @every_engine
 @pytest.mark.parametrize("vertical", [False, True])
 def test_poisoned_motions(name: str, vertical: bool) -> None:
@@ -173,6 +177,7 @@ def monsters(random: np.random.Generator) -> list[Segments]:
     return motions
 
 
+@pytest.mark.verifies(against="numbers from all over the floating-point line, and the allowed ranges written once more")
 @every_engine
 @pytest.mark.parametrize("linear", [False, True])
 def test_pathological_parameters(name: str, linear: bool) -> None:
@@ -209,6 +214,7 @@ HANGS = {
 }
 
 
+@pytest.mark.verifies(against="cases that hung once", within="10 s")
 @every_engine
 @pytest.mark.parametrize("case", HANGS)
 def test_no_hang(case: str, name: str) -> None:

@@ -12,6 +12,8 @@ import rocking as rk
 from rocking.dynamics import Outcome, Status
 from rocking.errors import RockingError
 
+pytestmark = pytest.mark.verifies("damage", control="test_good_input_passes", room="doors")
+
 HALF_PI = 0.5 * math.pi
 BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
 MOTION = rk.GroundMotion(3.0 * np.sin(0.1 * np.arange(60)), 0.05)
@@ -101,6 +103,7 @@ def test_no_poisoned_record(part: str, poison: Any) -> None:
         rk.GroundMotion(**given)
 
 
+@pytest.mark.verifies("behaviour")
 def test_the_value_is_named() -> None:
     """The message shows the number that was given and says what it may have been."""
     with pytest.raises(RockingError, match=r"rotation.*got 15.*degrees"):
@@ -115,6 +118,7 @@ def test_the_value_is_named() -> None:
         rk.simulate(BODY, MOTION, rest_sped=0.1)  # type: ignore[call-overload]
 
 
+@pytest.mark.verifies("negative control", "good values")
 def test_good_input_passes() -> None:
     """Negative control: what was refused for its values is taken with others."""
     good: dict[str, Any] = {"gravity": 9.81, "rest_speed": 1e-3, "longest_step": 0.1, "most_events": 500}
@@ -125,6 +129,7 @@ def test_good_input_passes() -> None:
     assert many["status"].values.ravel().tolist() == [0, 0]
 
 
+@pytest.mark.verifies("behaviour")
 @pytest.mark.parametrize("name", ["auto", "reference"])
 @pytest.mark.parametrize("linear", [False, True])
 @pytest.mark.parametrize("order", [4, 6, 8])
@@ -139,6 +144,9 @@ def test_every_combination(motion: Any, order: int, linear: bool, name: str) -> 
         assert many["status"].values.ravel().tolist() == [0]
 
 
+@pytest.mark.verifies(
+    "second engine", "the reference engine", within="equal outcomes, sides and counts, or said to have failed"
+)
 @built
 @pytest.mark.filterwarnings("ignore:the ground would have to pull")  # 10 g and more throw a block, in both engines
 @pytest.mark.parametrize("peak", [10.0**k for k in range(2, 7)])

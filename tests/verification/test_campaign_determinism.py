@@ -23,7 +23,12 @@ from workload import histories
 
 sys.path.pop(0)
 
-pytestmark = built
+pytestmark = [
+    pytest.mark.verifies(
+        "same bits", "one run of the engine without a campaign", control="test_negative_control", room="campaigns"
+    ),
+    built,
+]
 COUNT = 2500
 FORK: dict[str, Any] = {"executor": "processes", "start_method": "fork"}
 unforked = pytest.mark.skipif(os.name == "nt", reason="this system does not fork")
@@ -156,6 +161,7 @@ def check(folder: Path, cases: list[Case], by_chunk: dict[int, tuple[HistoryTabl
         assert same(of_case(folder / f"{k}", case, work), bare), case
 
 
+@pytest.mark.verifies("behaviour")
 def test_the_selection_holds_every_value_and_every_pair() -> None:
     """What is run below: all workers with both ways of starting, every chunk, order and interruption."""
     assert {case[:2] for case in SELECTION} == set(itertools.product(METHODS, WORKERS))
@@ -184,6 +190,7 @@ def test_the_whole_matrix(
     check(tmp_path, [case for case in PRODUCT if case[:2] == (method, workers)], by_chunk)
 
 
+@pytest.mark.verifies("negative control", "a law with another seed")
 def test_negative_control(tmp_path: Path, work: HistoryTable, bare: Arrays) -> None:
     """The comparison sees a law with another seed: it is not the case that anything passes."""
     law = RandomRestitution.normal(0.95, 0.02, seed=4)

@@ -22,6 +22,7 @@ KILLS = int(os.environ.get("ROCKING_KILLS", "30"))
 SHARES = {"serial": KILLS - KILLS // 2 - KILLS // 6, "fork": KILLS // 2, "spawn": KILLS // 6}
 
 pytestmark = [
+    pytest.mark.verifies("damage", control="test_careless_campaigns_are_caught", room="campaigns"),
     pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built"),
     pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="process groups and /proc of Linux"),
 ]
@@ -37,6 +38,7 @@ def found(folder: Path, *arguments: object, driver: Path = DRIVER) -> Any:
     return json.loads(said.read_text())
 
 
+@pytest.mark.verifies(against="kill -9 of the whole process group, and a quiet run")
 @pytest.mark.parametrize("pieces", [False, True], ids=["chunks", "pieces"])
 @pytest.mark.parametrize("how", SHARES)
 def test_killed_groups_lose_nothing(tmp_path: Path, how: str, pieces: bool) -> None:
@@ -51,6 +53,7 @@ def test_killed_groups_lose_nothing(tmp_path: Path, how: str, pieces: bool) -> N
     assert report["acknowledged, checked"] > 0
 
 
+@pytest.mark.verifies(against="kill -9 of single workers, and a quiet run")
 def test_killed_workers_cost_nothing(tmp_path: Path) -> None:
     """Single workers die at random; the campaign goes on by itself to the same bytes."""
     report = found(tmp_path, "--how", "fork", "--kills", KILLS // 2, "--workers", "--seed", 12, "--pieces")
@@ -60,6 +63,7 @@ def test_killed_workers_cost_nothing(tmp_path: Path) -> None:
     assert report["retries"] > 0
 
 
+@pytest.mark.verifies(against="kill -9 between and within rounds, and a quiet run", control="within")
 def test_killed_rounds_lose_nothing(tmp_path: Path) -> None:
     """A refined map, each of whose rounds follows from the last, dies at random instants; its polylines stay."""
     report = found(tmp_path, "--kills", KILLS // 3, "--seed", 14, driver=ROUNDS)
@@ -71,6 +75,7 @@ def test_killed_rounds_lose_nothing(tmp_path: Path) -> None:
     assert careless["wrong"]  # negative control: files cut short are seen
 
 
+@pytest.mark.verifies("negative control", "shards written in place, and records that come before them")
 @pytest.mark.parametrize(
     ("variant", "sentences"),
     # recorded first, a shard is either missing at the kill or not yet whole

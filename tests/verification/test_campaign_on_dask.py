@@ -20,6 +20,7 @@ from slow import Motions, product
 
 pytest.importorskip("distributed")
 pytestmark = [
+    pytest.mark.verifies(room="campaigns"),
     pytest.mark.timed,
     pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built"),
     pytest.mark.filterwarnings("default"),  # those of the cluster are not ours
@@ -60,6 +61,7 @@ def took(campaign: Campaign, workers: int) -> float:
     return (end - start) / (last - first) * last
 
 
+@pytest.mark.verifies("same bits", "one worker", within="the same file, 1.5 times as fast at least")
 def test_two_workers_share_one_chunk(tmp_path: Path) -> None:
     """120 motions of 0.1 s in one chunk: nearly twice as fast as one worker, no motion twice, the same file."""
     spent, made = {}, {}
@@ -77,6 +79,7 @@ def test_two_workers_share_one_chunk(tmp_path: Path) -> None:
     assert spent[1] / spent[2] > 1.5  # 1.9 on a quiet machine; a busy one delays what is beside the motions
 
 
+@pytest.mark.verifies("damage", "kill -9 of one of two workers, and a serial run")
 def test_one_of_two_workers_is_killed_half_way(tmp_path: Path, two: Any) -> None:
     """kill -9 of a worker at half of the histories: it ends by itself, with the bytes of a serial run."""
     (tmp_path / "a").mkdir()
@@ -100,6 +103,9 @@ def test_one_of_two_workers_is_killed_half_way(tmp_path: Path, two: Any) -> None
     assert campaign.verify().whole
 
 
+@pytest.mark.verifies(
+    "same bits", "one worker, and two of which one is killed", within="the same file, 1.7 times as fast at least"
+)
 @pytest.mark.skipif(not MOTIONS, reason="takes minutes on cores of its own: set ROCKING_DASK_MOTIONS=4000")
 def test_synthetic_motions_on_two_workers(tmp_path: Path) -> None:
     """Real synthetic motions, 12 histories each: two workers 1.7 times one; with one of them killed, the same file."""

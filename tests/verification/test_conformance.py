@@ -1,7 +1,7 @@
 """What every restitution model promises, tried on every registered one over random asymmetric bodies.
 
 A new model is picked up by its registration, with the parameters that its class has for trials. Where its class says
-that it breaks an identity (sections 1.4, 1.5 and 1.7 of the physics specification), the breach itself is asserted: it
+that it breaks an identity, the breach itself is asserted: it
 is the negative control.
 """
 
@@ -16,6 +16,8 @@ from random_cases import sections
 import rocking as rk
 from rocking.conventions import opposite
 from rocking.restitution import Fixed, Flag, Housner, Interface, Ked, Restitution, RestitutionModel
+
+pytestmark = pytest.mark.verifies("invariant", room="restitution in the plane")
 
 MODELS = [
     rk.restitution.model(f"{name}:{parameters}")
@@ -73,6 +75,11 @@ def bounded(model, body, onto):
     return r * r * new.moment_of_inertia <= old.moment_of_inertia * (1.0 + 1e-12)
 
 
+@pytest.mark.verifies(
+    against="the same body of another size, density and side, and a kilometre away",
+    within="1e-8",
+    control="test_invariance_criterion_rejects_broken_models",
+)
 @every_model
 @few
 @given(body=sections())
@@ -85,6 +92,7 @@ def test_scale_density_mirror_place(model, body):
         assert same(model, body, elsewhere(body, 1000.125, -17.5), onto)
 
 
+@pytest.mark.verifies("negative control", "models that see metres, kilograms, sides or the origin")
 @few
 @given(body=sections())
 def test_invariance_criterion_rejects_broken_models(body):
@@ -96,6 +104,7 @@ def test_invariance_criterion_rejects_broken_models(body):
     assert not same(Broken("place"), body, elsewhere(body, 1000.125, -17.5))
 
 
+@pytest.mark.verifies("behaviour")
 @every_model
 @few
 @given(body=sections())
@@ -111,17 +120,19 @@ def test_number_and_flags(model, body):
         assert model.coefficient(body, onto) == result.coefficient
 
 
+@pytest.mark.verifies(against="r^2 I_new <= I_old", within="1e-12", control="test_energy_criterion_rejects")
 @every_model
 @few
 @given(body=sections())
 def test_energy_bound(model, body):
-    """No impact creates energy: r^2 I_O' <= I_O for asymmetric bodies, both ways (physics 1.1)."""
+    """No impact creates energy: r^2 I_O' <= I_O for asymmetric bodies, both ways."""
     if not model.keeps_energy:
         pytest.skip("no such promise: see the models that break it on purpose")
     assert bounded(model, body, "left")
     assert bounded(model, body, "right")
 
 
+@pytest.mark.verifies("behaviour")
 def test_no_model_is_left_out():
     """Every registered model is tried, and no others than these two are excused from the energy bound."""
     assert all(kind.trials for kind in rk.restitution.models().values())
@@ -130,6 +141,7 @@ def test_no_model_is_left_out():
     assert {model.label for model in MODELS if not model.keeps_energy} == {"fixed:r=0.7", "shifted-impulse:k=0"}
 
 
+@pytest.mark.verifies("negative control", "a factor 1.001 on the bound, and models that promise no bound")
 def test_energy_criterion_rejects():
     """Negative control: a factor 1.001 on the bound, a coefficient by hand, and k = 0 fail for an asymmetric
     body."""
@@ -140,16 +152,18 @@ def test_energy_criterion_rejects():
         assert not bounded(model, body, "right")
 
 
+@pytest.mark.verifies(against="the product of both directions is at most 1", within="1e-12", control="within")
 @every_model
 @few
 @given(body=sections())
 def test_there_and_back(model, body):
-    """An impact onto each foot gains nothing: r_LR r_RL <= 1 (physics 1.1)."""
+    """An impact onto each foot gains nothing: r_LR r_RL <= 1."""
     assert model.coefficient(body, "left") * model.coefficient(body, "right") <= 1.0 + 1e-12
     control = Broken("energy")
     assert control.coefficient(body, "left") * control.coefficient(body, "right") > 1.0 + 1e-12
 
 
+@pytest.mark.verifies("behaviour")
 def test_a_factor_below_one_breaks_coincident_pivots():
     """What wraps a model, and a coefficient by hand, see the old foot as their value has it."""
     sees = [model.sees_old_foot for model in AT_ONE]
@@ -158,6 +172,7 @@ def test_a_factor_below_one_breaks_coincident_pivots():
     assert not any(model.sees_old_foot for model in below)
 
 
+@pytest.mark.verifies(against="no loss where both feet meet; models that say they break it must", control="within")
 @pytest.mark.parametrize("model", [*MODELS, *AT_ONE], ids=lambda model: model.label)
 @few
 @given(body=sections())
@@ -187,6 +202,9 @@ def twins(body):
         )
 
 
+@pytest.mark.verifies(
+    against="bodies of the same mass, centre, inertia and feet", within="1e-8", control="test_inertia_criterion_rejects"
+)
 @every_model
 @few
 @given(body=sections())
@@ -196,6 +214,7 @@ def test_inertia_alone(model, body):
     assert all(same(model, body, twin) for twin in twins(body)) == model.inertia_only
 
 
+@pytest.mark.verifies("negative control", "a model that looks at the height of the masses")
 def test_inertia_criterion_rejects():
     """Negative control: a model that claims inertia_only but looks at the height of the masses is found
     out."""
@@ -203,6 +222,11 @@ def test_inertia_criterion_rejects():
     assert not all(same(Broken("inertia"), body, twin) for twin in twins(body))
 
 
+@pytest.mark.verifies(
+    against="the same rectangle as block, section and array",
+    within="1e-9",
+    control="test_slenderness_criterion_rejects",
+)
 @every_model
 def test_slenderness_arrays_are_blocks(model):
     """The vectorised coefficients of rectangles are those of Blocks, Sections, and of either foot."""
@@ -217,13 +241,17 @@ def test_slenderness_arrays_are_blocks(model):
     assert model.of_slenderness(ratios.reshape(2, 4)).tolist() == expected.reshape(2, 4).tolist()
 
 
+@pytest.mark.verifies("negative control", "a model whose two ways differ")
 def test_slenderness_criterion_rejects():
     """Negative control: a model whose two ways differ is not taken for consistent."""
     ratios = np.array([0.8, 2.5])
     per_body = [Broken("slenderness").coefficient(rk.Block(width=1.0, height=ratio)) for ratio in ratios]
-    assert per_body != pytest.approx(Broken("slenderness").of_slenderness(ratios), rel=1e-9)
+    assert per_body != pytest.approx(Broken("slenderness").of_slenderness(ratios), rel=1e-9, abs=0.0)
 
 
+@pytest.mark.verifies(
+    against="0 <= r <= 1, growing with slenderness to its limit", within="1e-7 of the limit", control="within"
+)
 @every_model
 def test_symmetric_range_and_monotony(model):
     """For rectangles 0 <= r <= 1, and r never falls with slenderness; towards l = 1e4 it reaches its
@@ -236,6 +264,7 @@ def test_symmetric_range_and_monotony(model):
     assert not (np.diff(Broken("slenderness").of_slenderness(ratios)) >= -1e-12).all()
 
 
+@pytest.mark.verifies(against="0 <= r <= 1, equal onto either foot", within="1e-9")
 @every_model
 @few
 @given(body=sections())
@@ -251,6 +280,7 @@ def test_symmetric_bodies_stay_in_range(model, body):
         assert leftward == pytest.approx(rightward, rel=1e-9, abs=1e-12)
 
 
+@pytest.mark.verifies("damage", "slenderness from 1e-200 to 1e200")
 @every_model
 @pytest.mark.parametrize("ratio", [1e-200, 1e-12, 1e12, 1e150, 1e200])
 def test_extreme_slenderness_is_a_number_or_a_refusal(model, ratio):
@@ -263,6 +293,7 @@ def test_extreme_slenderness_is_a_number_or_a_refusal(model, ratio):
         assert 0.0 <= r[0] <= 1.0
 
 
+@pytest.mark.verifies("behaviour")
 @pytest.mark.parametrize("kind", rk.restitution.models().values(), ids=list(rk.restitution.models()))
 def test_account_of_itself(kind):
     """Every registered model states title, reference, assumptions, domain and known defects, and has a
@@ -282,6 +313,7 @@ def test_account_of_itself(kind):
     assert Broken.reference == "not stated"
 
 
+@pytest.mark.verifies("behaviour")
 @every_model
 def test_label_is_a_name(model):
     """The label of a model, given as a name, is the same model."""

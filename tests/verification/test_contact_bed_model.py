@@ -16,6 +16,8 @@ from rocking.restitution.bed_table import BANDS, POINTS, STEP, BedTable, bed_tab
 from rocking.restitution.contact_bed import CoefficientSource
 from rocking.studies.impact_laboratory import Laboratory, hardness_of, impulse_position, resolved
 
+pytestmark = pytest.mark.verifies(room="contact bed")
+
 needs_engine = pytest.mark.skipif(not fast.available(), reason="the bed's fast engine was not built")
 
 
@@ -44,6 +46,9 @@ def read(table: BedTable, points: int, cases: FloatArray) -> FloatArray:
     return np.minimum(found, most(cases))
 
 
+@pytest.mark.verifies(
+    "computed anew", "300 random impacts resolved in time", within="the stated error", control="within"
+)
 @needs_engine
 @pytest.mark.parametrize("points", POINTS)
 def test_stated_error(points: int) -> None:
@@ -56,6 +61,7 @@ def test_stated_error(points: int) -> None:
         assert (np.abs(read(bed_table().coarser(), points, cases) - exact) > stated).any()
 
 
+@pytest.mark.verifies("behaviour")
 @pytest.mark.parametrize("points", POINTS)
 def test_stated_errors_say_something(points: int) -> None:
     """None is above .2, of coefficients from 0 to 1; for every flatness the last band of damping is the best."""
@@ -65,6 +71,9 @@ def test_stated_errors_say_something(points: int) -> None:
     assert (stated[-1] <= stated.min(axis=0)).all()
 
 
+@pytest.mark.verifies(
+    "computed anew", "100 random impacts a band, resolved in time", within="the stated error", control="within"
+)
 @needs_engine
 @pytest.mark.parametrize("points", POINTS)
 def test_stated_error_of_light_damping(points: int) -> None:
@@ -81,6 +90,7 @@ def test_stated_error_of_light_damping(points: int) -> None:
         assert (np.abs(other - exact) > stated).any()
 
 
+@pytest.mark.verifies("computed anew", "impacts resolved in time", within="the stated error", control="within")
 @needs_engine
 @pytest.mark.parametrize("points", POINTS)
 def test_stated_error_where_bodies_almost_stop(points: int) -> None:
@@ -95,6 +105,7 @@ def test_stated_error_where_bodies_almost_stop(points: int) -> None:
         assert error.max() > stated_error(points, 0.05, 0.3)
 
 
+@pytest.mark.verifies("computed anew", "impacts resolved in time", within="the stated error")
 @needs_engine
 @pytest.mark.skipif("ROCKING_CAMPAIGN" not in os.environ, reason="half an hour: ROCKING_CAMPAIGN=1 runs it")
 @pytest.mark.parametrize("points", POINTS)
@@ -107,6 +118,7 @@ def test_a_million_random_bodies(points: int) -> None:
         assert (error <= stated).all(), cases[np.argmax(error / stated)]
 
 
+@pytest.mark.verifies("computed anew", "nodes of the table resolved again", within="half its rounding, and 2e-5")
 @needs_engine
 def test_the_table_is_what_is_computed() -> None:
     """Nodes of the shipped table computed again differ by its rounding, 2^-14, and no more."""
@@ -118,16 +130,19 @@ def test_the_table_is_what_is_computed() -> None:
         assert kappa == pytest.approx(table.positions[i][tuple(at.T)], abs=0.5 * STEP + 2e-5)
 
 
-# physics.md 3.4, zeta = 1 and 3, 400 Hz, b = 0.1 m, released at half the slenderness angle
+# from a simulation without this package: zeta = 1 and 3, 400 Hz, b = 0.1 m, released at half the slenderness angle
 REF = {
     (2.0, 2): (0.700, 0.700), (2.0, 3): (0.766, 0.764), (2.0, 5): (0.808, 0.808), (2.0, 11): (0.840, 0.845),
     (2.0, 41): (0.850, 0.850), (4.0, 2): (0.912, 0.912), (4.0, 3): (0.933, 0.934), (4.0, 5): (0.948, 0.950),
 }  # fmt: skip
 
 
+@pytest.mark.verifies(
+    "computed anew", "a simulation of the bed without this package, two to three digits", within="0.01"
+)
 @pytest.mark.parametrize("case", REF)
 def test_reference_values(case: tuple[float, int]) -> None:
-    """The table of physics.md 3.4 within .01: it has two to three digits, and n = 41 is a large release."""
+    """Coefficients of a simulation without this package, within .01: it has two to three digits."""
     ratio, points = case
     setup = Laboratory(slenderness=ratio, points=points).setup
     for damping, expected in zip((1.0, 3.0), REF[case], strict=True):
@@ -139,17 +154,19 @@ def setup_block(ratio: float) -> Block:
     return Block(width=0.2, height=0.2 * ratio)
 
 
+@pytest.mark.verifies("closed form", "1 - 3/2 sin^2 alpha", within="3e-3")
 def test_two_points_are_housner() -> None:
-    """n = 2 is 1 - 1.5 sin^2 alpha (physics.md 1.1) within .003 for the hardest bed, and more points lose less."""
+    """n = 2 is 1 - 1.5 sin^2 alpha within .003 for the hardest bed, and more points lose less."""
     for ratio in (1.5, 2.0, 4.0, 8.0):
         r = [model("contact-bed", points=n, hardness=1000.0).coefficient(setup_block(ratio)) for n in POINTS]
         assert r[0] == pytest.approx(1.0 - 1.5 / (1.0 + ratio**2), abs=3e-3)
         assert (np.diff(r) > 0.0).all()
 
 
+@pytest.mark.verifies("closed form", "Housner's impact onto any feet", within="3e-3")
 @pytest.mark.parametrize("onto", ["left", "right"])
 def test_two_points_are_housner_for_a_plumb_line_off_the_middle(onto: Foot) -> None:
-    """n = 2 gives r = (I_C + m h^2 - m b b') / (I_C + m h^2 + m b'^2) (physics.md 1.1) within .003, or keeps energy."""
+    """n = 2 gives r = (I_C + m h^2 - m b b') / (I_C + m h^2 + m b'^2) within .003, or keeps energy."""
     for ratio, shift in itertools.product((1.5, 3.0), (0.0, 0.2, 0.5)):
         body = setup_block(ratio).with_feet(0.0, 0.2 - 0.1 * shift)
         old, new = (0.1, 0.1 - 0.1 * shift) if onto == "right" else (0.1 - 0.1 * shift, 0.1)
@@ -162,6 +179,7 @@ def test_two_points_are_housner_for_a_plumb_line_off_the_middle(onto: Foot) -> N
         assert bed.coefficient(body, onto) == pytest.approx(expected, abs=3e-3)
 
 
+@pytest.mark.verifies("behaviour")
 def test_the_ends_of_the_table_are_in_it() -> None:
     """Damping from 0.05 to 5 and hardness from 30 to 1000 are read, their ends among them; nothing beyond."""
     for points, damping, hardness in itertools.product(POINTS, (0.05, 5.0), (30.0, 1000.0)):
@@ -171,14 +189,16 @@ def test_the_ends_of_the_table_are_in_it() -> None:
         assert not ContactBedModel(points + 1 if points != 2 else 4, damping, hardness).tabulated
 
 
+@pytest.mark.verifies("closed form", "distributed impulse q = 1 as the lower bound")
 def test_between_viscous_and_elastic() -> None:
-    """Many points of a damped bed lie above distributed impulse q = 1 (physics.md 1.5), its limit without springs."""
+    """Many points of a damped bed lie above distributed impulse q = 1, its limit without springs."""
     for ratio, viscous in {1.0: 0.4774610600698219, 2.0: 0.7965354225163898, 4.0: 0.9408847304180785}.items():
         for hardness in (30.0, 100.0, 1000.0):
             bed = model("contact-bed", hardness=hardness)
             assert viscous < bed.coefficient(setup_block(ratio)) < 1.0
 
 
+@pytest.mark.verifies("damage", "beds without points, damping or sense")
 @pytest.mark.parametrize(
     "wrong",
     [
@@ -192,6 +212,7 @@ def test_what_is_no_bed_is_refused(wrong: dict[str, float]) -> None:
         model("contact-bed", **wrong)
 
 
+@pytest.mark.verifies("computed anew", "the same impact resolved in time", within="the stated error")
 @needs_engine
 def test_outside_the_table_it_is_resolved() -> None:
     """The answer says whether it was read or resolved; both agree where both exist, within the stated error."""
@@ -202,16 +223,17 @@ def test_outside_the_table_it_is_resolved() -> None:
     assert read_off.coefficient == pytest.approx(resolved_too.coefficient, abs=read_off.stated_error)
     for bed in ({"points": 7}, {"damping": 9.0}, {"hardness": 3000.0}, {"damping": 0.2}, {"friction": 0.25}):
         assert ContactBedModel(**bed).evaluate(block).source is CoefficientSource.RESOLVED
-    # two points are Housner's impact on any bed that is hard and damped (physics.md 1.1)
+    # two points are Housner's impact on any bed that is hard and damped
     beyond = ContactBedModel(points=2, damping=8.0, hardness=3000.0).evaluate(block)
     assert beyond.coefficient == pytest.approx(0.7, abs=1e-3)
 
 
+@pytest.mark.verifies("closed form", "the friction that Housner's impact takes", within="1e-3", control="within")
 @needs_engine
 @pytest.mark.parametrize("points", [2, 5, 41])
 @pytest.mark.parametrize("ratio", [1.5, 2.0, 3.0])
 def test_friction_below_the_need_slides(points: int, ratio: float) -> None:
-    """From mu = 3 lambda / (1 + 4 lambda^2) on (physics.md 1.2) r is that of a base that sticks; below, it falls."""
+    """From mu = 3 lambda / (1 + 4 lambda^2) on r is that of a base that sticks; below, it falls."""
     block, need = setup_block(ratio), 3.0 * ratio / (1.0 + 4.0 * ratio**2)
     sticks = ContactBedModel(points=points, damping=2.0)
     enough = ContactBedModel(points=points, damping=2.0, friction=1.03 * need)

@@ -9,6 +9,8 @@ from scipy.stats import binom, chi2, nct, norm, t
 
 from rocking.statistics import fit_lognormal
 
+pytestmark = pytest.mark.verifies(room="statistics")
+
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
 STUDIES = 5000 if CAMPAIGN else 480
 MEDIAN, DISPERSION, MOTIONS = 0.8, 0.6, 30
@@ -17,6 +19,12 @@ COARSE = MEDIAN * np.exp((np.linspace(-2.5, 2.5, 8) + 0.2) * DISPERSION)
 TRUTH = {"median": MEDIAN, "dispersion": DISPERSION, 0.16: MEDIAN * np.exp(DISPERSION * ndtri(0.16))}
 
 
+@pytest.mark.verifies(
+    "repeated sampling",
+    "480 studies whose truth is known",
+    within="93 to 97 %, and three standard errors",
+    control="within",
+)
 def test_intervals_of_stripes_cover_as_often_as_they_say():
     """30 motions at 8 levels, each with a capacity of its own: the usual 95 % interval holds the truth in 93 to 97 %.
 
@@ -52,6 +60,12 @@ FEW = [pytest.param(n, LEVELS, id=f"{n}") for n in (7, 11, 20)]
 FEW += [pytest.param(n, COARSE, id=f"{n} coarse") for n in ((7, 11, 20) if CAMPAIGN else (7,))]
 
 
+@pytest.mark.verifies(
+    "repeated sampling",
+    "120 studies of 7 to 20 motions whose truth is known",
+    within="93 to 97 %, and three standard errors",
+    control="within",
+)
 @pytest.mark.parametrize(("motions", "levels"), FEW)
 def test_intervals_from_few_motions_cover_as_often_as_they_say(motions, levels):
     """Few motions at 8 levels, also far apart and off the median: 95 % intervals hold the truth in 93 to 97 %.
@@ -83,6 +97,7 @@ def test_intervals_from_few_motions_cover_as_often_as_they_say(motions, levels):
     assert binom.cdf(np.ceil((0.93 - noise) * studies) - 1, studies, 0.8) > 0.95
 
 
+@pytest.mark.verifies("invariant", "the definition of an end", within="0.01; 0.02 in bands")
 def test_ends_are_where_a_study_becomes_rare():
     """The search ends where 2.5 % find less, or more, within what 999 repetitions can tell; so does the band."""
     random = np.random.default_rng(33)
@@ -101,6 +116,13 @@ def test_ends_are_where_a_study_becomes_rare():
             assert sample.rarity(float(most), place) == pytest.approx(0.975, abs=0.02)
 
 
+@pytest.mark.verifies(
+    "closed form",
+    "Student's t, chi-square and the noncentral t (Hahn and Meeker 1991, chapter 4)",
+    within="0.05 of the half width, in the mean of 16 studies",
+    control="within",
+    doi="10.1002/9780470316771",
+)
 def test_levels_close_together_give_the_intervals_of_known_capacities():
     """At 40 levels the ends are those of Student's t, chi-square and the noncentral t, seen over 16 studies of 9.
 

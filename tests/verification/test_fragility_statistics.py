@@ -18,6 +18,8 @@ from rocking.statistics.maximum_likelihood import LogScale, find_curves, log_dis
 from rocking.statistics.probit import Probit
 from rocking.statistics.profiles import FractileConstraint, Profile, SlopeConstraint
 
+pytestmark = pytest.mark.verifies(room="statistics")
+
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
 STUDIES = 10_000 if CAMPAIGN else 1000
 MEDIAN, DISPERSION = 0.8, 0.6
@@ -40,7 +42,13 @@ def _fisher_scoring(levels, failures, trials):
     return np.exp(-new[0] / new[1]), 1.0 / new[1]
 
 
-def test_fifty_data_sets_agree_with_an_independent_probit_fit():
+@pytest.mark.verifies(
+    "computed anew",
+    "Fisher scoring (McCullagh and Nelder 1989)",
+    within="1e-6",
+    control="test_least_squares_is_told_apart_from_maximum_likelihood",
+)
+def test_fifty_data_sets_agree_with_an_independent_probit_fit(agreement):
     """Median and dispersion of 50 random studies agree with Fisher scoring to 1e-6; another link does not."""
     random, compared = np.random.default_rng(1), 0
     while compared < 50:
@@ -51,11 +59,12 @@ def test_fifty_data_sets_agree_with_an_independent_probit_fit():
         if fit.method != "maximum-likelihood":
             continue
         median, dispersion = _fisher_scoring(levels, failures, trials)
-        assert fit.median == pytest.approx(median, rel=1e-6)
-        assert fit.dispersion == pytest.approx(dispersion, rel=1e-6)
+        agreement(abs(fit.median / median - 1.0), 1e-6)
+        agreement(abs(fit.dispersion / dispersion - 1.0), 1e-6)
         compared += 1
 
 
+@pytest.mark.verifies("negative control", "least squares through the shares (Baker 2015)", doi="10.1193/021113EQS025M")
 def test_least_squares_is_told_apart_from_maximum_likelihood():
     """Negative control: fitting the shares by least squares, a common mistake (Baker 2015), misses by far over 1e-6."""
     levels, failures, trials = np.array([0.2, 0.4, 0.6, 0.8]), np.array([1, 8, 14, 19]), np.full(4, 20)
@@ -105,6 +114,7 @@ def _coverage(ends, parameter):
     return np.mean((ends[0] <= _truth(parameter)) & (_truth(parameter) <= ends[1]))
 
 
+@pytest.mark.verifies("repeated sampling", "1,000 studies whose truth is known", within="93 to 97 %", control="within")
 @pytest.mark.parametrize("parameter", PARAMETERS)
 @pytest.mark.parametrize("design", [_stripes, _clouds])
 def test_profile_intervals_cover_as_often_as_they_say(design, parameter):
@@ -116,6 +126,7 @@ def test_profile_intervals_cover_as_often_as_they_say(design, parameter):
     assert not 0.93 <= _coverage(_profile_ends(levels, failures, trials, parameter, width=0.5), parameter) <= 0.97
 
 
+@pytest.mark.verifies("invariant", "the interval whose coverage was measured", within="1e-8")
 def test_one_study_has_the_interval_of_the_many():
     """The interval that a user gets is the one whose coverage was measured."""
     levels, failures = _stripes(3)
@@ -140,6 +151,7 @@ def _bootstrap_coverage(design, studies, trials):
     return hits / studies
 
 
+@pytest.mark.verifies("repeated sampling", "1,000 studies whose truth is known", within="93 to 97 %", control="within")
 def test_bootstrap_intervals_cover_as_often_as_they_say():
     """The studentised bootstrap covers in 93 to 97 % of 1000 studies; cut to half its width it does not."""
     whole, half = _bootstrap_coverage(_stripes, STUDIES, [40] * 8)
@@ -147,6 +159,7 @@ def test_bootstrap_intervals_cover_as_often_as_they_say():
     assert np.all(half < 0.93), half
 
 
+@pytest.mark.verifies("repeated sampling", "2,000 studies whose truth is known", within="93 to 97 %", control="within")
 @pytest.mark.skipif(not CAMPAIGN, reason="minutes: ROCKING_CAMPAIGN=1 runs it")
 def test_bootstrap_intervals_of_clouds_cover_as_often_as_they_say():
     """The same for clouds of 200 observations."""
@@ -155,6 +168,7 @@ def test_bootstrap_intervals_of_clouds_cover_as_often_as_they_say():
     assert np.all(half < 0.93), half
 
 
+@pytest.mark.verifies("repeated sampling", "1,000 studies whose truth is known", within="93 to 97 %")
 def test_bands_cover_as_often_as_they_say():
     """The pointwise 95 % band holds the true curve in 93 to 97 % of 1000 studies at each of three levels."""
     levels, failures = _stripes(1000, seed=5)
@@ -165,6 +179,7 @@ def test_bands_cover_as_often_as_they_say():
     assert np.all((share >= 0.93) & (share <= 0.97)), share
 
 
+@pytest.mark.verifies("repeated sampling", "parameters that were put in", within="4 standard errors of less than 0.01")
 def test_recovers_known_parameters():
     """With a hundred thousand trials a stripe, median and dispersion come back within four standard errors."""
     levels = MEDIAN * np.exp(np.linspace(-1.5, 1.5, 8) * DISPERSION)
@@ -174,6 +189,7 @@ def test_recovers_known_parameters():
     assert abs(fit.dispersion - DISPERSION) < 4 * fit.standard_errors["dispersion"] < 0.01
 
 
+@pytest.mark.verifies("repeated sampling", "the spread of 8,000 studies", within="0.03")
 def test_standard_errors_are_those_of_repeated_studies():
     """The spread of estimates over many studies is the mean standard error, within Monte Carlo error."""
     levels, failures = _stripes(8000, seed=9)
@@ -185,6 +201,7 @@ def test_standard_errors_are_those_of_repeated_studies():
         assert value.std() == pytest.approx(error.mean(), rel=0.03)
 
 
+@pytest.mark.verifies("negative control", "a plain Newton's method")
 @pytest.mark.parametrize(
     ("levels", "failures"),
     [([1, 2, 3, 4], [0, 0, 1, 1]), ([1, 2, 2, 3], [0, 0, 1, 1]), ([1, 1.01, 4, 9], [0, 1, 1, 1])],
@@ -207,6 +224,7 @@ def test_naive_newton_runs_away_where_the_answer_is_honest(levels, failures):
     assert "no likeliest curve" in fit.verdict
 
 
+@pytest.mark.verifies("computed anew", "SciPy's brentq on the constrained maximum", within="1e-6")
 def test_profile_end_against_a_root_finder():
     """The upper end of the dispersion agrees with brentq on the constrained maximum, in a lopsided small study."""
     levels, failures, n = np.array([0.5, 1.0, 1.5, 2.0]), np.array([1, 2, 4, 5]), 6

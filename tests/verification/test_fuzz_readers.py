@@ -19,6 +19,8 @@ from verification.stated_by_headers import HEADERS
 from rocking.errors import InvalidValueError, RecordError
 from rocking.motions.formats import Component, Record, RecordFormat, Source, formats
 
+pytestmark = pytest.mark.verifies(room="motions and records")
+
 COPIES = int(os.environ.get("ROCKING_FUZZ", "2000"))
 BINARY = {"miniseed", "sac"}
 TEXT_FORMATS = [name for name in formats() if name not in BINARY]
@@ -60,6 +62,7 @@ def contradiction(name: str, content: bytes, record: Record) -> str | None:
     return next(filter(None, map(_at_odds, record.components, stated)), None)
 
 
+@pytest.mark.verifies("behaviour")
 def test_every_header_is_read_a_second_time():
     """A format without a reading of its own here would be damaged and compared with nothing."""
     assert set(TEXT_FORMATS) - {"columns"} <= set(HEADERS)
@@ -96,6 +99,11 @@ def findings(name: str, kind: RecordFormat, copies: int) -> tuple[list[str], int
     return sure, refused, len(wrong) - len(sure)
 
 
+@pytest.mark.verifies(
+    "computed anew",
+    "a second reading of the header that shares nothing with the reader",
+    control="test_a_lax_reader_is_caught",
+)
 @pytest.mark.parametrize("name", TEXT_FORMATS)
 def test_valid_files_are_recognised_by_their_own_reader_only_and_agree_with_their_headers(name: str) -> None:
     """What the writer writes is read back, agrees with the second reading of its header, and is no other format's."""
@@ -106,6 +114,12 @@ def test_valid_files_are_recognised_by_their_own_reader_only_and_agree_with_thei
         assert [other for other in others if other != "columns" or name == "columns"] == [name]
 
 
+@pytest.mark.verifies(
+    "damage",
+    "2,000 damaged copies of each format, and a second reading of their headers",
+    within="none contradicts its header; 0.005 cannot be judged",
+    control="test_a_lax_reader_is_caught",
+)
 @pytest.mark.parametrize("name", TEXT_FORMATS)
 def test_damaged_files_are_refused_or_agree_with_their_headers(name: str) -> None:
     """No damaged copy gives another exception, a hang, or a record that contradicts the raw header."""
@@ -117,6 +131,7 @@ def test_damaged_files_are_refused_or_agree_with_their_headers(name: str) -> Non
     assert refused > 0.35 * COPIES
 
 
+@pytest.mark.verifies("damage", "damaged copies of every format, and noise")
 def test_recognition_never_raises() -> None:
     """Every reader looks at every format's damaged files, and at noise, and answers yes or no."""
     readers = formats()
@@ -158,6 +173,7 @@ class _Raising(_Lax):
         return Record("knet", (Component("raising", np.zeros(int(rate[:-2])), "gal", 0.01),))
 
 
+@pytest.mark.verifies("negative control", "readers that believe what they find, and let exceptions through")
 def test_a_lax_reader_is_caught() -> None:
     """Readers that skip the checks are found out by counts, peaks and exceptions: the harness has teeth."""
     wrong, *_ = findings("knet", _Lax(), 400)

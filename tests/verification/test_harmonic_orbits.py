@@ -2,7 +2,7 @@
 
 With x = theta / alpha and tau = p t the linear equations are x'' = x - sgn x + A sin(W tau + psi). Symmetric orbits
 with one impact per half period (Spanos & Koh 1984, J. Eng. Mech. 110:1627; Hogan 1989, Proc. R. Soc. A 425:441) follow
-from a quadratic in the velocity v after the impact; REF numbers: section 4.3 of the project's physics specification.
+from a quadratic in the velocity v after the impact; REF numbers: see CONTRIBUTING.md.
 
 Areas: the flow of both sets of equations keeps dtheta dtheta', and an impact multiplies it by r^2, so the map of states
 over any time has the determinant r^(2 n), n impacts. From impact to impact the same holds for the variables t and
@@ -21,6 +21,8 @@ from rocking import conventions
 from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind
+
+pytestmark = pytest.mark.verifies(room="rocking in the plane")
 
 ENGINES = ("fast", "reference")
 ALPHA, P = 0.22, 2.3
@@ -106,23 +108,29 @@ def turn(case, psi, v, engine):
     return curve(turns[np.isfinite(turns)]).max()
 
 
+@pytest.mark.verifies(
+    "closed form",
+    "the quadratic of symmetric orbits (Spanos and Koh 1984, Hogan 1989), solved here, and its roots to 15 digits",
+    within="1e-13",
+)
 @pytest.mark.parametrize("case", ORBITS)
 def test_the_quadratic_gives_the_published_orbits(case):
     """REF: velocity and phase of the three orbits, and of the unstable partner of the first."""
     v, psi, _ = ORBITS[case]
     slow, quick = symmetric_orbits(*case)
-    assert quick == (pytest.approx(v, rel=1e-13), pytest.approx(psi, rel=1e-13))
+    assert quick == (pytest.approx(v, rel=1e-13, abs=0.0), pytest.approx(psi, rel=1e-13, abs=0.0))
     if case == UNSTABLE[0]:
-        assert slow[0] == pytest.approx(UNSTABLE[1], rel=1e-13)
+        assert slow[0] == pytest.approx(UNSTABLE[1], rel=1e-13, abs=0.0)
 
 
+@pytest.mark.verifies("closed form", "symmetric orbits in closed form", within="1e-9", control="within")
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("case", ORBITS)
 def test_long_harmonic_motion_ends_in_the_orbit(case, engine):
     """REF: from a disturbed start, velocity, phase and largest rotation converge to those of the orbit."""
     v, psi, published = ORBITS[case]
     grid = orbit(case, np.linspace(0.0, math.pi / case[1], 201)).max()
-    assert grid == pytest.approx(published, rel=1e-13)
+    assert grid == pytest.approx(published, rel=1e-13, abs=0.0)
     largest = -minimize_scalar(
         lambda tau: -orbit(case, tau), bounds=(0.0, math.pi / case[1]), options={"xatol": 1e-9}
     ).fun
@@ -136,10 +144,11 @@ def test_long_harmonic_motion_ends_in_the_orbit(case, engine):
     np.testing.assert_allclose(np.abs(velocities), v, rtol=1e-9)
     np.testing.assert_allclose(folded, 0.0, rtol=0.0, atol=1e-9)
     assert (np.diff(np.sign(velocities)) != 0.0).all()
-    assert turn(case, psi + folded[-1], abs(velocities[-1]), engine) == pytest.approx(largest, rel=1e-9)
+    assert turn(case, psi + folded[-1], abs(velocities[-1]), engine) == pytest.approx(largest, rel=1e-9, abs=0.0)
     assert abs(found[0].after) / (P * ALPHA) != pytest.approx(v, rel=1e-5)  # negative control: it was disturbed
 
 
+@pytest.mark.verifies("closed form", "eigenvalues of modulus r", within="1e-8")
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("case", ORBITS)
 def test_stable_orbits_are_foci(case, engine):
@@ -152,6 +161,7 @@ def test_stable_orbits_are_foci(case, engine):
     np.testing.assert_allclose(np.abs(values), case[2], rtol=1e-8)
 
 
+@pytest.mark.verifies("closed form", "the slower orbit, and its eigenvalue to 8 digits", within="1e-7")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_the_unstable_partner(engine):
     """REF: the slower orbit is a saddle whose larger eigenvalue has the size 15.738771."""
@@ -170,6 +180,9 @@ def energies(case, psi, v, engine, count, **options):
     return np.array([psi + case[1] * P * impact.time, 0.5 * (impact.after / (P * ALPHA)) ** 2])
 
 
+@pytest.mark.verifies(
+    "invariant", "area in time and energy, shrunk by r^2 at each impact", within="1e-7", control="within"
+)
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("linear", [True, False])
 def test_area_from_impact_to_impact(linear, engine):
@@ -191,6 +204,7 @@ def over_time(case, psi, x, v, cycles, engine, linear):
     return np.array([found.rotation[-1] / ALPHA, found.angular_velocity[-1] / (P * ALPHA)])
 
 
+@pytest.mark.verifies("invariant", "area of states, shrunk by r^2 at each impact", within="1e-7")
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("linear", [True, False])
 @pytest.mark.parametrize("case", ORBITS)
@@ -204,6 +218,7 @@ def test_area_over_a_period(case, linear, engine):
     assert np.linalg.det(matrix) == pytest.approx(case[2] ** (2 * count), rel=1e-7)
 
 
+@pytest.mark.verifies("invariant", "the motion run backwards", within="1e-8")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_time_runs_back(engine):
     """With r = 1 the ground motion run backwards brings a block back to where it was, over several impacts."""

@@ -24,7 +24,10 @@ from rocking.motions import Segments
 FEW = settings(max_examples=25)
 
 # the laws are those of the equations of rocking, which hold also where the ground would have to pull
-pytestmark = pytest.mark.filterwarnings("ignore:the ground would have to pull")
+pytestmark = [
+    pytest.mark.verifies("invariant", room="rocking in the plane"),
+    pytest.mark.filterwarnings("ignore:the ground would have to pull"),
+]
 
 seeds = st.integers(0, 10**6)
 slenderness = st.floats(0.08, 0.5)
@@ -77,6 +80,9 @@ def block(alpha: float, size: float = 1.0) -> rk.Block:
     return rk.Block(width=2.0 * size * math.sin(alpha), height=2.0 * size * math.cos(alpha))
 
 
+@pytest.mark.verifies(
+    against="a body s times as large under sqrt(s) times as slow a motion", within="1e-8 rad", control="within"
+)
 @every_engine
 @FEW
 @given(alpha=slenderness, s=factors, r=coefficients, strength=strengths, seed=seeds)
@@ -91,6 +97,7 @@ def test_size(name: str, alpha: float, s: float, r: float, strength: float, seed
         assert not same_course(one, respond(large, motion, r, name))
 
 
+@pytest.mark.verifies(against="gravity and ground c times as strong, sqrt(c) times as fast", within="1e-8 rad")
 @every_engine
 @FEW
 @given(alpha=slenderness, c=factors, r=coefficients, strength=strengths, seed=seeds)
@@ -105,6 +112,7 @@ def test_gravity(name: str, alpha: float, c: float, r: float, strength: float, s
     assert same_course(one, other)
 
 
+@pytest.mark.verifies(against="other density and depth", within="1e-8 rad")
 @every_engine
 @FEW
 @given(alpha=slenderness, density=st.floats(1e-3, 1e6), depth=st.floats(0.01, 100.0), strength=strengths, seed=seeds)
@@ -116,6 +124,7 @@ def test_mass(name: str, alpha: float, density: float, depth: float, strength: f
     assert same_course(respond(body, motion, "housner", name), respond(heavy, motion, "housner", name))
 
 
+@pytest.mark.verifies(against="gravity c g on ground at rest", within="1e-8 rad", control="within")
 @every_engine
 @FEW
 @given(alpha=slenderness, c=st.floats(0.3, 3.0), r=coefficients, strength=strengths, seed=seeds, linear=st.booleans())
@@ -137,6 +146,7 @@ def test_constant_vertical(
         assert np.abs(one.rotation[:n] - wrong.rotation[:n]).max() > 1e-8
 
 
+@pytest.mark.verifies(against="two point masses with alpha and p of the block", within="1e-8 rad")
 @every_engine
 @FEW
 @given(alpha=slenderness, k=st.floats(0.75, 1.3), r=coefficients, strength=strengths, seed=seeds)
@@ -150,6 +160,7 @@ def test_equal_parameters(name: str, alpha: float, k: float, r: float, strength:
     assert same_course(respond(body, motion, r, name), respond(pair, motion, r, name))
 
 
+@pytest.mark.verifies(against="pulses of equal dimensionless groups", within="1e-9 rad in peaks, 1e-6 in p t")
 @every_engine
 @FEW
 @given(alpha=slenderness, s=factors, c=factors, strength=st.floats(1.2, 6.0), omega=st.floats(0.5, 8.0), r=coefficients)
@@ -178,6 +189,7 @@ def histories(
     return run(parameters, motion, Settings(linear=linear, rest_speed=1e-6), engine=name, **state)
 
 
+@pytest.mark.verifies(against="another slenderness angle", within="1e-8 of theta / alpha", control="within")
 @every_engine
 @FEW
 @given(alpha=slenderness, other=slenderness, r=coefficients, strength=strengths, seed=seeds)
@@ -197,6 +209,7 @@ def test_linear_model(name: str, alpha: float, other: float, r: float, strength:
             assert gap > 1e-8
 
 
+@pytest.mark.verifies(against="the mirrored body under the mirrored motion", within="every bit", control="within")
 @every_engine
 @settings(max_examples=50)
 @given(
@@ -223,6 +236,7 @@ def test_mirror_is_bitwise(
         assert not np.array_equal(one.rotation, -same.rotation, equal_nan=True)
 
 
+@pytest.mark.verifies(against="the mirror image, through the public door", within="1e-8 rad")
 @every_engine
 @FEW
 @given(lean=st.floats(-0.3, 0.3), strength=strengths, seed=seeds)
@@ -240,6 +254,7 @@ def test_mirrored_body(name: str, lean: float, strength: float, seed: int) -> No
     assert np.abs(one.rotation[:n] + other.rotation[:n]).max() < 1e-8
 
 
+@pytest.mark.verifies(against="energy between impacts, and r^2 at each", within="1e-7", control="within")
 @every_engine
 @FEW
 @given(alpha=slenderness, p=st.floats(0.5, 6.0), r=st.sampled_from([1.0, 0.95, 0.8, 0.5]), start=st.floats(0.1, 0.95))
@@ -261,6 +276,7 @@ def test_energy(name: str, alpha: float, p: float, r: float, start: float) -> No
         assert np.abs(e / r**before - 1.0)[kept].max() > 0.01
 
 
+@pytest.mark.verifies(against="the motion run backwards with r = 1", within="1e-8 rad", control="within")
 @every_engine
 @FEW
 @given(alpha=slenderness, seed=seeds, strength=strengths, start=st.floats(0.1, 0.8), vertical=st.booleans())
@@ -282,6 +298,7 @@ def test_time_reversal(name: str, alpha: float, seed: int, strength: float, star
     assert not ends[1] < 1e-5
 
 
+@pytest.mark.verifies("closed form", "(g + a_z) b / h, about the foot away from the push", within="1e-13")
 @every_engine
 @pytest.mark.parametrize("lift", [0.0, 0.4, -0.6])
 @FEW

@@ -1,6 +1,6 @@
 """KED of the rectangle: the closed form against 30-digit quadrature, series limits and printed numbers.
 
-REF numbers: section 1.4 of the project's physics specification, verified there to 40 digits. Printed numbers:
+REF numbers (CONTRIBUTING.md), to 40 digits. Printed numbers:
 Mao et al. 2024, Table 2, doi:10.3390/buildings14072119.
 """
 
@@ -10,6 +10,8 @@ import pytest
 
 import rocking as rk
 from rocking.restitution import Housner, Ked
+
+pytestmark = pytest.mark.verifies(room="restitution in the plane")
 
 SLENDERNESS = [
     *np.geomspace(1e-3, 1e3, 49).tolist(),
@@ -73,11 +75,17 @@ def error(found, expected):
 
 
 def textbook_form(ratio):
-    """The closed form of physics 1.4 in double precision as it is printed: cancels for squat blocks."""
+    """The closed form in double precision as it is printed: cancels for squat blocks."""
     kept = ratio**3 / 12 - ratio / 4 + np.arctan(ratio) / 4 + ratio**4 / 4 * np.arctan(1 / ratio)
     return float(np.sqrt(np.abs(kept) / (ratio * (1 + ratio**2) / 3)))
 
 
+@pytest.mark.verifies(
+    "computed anew",
+    "Eq. 17 of Mao et al. 2024 as it stands, 25 digits",
+    within="1e-15",
+    doi="10.3390/buildings14072119",
+)
 def test_reduced_integral_is_the_double_integral():
     """The one-dimensional oracle equals the double integral of Eq. 17 evaluated as it stands, to 1e-15."""
     with mp.workdps(25):
@@ -87,12 +95,20 @@ def test_reduced_integral_is_the_double_integral():
     assert error(by_quadrature(2.0), double) < 1e-15
 
 
+@pytest.mark.verifies(
+    "computed anew",
+    "Eq. 17 of Mao et al. 2024 by 30-digit quadrature",
+    within="1e-13",
+    control="test_quadrature_criterion_rejects_wrong_forms",
+    doi="10.3390/buildings14072119",
+)
 @pytest.mark.parametrize("ratio", SLENDERNESS)
-def test_closed_form_against_quadrature(ratio):
+def test_closed_form_against_quadrature(ratio, agreement):
     """Vectorised closed form and series agree with 30-digit quadrature to 1e-13 relative."""
-    assert error(Ked().of_slenderness([ratio])[0], by_quadrature(ratio)) < 1e-13
+    agreement(error(Ked().of_slenderness([ratio])[0], by_quadrature(ratio)), 1e-13)
 
 
+@pytest.mark.verifies("negative control", "the form that cancels, a wrong power, and Housner's model")
 def test_quadrature_criterion_rejects_wrong_forms():
     """Negative control: the cancelling textbook form, a wrong power and Housner all fail the same
     criterion."""
@@ -104,16 +120,24 @@ def test_quadrature_criterion_rejects_wrong_forms():
     assert error(Housner().of_slenderness([2.0])[0], by_quadrature(2.0)) > 1e-13
 
 
+@pytest.mark.verifies("computed anew", "coefficients to 15 digits and more", within="1e-14")
 @pytest.mark.parametrize(("ratio", "value"), REF.items())
-def test_reference_values(ratio, value):
-    """REF values of physics 1.4 to 1e-14, for arrays and for a Block of any size."""
+def test_reference_values(ratio, value, agreement):
+    """REF values to 1e-14, for arrays and for a Block of any size."""
     block = rk.Block(width=3.0, height=3.0 * ratio, depth=0.2, density=100.0)
-    assert error(Ked().of_slenderness([ratio])[0], mp.mpf(value)) < 1e-14
+    agreement(error(Ked().of_slenderness([ratio])[0], mp.mpf(value)), 1e-14)
     # a Block's own height/width is rounded: its ratio may be one unit in the last place off
     assert error(rk.coefficient_of_restitution(block, "ked"), mp.mpf(value)) < 1e-14
     assert error(rk.coefficient_of_restitution(block, "ked", onto="left"), mp.mpf(value)) < 1e-14
 
 
+@pytest.mark.verifies(
+    "published",
+    "Table 2, column r_r, Mao et al. 2024",
+    within="all printed digits",
+    control="within",
+    doi="10.3390/buildings14072119",
+)
 @pytest.mark.parametrize(("ratio", "printed"), TABLE_2.items())
 def test_table_2_to_all_digits(ratio, printed):
     """The r_r column of Table 2 (Mao et al. 2024), to all 8 printed digits."""
@@ -123,8 +147,9 @@ def test_table_2_to_all_digits(ratio, printed):
     assert f"{rk.coefficient_of_restitution(block, 'horizontal-momentum'):.8f}" != printed
 
 
+@pytest.mark.verifies("closed form", "(3 pi / 8) l^3 (1 - 8 l / (5 pi))", within="2.0 l^2", control="within")
 def test_squat_limit():
-    """r^2 = (3 pi/8) l^3 (1 - 8 l/(5 pi) + O(l^2)) (physics 1.4); an exponent or factor off by little
+    """r^2 = (3 pi/8) l^3 (1 - 8 l/(5 pi) + O(l^2)); an exponent or factor off by little
     fails."""
 
     def follows(leading):
@@ -137,9 +162,11 @@ def test_squat_limit():
     assert not follows(lambda ratio: 1.001 * 3.0 * np.pi / 8.0 * ratio**3)
 
 
+@pytest.mark.verifies(
+    "closed form", "1 - 1/l^2 + 3 pi / (16 l^3) + 1 / (5 l^4)", within="2.0 / l of the last term", control="within"
+)
 def test_slender_limit():
-    """r = 1 - 1/l^2 + 3 pi/(16 l^3) + 1/(5 l^4) + ... (physics 1.4; the last term from N and D given
-    there)."""
+    """r = 1 - 1/l^2 + 3 pi/(16 l^3) + 1/(5 l^4) + ... (the last term from the integrals)."""
 
     ratios = np.array([30.0, 100.0, 300.0])
 
@@ -152,8 +179,9 @@ def test_slender_limit():
     assert not follows(0.0)
 
 
+@pytest.mark.verifies("closed form", "two thirds", within="2e-4", control="within")
 def test_slender_loss_is_two_thirds_of_housner():
-    """In the slender limit KED loses 2/3 of the energy that Housner's model loses (physics 1.4)."""
+    """In the slender limit KED loses 2/3 of the energy that Housner's model loses."""
     ratio = np.array([1e4])
     loss = {model: 1.0 - model.of_slenderness(ratio)[0] ** 2 for model in (Ked(), Housner())}
     # losses of 3e-8 keep about 8 digits; the next term of the series is 6e-5
@@ -161,8 +189,9 @@ def test_slender_loss_is_two_thirds_of_housner():
     assert loss[Ked()] / loss[Housner()] != pytest.approx(3.0 / 4.0, rel=2e-4)
 
 
+@pytest.mark.verifies("invariant", "growing between cos^2 alpha and 1", control="within")
 def test_monotone_and_between_its_bounds():
-    """r grows with slenderness from 0 to 1 and lies between cos^2(alpha) and 1 (physics 1.4), without
+    """r grows with slenderness from 0 to 1 and lies between cos^2(alpha) and 1, without
     jumps."""
     ratios = np.geomspace(1e-3, 1e3, 4001)
     r = Ked().of_slenderness(ratios)
@@ -175,6 +204,7 @@ def test_monotone_and_between_its_bounds():
     assert not (housner >= ratios**2 / (1.0 + ratios**2)).all()
 
 
+@pytest.mark.verifies("same bits", "the same ratios in arrays of other shapes")
 def test_any_shape_of_array():
     """Scalars, empty, integer, 2-D, strided and long arrays give the same numbers in the shape that was
     asked."""

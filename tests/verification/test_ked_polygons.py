@@ -1,6 +1,6 @@
 """KED of any polygons: against slices integrated in 30 digits, exact rational moments, its identities.
 
-REF numbers: sections 1.4, 1.6 and 1.7 of the project's physics specification.
+REF numbers: see CONTRIBUTING.md.
 """
 
 from fractions import Fraction
@@ -16,6 +16,8 @@ from scipy.integrate import dblquad
 
 import rocking as rk
 from rocking.restitution import projected_moment
+
+pytestmark = pytest.mark.verifies(room="restitution in the plane")
 
 # --- the oracle: horizontal slices, exact along x, 25-digit quadrature along y; nothing is summed a
 
@@ -108,8 +110,12 @@ def oracle(regions, foot, ground=0.0):
         return mp.sqrt(kept / number(mxx + myy))
 
 
+def error(found, expected):
+    return float(abs(mp.mpf(float(found)) / expected - 1))
+
+
 def agrees(found, expected, tolerance=1e-12):
-    return bool(abs(mp.mpf(float(found)) / expected - 1) < tolerance)
+    return error(found, expected) < tolerance
 
 
 # --- bodies -------------------------------------------------------------------------------------------------
@@ -195,18 +201,26 @@ def section_of(regions, feet=None, ground=0.0, **options):
 # --- tests --------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.verifies(
+    "computed anew",
+    "horizontal slices integrated with 30 digits",
+    within="1e-12",
+    control="test_slices_criterion_rejects_wrong_bodies",
+)
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("name", BODIES)
-def test_against_slices(name, place):
+def test_against_slices(name, place, agreement):
     """Polygons with holes, densities, inner feet, thin, squat, far away: r to 1e-12 of independent
     quadrature."""
     regions, feet, (left, right), ground = placed(name, place)
     section = section_of(regions, feet, ground)
-    assert agrees(rk.coefficient_of_restitution(section, "ked", onto="right"), oracle(regions, right, ground))
+    agreement(error(rk.coefficient_of_restitution(section, "ked", onto="right"), oracle(regions, right, ground)), 1e-12)
     if place == "here":
-        assert agrees(rk.coefficient_of_restitution(section, "ked", onto="left"), oracle(regions, left, ground))
+        r = rk.coefficient_of_restitution(section, "ked", onto="left")
+        agreement(error(r, oracle(regions, left, ground)), 1e-12)
 
 
+@pytest.mark.verifies("negative control", "the wrong foot, filled holes, mixed-up densities")
 def test_slices_criterion_rejects_wrong_bodies():
     """Negative control: the wrong foot, filled holes and mixed-up densities fail the criterion."""
     regions, _, (left, right), _ = placed("holes", "here")
@@ -219,6 +233,7 @@ def test_slices_criterion_rejects_wrong_bodies():
     assert not agrees(r, oracle([(low, d_high, []), (high, d_low, [])], 1.0))
 
 
+@pytest.mark.verifies("computed anew", "SciPy's dblquad", within="1e-9", control="within")
 def test_oracle_against_two_dimensional_quadrature():
     """The slice oracle itself: equal to scipy's dblquad over a triangle, to the 1e-9 that dblquad reaches."""
     regions, _, (_, right), _ = placed("triangle", "here")
@@ -231,26 +246,31 @@ def test_oracle_against_two_dimensional_quadrature():
     assert not agrees(np.sqrt(kept / inertia), oracle(regions, 0.0), 1e-9)
 
 
+@pytest.mark.verifies("computed anew", "coefficients to 16 digits", within="1e-14", control="within")
 def test_trapezoid_reference():
-    """REF of physics 1.6: trapezoid 1 x 2.5 m with a 0.4 m top, KED and Housner."""
+    """REF: trapezoid 1 x 2.5 m with a 0.4 m top, KED and Housner."""
     section = rk.Section.from_trapezoid(1.0, 0.4, 2.5)
-    assert rk.coefficient_of_restitution(section, "ked") == pytest.approx(0.8704740952680223, rel=1e-14)
-    assert rk.coefficient_of_restitution(section, "housner") == pytest.approx(0.7416338582677167, rel=1e-14)
+    assert rk.coefficient_of_restitution(section, "ked") == pytest.approx(0.8704740952680223, rel=1e-14, abs=0.0)
+    assert rk.coefficient_of_restitution(section, "housner") == pytest.approx(0.7416338582677167, rel=1e-14, abs=0.0)
     upright = rk.Section.from_trapezoid(1.0, 1.0, 2.5)
-    assert rk.coefficient_of_restitution(upright, "ked") != pytest.approx(0.8704740952680223, rel=1e-14)
+    assert rk.coefficient_of_restitution(upright, "ked") != pytest.approx(0.8704740952680223, rel=1e-14, abs=0.0)
 
 
+@pytest.mark.verifies("closed form", "the closed form of the rectangle", within="1e-12", control="within")
 @pytest.mark.parametrize("ratio", [0.01, 0.1, 0.5, 1.0, 4.0, 30.0, 300.0])
 def test_rectangle_as_section(ratio):
     """The boundary sum of a rectangle equals the closed form of a Block."""
     block = rk.Block(width=1.0, height=ratio)
     found = rk.coefficient_of_restitution(block.to_section(), "ked")
-    assert found == pytest.approx(rk.coefficient_of_restitution(block, "ked"), rel=1e-12)
+    assert found == pytest.approx(rk.coefficient_of_restitution(block, "ked"), rel=1e-12, abs=0.0)
     leaning = rk.Section.from_trapezoid(1.0, 1.0, ratio, lean=1e-6)
     wrong = rk.coefficient_of_restitution(leaning, "ked")
-    assert wrong != pytest.approx(rk.coefficient_of_restitution(block, "ked"), rel=1e-12)
+    assert wrong != pytest.approx(rk.coefficient_of_restitution(block, "ked"), rel=1e-12, abs=0.0)
 
 
+@pytest.mark.verifies(
+    "computed anew", "exact fractions", within="1e-12", control="test_far_away_criterion_rejects_uncentred_sums"
+)
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("name", BODIES)
 def test_exact_moments(name, place):
@@ -259,12 +279,13 @@ def test_exact_moments(name, place):
     section = section_of(regions, feet, ground, depth=0.5)
     m, mx, my, mxx, myy = moments_of(exact_regions(regions))
     polar = float((mxx + myy - (mx * mx + my * my) / m) / 2)
-    assert section.mass == pytest.approx(float(m / 2), rel=1e-12)
-    assert section.moment_of_inertia == pytest.approx(polar, rel=1e-12)
+    assert section.mass == pytest.approx(float(m / 2), rel=1e-12, abs=0.0)
+    assert section.moment_of_inertia == pytest.approx(polar, rel=1e-12, abs=0.0)
     # rounded once to the user's coordinates; a wall of 1e-3 m is the difference of areas 300 times its own
     assert section.centre == pytest.approx((float(mx / m), float(my / m)), rel=1e-15, abs=1e-13)
 
 
+@pytest.mark.verifies("negative control", "the same sums in the user's coordinates")
 def test_far_away_criterion_rejects_uncentred_sums():
     """Negative control: the same sums in the user's coordinates lose everything 1e6 m away."""
     regions, _, _, _ = placed("trapezoid", "1e6 m away and up")
@@ -278,6 +299,12 @@ def test_far_away_criterion_rejects_uncentred_sums():
     assert naive != pytest.approx(float(mxx + myy - (mx * mx + my * my) / m), rel=1e-3)
 
 
+@pytest.mark.verifies(
+    "computed anew",
+    "horizontal slices integrated with 30 digits",
+    within="1e-12",
+    control="test_slices_criterion_rejects_wrong_bodies",
+)
 @settings(max_examples=12)
 @given(polygons())
 def test_random_polygons_against_slices(ring):
@@ -287,6 +314,7 @@ def test_random_polygons_against_slices(ring):
     assert agrees(rk.coefficient_of_restitution(section, "ked", onto="left"), oracle(regions, ring[0][0]))
 
 
+@pytest.mark.verifies("invariant", "the body cut into touching triangles", within="1e-11", control="within")
 @given(polygons())
 def test_additive_over_a_cut(ring):
     """N, mass and inertia of a body cut into a fan of touching triangles equal those of the whole."""
@@ -295,14 +323,15 @@ def test_additive_over_a_cut(ring):
     parts = [rk.Region([(0.0, 0.0), a, b], 3.0) for a, b in pairwise(fan)]
     whole, cut = rk.Section.from_points(ring, 3.0), rk.Section(parts)
     for onto in ("left", "right"):
-        assert projected_moment(cut, onto) == pytest.approx(projected_moment(whole, onto), rel=1e-11)
-    assert cut.mass == pytest.approx(whole.mass, rel=1e-12)
-    assert cut.moment_of_inertia == pytest.approx(whole.moment_of_inertia, rel=1e-11)
+        assert projected_moment(cut, onto) == pytest.approx(projected_moment(whole, onto), rel=1e-11, abs=0.0)
+    assert cut.mass == pytest.approx(whole.mass, rel=1e-12, abs=0.0)
+    assert cut.moment_of_inertia == pytest.approx(whole.moment_of_inertia, rel=1e-11, abs=0.0)
     if len(parts) > 2 and parts[0].outline[:, 0].max() == right[0]:
         some = sum(projected_moment(rk.MassPoints([(0, 1)], [1.0], (-1, 1)), "right") for _ in parts)
-        assert some != pytest.approx(projected_moment(whole, "right"), rel=1e-11)
+        assert some != pytest.approx(projected_moment(whole, "right"), rel=1e-11, abs=0.0)
 
 
+@pytest.mark.verifies("invariant", "every edge cut into many", within="1e-11", control="within")
 @given(polygons(), st.integers(2, 40))
 def test_vertices_on_edges_change_nothing(ring, pieces):
     """Every edge cut into many: the same coefficient, and a vertex moved by 1e-6 is noticed."""
@@ -310,14 +339,19 @@ def test_vertices_on_edges_change_nothing(ring, pieces):
     along = np.linspace(0.0, 1.0, pieces, endpoint=False)[:, None]
     fine = np.concatenate([a + (b - a) * along for a, b in pairwise(corners)])
     r = rk.coefficient_of_restitution(rk.Section.from_points(ring), "ked")
-    assert rk.coefficient_of_restitution(rk.Section.from_points(fine), "ked") == pytest.approx(r, rel=1e-11)
+    assert rk.coefficient_of_restitution(rk.Section.from_points(fine), "ked") == pytest.approx(r, rel=1e-11, abs=0.0)
     corners[2] *= 1.0 + 1e-6
-    assert rk.coefficient_of_restitution(rk.Section.from_points(corners[:-1]), "ked") != pytest.approx(r, rel=1e-11)
+    assert rk.coefficient_of_restitution(rk.Section.from_points(corners[:-1]), "ked") != pytest.approx(
+        r, rel=1e-11, abs=0.0
+    )
 
 
+@pytest.mark.verifies(
+    "invariant", "cos^2-like bound below, conservation of energy above", within="1e-12", control="within"
+)
 @given(polygons())
 def test_between_horizontal_momentum_and_the_energy_bound(ring):
-    """r_HM <= r_KED and N <= I_O for any body (physics 1.4); an integrand with a length too many breaks
+    """r_HM <= r_KED and N <= I_O for any body; an integrand with a length too many breaks
     it."""
     section = rk.Section.from_points(ring)
     for onto, other in (("left", "right"), ("right", "left")):
@@ -329,9 +363,10 @@ def test_between_horizontal_momentum_and_the_energy_bound(ring):
     assert y_to_the_fourth > tall.side("left").moment_of_inertia
 
 
+@pytest.mark.verifies("invariant", "r_KED^2 = r_HM^2 + the variance of sin^2", within="1e-12", control="within")
 @given(st.lists(st.tuples(st.floats(-0.9, 0.9), st.floats(0.0, 4.0), st.floats(0.1, 3.0)), min_size=1, max_size=12))
 def test_variance_identity_of_points(points):
-    """r_KED^2 = r_HM^2 + Var_w(sin^2 phi), w = |S - O'|^2 dm (physics 1.4), for any mass points."""
+    """r_KED^2 = r_HM^2 + Var_w(sin^2 phi), w = |S - O'|^2 dm, for any mass points."""
     x, y, m = np.array(points).T
     body = rk.MassPoints(np.column_stack([x, y]), m, (-1.0, 1.0))
     squared = (1.0 - x) ** 2 + y**2
@@ -343,16 +378,22 @@ def test_variance_identity_of_points(points):
     assert ked == pytest.approx(mean**2 + variance, rel=1e-12, abs=1e-28)
     if variance > 1e-6:
         unweighted = np.average((sine - mean) ** 2, weights=m) * 1.01 + 1e-6
-        assert ked != pytest.approx(mean**2 + unweighted + variance, rel=1e-12)
+        assert ked != pytest.approx(mean**2 + unweighted + variance, rel=1e-12, abs=0.0)
 
 
+@pytest.mark.verifies(
+    "computed anew",
+    "SciPy's dblquad of the variance, and 15 digits for a rectangle",
+    within="1e-9; 1e-14",
+    control="within",
+)
 def test_variance_identity_of_bodies():
-    """The same identity for a rectangle (REF of physics 1.4) and a trapezoid, the variance by quadrature."""
+    """The same identity for a rectangle (REF) and a trapezoid, the variance by quadrature."""
     block = rk.Block(width=1.0, height=2.0)
     ked, momentum = (rk.coefficient_of_restitution(block, name) for name in ("ked", "horizontal-momentum"))
-    assert momentum == pytest.approx(0.8, rel=1e-15)
-    assert ked**2 == pytest.approx(0.689413284635524127, rel=1e-14)
-    assert ked**2 - momentum**2 == pytest.approx(0.0494132846355241272, rel=1e-13)
+    assert momentum == pytest.approx(0.8, rel=1e-15, abs=0.0)
+    assert ked**2 == pytest.approx(0.689413284635524127, rel=1e-14, abs=0.0)
+    assert ked**2 - momentum**2 == pytest.approx(0.0494132846355241272, rel=1e-13, abs=0.0)
 
     section = rk.Section.from_trapezoid(1.0, 0.4, 2.5)
     ked, momentum = (rk.coefficient_of_restitution(section, name) for name in ("ked", "horizontal-momentum"))
@@ -364,6 +405,6 @@ def test_variance_identity_of_bodies():
         return (y**2 / squared - mean) ** 2 * squared
 
     variance = dblquad(spread, *limits, epsabs=1e-12)[0] / inertia
-    assert ked**2 == pytest.approx(momentum**2 + variance, rel=1e-9)
+    assert ked**2 == pytest.approx(momentum**2 + variance, rel=1e-9, abs=0.0)
     shifted = dblquad(lambda x, y: spread(x, y, 0.99 * momentum), *limits, epsabs=1e-12)[0] / inertia
-    assert ked**2 != pytest.approx(momentum**2 + shifted, rel=1e-9)
+    assert ked**2 != pytest.approx(momentum**2 + shifted, rel=1e-9, abs=0.0)

@@ -11,6 +11,8 @@ from rocking.restitution.space import impact_in_space, unit_energies
 from rocking.restitution.space.energies import lost_density
 from rocking.restitution.space.ked import energy_left
 
+pytestmark = pytest.mark.verifies(room="bodies")
+
 WIDTH, HEIGHT, PLACE, GROUND = 0.78, 3.0, np.array([104.0, -37.0, 7.5]), 7.5
 
 
@@ -21,6 +23,7 @@ def wedge(*, turn=0.0):
     return Solid(Part(shape, 2400.0, rotation=upright, translation=PLACE), ground=GROUND).turned(turn)
 
 
+@pytest.mark.verifies("closed form", "a third of the base of a triangle", within="0.01", control="within")
 @pytest.mark.parametrize("units", [lambda solid: divided(solid, 24), lambda solid: voxels(solid, 60)])
 def test_slenderness_from_units_and_base(units):
     """The centre of a triangle is a third from its upright side: atan(B/H) = 14.6 degrees from units and base.
@@ -37,6 +40,7 @@ def test_slenderness_from_units_and_base(units):
     assert math.atan2(aside - WIDTH / 6.0, z - GROUND) < 0.6 * math.radians(angle)
 
 
+@pytest.mark.verifies("invariant", "the centre of the solid", within="1e-9")
 @pytest.mark.parametrize("turn", [0.0, 0.7])
 def test_units_balance_about_the_centre(turn):
     """Mass times place of the units is mass times `Solid.centre`, of a body that was turned too."""
@@ -55,6 +59,7 @@ def over(solid):
     return impact_in_space(solid, down * old.direction, pivot=old, onto=new)
 
 
+@pytest.mark.verifies("computed anew", "the exact integral over the solid", within="2e-3")
 def test_energies_of_units_far_from_the_origin():
     """Energies of the units add up to the exact integral (order 2, 24 divisions), and layers begin at the ground."""
     result = over(wedge())
@@ -63,10 +68,11 @@ def test_energies_of_units_far_from_the_origin():
     heights, lost = energies.layers(5)
     assert heights[0] == 0.0
     assert 0.9 * HEIGHT < heights[-1] < HEIGHT
-    assert lost.sum() == pytest.approx(energies.lost.sum(), rel=1e-12)
+    assert lost.sum() == pytest.approx(energies.lost.sum(), rel=1e-12, abs=0.0)
     assert energies.layers(3, HEIGHT)[0] == pytest.approx([0.0, 1.0, 2.0, 3.0])
 
 
+@pytest.mark.verifies("closed form", "the two stages of KED at a point", within="1e-9")
 def test_energy_lost_at_a_point_in_closed_form():
     """At (x, z) from the old foot KED takes omega^2/2 (r^2 - z^4/rho^2) of a unit mass, rho from the new foot."""
     result = over(wedge())
@@ -74,9 +80,10 @@ def test_energy_lost_at_a_point_in_closed_form():
     points = PLACE + np.stack([x, np.full(2, -0.2), z], axis=1)
     found = lost_density(result.impact, result.impact.solid.parts[0], points)
     expected = 0.5 * 2400.0 * (x**2 + z**2 - z**4 / (z**2 + (WIDTH - x) ** 2))
-    assert found == pytest.approx(expected, rel=1e-9)
+    assert found == pytest.approx(expected, rel=1e-9, abs=0.0)
 
 
+@pytest.mark.verifies("behaviour")
 def test_slices_are_drawn_where_the_body_stands():
     """Axes of level slices are x and y of the user; heights are over the ground."""
     pytest.importorskip("matplotlib")

@@ -14,6 +14,8 @@ from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.motions import Segments
 
+pytestmark = pytest.mark.verifies(room="rocking in the plane")
+
 # one false alarm in a million: the draws never change, so a failure is no accident
 ALARM = 1e-6
 SEEDS = (0, 1, 7, 2**32, 2**63, 2**64 - 1)
@@ -39,6 +41,7 @@ def draws(seed: int, keys: Any, impacts: Any) -> Any:
     return np.array([[uniform(seed, int(key), int(impact)) for impact in impacts] for key in keys])
 
 
+@pytest.mark.verifies("published", "the first five outputs of splitmix64 (Steele, Lea and Flood 2014)")
 def test_the_generator_is_splitmix() -> None:
     """Our copy gives the published numbers from the seed 1234567; seed, history and impact go through it in turn."""
     generator = SplitMix(1234567)
@@ -58,6 +61,12 @@ def test_the_generator_is_splitmix() -> None:
             assert uniform(seed, key, impact) == (word // 2**11) / 2.0**53
 
 
+@pytest.mark.verifies(
+    "repeated sampling",
+    "test of Kolmogorov and Smirnov",
+    within="1e-6 of false alarms",
+    control="test_a_wrong_distribution_is_caught",
+)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_uniform(seed: int) -> None:
     """Draws are uniform over all histories, and within one, whatever the seed."""
@@ -75,6 +84,7 @@ def test_uniform(seed: int) -> None:
         assert flat.max() < 1.0
 
 
+@pytest.mark.verifies("negative control", "draws squeezed by 3 %, or with another mean")
 def test_a_wrong_distribution_is_caught() -> None:
     """Negative control: the test of Kolmogorov and Smirnov sees draws squeezed by 3 %, or their mean off by 0.03."""
     sample = draws(1, range(400), range(50)).ravel()
@@ -82,6 +92,12 @@ def test_a_wrong_distribution_is_caught() -> None:
     assert stats.kstest(sample ** (1.0 / 1.13), "uniform").pvalue < ALARM
 
 
+@pytest.mark.verifies(
+    "repeated sampling",
+    "chi-square in 8 x 8 cells, and correlation",
+    within="1e-6 of false alarms",
+    control="test_dependence_is_caught",
+)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_independence(seed: int) -> None:
     """Neighbouring impacts, neighbouring histories, neighbouring seeds and equal sums say nothing about each other."""
@@ -100,6 +116,7 @@ def test_independence(seed: int) -> None:
         assert not (one == two).any(), name
 
 
+@pytest.mark.verifies("negative control", "a generator of key + impact")
 def test_dependence_is_caught() -> None:
     """Negative control: a generator of key + impact alone repeats itself along the diagonals."""
     careless = np.array([[uniform(1, 0, key + impact) for impact in range(60)] for key in range(300)])
@@ -108,6 +125,9 @@ def test_dependence_is_caught() -> None:
     assert stats.chi2_contingency(table).pvalue < ALARM
 
 
+@pytest.mark.verifies(
+    "repeated sampling", "the truncated normal distribution of SciPy", within="1e-6 of false alarms", control="within"
+)
 @pytest.mark.parametrize(("mean", "deviation"), [(0.9, 0.02), (0.85, 0.1), (0.5, 1.0), (1.0, 0.05), (0.0, 0.3)])
 def test_normal(mean: float, deviation: float) -> None:
     """Draws follow the normal distribution cut to [0, 1], ends and moments included."""
@@ -125,6 +145,7 @@ def test_normal(mean: float, deviation: float) -> None:
         assert stats.kstest(sample, wrong.cdf).statistic > stats.kstest(sample, cut.cdf).statistic
 
 
+@pytest.mark.verifies("repeated sampling", "the sample", within="1e-6 of false alarms")
 def test_of_a_sample() -> None:
     """Draws from measured values are spread as these values are; from two values they lie between the two."""
     values = np.random.default_rng(2).beta(8.0, 2.0, 3000)
@@ -151,6 +172,7 @@ def coefficients(law: RandomRestitution, key: int, name: str, sides: tuple[float
     return [(e.coefficient, e.side) for e in found.events if e.kind is EventKind.IMPACT]
 
 
+@pytest.mark.verifies("same bits", "draws made in Python", within="3e-16 of a straight line written anew")
 @every_engine
 def test_engines_draw_alike(name: str) -> None:
     """The n-th impact of history `key` meets the draw of (seed, key, n), to the bit, in C++ as in Python."""
@@ -169,6 +191,7 @@ def test_engines_draw_alike(name: str) -> None:
     assert total > 25 * len(keys) * len(SEEDS)
 
 
+@pytest.mark.verifies("computed anew", "the product, by hand", within="3e-16")
 @every_engine
 def test_draws_multiply_the_coefficient_of_the_side(name: str) -> None:
     """A draw is a factor on the coefficient of the side that the body lands on."""

@@ -10,6 +10,8 @@ from rocking.dynamics.plane import fast_engine, reference
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.motions import Segments
 
+pytestmark = pytest.mark.verifies(room="rocking in the plane")
+
 COUNT = 40
 
 
@@ -35,6 +37,12 @@ def lifts(trajectory):
     return np.array([e.time for e in trajectory.events if e.kind is EventKind.UPLIFT])
 
 
+@pytest.mark.verifies(
+    "invariant",
+    "every impact resolved instead of summed up",
+    within="1e-11",
+    control="test_rest_without_proof_is_wrong",
+)
 @every_engine
 def test_the_same_later_history(name):
     """Uplifts from rest at the same instants, the same outcome and peak, with far fewer impacts."""
@@ -49,6 +57,7 @@ def test_the_same_later_history(name):
     assert saved > 10 * COUNT, "the comparison is about impacts that were summed up"
 
 
+@pytest.mark.verifies("negative control", "every slow body put to rest")
 def test_rest_without_proof_is_wrong(monkeypatch):
     """Putting every slow body to rest, as is often done, changes later uplifts."""
     unproven = [lifts(run("reference", number, 0.01)) for number in range(COUNT)]

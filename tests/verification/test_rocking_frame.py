@@ -37,6 +37,8 @@ from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.trajectory import EventKind
 from rocking.motions import Segments
 
+pytestmark = pytest.mark.verifies(room="rocking in the plane")
+
 IMPACTS = 3
 WITHIN = 1e-8
 
@@ -148,6 +150,13 @@ def frame_of(columns: int, gamma: float, size: float, alpha: float, mass: float)
     return Frame(columns, size * math.sin(alpha), size * math.cos(alpha), mass, gamma * columns * mass)
 
 
+@pytest.mark.verifies(
+    "computed anew",
+    "a frame of columns and a beam, integrated from its masses by SciPy (Makris and Vassiliou 2013)",
+    within="1e-8",
+    control="test_other_blocks_are_told_apart",
+    doi="10.1002/eqe.2222",
+)
 @every_engine
 @settings(max_examples=15, deadline=None)
 @given(
@@ -165,6 +174,7 @@ def test_a_frame_is_a_block(
     assert apart(frame.impacts(ratio * alpha), block) < WITHIN
 
 
+@pytest.mark.verifies("negative control", "p or r of a column alone")
 @every_engine
 @pytest.mark.parametrize("gamma", [0.1, 1.0, 10.0])
 def test_other_blocks_are_told_apart(name: str, gamma: float) -> None:
@@ -177,6 +187,7 @@ def test_other_blocks_are_told_apart(name: str, gamma: float) -> None:
     assert apart(bare.impacts(0.1), block_impacts(name, 0.2, p, r, 0.1)) < WITHIN
 
 
+@pytest.mark.verifies("closed form", "limits of a heavy beam", within="1e-8")
 def test_the_frame_is_larger_and_loses_more_than_its_columns() -> None:
     """A heavy beam makes p^2 two thirds and r cos 2 alpha, the limits of large gamma."""
     heavy = frame_of(3, 1e9, 1.5, 0.3, 10.0)

@@ -15,6 +15,8 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.verifies(room="campaigns")
+
 HERE = Path(__file__).parent
 
 
@@ -64,6 +66,9 @@ def here() -> dict[str, str]:
     return hashes({})
 
 
+@pytest.mark.verifies(
+    "same bits", "instructions and libraries of other processors", control="test_blas_would_be_noticed"
+)
 @pytest.mark.parametrize("setting", SETTINGS)
 def test_results_have_the_same_bits(here: dict[str, str], setting: str) -> None:
     """Every result whose bits are claimed to be the same has them."""
@@ -74,6 +79,7 @@ def test_results_have_the_same_bits(here: dict[str, str], setting: str) -> None:
     assert {name for name in here if found[name] != here[name]} <= OTHER.get(setting, set())
 
 
+@pytest.mark.verifies("negative control", "a scalar product by BLAS")
 def test_blas_would_be_noticed() -> None:
     """Negative control: a scalar product by BLAS has other bits under some setting, so that the hashes can differ."""
     program = (

@@ -1,6 +1,6 @@
 """What stays on the ground: gaps, pulls, complementarity, uplift, and the way over.
 
-REF numbers: the project's physics specification, by section. With ROCKING_CAMPAIGN=1 the property tests draw ten
+REF numbers: see CONTRIBUTING.md. With ROCKING_CAMPAIGN=1 the property tests draw ten
 times as many examples.
 """
 
@@ -24,6 +24,8 @@ from rocking.dynamics.space.complementarity import SpatialState, of_impact
 from rocking.dynamics.space.impact_laws import law_of
 from rocking.outcome import Outcome, Status
 
+pytestmark = pytest.mark.verifies(room="rocking in space")
+
 TIMES = 10 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 1
 G = 9.81
 UP = np.array([0.0, 0.0, 1.0])
@@ -34,6 +36,12 @@ ANGLE = st.floats(-math.pi, math.pi)
 SPIN = st.tuples(st.floats(-0.3, 0.3), st.floats(-0.3, 0.3), st.floats(-0.4, 0.4))
 
 
+@pytest.mark.verifies(
+    "invariant",
+    "gaps, energy, and energy over impacts",
+    within="1e-12 m; 1e-9",
+    control="test_without_watching_the_neighbours_a_body_enters_the_ground",
+)
 @settings(max_examples=8 * TIMES)
 @given(ANGLE, st.floats(0.01, 0.2), SPIN)
 def test_nothing_ever_enters_the_ground_and_energy_adds_up(azimuth, tilt, spin):
@@ -48,6 +56,7 @@ def test_nothing_ever_enters_the_ground_and_energy_adds_up(azimuth, tilt, spin):
         assert run.contact[-1] == ContactMode.REST.code
 
 
+@pytest.mark.verifies("negative control", "no gaps watched")
 def test_without_watching_the_neighbours_a_body_enters_the_ground(monkeypatch):
     """Negative control: with no gaps watched the same measure shows centimetres of penetration."""
     start = {"start": SpatialStart(0.1, 0.6), "duration": 2.0}
@@ -56,6 +65,7 @@ def test_without_watching_the_neighbours_a_body_enters_the_ground(monkeypatch):
     assert rk.free_rocking(SQUARE, **start).states.least_gap.min() < -1e-2
 
 
+@pytest.mark.verifies("negative control", "staying on the old corner, or on the edge")
 def test_an_impact_without_complementarity_is_rejected():
     """Negative control: staying on the old corner, or on the edge, contradicts gaps or impulses."""
     omega = np.array([-0.6, 0.8, 0.0])
@@ -67,6 +77,7 @@ def test_an_impact_without_complementarity_is_rejected():
     assert leaves > 0.0 > np.cross(omega, SQUARE.vertices[1] - SQUARE.vertices[0])[2]
 
 
+@pytest.mark.verifies("closed form", "g b / h of the edge or rim", within="between 0.999 and 1.001 of it")
 @pytest.mark.parametrize("direction", [0.0, 0.3, 0.25 * math.pi, 1.2])
 def test_rest_ends_where_the_pressure_leaves_the_base(direction):
     """A steady push lifts a body just above, not just below, the static limit g b / h of its edge, or of its rim."""
@@ -84,6 +95,7 @@ def test_rest_ends_where_the_pressure_leaves_the_base(direction):
             assert (run.outcome is not Outcome.NO_UPLIFT) is lifted
 
 
+@pytest.mark.verifies("behaviour")
 def test_a_ground_that_falls_faster_than_the_body_is_said_so():
     """Downwards with 2 g the contact is lost: a status, no number for the peak; with 0.9 g the body just stands."""
     drop = rk.pulses.rectangular(amplitude=-2.0 * conventions.g, duration=0.2)
@@ -93,6 +105,7 @@ def test_a_ground_that_falls_faster_than_the_body_is_said_so():
     assert rk.simulate(SQUARE, {"z": drop.scaled(0.45)}, "housner").outcome is Outcome.NO_UPLIFT
 
 
+@pytest.mark.verifies("closed form", "the opposite direction", within="1e-6 rad")
 @pytest.mark.parametrize("direction", [0.0, 1.0, 2.5, -2.0])
 def test_a_strong_pulse_overturns_a_round_body_against_its_direction(direction):
     """A push of the ground towards phi throws a cylinder towards phi + 180 degrees, to 1e-6."""
@@ -104,6 +117,9 @@ def test_a_strong_pulse_overturns_a_round_body_against_its_direction(direction):
     assert run.overturned_over == "its rim"
 
 
+@pytest.mark.verifies(
+    "computed anew", "the centre of pressure, by differences", within="2e-3 of the edge", control="within"
+)
 def test_an_edge_becomes_a_vertex_where_the_reaction_reaches_its_end():
     """A push along the edge: the centre of pressure, by differences, is at the end just before."""
     corners = 0.5 * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])

@@ -14,6 +14,8 @@ from rocking.dynamics.space import SpatialBody, fast_engine, reference
 from rocking.dynamics.space.batch import batch_in_space
 from rocking.outcome import Outcome, Status
 
+pytestmark = pytest.mark.verifies(room="rocking in space")
+
 STEP, LENGTH = 0.02, 8.0
 LAWS = ["housner-3d", "horizontal-momentum-3d", 0.9]
 built = pytest.mark.skipif(not fast_engine.available(), reason="the batch engine was not built")
@@ -56,6 +58,7 @@ def _reference(seed, law):
     return rk.simulate(body, motion, law, scale=scale, duration=LENGTH)
 
 
+@pytest.mark.verifies("invariant", "balance of energy", within="1e-9", control="within")
 def test_a_corner_whose_neighbour_chatters_comes_to_stick(monkeypatch):
     """The history ends and its energy closes to 1e-9; impacts that may pile up for ever stop it."""
     sticks = _reference(96, "housner-3d")
@@ -65,6 +68,7 @@ def test_a_corner_whose_neighbour_chatters_comes_to_stick(monkeypatch):
     assert _reference(96, "housner-3d").status is Status.TOO_MANY_EVENTS
 
 
+@pytest.mark.verifies("invariant", "balance of energy", within="1e-9", control="within")
 def test_a_body_on_its_way_down_is_not_at_rest(monkeypatch):
     """An impact at 83 degrees: it falls, energy to 1e-9; were less energy than at rest called rest, it would stand."""
     falls = _reference(154, 0.9)
@@ -77,6 +81,7 @@ def test_a_body_on_its_way_down_is_not_at_rest(monkeypatch):
     assert wrong.energy.closure > 0.1
 
 
+@pytest.mark.verifies("behaviour")
 @built
 def test_no_history_on_polygons_ends_in_piled_impacts():
     """Boxes and polygons under 200 records at 3 scales by 3 laws: no pile, under 1 % that take off, peaks below 90."""

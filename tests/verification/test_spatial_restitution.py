@@ -25,6 +25,8 @@ from rocking.restitution.space import edge_coefficient, impact_in_space, spatial
 from rocking.restitution.space.integrals import kept_moments, line_moment
 from rocking.restitution.space.ked import energy_left
 
+pytestmark = pytest.mark.verifies(room="restitution in space")
+
 PRISM = Solid(Part(box(1.0, 1.0, 4.0)).moved(0.5, 0.5, 0.0))
 MODELS = sorted(spatial_models())
 PLANE = {
@@ -35,9 +37,10 @@ PLANE = {
 }
 ALONG = np.array([0.0, 1.0, 0.0])
 
-# --- values of the physics specification, section 1.6 ----------------------------------------------
+# --- REF values (CONTRIBUTING.md) --------------------------------------------------------------------
 
 
+@pytest.mark.verifies("computed anew", "coefficients to 15 digits", within="1e-10")
 @pytest.mark.parametrize(
     ("height", "model", "value"),
     [
@@ -50,10 +53,11 @@ ALONG = np.array([0.0, 1.0, 0.0])
     ],
 )
 def test_cylinder_over_a_diameter(height, model, value):
-    """Physics 1.6: a cylinder of diameter 1 that falls back over a diameter."""
-    assert edge_coefficient(Solid(cylinder(1.0, height)), model) == pytest.approx(value, rel=1e-10)
+    """REF: a cylinder of diameter 1 that falls back over a diameter."""
+    assert edge_coefficient(Solid(cylinder(1.0, height)), model) == pytest.approx(value, rel=1e-10, abs=0.0)
 
 
+@pytest.mark.verifies("computed anew", "two-dimensional quadrature by SciPy", within="1e-9")
 def test_cylinder_as_a_weight_over_the_plane():
     """The depth enters as a weight alone: the same integral by an independent two-dimensional quadrature."""
     radius, height = 0.5, 2.0
@@ -63,36 +67,42 @@ def test_cylinder_as_a_weight_over_the_plane():
 
     top = integrate.quad(lambda x: 2.0 * math.sqrt(radius**2 - x * x) * column(x), -radius, radius, epsabs=1e-12)[0]
     solid = Solid(cylinder(1.0, 2.0))
-    assert line_moment(solid, solid.base.edge(0.0)) / 2400.0 == pytest.approx(top, rel=1e-9)
+    assert line_moment(solid, solid.base.edge(0.0)) / 2400.0 == pytest.approx(top, rel=1e-9, abs=0.0)
 
 
+@pytest.mark.verifies("closed form", "59/71 and 64/71; KED to 13 digits", within="1e-12")
 @pytest.mark.parametrize(
     ("model", "value"),
     [("housner", 59.0 / 71.0), ("horizontal-momentum", 64.0 / 71.0), ("ked-3d-point", 0.9132455302034)],
 )
 def test_prism_over_its_diagonal(model, value):
-    """Physics 1.6: a prism 1 x 1 x 4 that falls from one corner onto the opposite one."""
+    """REF: a prism 1 x 1 x 4 that falls from one corner onto the opposite one."""
     result = impact_in_space(PRISM, [-1.0, 1.0, 0.0], pivot=(0, 0), onto=(1, 1), model=model)
-    assert result.coefficient == pytest.approx(value, rel=1e-12)
+    assert result.coefficient == pytest.approx(value, rel=1e-12, abs=0.0)
     assert result.velocity / np.linalg.norm(result.velocity) == pytest.approx(np.array([-1, 1, 0]) / math.sqrt(2))
 
 
+@pytest.mark.verifies("computed anew", "KED about a line, 13 digits", within="1e-12")
 def test_axis_operator():
-    """Physics 1.6: about a line through the far corner KED gives 0.9125, not the 0.9132 of the point."""
+    """REF: about a line through the far corner KED gives 0.9125, not the 0.9132 of the point."""
     line = Edge(np.array([1.0, 1.0, 0.0]), np.array([-1.0, 1.0, 0.0]) / math.sqrt(2))
     result = impact_in_space(PRISM, [-1.0, 1.0, 0.0], pivot=(0, 0), onto=line, model="ked-3d-point")
-    assert result.coefficient == pytest.approx(0.9125115342467, rel=1e-12)
+    assert result.coefficient == pytest.approx(0.9125115342467, rel=1e-12, abs=0.0)
 
 
+@pytest.mark.verifies("closed form", "(4 l^2 - 5) / (4 l^2 + 7)", within="1e-13")
 @pytest.mark.parametrize("slenderness", [1.5, 2.0, 4.0, 8.0])
 def test_housner_over_the_diagonal(slenderness):
-    """Physics 1.6: (4 l^2 - 5)/(4 l^2 + 7) for a square prism of any slenderness."""
+    """REF: (4 l^2 - 5)/(4 l^2 + 7) for a square prism of any slenderness."""
     solid = Solid(box(1.0, 1.0, slenderness))
     result = impact_in_space(solid, [-1, 1, 0], pivot=(-0.5, -0.5), onto=(0.5, 0.5), model="housner")
     value = (4.0 * slenderness**2 - 5.0) / (4.0 * slenderness**2 + 7.0)
-    assert result.raw_velocity @ [-1, 1, 0] / 2.0 == pytest.approx(value, rel=1e-13)
+    assert result.raw_velocity @ [-1, 1, 0] / 2.0 == pytest.approx(value, rel=1e-13, abs=0.0)
 
 
+@pytest.mark.verifies(
+    "computed anew", "angular velocities to 8 digits", within="6e-9", control="test_wrong_closures_are_found_out"
+)
 @pytest.mark.parametrize(
     ("model", "value"),
     [
@@ -102,11 +112,12 @@ def test_housner_over_the_diagonal(slenderness):
     ],
 )
 def test_corner_to_corner(model, value):
-    """Physics 1.6: from corner A to the adjacent B with a spin about the vertical, all three vectors."""
+    """REF: from corner A to the adjacent B with a spin about the vertical, all three vectors."""
     result = impact_in_space(PRISM, [0.3, 1.0, 0.1], pivot=(0, 0), onto=(1, 0), model=model)
     assert result.velocity == pytest.approx(np.array(value), abs=6e-9)
 
 
+@pytest.mark.verifies("negative control", "energy without the direction of the momentum, or momentum before stage 1")
 def test_wrong_closures_are_found_out():
     """Negative control: energy without the momentum's direction, or momentum before stage 1, miss the vectors."""
     right = np.array([0.22320589, 0.92754448, 0.02004924])
@@ -119,7 +130,8 @@ def test_wrong_closures_are_found_out():
 # --- independent quadrature ------------------------------------------------------------------------
 
 
-def test_corner_energy_by_brute_force():
+@pytest.mark.verifies("computed anew", "Gauss points over graded volumes", within="1e-9")
+def test_corner_energy_by_brute_force(agreement):
     """T'' of the corner impact by Gauss points over graded volumes, straight from the operators, to 1e-9."""
     velocity, point = np.array([0.3, 1.0, 0.1]), np.array([1.0, 0.0, 0.0])
     nodes, weights = np.polynomial.legendre.leggauss(16)
@@ -137,7 +149,7 @@ def test_corner_energy_by_brute_force():
     left = v - d * np.einsum("nd,nd->n", v, d)[:, None]
     brute = 0.5 * 2400.0 * float(dv @ np.einsum("nd,nd->n", left, left))
     impact = impact_in_space(PRISM, velocity, pivot=(0, 0), onto=(1, 0)).impact
-    assert energy_left(impact) == pytest.approx(brute, rel=1e-9)
+    agreement(abs(energy_left(impact) / brute - 1.0), 1e-9)
 
 
 # --- the plane -------------------------------------------------------------------------------------
@@ -150,6 +162,7 @@ LAYERED = rk.Section(
 )
 
 
+@pytest.mark.verifies("invariant", "the plane model of the section", within="1e-12")
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("onto", ["left", "right"])
 @pytest.mark.parametrize("section", [TRAPEZOID, HOLED, LAYERED], ids=["trapezoid", "holed", "layered"])
@@ -163,16 +176,18 @@ def test_prisms_of_any_polygon_equal_the_plane(section, onto, model):
     start, end = (left, right) if onto == "right" else (right, left)
     result = impact_in_space(solid, end.direction, pivot=start, onto=end, model=model)
     assert result.coefficient == pytest.approx(
-        rk.coefficient_of_restitution(section, PLANE[model], onto=onto), rel=1e-12
+        rk.coefficient_of_restitution(section, PLANE[model], onto=onto), rel=1e-12, abs=0.0
     )
 
 
+@pytest.mark.verifies("computed anew", "the coefficient to 16 digits", within="1e-12")
 def test_known_trapezoid():
-    """Physics 1.6: KED 0.8704740952680223 for the trapezoid, here as a solid."""
+    """REF: KED 0.8704740952680223 for the trapezoid, here as a solid."""
     solid = Solid.from_section(TRAPEZOID)
-    assert edge_coefficient(solid, start=1) == pytest.approx(0.8704740952680223, rel=1e-12)
+    assert edge_coefficient(solid, start=1) == pytest.approx(0.8704740952680223, rel=1e-12, abs=0.0)
 
 
+@pytest.mark.verifies("computed anew", "quadrature over the faces of the same prism", within="1e-12")
 def test_exact_extrusion_equals_surface_quadrature():
     """The polygon's boundary sum and the quadrature over the faces of the same prism agree to 1e-12."""
     solid = Solid.from_section(HOLED)
@@ -184,9 +199,12 @@ def test_exact_extrusion_equals_surface_quadrature():
         base=solid.base,
     )
     edge = Edge(np.array([solid.local_base.vertices[:, 0].max(), 0.0, 0.0]), ALONG)
-    assert line_moment(mesh, edge) == pytest.approx(line_moment(solid, edge), rel=1e-12)
+    assert line_moment(mesh, edge) == pytest.approx(line_moment(solid, edge), rel=1e-12, abs=0.0)
 
 
+@pytest.mark.verifies(
+    "closed form", "the plane coefficient, with the square of the depth", within="0.05 of the square of the depth"
+)
 @pytest.mark.parametrize("depth", [1.0, 0.1, 0.01])
 def test_thin_bodies_approach_the_plane(depth):
     """About a corner KED tends to the plane value with the square of the depth."""
@@ -195,10 +213,11 @@ def test_thin_bodies_approach_the_plane(depth):
     assert result.velocity[1] == pytest.approx(0.94736683503237, abs=0.05 * depth**2 + 1e-12)
 
 
+@pytest.mark.verifies("closed form", "the cosine between the edges times the plane coefficient", within="1e-11")
 @pytest.mark.parametrize("model", ["ked-3d-point", "horizontal-momentum"])
 @pytest.mark.parametrize("sides", [3, 5, 7])
 def test_stepping_between_edges(model, sides):
-    """Physics 1.6: from an edge onto one at an angle, r = |e1 . e2| times the plane coefficient of e2.
+    """From an edge onto one at an angle, r = |e1 . e2| times the plane coefficient of e2.
 
     The plane motion may have any pivot: neither model cares where the old one was."""
     turn = 2.0 * np.pi * np.arange(sides) / sides
@@ -209,7 +228,7 @@ def test_stepping_between_edges(model, sides):
         if cosine <= 0.0:
             continue
         plane = impact_in_space(solid, edge.direction, pivot=(0.0, 0.0), onto=edge, model=model).coefficient
-        assert edge_coefficient(solid, model, start=0, onto=i) == pytest.approx(cosine * plane, rel=1e-11)
+        assert edge_coefficient(solid, model, start=0, onto=i) == pytest.approx(cosine * plane, rel=1e-11, abs=0.0)
 
 
 # --- invariances and bounds ------------------------------------------------------------------------
@@ -222,21 +241,23 @@ def outcome(solid, case, model):
     return impact_in_space(solid, case["velocity"], pivot=case["pivot"], onto=case["onto"], model=model).raw_velocity
 
 
+@pytest.mark.verifies("invariant", "another size and density, turned and mirrored", within="1e-11")
 @pytest.mark.parametrize("model", MODELS)
 def test_size_density_turn_and_mirror(model):
     """Size and density change nothing; a turned or mirrored body has the turned or mirrored velocity."""
     here = outcome(COLUMN, CASE, model)
     large = {**CASE, "pivot": 3.0 * CASE["pivot"], "onto": 3.0 * CASE["onto"]}
-    assert outcome(COLUMN.scaled(size=3.0, density=7.0), large, model) == pytest.approx(here, rel=1e-11)
+    assert outcome(COLUMN.scaled(size=3.0, density=7.0), large, model) == pytest.approx(here, rel=1e-11, abs=0.0)
     turn = rotation_about((0, 0, 1), 0.83)
     rotated = {key: turn[: len(value), : len(value)] @ value for key, value in CASE.items()}
-    assert outcome(COLUMN.turned(0.83), rotated, model) == pytest.approx(turn @ here, rel=1e-11)
+    assert outcome(COLUMN.turned(0.83), rotated, model) == pytest.approx(turn @ here, rel=1e-11, abs=0.0)
     # in the mirror x -> -x an angular velocity keeps its x component and turns the others
     mirrored = {key: np.array([-1.0, 1.0]) * CASE[key] for key in ("pivot", "onto")}
     mirrored["velocity"] = np.array([1.0, -1.0, -1.0]) * CASE["velocity"]
-    assert outcome(COLUMN.mirrored(), mirrored, model) == pytest.approx([1.0, -1.0, -1.0] * here, rel=1e-11)
+    assert outcome(COLUMN.mirrored(), mirrored, model) == pytest.approx([1.0, -1.0, -1.0] * here, rel=1e-11, abs=0.0)
 
 
+@pytest.mark.verifies("invariant", "the same prism in two halves, as a mesh and as an extrusion", within="1e-12")
 def test_additivity_of_parts():
     """The integrals of KED are sums over parts: a prism in two halves, and as a box, a mesh and an extrusion."""
     halves = Solid([box(1.0, 1.0, 2.0), Part(box(1.0, 1.0, 2.0)).moved(0, 0, 2.0)])
@@ -249,6 +270,7 @@ def test_additivity_of_parts():
         assert kept_moments(other, corner).fourth == pytest.approx(expected, rel=1e-12, abs=1e-9)
 
 
+@pytest.mark.verifies("invariant", "energy, and the bound of Cauchy and Schwarz", within="1e-12")
 @settings(max_examples=30, deadline=None)
 @given(
     st.floats(0.3, 6.0),
@@ -271,6 +293,7 @@ def test_energy_bounds(height, depth, velocity, corner):
     assert ked >= momentum * (1.0 - 1e-12)
 
 
+@pytest.mark.verifies("invariant", "Carnot's theorem", within="1e-12")
 def test_housner_is_a_projection():
     """Identity of rigid bodies: what Housner loses is the energy of the velocity that is lost (Carnot)."""
     result = impact_in_space(PRISM, [0.3, 1.0, 0.1], pivot=(0, 0), onto=(1, 0), model="housner")
@@ -278,12 +301,13 @@ def test_housner_is_a_projection():
     spin = impact.velocity - result.velocity
     centre = impact.landing_velocity + np.cross(spin, moments.centre)
     lost = 0.5 * (spin @ moments.inertia @ spin + moments.mass * centre @ centre)
-    assert result.energy_before - result.energy_after == pytest.approx(lost, rel=1e-12)
+    assert result.energy_before - result.energy_after == pytest.approx(lost, rel=1e-12, abs=0.0)
 
 
+@pytest.mark.verifies("invariant", "no loss where the corner stays", within="1e-13", control="within")
 def test_same_pivot_is_no_impact_for_housner():
     """With the new corner where the old one was Housner and KED lose nothing, KED by points does."""
     case = {"velocity": [0.3, 1.0, 0.1], "pivot": (0.0, 0.0), "onto": (0.0, 0.0)}
     for model in ("housner", "ked"):
-        assert impact_in_space(PRISM, model=model, **case).energy_ratio == pytest.approx(1.0, rel=1e-13)
+        assert impact_in_space(PRISM, model=model, **case).energy_ratio == pytest.approx(1.0, rel=1e-13, abs=0.0)
     assert impact_in_space(PRISM, model="ked-3d-point", **case).energy_ratio < 0.99

@@ -25,6 +25,8 @@ from rocking.app.application import create_app
 from rocking.app.settings import ServerSettings
 from rocking.plots.animation_scene import DrawnShape, fall_of
 
+pytestmark = pytest.mark.verifies("same bits", control="test_negative_control_a_changed_input_differs", room="doors")
+
 STATUE = [[0.0, 0.0], [0.5, 0.0], [0.5, 0.6], [0.4, 0.6], [0.3, 1.9], [0.15, 1.9], [0.1, 0.6], [0.0, 0.6]]
 CABINET = {"units": "cm", "width": 50, "height": 200, "depth": 40, "density": 700}
 HOLLOW = {
@@ -234,6 +236,7 @@ def numbers_in(facts):
     }
 
 
+@pytest.mark.verifies(against="application, command line and Python")
 @pytest.mark.parametrize("case", CASES)
 def test_three_doors_agree_to_the_last_digit(case, inside, record, tmp_path):
     """Application, command line and Python give equal float64 for every number of every restitution."""
@@ -260,6 +263,7 @@ def test_three_doors_agree_to_the_last_digit(case, inside, record, tmp_path):
         assert told == {key: answer[key] for key in told}
 
 
+@pytest.mark.verifies(against="a server in a process of its own")
 def test_a_real_server_gives_the_same_answers(served, inside, record):
     """Over a socket, from another process, every answer is the same JSON, curves included."""
     for case in ("cabinet, sine", "points, record", "statue, let go"):
@@ -268,6 +272,7 @@ def test_a_real_server_gives_the_same_answers(served, inside, record):
         assert application(served, document) == application(inside, document)
 
 
+@pytest.mark.verifies(against="the application and `rocking cor`")
 def test_coefficients_are_those_of_the_command(inside):
     """POST /api/impact and `rocking cor --json` say the same of a block."""
     words = [sys.executable, "-m", "rocking", "cor", "--width", "0.5", "--height", "2", "--json"]
@@ -277,6 +282,7 @@ def test_coefficients_are_those_of_the_command(inside):
     assert {key: answer["body"][key] for key in printed["body"]} == printed["body"]
 
 
+@pytest.mark.verifies(against="the application and `rocking motion`")
 def test_motion_is_that_of_the_command(inside, record):
     """POST /api/motion and `rocking motion --json` say the same of a scaled record, but for its spectrum."""
     words = [sys.executable, "-m", "rocking", "motion", str(record), "--scale", "1.3", "--json"]
@@ -295,6 +301,7 @@ def smallest_change(document, where):
     return changed
 
 
+@pytest.mark.verifies("negative control", "one unit in the last place of a scale, a height or a coefficient")
 @pytest.mark.parametrize("where", [("motion", "scale"), ("body", "height"), ("restitution", "value")])
 def test_negative_control_a_changed_input_differs(inside, record, where):
     """One unit in the last place of a scale, a height or a coefficient changes the numbers: equality is no accident."""

@@ -23,6 +23,8 @@ with warnings.catch_warnings():  # it says that another client than httpx is com
     warnings.simplefilter("ignore")
     from fastapi.testclient import TestClient
 
+pytestmark = pytest.mark.verifies("damage", control="test_without_the_protection_the_attack_succeeds", room="doors")
+
 OWN = "http://127.0.0.1:8765"
 LINK = "/api/session/link"
 JSON = {"content-type": "application/json"}
@@ -237,12 +239,14 @@ def _no_cookies_are_kept(page: Page) -> None:
     page.client.cookies.clear()
 
 
+@pytest.mark.verifies("behaviour")
 def test_there_are_enough_attacks_and_each_has_a_name() -> None:
     """The table holds at least 80 attacks, no name twice; raw ones and contents come on top of it elsewhere."""
     names = [attack.name for attack in ATTACKS]
     assert len(names) == len(set(names)) >= 80
 
 
+@pytest.mark.verifies("negative control", "the request that attacks alter")
 def test_the_harness_is_good(page: Page) -> None:
     """What the attacks alter is a request that succeeds."""
     assert page.suffers(Attack("nothing", set())) == 200
@@ -267,6 +271,7 @@ WITHOUT: dict[str, tuple[str, int]] = {
 }
 
 
+@pytest.mark.verifies("negative control", "one protection switched off")
 @pytest.mark.parametrize("protection", WITHOUT)
 def test_without_the_protection_the_attack_succeeds(
     fresh: Page, monkeypatch: pytest.MonkeyPatch, protection: str
@@ -301,6 +306,7 @@ def test_fixed_session_is_not_taken_over(fresh: Page) -> None:
     assert fresh.suffers(Attack("planted", set(), head={"cookie": planted})) == 401
 
 
+@pytest.mark.verifies(control="within")
 def test_guessing_is_slowed_down(fresh: Page, tmp_path: Path) -> None:
     """Token guessing: ten a minute are looked at; without that limit (the control) all are."""
     statuses = [sign_in(fresh, f"{guess:043d}").status_code for guess in range(30)]
@@ -317,6 +323,7 @@ def test_guessing_does_not_shut_out_who_is_inside(fresh: Page) -> None:
     assert fresh.suffers(Attack("inside", set())) == 200
 
 
+@pytest.mark.verifies(control="within")
 def test_flood_is_refused_before_it_is_read(tmp_path: Path) -> None:
     """A body beyond the limit is 413; with a higher limit (the control) it is read."""
     attack = Attack(
@@ -326,6 +333,7 @@ def test_flood_is_refused_before_it_is_read(tmp_path: Path) -> None:
     assert Page(tmp_path / "b", json_bytes=4_000_000).suffers(attack) == 422
 
 
+@pytest.mark.verifies(control="within")
 def test_duplicate_keys_do_not_smuggle(fresh: Page, monkeypatch: pytest.MonkeyPatch) -> None:
     """A key twice, of which two readers may take different ones, is refused; without the check one of them wins."""
     content = ('{"token": "wrong", "token": "' + fresh.known["token"] + '"}').encode()

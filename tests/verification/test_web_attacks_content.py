@@ -21,6 +21,8 @@ with warnings.catch_warnings():  # it says that another client than httpx is com
     warnings.simplefilter("ignore")
     from fastapi.testclient import TestClient
 
+pytestmark = pytest.mark.verifies("damage", room="doors")
+
 BLOCK = {"units": "m", "width": 1.0, "height": 4.0}
 SINE = {"pulse": "sine:amplitude=3,period=0.8"}
 GOOD: dict[str, Any] = {"body": BLOCK, "motion": SINE, "restitution": {"models": ["ked"]}}
@@ -89,6 +91,7 @@ READERS: dict[str, Any] = {
 }
 
 
+@pytest.mark.verifies(control="test_secret_would_be_opened_elsewhere")
 @pytest.mark.parametrize("reader", READERS)
 @pytest.mark.parametrize("place", PLACES)
 def test_no_word_opens_a_file(client: TestClient, secret: Path, reader: str, place: str) -> None:
@@ -101,6 +104,7 @@ def test_no_word_opens_a_file(client: TestClient, secret: Path, reader: str, pla
     assert not secret.with_suffix(".ran").exists()
 
 
+@pytest.mark.verifies("negative control", "the command line, which is the user's own")
 def test_secret_would_be_opened_elsewhere(secret: Path, tmp_path: Path) -> None:
     """Negative control: on the command line, which is the user's own, the same words open files."""
     from rocking.bodies.formats import read_body
@@ -250,6 +254,7 @@ def inert(kind: str, data: bytes, name: str) -> None:
             assert not [cell for row in sheet.iter_rows() for cell in row if cell.data_type == "f"], name
 
 
+@pytest.mark.verifies(control="test_the_judge_sees_what_is_not_inert")
 @pytest.mark.parametrize("export", EXPORTS)
 def test_hostile_names_are_inert(client: TestClient, export: str) -> None:
     """No name of a body does anything in any export, nor to the name of the file and its head; or it is refused."""
@@ -268,6 +273,7 @@ def test_hostile_names_are_inert(client: TestClient, export: str) -> None:
     assert made > len(names) / 2
 
 
+@pytest.mark.verifies("negative control", "names pasted as they are")
 @pytest.mark.parametrize("kind", ["csv", "svg", "html", "toml"])
 def test_the_judge_sees_what_is_not_inert(kind: str) -> None:
     """Negative control: files in which a name was pasted as it is do not pass."""
@@ -293,6 +299,7 @@ def test_hostile_file_names_are_not_kept(client: TestClient, name: str) -> None:
         assert re.fullmatch(r"[0-9a-f]{64}", answer.json()["record"])
 
 
+@pytest.mark.verifies("behaviour")
 def test_there_are_enough() -> None:
     """Places times readers, numbers, names: more than a hundred attacks, each with a name."""
     assert len(PLACES) * len(READERS) + len(NUMBERS) + len(NAMES) >= 250

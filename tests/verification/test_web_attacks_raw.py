@@ -20,6 +20,8 @@ from rocking.app import server
 from rocking.app.application import create_app
 from rocking.app.settings import ServerSettings
 
+pytestmark = pytest.mark.verifies("damage", room="doors")
+
 SECRET = "root:x:"
 GONE = 0
 """No answer: the server waits for the rest, or has ended the connection."""
@@ -185,6 +187,7 @@ def test_raw_attack_is_refused(target: Target, name: str) -> None:
         assert page.status == 200
 
 
+@pytest.mark.verifies("behaviour")
 def test_names_are_many() -> None:
     """Paths and raw requests together are at least 60, each with a name."""
     assert len(PATHS) + len(RAW) >= 60
@@ -223,6 +226,7 @@ def trickled(target: Target) -> float:
     return time.perf_counter() - start
 
 
+@pytest.mark.verifies(control="within")
 def test_slow_head_is_given_up(impatient: Target, monkeypatch: pytest.MonkeyPatch) -> None:
     """A head that arrives letter by letter is given up in time; without that limit (the control) it never is."""
     assert trickled(impatient) < 2.5
@@ -254,6 +258,7 @@ def ended_within(line: socket.socket, seconds: float) -> bool:
     return False
 
 
+@pytest.mark.verifies("behaviour")
 def test_a_live_websocket_outlasts_the_patience(impatient: Target) -> None:
     """What has become a websocket is no unfinished head: it answers a ping long after the patience for heads."""
     key = b"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
@@ -269,6 +274,7 @@ def test_a_live_websocket_outlasts_the_patience(impatient: Target) -> None:
             came += piece
 
 
+@pytest.mark.verifies("behaviour")
 def test_patience_ends_with_the_first_request(impatient: Target) -> None:
     """A connection that has asked something stays open for the next request."""
     with socket.create_connection(("127.0.0.1", impatient.port), timeout=5) as line:

@@ -15,6 +15,8 @@ with warnings.catch_warnings():  # it says that another client than httpx is com
     warnings.simplefilter("ignore")
     from fastapi.testclient import TestClient
 
+pytestmark = pytest.mark.verifies(room="doors")
+
 OWN = "http://127.0.0.1:8765"
 
 
@@ -60,12 +62,14 @@ def shakes_hands(page: Page, changed: dict[str, str | None]) -> bool:
         return False
 
 
+@pytest.mark.verifies("damage", control="test_without_the_checks_the_websocket_is_hijacked")
 @pytest.mark.parametrize("name", SOCKETS)
 def test_websocket_is_not_hijacked(page: Page, name: str) -> None:
     """A handshake from another page, name or person is refused before anything is said."""
     assert not shakes_hands(page, SOCKETS[name])
 
 
+@pytest.mark.verifies("negative control", "the check of Origin switched off")
 def test_without_the_checks_the_websocket_is_hijacked(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
     """Negative control: our own page shakes hands, and without the check of Origin a foreign one does."""
     assert shakes_hands(page, {})

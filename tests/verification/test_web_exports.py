@@ -38,6 +38,8 @@ from rocking.reports import Document
 from rocking.reports.document import Cell, Listing, Pair, Paragraph, Picture, ReportSection, ReportTable
 from rocking.reports.render import response_pdf
 
+pytestmark = pytest.mark.verifies("damage", control="test_these_checks_find_what_they_look_for", room="doors")
+
 SVG = "{http://www.w3.org/2000/svg}"
 DRAWN = {"svg", "g", "path", "defs", "style", "text", "tspan", "use", "clipPath", "rect", "metadata", "image", "title"}
 NAMES = [
@@ -280,6 +282,7 @@ def test_the_page_of_the_animation_gains_no_element(name):
     assert hostile.handlers == []
 
 
+@pytest.mark.verifies("negative control", "a formula, a script in a drawing, a handler in a page")
 def test_these_checks_find_what_they_look_for():
     """The checks have teeth: a formula, a script in a drawing and a handler in a page are found."""
     bad = b'<svg xmlns="http://www.w3.org/2000/svg"><script>1</script></svg>'
@@ -300,6 +303,7 @@ def test_these_checks_find_what_they_look_for():
     assert Tags("<img src=x onerror=alert(1)>").handlers == ["onerror"]
 
 
+@pytest.mark.verifies("same bits", "Python and `rocking simulate`", control="within")
 def test_the_archive_gives_the_same_numbers_on_the_command_line(tmp_path, records):
     """`rocking simulate response.toml` in the unpacked archive prints the numbers of Python, to the last digit."""
     record = records.add(WAVE, "wave 1.txt").record

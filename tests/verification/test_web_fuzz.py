@@ -20,6 +20,8 @@ with warnings.catch_warnings():  # it says that another client than httpx is com
     warnings.simplefilter("ignore")
     from fastapi.testclient import TestClient
 
+pytestmark = pytest.mark.verifies("damage", control="test_a_server_that_fails_is_seen", room="doors")
+
 REQUESTS = int(os.environ.get("ROCKING_WEB_FUZZ", "600"))
 """Requests of each of the two kinds; `make fuzz-web` sends 5,000 of each."""
 
@@ -150,6 +152,7 @@ def test_damaged_documents(script: TestClient) -> None:
     assert seen[422] > REQUESTS // 5
 
 
+@pytest.mark.verifies("negative control", "an endpoint that raises")
 def test_a_server_that_fails_is_seen(script: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     """Negative control: an endpoint that raises is reported by the same judgement, and shows no traceback."""
     from rocking.app.api import response

@@ -14,7 +14,7 @@ import httpx
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.timed
+pytestmark = [pytest.mark.verifies(room="doors"), pytest.mark.timed]
 
 SECONDS = float(os.environ.get("ROCKING_WEB_LOAD", "8"))
 USERS = 50
@@ -79,6 +79,7 @@ async def all_users(served: dict[str, Any], until: float) -> list[tuple[str, flo
     return [each for one in found for each in one]
 
 
+@pytest.mark.verifies("behaviour")
 def test_fifty_users_and_a_campaign(served: dict[str, Any]) -> None:
     """No 5xx; the light endpoints answer 99 of 100 times within 300 ms; the campaign goes on."""
     with httpx.Client(base_url=served["url"], headers=served["head"], timeout=60.0) as client:

@@ -24,7 +24,7 @@ from rocking.campaigns.jobs import Job, JobFolder, export
 
 Tables = dict[str, Any]
 
-pytestmark = pytest.mark.timed
+pytestmark = [pytest.mark.verifies(room="doors"), pytest.mark.timed]
 
 JOB: Tables = {
     "campaign": {"name": "killed in the middle", "kind": "overturning-map", "chunk": 4096},
@@ -133,6 +133,7 @@ def _children(study: str) -> list[int]:
 linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
 
 
+@pytest.mark.verifies("damage", "kill -9, and an undisturbed run", within="every byte")
 @linux
 def test_a_killed_server_loses_nothing(tmp_path: Path) -> None:
     """After kill -9 no process computes on; the next server goes on by itself, to the file of an undisturbed run."""
@@ -178,6 +179,7 @@ def _same_as_alone(folder: Path, table: bytes) -> None:
     assert export(alone, folder / "alone.csv").read_bytes() == table
 
 
+@pytest.mark.verifies("behaviour")
 @linux
 def test_cancel_takes_less_than_a_second(tmp_path: Path) -> None:
     """From the request to the answer, with no process left; it can be resumed, and a deleted study is gone."""
@@ -199,6 +201,7 @@ def test_cancel_takes_less_than_a_second(tmp_path: Path) -> None:
     assert max(spent) < 1.0, spent
 
 
+@pytest.mark.verifies("behaviour")
 @linux
 def test_a_process_that_does_not_listen_is_cancelled_within_a_second(tmp_path: Path) -> None:
     """A process that is stopped hears no signal; it is killed within the second, and the study can be resumed."""
@@ -215,6 +218,7 @@ def test_a_process_that_does_not_listen_is_cancelled_within_a_second(tmp_path: P
         assert 0.3 < spent < 1.0
 
 
+@pytest.mark.verifies("behaviour")
 def test_a_server_that_is_ended_leaves_studies_to_resume(tmp_path: Path) -> None:
     """SIGTERM stops what runs within a few seconds, and the study says that it goes on with the next server."""
     with _serving(tmp_path / "data") as server:
@@ -227,6 +231,7 @@ def test_a_server_that_is_ended_leaves_studies_to_resume(tmp_path: Path) -> None
     assert "goes on when the server starts again" in told["message"]
 
 
+@pytest.mark.verifies("behaviour")
 def test_two_servers_do_not_share_a_folder(tmp_path: Path) -> None:
     """The second one is refused while the first has the folder, so that no study runs twice."""
     with _serving(tmp_path / "data"):
@@ -236,6 +241,7 @@ def test_two_servers_do_not_share_a_folder(tmp_path: Path) -> None:
     assert not second.stdout
 
 
+@pytest.mark.verifies("behaviour")
 def test_many_look_on_while_a_study_runs(tmp_path: Path) -> None:
     """Fifty at once list, ask and watch while a campaign runs: no error, and 99 of 100 answers within 300 ms."""
     slowest = []

@@ -13,6 +13,8 @@ from rocking.bodies import Body
 from rocking.bodies.formats import body_file, body_from_toml, read_body, section_from_geojson, section_from_wkt
 from rocking.errors import RockingError
 
+pytestmark = pytest.mark.verifies(room="bodies")
+
 EXAMPLES = examples.path("statue").parent
 TOML = [path.read_text(encoding="utf-8") for path in sorted(EXAMPLES.glob("*.toml"))] + [
     'units = "m"\n[mass_points]\npoints = [[0, 1], [0.5, 2]]\nmasses = [1, 2.5]\nfeet = [-1, 1]\ncontact = [[-1, 0]]',
@@ -78,6 +80,7 @@ def outcomes(read, texts, count, seed):
     return bodies, refused, leaks
 
 
+@pytest.mark.verifies("damage", "2,000 damaged files of each format", control="test_a_reader_without_guards_leaks")
 @pytest.mark.parametrize("kind", READERS)
 def test_mutations(kind):
     """Two thousand mutations a format: bodies and our own one-line refusals, no other error, both kinds occurring."""
@@ -126,6 +129,7 @@ def _body_from_parsed(given):
         return body_from_toml("")
 
 
+@pytest.mark.verifies("negative control", "readers that trust the text")
 def test_a_reader_without_guards_leaks():
     """Negative control: readers that trust the text let errors of others through."""
     from rocking import Block

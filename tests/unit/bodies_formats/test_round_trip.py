@@ -12,10 +12,13 @@ from rocking import conventions
 from rocking.bodies.formats import body_from_toml, body_to_toml
 from rocking.errors import InvalidValueError
 
+pytestmark = pytest.mark.verifies(room="bodies")
+
 SIZES = st.floats(1e-3, 1e3)
 DENSITIES = st.floats(1e-3, 1e5)
 
 
+@pytest.mark.verifies("same bits", "the block that was written", control="test_a_changed_last_digit_is_noticed")
 @given(width=SIZES, height=SIZES, depth=SIZES, density=DENSITIES)
 def test_block(width, height, depth, density):
     """Every block equals what its own text gives."""
@@ -33,6 +36,7 @@ def same(a, b):
     assert (a.mass, a.centre, a.moment_of_inertia) == (b.mass, b.centre, b.moment_of_inertia)
 
 
+@pytest.mark.verifies("same bits", "the section that was written", control="test_a_changed_last_digit_is_noticed")
 @settings(max_examples=300)
 @given(
     x=st.floats(-1e7, 1e7) | st.floats(-2.0, 2.0),
@@ -59,6 +63,7 @@ def test_section(x, ground, width, height, foot, holed, depth, density):
     same(body_from_toml(body_to_toml(section)), section)
 
 
+@pytest.mark.verifies("same bits", "the section that was written", control="test_a_changed_last_digit_is_noticed")
 @pytest.mark.parametrize(
     "section",
     [
@@ -73,6 +78,7 @@ def test_shapes(section):
     same(body_from_toml(body_to_toml(section)), section)
 
 
+@pytest.mark.verifies("negative control", "fifteen digits")
 def test_a_changed_last_digit_is_noticed():
     """Negative control: fifteen digits instead of all of them do not come back the same."""
     block = rk.Block(width=0.1 + 0.2, height=1.0)
@@ -93,6 +99,7 @@ def test_scaled_sections_keep_what_matters(change):
             assert back.side(foot).slenderness_ratio == pytest.approx(body.side(foot).slenderness_ratio, rel=1e-8)
 
 
+@pytest.mark.verifies("same bits", "the points that were written", control="test_a_changed_last_digit_is_noticed")
 @given(st.lists(st.tuples(st.floats(-1.0, 1.0), st.floats(0.01, 9.0), st.floats(0.1, 9.0)), min_size=1, max_size=9))
 def test_mass_points(points):
     """Points, masses, feet and contact come back to the last bit."""

@@ -17,6 +17,8 @@ from rocking.campaigns.chunks import Chunk, Plan
 from rocking.dynamics.plane.fast_engine import RESULTS, empty_results
 from rocking.errors import InvalidValueError
 
+pytestmark = pytest.mark.verifies(room="campaigns")
+
 PLAN = Plan("a" * 64, 400, 40, "fast", "1.0")
 CHUNK = PLAN.chunk(3)
 FLIPS = 10_000
@@ -98,6 +100,7 @@ def test_every_flipped_bit_is_detected():
     assert not detected(data)
 
 
+@pytest.mark.verifies("negative control", "a reader that checks heads and lengths alone")
 def test_flips_are_missed_without_the_seal():
     """Negative control: a reader that checks magic word, version, header and length alone misses most flips."""
 

@@ -13,6 +13,8 @@ from rocking.campaigns import Campaign, CampaignDamagedError
 from rocking.campaigns.ledger import Ledger, LedgerEntry
 from rocking.campaigns.status import Meter
 
+pytestmark = pytest.mark.verifies(room="campaigns")
+
 FLIPS = 400
 Shards = Callable[[Campaign], dict[str, str]]
 
@@ -23,6 +25,7 @@ def records(campaign):
         return list(ledger.records())
 
 
+@pytest.mark.verifies("damage", "single bits of the ledger flipped")
 def test_flipped_ledger_never_lies(finished, tmp_path):
     """Of 400 flips anywhere in the file each is refused with the way out, or changes nothing that is recorded."""
     good = records(finished)

@@ -12,6 +12,8 @@ from campaign_jobs import flip
 from rocking.campaigns import Campaign, CampaignDamagedError, CampaignIncompleteError, CampaignMismatchError, identity
 from rocking.errors import InvalidValueError
 
+pytestmark = pytest.mark.verifies(room="campaigns")
+
 DISK_FLIPS = 200
 Shards = Callable[[Campaign], dict[str, str]]
 
@@ -20,6 +22,7 @@ def paths(campaign):
     return [campaign.folder / "shards" / f"{campaign.plan.chunk(k).name}.shard" for k in range(campaign.plan.chunks)]
 
 
+@pytest.mark.verifies("damage", "single bits of shards flipped on disk")
 def test_flips_on_disk_are_found_and_mended(finished, shards):
     """200 flips of shards on disk: reading refuses them, a run sets them aside and computes the same bytes again."""
     before, digest = shards(finished), finished.sha256()

@@ -147,7 +147,7 @@ def test_files(run, tmp_path):
 def test_axis_words(word, values):
     """Ranges, lists, equal ratios and units give the values that they say."""
     name, _, text = word.partition("=")
-    assert row("--x", text, axes()[name].unit)[0] == pytest.approx(values, rel=1e-14)
+    assert row("--x", text, axes()[name].unit)[0] == pytest.approx(values, rel=1e-14, abs=0.0)
 
 
 REFUSALS = [

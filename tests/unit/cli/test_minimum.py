@@ -34,12 +34,14 @@ def test_json_is_the_python_call(run):
     found = minimum_overturning_acceleration(block, pulse, 0.85, highest=5.0 * G)
     assert [one["acceleration_m_s2"] for one in told["crossings"]] == found.acceleration.tolist()
     assert [[one["mode_below"], one["mode_above"]] for one in told["crossings"]] == found.modes.tolist()
-    assert [one["acceleration_g"] * G for one in told["crossings"]] == pytest.approx(found.acceleration, rel=1e-14)
+    assert [one["acceleration_g"] * G for one in told["crossings"]] == pytest.approx(
+        found.acceleration, rel=1e-14, abs=0.0
+    )
     assert told["minimum_m_s2"] == found.minimum
     assert told["certain_m_s2"] == found.certain
     assert [tuple(pair) for pair in told["overturning_intervals_m_s2"]] == list(found.overturning_intervals)
     # g b / h is 0.25 g
-    assert told["uplift_acceleration_m_s2"] == pytest.approx(0.25 * G, rel=1e-14)
+    assert told["uplift_acceleration_m_s2"] == pytest.approx(0.25 * G, rel=1e-14, abs=0.0)
 
 
 def test_minimum_is_the_closed_form(run):
@@ -103,7 +105,7 @@ def test_range_with_units(run):
     for low, high in (("0.3g", "0.34g"), (str(0.3 * G), str(0.34 * G))):
         _, out, _ = run(*SIZE, PULSE, "--restitution", "0.85", "--lowest", low, "--highest", high, "--json")
         told = json.loads(out)
-        assert (told["lowest_m_s2"], told["highest_m_s2"]) == pytest.approx((0.3 * G, 0.34 * G), rel=1e-14)
+        assert (told["lowest_m_s2"], told["highest_m_s2"]) == pytest.approx((0.3 * G, 0.34 * G), rel=1e-14, abs=0.0)
         assert told["sentence"].startswith("survives everything; scanned from 0.3 g to 0.34 g")
         assert (told["minimum_m_s2"], told["crossings"]) == (None, [])
 

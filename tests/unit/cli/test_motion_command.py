@@ -30,7 +30,7 @@ def test_record_by_closed_form(answered, triangle):
     answer = answered(triangle, "--units", "m/s2")
     found = answer["intensity"]
     expected = {"pga_m_s2": 1.0, "pgv_m_s": 0.5, "pgd_m": 0.25, "cav_m_s": 0.5, "arias_m_s": math.pi / (4.0 * G)}
-    assert {key: found[key] for key in expected} == pytest.approx(expected, rel=1e-12)
+    assert {key: found[key] for key in expected} == pytest.approx(expected, rel=1e-12, abs=0.0)
     assert (answer["kind"], answer["format"], answer["file_unit"]) == ("record", "columns", "m/s2")
     assert (answer["samples"], answer["time_step_s"], answer["duration_s"]) == (3, 0.5, 1.0)
     assert "SHA-256" in answer["provenance"][0]
@@ -42,9 +42,9 @@ def test_pulse_by_closed_form(answered):
     """One sine of 3 m/s2 and 0.8 s: PGV 2a/w, PGD aT/w to rounding; CAV 4a/w, Arias pi a2 T/(4 g) to 1e-5."""
     answer = answered("sine:amplitude=3,period=0.8")
     found, w = answer["intensity"], 2.0 * math.pi / 0.8
-    assert found["pga_m_s2"] == pytest.approx(3.0, rel=1e-12)
-    assert found["pgv_m_s"] == pytest.approx(6.0 / w, rel=1e-12)
-    assert found["pgd_m"] == pytest.approx(3.0 * 0.8 / w, rel=1e-12)
+    assert found["pga_m_s2"] == pytest.approx(3.0, rel=1e-12, abs=0.0)
+    assert found["pgv_m_s"] == pytest.approx(6.0 / w, rel=1e-12, abs=0.0)
+    assert found["pgd_m"] == pytest.approx(3.0 * 0.8 / w, rel=1e-12, abs=0.0)
     assert found["cav_m_s"] == pytest.approx(12.0 / w, rel=1e-5)
     assert found["arias_m_s"] == pytest.approx(math.pi / (2.0 * G) * 9.0 * 0.4, rel=1e-5)
     assert (answer["kind"], answer["duration_s"], answer["format"]) == ("pulse", 0.8, None)
@@ -53,8 +53,8 @@ def test_pulse_by_closed_form(answered):
 def test_jumps_at_the_ends_of_a_pulse_are_kept(answered):
     """A constant a for 0.5 s: CAV a t and Arias exact, not one step longer; undamped PSA 2 a, with 5 % 1.8545 a."""
     found = answered("rectangular:amplitude=2,duration=0.5", "--periods", "0.2", "--damping", 0)
-    assert found["intensity"]["cav_m_s"] == pytest.approx(1.0, rel=1e-12)
-    assert found["intensity"]["arias_m_s"] == pytest.approx(math.pi / (2.0 * G) * 4.0 * 0.5, rel=1e-12)
+    assert found["intensity"]["cav_m_s"] == pytest.approx(1.0, rel=1e-12, abs=0.0)
+    assert found["intensity"]["arias_m_s"] == pytest.approx(math.pi / (2.0 * G) * 4.0 * 0.5, rel=1e-12, abs=0.0)
     # the solver misses peaks by up to 1e-4
     assert found["spectrum"]["psa_m_s2"] == pytest.approx([4.0], rel=1e-4)
     damped = answered("rectangular:amplitude=2,duration=0.5", "--periods", "0.2")["spectrum"]
@@ -117,7 +117,7 @@ def test_csv_of_a_pulse_is_exact(run, tmp_path):
     for t, a, v, u in rows[:: len(rows) // 7]:
         exact = [3.0 * math.sin(w * t), 3.0 / w * (1.0 - math.cos(w * t)), 3.0 / w * (t - math.sin(w * t) / w)]
         assert [a, v, u] == pytest.approx(exact, abs=1e-12)
-    assert rows[-1][0] == pytest.approx(0.8, rel=1e-12)
+    assert rows[-1][0] == pytest.approx(0.8, rel=1e-12, abs=0.0)
 
 
 def test_picture(run, tmp_path, triangle):
@@ -154,7 +154,7 @@ def test_a_file_wins_over_a_pulse(answered, tmp_path, monkeypatch):
     """A file that is called like a pulse is read as a file; without it the word is the pulse."""
     monkeypatch.chdir(tmp_path)
     word = "sine:amplitude=3,period=0.8"
-    assert answered(word)["intensity"]["pga_m_s2"] == pytest.approx(3.0, rel=1e-12)
+    assert answered(word)["intensity"]["pga_m_s2"] == pytest.approx(3.0, rel=1e-12, abs=0.0)
     (tmp_path / word).write_text(TRIANGLE, encoding="utf-8")
     assert answered(word, "--units", "m/s2")["intensity"]["pga_m_s2"] == 1.0
 

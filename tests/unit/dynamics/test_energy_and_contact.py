@@ -15,6 +15,8 @@ from rocking.conventions import g
 from rocking.dynamics.plane import dense_output, equations
 from rocking.errors import InvalidValueError
 
+pytestmark = pytest.mark.verifies(room="rocking in the plane")
+
 BLOCK = rk.Block(width=1.0, height=3.0, depth=2.0, density=1000.0)
 MASS, RADIUS, ALPHA = 6000.0, math.hypot(0.5, 1.5), math.atan(1.0 / 3.0)
 P = math.sqrt(0.75 * g / RADIUS)
@@ -28,24 +30,26 @@ RECORD = rk.GroundMotion(
 )  # fmt: skip
 
 
+@pytest.mark.verifies("closed form", "m g R (cos(alpha - theta_0) - cos(alpha)), and r^2n of it", within="1e-11")
 @every_engine
 def test_free_rocking_ledger(name: str) -> None:
     """All energy is m g R (cos(alpha - theta_0) - cos(alpha)); n impacts take 1 - r^(2n) of it; no work is done."""
     response = rk.free_rocking(BLOCK, START, R, engine=name)
     energy = response.energy
     assert (energy.kinetic[0], energy.work[0], energy.lost[0]) == (0.0, 0.0, 0.0)
-    assert energy.potential[0] == pytest.approx(WHOLE, rel=1e-13)
+    assert energy.potential[0] == pytest.approx(WHOLE, rel=1e-13, abs=0.0)
     assert not energy.work.any()
     happened = np.searchsorted(response.impacts["time"], response.time, side="right")
     early = happened < 12  # later impacts are summed up in the rest
     np.testing.assert_allclose(
         energy.lost[early], WHOLE * (1.0 - R ** (2.0 * happened[early])), rtol=0.0, atol=1e-11 * WHOLE
     )
-    assert energy.lost[-1] == pytest.approx(WHOLE, rel=1e-13)
+    assert energy.lost[-1] == pytest.approx(WHOLE, rel=1e-13, abs=0.0)
     assert energy.closure < 1e-11
     assert energy.gap.shape == energy.time.shape == response.time.shape
 
 
+@pytest.mark.verifies("invariant", "balance of energy", within="1e-10", control="test_a_wrong_ledger_does_not_close")
 @pytest.mark.parametrize("linear", [False, True])
 @every_engine
 def test_shaken_ledger(name: str, linear: bool) -> None:
@@ -57,6 +61,7 @@ def test_shaken_ledger(name: str, linear: bool) -> None:
     assert np.abs(response.energy.work).max() > 0.01 * WHOLE
 
 
+@pytest.mark.verifies("negative control", "work that is 1e-6 too large")
 def test_a_wrong_ledger_does_not_close() -> None:
     """Negative control: work that is 1e-6 too large is seen by the gap."""
     from dataclasses import replace
@@ -73,17 +78,17 @@ def test_forces_when_let_go(name: str, sign: float) -> None:
     contact = rk.free_rocking(BLOCK, sign * START, R, engine=name).contact
     expected_x = -sign * MASS * 0.75 * g * math.sin(PSI) * math.cos(PSI)
     expected_z = MASS * (g - 0.75 * g * math.sin(PSI) ** 2)
-    assert contact.horizontal[0] == pytest.approx(expected_x, rel=1e-12)
-    assert contact.vertical[0] == pytest.approx(expected_z, rel=1e-12)
+    assert contact.horizontal[0] == pytest.approx(expected_x, rel=1e-12, abs=0.0)
+    assert contact.vertical[0] == pytest.approx(expected_z, rel=1e-12, abs=0.0)
     assert contact.horizontal[-1] == pytest.approx(0.0, abs=1e-9 * MASS)
-    assert contact.vertical[-1] == pytest.approx(MASS * g, rel=1e-12)
+    assert contact.vertical[-1] == pytest.approx(MASS * g, rel=1e-12, abs=0.0)
     assert contact.friction_of_motion >= abs(expected_x / expected_z)
 
 
 def test_friction_of_impacts() -> None:
     """Impacts of a block take (h / b) (1 - r) / (1 + r), of both the larger; the demand is the largest of all."""
     contact = rk.free_rocking(BLOCK, START, {"left": 0.8, "right": 0.9}).contact
-    assert contact.friction_of_impacts == pytest.approx(3.0 * 0.2 / 1.8, rel=1e-13)
+    assert contact.friction_of_impacts == pytest.approx(3.0 * 0.2 / 1.8, rel=1e-13, abs=0.0)
     assert contact.friction_demand == max(contact.friction_of_motion, contact.friction_of_impacts)
 
 
@@ -95,14 +100,14 @@ def test_at_rest_on_moving_ground() -> None:
     np.testing.assert_allclose(contact.horizontal, MASS * record.acceleration, rtol=0.0, atol=1e-9)
     assert record.vertical is not None
     np.testing.assert_allclose(contact.vertical, MASS * (g + record.vertical), rtol=1e-13)
-    assert contact.friction_demand == pytest.approx(2.0 / (g - 1.0), rel=1e-12)
-    assert contact.least_vertical == pytest.approx(MASS * (g - 1.0), rel=1e-12)
+    assert contact.friction_demand == pytest.approx(2.0 / (g - 1.0), rel=1e-12, abs=0.0)
+    assert contact.least_vertical == pytest.approx(MASS * (g - 1.0), rel=1e-12, abs=0.0)
 
 
 def test_warnings_of_friction() -> None:
     """Motion and impacts that take more friction than there is are named with what they take; enough keeps quiet."""
     contact = rk.free_rocking(BLOCK, START, 0.5).contact
-    assert contact.friction_of_impacts == pytest.approx(1.0, rel=1e-13)
+    assert contact.friction_of_impacts == pytest.approx(1.0, rel=1e-13, abs=0.0)
     low = contact.warnings(0.1)
     assert len(low) == 2
     assert f"rocking without slip takes a coefficient of friction of {contact.friction_of_motion:.2f}" in low[0]
@@ -126,6 +131,7 @@ def test_loss_of_contact(drop: float, flies: bool) -> None:
     assert len(said) == int(flies)
 
 
+@pytest.mark.verifies("computed anew", "second differences of the path of the centre", within="1e-3 of the weight")
 @every_engine
 def test_forces_follow_from_the_motion(name: str) -> None:
     """Newton's second law: the forces are m times the acceleration of the centre, differentiated numerically."""
@@ -175,7 +181,7 @@ def test_friction_of_an_impact_of_an_asymmetric_body(onto: Any) -> None:
     jump = r[onto] * after - before  # velocities of the centre at theta' = 1 before: omega times (y, -x) from the foot
     new, old = (SECTION.side(each) for each in (onto, {"left": "right", "right": "left"}[onto]))
     found = equations.friction_of_impact(new.centre_height, old.half_width, new.half_width, r[onto])
-    assert float(found) == pytest.approx(abs(jump[0] / jump[1]), rel=1e-12)
+    assert float(found) == pytest.approx(abs(jump[0] / jump[1]), rel=1e-12, abs=0.0)
 
 
 def test_largest_friction_of_impacts_of_an_asymmetric_body() -> None:
@@ -190,7 +196,7 @@ def test_largest_friction_of_impacts_of_an_asymmetric_body() -> None:
     swapped = max(
         h * (1.0 - r["left"]) / (left + r["left"] * right), h * (1.0 - r["right"]) / (right + r["right"] * left)
     )
-    assert contact.friction_of_impacts == pytest.approx(expected, rel=1e-12)
+    assert contact.friction_of_impacts == pytest.approx(expected, rel=1e-12, abs=0.0)
     assert abs(swapped / expected - 1.0) > 0.05, "levers that differ"
 
 

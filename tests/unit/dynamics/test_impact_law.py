@@ -96,7 +96,7 @@ def test_speed_law() -> None:
     """Straight lines through the points, constant outside; a row given as list is copied and frozen."""
     law = SPEED([0.1, 0.5, 1.0], [0.9, 0.7, 0.6])
     for speed, expected in ((0.0, 0.9), (0.1, 0.9), (0.3, 0.8), (0.5, 0.7), (0.75, 0.65), (1.0, 0.6), (9.0, 0.6)):
-        assert law.factor(speed, 0, 0) == pytest.approx(expected, rel=1e-15)
+        assert law.factor(speed, 0, 0) == pytest.approx(expected, rel=1e-15, abs=0.0)
     assert law.largest == 0.9
     with pytest.raises(ValueError, match="read-only"):
         law.factors[0] = 1.0

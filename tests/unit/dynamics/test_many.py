@@ -12,6 +12,8 @@ from rocking.dynamics import Outcome, Status
 from rocking.dynamics.plane import fast_engine
 from rocking.restitution import model
 
+pytestmark = pytest.mark.verifies(room="rocking in the plane")
+
 pytest.importorskip("xarray")
 
 # these take rows, whatever their type
@@ -93,6 +95,7 @@ def test_outcomes_are_those_of_long_histories(name: str, tables: dict[str, Any])
         assert abs(float(found["peak_rotation"][body, 0, 2, 1])) == pytest.approx(alone.peak_rotation, rel=1e-9)
 
 
+@pytest.mark.verifies("second engine", "the reference engine", within="1e-9")
 @built
 def test_both_engines(tables: dict[str, Any]) -> None:
     """The engines agree on outcomes and counts, and on peaks to 1e-9."""

@@ -15,6 +15,8 @@ from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.reference import Reference
 from rocking.motions import Segments
 
+pytestmark = pytest.mark.verifies(room="rocking in the plane")
+
 ALPHA, P = 0.25, 2.0
 
 
@@ -55,7 +57,7 @@ def test_uplift_of_smooth_motions() -> None:
     """On parabolas the first of two crossings counts, and one that only touches does not."""
     bow = [[0.0, 2.0, -2.0] + 5 * [0.0]]
     expected = 0.5 - math.sqrt(0.25 - 0.125)
-    assert uplift(ground(bow)) == (0, pytest.approx(expected, rel=1e-12), -1)
+    assert uplift(ground(bow)) == (0, pytest.approx(expected, rel=1e-12, abs=0.0), -1)
     assert uplift(ground([[0.0, 0.996, -0.996] + 5 * [0.0]])) is None
 
 
@@ -78,6 +80,7 @@ def test_ground_that_falls_away_in_a_history(name: str, push: float) -> None:
     assert math.copysign(1.0, float(response.rotation[1])) == -math.copysign(1.0, push)
 
 
+@pytest.mark.verifies("closed form", "the sum of all flights", within="1e-4")
 @every_engine
 def test_time_of_rest_is_the_geometric_series(name: str) -> None:
     """Slow rocking of r = 0.5 dies out at the sum of its flights, 2 v / (p^2 alpha) / (1 - r), to 1e-4."""
@@ -169,6 +172,7 @@ def test_energy_decides_at_the_end(name: str, linear: bool, share: float, expect
         assert up.peak_rotation == pytest.approx(alpha * size, rel=1e-9)
 
 
+@pytest.mark.verifies("computed anew", "central differences of the energy", within="1e-8")
 def test_angular_acceleration_is_the_slope_of_the_energy() -> None:
     """For linear and exact equations dE/dt = 0 makes theta'' = -p^2 dV/dtheta: by central differences to 1e-8."""
     from rocking.dynamics.plane import equations
@@ -180,7 +184,7 @@ def test_angular_acceleration_is_the_slope_of_the_energy() -> None:
         found = float(equations.angular_acceleration(at, 1, ALPHA, P, 0.0, linear=linear))
         assert found == pytest.approx(-(P**2) * slope, rel=1e-8)
         assert float(equations.holding_moment(1, ALPHA, 0.0, linear=linear)) == pytest.approx(
-            ALPHA if linear else math.sin(ALPHA), rel=1e-15
+            ALPHA if linear else math.sin(ALPHA), rel=1e-15, abs=0.0
         )
 
 
@@ -296,7 +300,9 @@ def test_largest_coefficient_is_the_largest_that_impacts_meet() -> None:
     body = RockingParameters(RockingSide(0.25, 2.0, 1.8, 0.8), RockingSide(0.40, 2.5, 1.8, 0.7), law, "")
     for sign, largest in ((1, 0.72), (-1, 0.63)):
         met = max(body.coefficient(sign, speed, 0, 0) for speed in np.linspace(0.0, 3.0, 31).tolist())
-        assert body.largest(sign) == pytest.approx(largest, rel=1e-14) == pytest.approx(met, rel=1e-14)
+        assert (
+            body.largest(sign) == pytest.approx(largest, rel=1e-14, abs=0.0) == pytest.approx(met, rel=1e-14, abs=0.0)
+        )
 
 
 @pytest.mark.parametrize("linear", [False, True])
@@ -315,10 +321,10 @@ def test_what_holds_over_stretches_of_a_smooth_motion(sign: int, linear: bool) -
         for f in ((float, lambda _: 1.0) if linear else (math.sin, math.cos))
     )
     low = {s: 0.9 * sine[s] + (0.02 if s == sign else -0.10) * cosine[s] for s in (1, -1)}
-    assert lows == pytest.approx(low, rel=1e-13)
+    assert lows == pytest.approx(low, rel=1e-13, abs=0.0)
     across, up = (max(part[s] / low[s] for s in (1, -1)) for part in (cosine, sine))
-    assert variation == pytest.approx((0.04 + 0.02 + 0.02) * across + (0.07 + 0.02 + 0.01) * up, rel=1e-13)
-    assert steepness == pytest.approx(0.97 + 0.10, rel=1e-13)
+    assert variation == pytest.approx((0.04 + 0.02 + 0.02) * across + (0.07 + 0.02 + 0.01) * up, rel=1e-13, abs=0.0)
+    assert steepness == pytest.approx(0.97 + 0.10, rel=1e-13, abs=0.0)
 
 
 @every_engine

@@ -31,7 +31,7 @@ def test_the_bed_of_the_fit_is_the_model():
     ratios = np.array([1.5, 3.0, 9.75])
     for points, damping, hardness in ((5, 1.0, 100.0), (41, 2.5, 700.0)):
         expected = ContactBedModel(points, damping, hardness).of_slenderness(ratios)
-        assert bed_coefficients(ratios, points, damping, hardness) == pytest.approx(expected, rel=1e-12)
+        assert bed_coefficients(ratios, points, damping, hardness) == pytest.approx(expected, rel=1e-12, abs=0.0)
     # a bed on half the base is the bed of a block of twice the slenderness and the inertia of this one
     assert (bed_coefficients(ratios, 5, 1.0, 100.0, share=0.5) > bed_coefficients(ratios, 5, 1.0, 100.0)).all()
 
@@ -87,7 +87,9 @@ def test_every_explanation_says_what_it_computes():
     assert {name: each.parameters for name, each in PHYSICS.items()} == fitted
     for name, (values, of_row) in expected.items():
         found = PHYSICS[name].predict(np.array(values), data, 5)
-        assert found == pytest.approx([of_row(row, group) for row, group in enumerate(data.group)], rel=1e-12), name
+        assert found == pytest.approx(
+            [of_row(row, group) for row, group in enumerate(data.group)], rel=1e-12, abs=0.0
+        ), name
         assert len(values) == len(PHYSICS[name].parameters) == len(PHYSICS[name].start) == len(PHYSICS[name].bounds)
         assert all(low <= at <= high for at, (low, high) in zip(PHYSICS[name].start, PHYSICS[name].bounds, strict=True))
 
@@ -124,8 +126,8 @@ def test_numbers_of_a_fit_agree():
     sd = scatter(fit.predicted, fit.floor, fit.slope)
     log_likelihood = interval_log_likelihood(data.low, data.high, fit.predicted, sd).sum()
     assert fit.log_likelihood == pytest.approx(log_likelihood, rel=1e-9)
-    assert fit.bic == pytest.approx(5 * np.log(39) - 2.0 * log_likelihood, rel=1e-12)
-    assert fit.rmse == pytest.approx(np.sqrt(np.mean((fit.predicted - data.coefficient) ** 2)), rel=1e-12)
+    assert fit.bic == pytest.approx(5 * np.log(39) - 2.0 * log_likelihood, rel=1e-12, abs=0.0)
+    assert fit.rmse == pytest.approx(np.sqrt(np.mean((fit.predicted - data.coefficient) ** 2)), rel=1e-12, abs=0.0)
     scores = left_out(fit)
     # what was not seen is less likely than what was
     assert scores.sum() < fit.log_likelihood
@@ -135,7 +137,7 @@ def test_widths_are_ratios():
     """(mass / slenderness)^(1/3): eight times the mass at one slenderness is twice the width; Table 1 has none."""
     group = datasets()["S"]
     heavier = replace(group, mass=8.0 * group.mass)
-    assert relative_width(heavier) == pytest.approx(2.0 * relative_width(group), rel=1e-12)
+    assert relative_width(heavier) == pytest.approx(2.0 * relative_width(group), rel=1e-12, abs=0.0)
     assert np.isinf(relative_width(datasets()["table1"])).all()
 
 
@@ -206,4 +208,4 @@ def test_widths_are_those_of_the_mass():
     data = all_measurements().rows([0, 1])
     data = replace(data, mass=np.array([5.0, 5.0 * 24.0]), slenderness=np.array([2.0, 6.0]))
     narrow, wide = relative_width(data)
-    assert wide / narrow == pytest.approx(2.0, rel=1e-14)
+    assert wide / narrow == pytest.approx(2.0, rel=1e-14, abs=0.0)

@@ -28,6 +28,8 @@ from rocking.motions.synthetic import (
     with_pulse,
 )
 
+pytestmark = pytest.mark.verifies(room="motions and records")
+
 DRAWS = 600
 STATED = [(name, parameter) for name, one in families().items() for parameter in one.distributions]
 
@@ -227,6 +229,9 @@ def test_refusals(call, words):
         call()
 
 
+@pytest.mark.verifies(
+    "published", "ln T = -5.73 + 0.99 M with deviation 0.56 (Shahi and Baker 2011)", within="0.15 of ln T"
+)
 def test_periods_of_pulses_are_those_of_strong_earthquakes():
     """Shahi & Baker (2011): ln T = -5.73 + 0.99 M with deviation 0.56; the middle is that of M 6.3 to 6.8."""
     periods = family("pulse-like").distributions["pulse_period_s"]

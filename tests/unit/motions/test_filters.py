@@ -14,6 +14,8 @@ from benchmarks.timing import cpu_seconds
 
 from rocking.motions import filters
 
+pytestmark = pytest.mark.verifies(room="motions and records")
+
 RANDOM = np.random.default_rng(3)
 ARGUMENTS = {
     "exponential": np.concatenate([RANDOM.uniform(-708.0, 709.0, 300), RANDOM.uniform(-2.0, 2.0, 300)]),
@@ -29,6 +31,7 @@ def _found(name, x):
     return filters.cosine_sine(x)[pair[name]] if name in pair else getattr(filters, name)(x)
 
 
+@pytest.mark.verifies("computed anew", "mpmath with 30 digits", within="2.0 units in the last place")
 @pytest.mark.parametrize("name", ARGUMENTS)
 def test_functions_are_within_a_unit_or_so_of_the_last_digit(name, monkeypatch):
     """Against 30 digits; the functions without a compiler have the same bits as the compiled ones."""
@@ -55,6 +58,7 @@ def test_ends(monkeypatch):
     assert filters.logarithm(np.array([0.0, 1.0])).tolist() == [-np.inf, 0.0]
 
 
+@pytest.mark.verifies("computed anew", "SciPy's matrix exponential", within="1e-12")
 def test_transition_is_a_matrix_exponential():
     """Free vibration over a step is the exponential of the oscillator's matrix, also at critical damping."""
     from scipy.linalg import expm
@@ -88,6 +92,7 @@ def _digests(**settings):
     return json.loads(done.stdout)
 
 
+@pytest.mark.verifies("same bits", "instructions and libraries of other processors")
 def test_a_seed_has_the_same_bits_on_every_processor():
     """Whatever NumPy, OpenBLAS and the C library take for the processor's abilities."""
     plain = _digests()

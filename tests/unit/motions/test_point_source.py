@@ -10,23 +10,29 @@ from rocking.errors import InvalidValueError
 from rocking.motions.synthetic import PointSource, point_source_motion
 from rocking.motions.synthetic.point_source import window
 
+pytestmark = pytest.mark.verifies(room="motions and records")
+
 SOURCE = PointSource(magnitude=5.0, distance=20e3)
 
 
+@pytest.mark.verifies(
+    "closed form", "the formulas of Boore 2003 in the units of that paper", within="1e-12", doi="10.1007/PL00012553"
+)
 def test_source_by_hand_in_the_units_of_the_paper():
     """Moment, corner and spectrum are those of the formulas in dyn cm, bar, km/s and g/cm3, worked out separately."""
     moment = 10.0 ** (1.5 * 5.0 + 16.05)
     corner = 4.9e6 * 3.5 * (80.0 / moment) ** (1.0 / 3.0)
-    assert pytest.approx(moment * 1e-7, rel=1e-13) == SOURCE.moment
-    assert SOURCE.corner_frequency == pytest.approx(corner, rel=1e-13)
+    assert pytest.approx(moment * 1e-7, rel=1e-13, abs=0.0) == SOURCE.moment
+    assert SOURCE.corner_frequency == pytest.approx(corner, rel=1e-13, abs=0.0)
     f = 3.0
     constant = 0.55 * math.sqrt(0.5) * 2.0 / (4.0 * math.pi * 2.8 * 3.5**3 * 1.0) * 1e-20
     source = constant * moment * (2.0 * math.pi * f) ** 2 / (1.0 + (f / corner) ** 2)
     path = math.exp(-math.pi * f * 20.0 / (180.0 * f**0.45 * 3.5)) / 20.0
     expected_cm = source * path * math.exp(-math.pi * 0.04 * f)
-    assert SOURCE.amplitude(np.array([f]))[0] == pytest.approx(0.01 * expected_cm, rel=1e-12)
+    assert SOURCE.amplitude(np.array([f]))[0] == pytest.approx(0.01 * expected_cm, rel=1e-12, abs=0.0)
 
 
+@pytest.mark.verifies("closed form", "flat, half, and f^-2", within="1e-5")
 def test_spectrum_has_the_limits_of_an_omega_square_source():
     """Without losses, the displacement is flat below the corner, half of it at the corner, and falls as f^-2 above."""
     bare = PointSource(5.0, 2e3, kappa=0.0, quality=(1e12, 0.0))
@@ -55,6 +61,9 @@ def _energies(count, step):
     return np.fft.rfftfreq(size, step), np.array([np.abs(step * np.fft.rfft(m.acceleration)) ** 2 for m in motions])
 
 
+@pytest.mark.verifies(
+    "repeated sampling", "the target spectrum, in six bands", within="4.5 standard errors", control="within"
+)
 def test_ensemble_has_the_target_spectrum():
     """In bands from 0.3 to 40 Hz the mean squared amplitude is the target's within 4.5 standard errors.
 
@@ -77,6 +86,7 @@ def test_ensemble_has_the_target_spectrum():
     assert all(rejected[2:])
 
 
+@pytest.mark.verifies("repeated sampling", "Parseval's theorem", within="4.0 standard errors")
 def test_energy_is_that_of_the_target_at_any_step():
     """The integral of the squared motion is twice that of the squared spectrum up to Nyquist (Parseval), on average."""
     for step in (0.01, 0.004):

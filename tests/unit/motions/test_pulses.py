@@ -12,6 +12,8 @@ from scipy.optimize import minimize_scalar
 from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.motions import Pulse, Segments, pulses
 
+pytestmark = pytest.mark.verifies(room="motions and records")
+
 A, T = 3.0, 0.8
 W = 2.0 * math.pi / T
 
@@ -99,6 +101,7 @@ def test_before_and_after(name: str) -> None:
     np.testing.assert_allclose(pulse.displacement(pulse.duration + 2.0), d + 2.0 * v, rtol=1e-14, atol=1e-14)
 
 
+@pytest.mark.verifies("closed form", "integrals by hand", within="1e-13", control="test_a_wrong_phase_does_not_close")
 @pytest.mark.parametrize("name", sorted(ENDS))
 def test_velocity_and_displacement_at_the_end(name: str) -> None:
     """Where the ground ends, and how fast, is what integration by hand gives; C_n ends at zero in both."""
@@ -120,19 +123,20 @@ def test_peak_and_duration(name: str) -> None:
         "half-sine": 0.5, "half-cosine": 0.5, "type-c": 2.5 - phase, "ricker": 4.0, "antisymmetric-ricker": 5.0,
         "mavroeidis-papageorgiou": 2.2, "harmonic": 3.25,
     }  # fmt: skip
-    assert pulse.duration == pytest.approx(periods.get(name, 1.0) * T, rel=1e-13)
+    assert pulse.duration == pytest.approx(periods.get(name, 1.0) * T, rel=1e-13, abs=0.0)
 
 
 @pytest.mark.parametrize(("n", "share"), [(1, 0.0697033468757972), (2, 0.0409759670432386), (3, 0.0291102756529802)])
 def test_phases_of_type_c(n: int, share: float) -> None:
     """phi / pi of C_1, C_2, C_3 are the roots of the closing equation to all digits; the pulse starts at cos(phi)."""
     pulse = pulses.type_c(A, T, n)
-    assert pulse.duration == pytest.approx((n + 0.5 - share) * T, rel=1e-13)
-    assert pulse.acceleration(0.0) == pytest.approx(A * math.cos(math.pi * share), rel=1e-13)
+    assert pulse.duration == pytest.approx((n + 0.5 - share) * T, rel=1e-13, abs=0.0)
+    assert pulse.acceleration(0.0) == pytest.approx(A * math.cos(math.pi * share), rel=1e-13, abs=0.0)
     middle = pulse.displacement(np.linspace(0.0, pulse.duration, 1001))
     assert np.abs(middle).max() > 0.1 * A / W**2, "zero at the end, but not all along"
 
 
+@pytest.mark.verifies("negative control", "a phase that is 1e-6 off")
 def test_a_wrong_phase_does_not_close() -> None:
     """Negative control: C_1 whose phase is 1e-6 off ends with a velocity that the tolerance above sees."""
     turn = math.pi * (0.0697033468757972 + 1e-6)
@@ -157,6 +161,12 @@ def test_rickers_by_closed_form() -> None:
         assert np.abs(ends).max() < 1e-14 * A, "nothing is cut away"
 
 
+@pytest.mark.verifies(
+    "closed form",
+    "the formulas of Mavroeidis and Papageorgiou 2003, written anew",
+    within="1e-12",
+    doi="10.1785/0120020100",
+)
 @pytest.mark.parametrize(("gamma", "nu"), [(1.0, 0.0), (1.5, 0.5 * math.pi), (2.2, 0.7), (5.0, -2.0)])
 def test_mavroeidis_papageorgiou(gamma: float, nu: float) -> None:
     """Velocity and acceleration are the two published formulas, the second the derivative of the first."""
@@ -172,6 +182,7 @@ def test_mavroeidis_papageorgiou(gamma: float, nu: float) -> None:
     np.testing.assert_allclose(pulse.acceleration(time), acceleration, rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.verifies("computed anew", "minimisation of the formula by SciPy", within="1e-7")
 @pytest.mark.parametrize(("gamma", "nu"), [(1.0, 0.0), (1.5, 0.5 * math.pi), (2.2, 0.7), (5.0, -2.0)])
 def test_peak_of_mavroeidis_papageorgiou(gamma: float, nu: float) -> None:
     """The peak is the largest of all extremes of the published formula, each found by minimisation, to 1e-7."""
@@ -195,12 +206,13 @@ def test_segments_agree_to_rounding(name: str) -> None:
     pulse = PULSES[name]
     segments = pulse.segments()
     assert segments.degree == 7
-    assert segments.duration == pytest.approx(pulse.duration, rel=1e-14)
+    assert segments.duration == pytest.approx(pulse.duration, rel=1e-14, abs=0.0)
     t = np.linspace(0.0, pulse.duration, 20_001)
     off = np.abs(value_of(segments, t) - pulse.acceleration_inside(t)).max()
     assert off <= 20.0 * np.finfo(float).eps * pulse.peak * max(1.0, pulse.duration / T)
 
 
+@pytest.mark.verifies("negative control", "six stretches a period")
 def test_too_few_segments_are_seen() -> None:
     """Negative control: with six stretches a period the polynomials are off by far more than rounding."""
     pulse = PULSES["sine"]

@@ -15,7 +15,7 @@ def test_lines_between_samples() -> None:
     assert segments.vertical is not None
     assert segments.vertical.tolist() == [[1.0, 0.0], [1.0, -1.0], [0.0, 4.0]]
     assert (segments.count, segments.degree, segments.step) == (3, 1, 0.2)
-    assert segments.duration == pytest.approx(0.6, rel=1e-15)
+    assert segments.duration == pytest.approx(0.6, rel=1e-15, abs=0.0)
     assert GroundMotion(np.array([0.0, 1.0]), 0.2).segments().vertical is None
 
 
@@ -24,7 +24,7 @@ def test_refined_is_the_same_motion() -> None:
     segments = MOTION.segments()
     cut = segments.refined(4)
     assert cut.count == 12
-    assert cut.step == pytest.approx(0.05, rel=1e-15)
+    assert cut.step == pytest.approx(0.05, rel=1e-15, abs=0.0)
     np.testing.assert_allclose(cut.horizontal[4:8, 0], [1.0, 0.25, -0.5, -1.25], rtol=0.0, atol=1e-15)
     np.testing.assert_allclose(cut.horizontal[4:8, 1], np.full(4, -0.75), rtol=0.0, atol=1e-15)
     assert cut.vertical is not None

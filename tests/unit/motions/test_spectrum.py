@@ -11,6 +11,8 @@ from rocking.motions import GroundMotion, response_spectrum
 from rocking.motions.integrals import quadratic_roots
 from rocking.motions.spectrum import _reach, _response, phi
 
+pytestmark = pytest.mark.verifies(room="motions and records")
+
 JAGGED = GroundMotion(np.random.default_rng(5).standard_normal(40), 0.01)
 
 
@@ -37,6 +39,9 @@ def _histories(motion, period, damping, points):
     return u, v, 2.0 * damping * w * v + w * w * u
 
 
+@pytest.mark.verifies(
+    "computed anew", "an integration of high order", within="1e-4", control="test_peaks_at_samples_only_are_rejected"
+)
 @pytest.mark.parametrize("period", [0.02, 0.033, 0.3])
 @pytest.mark.parametrize("damping", [0.0, 0.05, 0.4])
 def test_peaks_agree_with_an_independent_integrator(period, damping):
@@ -47,6 +52,7 @@ def test_peaks_agree_with_an_independent_integrator(period, damping):
         assert value == pytest.approx(np.abs(history).max(), rel=1e-4)
 
 
+@pytest.mark.verifies("negative control", "peaks at samples only")
 def test_peaks_at_samples_only_are_rejected():
     """Negative control: without looking inside the steps, the shortest period is wrong by more than 1 %."""
     history = _histories(JAGGED, 0.02, 0.05, 101)[0][: 101 * (len(JAGGED) - 1)]
@@ -54,6 +60,7 @@ def test_peaks_at_samples_only_are_rejected():
     assert at_samples < 0.99 * response_spectrum(JAGGED, 0.02, 0.05).displacement[0]
 
 
+@pytest.mark.verifies("closed form", "1 + exp(-pi z / sqrt(1 - z^2))", within="1e-4")
 @pytest.mark.parametrize("damping", [0.0, 0.05, 0.2])
 def test_step_load(damping):
     """A sudden constant acceleration has the overshoot 1 + exp(-pi z / sqrt(1 - z^2)): 2 without damping."""
@@ -63,6 +70,7 @@ def test_step_load(damping):
     np.testing.assert_allclose(found, expected, rtol=1e-4)
 
 
+@pytest.mark.verifies("closed form", "1 / (2 z), and sqrt(1 + 4 z^2) times it", within="1e-5")
 def test_resonance():
     """In steady resonance Sd w^2 is 1 / (2 z), and the true acceleration is larger by sqrt(1 + 4 z^2)."""
     z, period = 0.1, 0.5
@@ -71,9 +79,10 @@ def test_resonance():
     # 30 periods: what is left of the transient is exp(-2 pi z 30) = 7e-9
     assert spectrum.pseudo_acceleration[0] == pytest.approx(0.5 / z, rel=1e-5)
     assert spectrum.absolute_acceleration[0] == pytest.approx(0.5 / z * math.sqrt(1.0 + 4.0 * z * z), rel=1e-5)
-    assert spectrum.pseudo_velocity[0] == pytest.approx(spectrum.displacement[0] * 4.0 * math.pi, rel=1e-14)
+    assert spectrum.pseudo_velocity[0] == pytest.approx(spectrum.displacement[0] * 4.0 * math.pi, rel=1e-14, abs=0.0)
 
 
+@pytest.mark.verifies("closed form", "the residual amplitude of a half sine", within="1e-4")
 @pytest.mark.parametrize("ratio", [2.5, 4.0, 20.0])
 def test_half_sine_leaves_its_residual(ratio):
     """After a half sine of duration d the amplitude is (T/d) cos(pi d/T) / ((T/2d)^2 - 1), of free swinging."""
@@ -164,6 +173,12 @@ LONG = GroundMotion(
 )
 
 
+@pytest.mark.verifies(
+    "computed anew",
+    "a loop over periods and all steps",
+    within="1e-12",
+    control="test_passing_over_too_much_is_noticed",
+)
 @pytest.mark.parametrize("motion", [JAGGED, LONG, GroundMotion([0.0, 3.0], 0.02), GroundMotion(np.ones(50), 0.1)])
 @pytest.mark.parametrize("damping", [0.0, 0.05, 0.6])
 def test_all_periods_at_once_are_each_period_by_itself(motion, damping):
@@ -175,6 +190,7 @@ def test_all_periods_at_once_are_each_period_by_itself(motion, damping):
         np.testing.assert_allclose(getattr(found, name), values, rtol=1e-12)
 
 
+@pytest.mark.verifies("negative control", "a bound of 0.8 of what a step can hold")
 def test_passing_over_too_much_is_noticed(monkeypatch):
     """Negative control: with the bound of what a step can hold cut to 80 %, peaks are missed by far over 1e-12."""
     monkeypatch.setattr("rocking.motions.spectrum.MARGIN", 0.8)
@@ -187,8 +203,8 @@ def test_passing_over_too_much_is_noticed(monkeypatch):
 def test_phi_functions_on_both_branches():
     """At 1 these are e - 1 and e - 2, just as the series says just below; near zero 1 + x/2 and 1/2 + x/6."""
     for x in (1.0, 1.0 + 1e-12):
-        assert phi(x)[0] == pytest.approx(math.e - 1.0, rel=1e-11)
-        assert phi(x)[1] == pytest.approx(math.e - 2.0, rel=1e-11)
+        assert phi(x)[0] == pytest.approx(math.e - 1.0, rel=1e-11, abs=0.0)
+        assert phi(x)[1] == pytest.approx(math.e - 2.0, rel=1e-11, abs=0.0)
     assert phi(1e-8j)[0] == pytest.approx(1.0 + 0.5e-8j, abs=1e-16)
     assert phi(1e-8j)[1] == pytest.approx(0.5 + 1e-8j / 6.0, abs=1e-16)
 
@@ -217,7 +233,7 @@ def test_quadratic_roots() -> None:
     """Both roots without cancellation, even 1e-12 beside 1; complex, linear and empty ones are not finite."""
     second, first = np.array([1.0, 1.0, 0.0]), np.array([-1.0 - 1e-12, 0.0, 2.0])
     one, other = quadratic_roots(second, first, np.array([1e-12, 1.0, 3.0]))
-    assert sorted([one[0], other[0]]) == pytest.approx([1e-12, 1.0], rel=1e-14)
+    assert sorted([one[0], other[0]]) == pytest.approx([1e-12, 1.0], rel=1e-14, abs=0.0)
     assert np.isnan(one[1])
     assert np.isnan(other[1])
     assert not np.isfinite(one[2])

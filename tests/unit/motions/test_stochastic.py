@@ -21,10 +21,13 @@ from rocking.motions.synthetic import (
 )
 from rocking.motions.synthetic.stochastic import _unit_process
 
+pytestmark = pytest.mark.verifies(room="motions and records")
+
 MODULATION = modulation_from_intensity(0.5, significant_duration=5.0, middle=4.0)
 SHAPER = NonstationaryFilter(frequency=4.0, slope=-0.2, middle=4.0, damping=0.3)
 
 
+@pytest.mark.verifies("computed anew", "SciPy's quadrature", within="1e-6")
 @given(st.floats(1e-4, 50.0), st.floats(0.5, 60.0), st.floats(0.3, 4.5))
 def test_modulation_has_the_intensity_that_was_asked_for(intensity, middle, ratio):
     """Integrals of the squared modulation up to 5, 45 and 95 % are found again by quadrature."""
@@ -40,6 +43,7 @@ def test_modulation_has_the_intensity_that_was_asked_for(intensity, middle, rati
     assert q.arias_intensity() == pytest.approx(intensity, rel=1e-10)
 
 
+@pytest.mark.verifies("closed form", "variance one", within="1e-10")
 def test_unit_process_has_unit_variance_exactly():
     """The noise goes through linearly; the squares of its weights sum to 1 at every sample but the first."""
     count = 120
@@ -55,6 +59,7 @@ def _ensemble(**options):
     ]
 
 
+@pytest.mark.verifies("repeated sampling", "the modulation", within="4.0 standard errors", control="within")
 def test_ensemble_follows_the_modulation():
     """Mean of x^2 over q^2 is 1 within 4 standard errors in each quarter; with a wrong shape it is not."""
     motions = _ensemble(corner=None)
@@ -70,6 +75,7 @@ def test_ensemble_follows_the_modulation():
     assert abs(each.mean() - 1.0) > 6.0 * each.std(ddof=1) / math.sqrt(each.size)
 
 
+@pytest.mark.verifies("repeated sampling", "its mean in closed form", within="4.0 standard errors")
 def test_ensemble_has_the_expected_arias_intensity():
     """The Arias intensity has the closed-form mean within 4 standard errors."""
     values = np.array([arias_intensity(m) for m in _ensemble(corner=None)])
@@ -91,6 +97,7 @@ def test_frequency_drifts_as_prescribed():
         assert rate == pytest.approx(expected, rel=0.1)
 
 
+@pytest.mark.verifies("computed anew", "SciPy's lsim", within="1e-10")
 def test_highpass_agrees_with_a_state_space_solver():
     """The recurrence is the response of s^2 / (s + w)^2 to straight lines, as SciPy's solver gives it."""
     a = np.random.default_rng(2).standard_normal(300)
@@ -143,6 +150,12 @@ def by_definition(noise, omega, damping, step):
     return np.concatenate([[0.0], total[1:] / np.sqrt(variance[1:])])
 
 
+@pytest.mark.verifies(
+    "computed anew",
+    "the double sum of the definition",
+    within="1e-13 of short ones, 1e-10 of long ones",
+    control="test_a_filter_of_another_instant_is_seen",
+)
 @pytest.mark.parametrize("count", [2, 3, 24, 25, 26, 700])
 @pytest.mark.parametrize("damping", [0.05, 0.3, 0.9])
 def test_filtered_noise_is_the_sum_of_its_impulses(count, damping):
@@ -156,6 +169,12 @@ def test_filtered_noise_is_the_sum_of_its_impulses(count, damping):
 DRIFTS = [(6.0, -0.1, 0.3, 0.01), (6.0, 0.2, 0.15, 0.01), (1.4, -0.03, 0.2, 0.02), (3.0, 0.0, 0.9, 0.005)]
 
 
+@pytest.mark.verifies(
+    "computed anew",
+    "the double sum of the definition",
+    within="1e-10",
+    control="test_oscillators_too_far_apart_are_seen",
+)
 @pytest.mark.parametrize(("frequency", "slope", "damping", "step"), DRIFTS)
 def test_shared_oscillators_are_as_good_as_own_ones(frequency, slope, damping, step, monkeypatch):
     """Long drifts share oscillators: within 1e-10 of the definition; the same bits without the compiled module."""
@@ -167,6 +186,7 @@ def test_shared_oscillators_are_as_good_as_own_ones(frequency, slope, damping, s
     np.testing.assert_array_equal(_unit_process(noise, omega, damping, step), found)
 
 
+@pytest.mark.verifies("negative control", "eight times the distance between oscillators")
 def test_oscillators_too_far_apart_are_seen(monkeypatch):
     """Negative control: with eight times the distance between oscillators the sum is off by a thousandth of a unit."""
     monkeypatch.setattr("rocking.motions.synthetic.stochastic.SPACING", 0.4)
@@ -176,6 +196,7 @@ def test_oscillators_too_far_apart_are_seen(monkeypatch):
     assert np.abs(found - by_definition(noise, omega, 0.3, 0.01)).max() > 1e-6
 
 
+@pytest.mark.verifies("negative control", "the frequency of the next instant")
 def test_a_filter_of_another_instant_is_seen():
     """A filter whose frequency is that of the next instant differs far beyond rounding."""
     rng = np.random.default_rng(3)

@@ -9,6 +9,8 @@ from record_files import read_back, refused
 from rocking.errors import RecordError
 from rocking.motions.formats import Component, Record, Source, formats
 
+pytestmark = pytest.mark.verifies(room="motions and records")
+
 KNET = formats()["knet"]
 
 # 2000 gal are 1000 counts: 2 gal a count. Mean of the counts 1010, so the accelerations are -20, 20, 60, -60 ... gal
@@ -40,6 +42,7 @@ def read(text: str = TYPED, **options: object) -> Record:
     return KNET.read(Source("ABC001.NS", text.encode()), **options)  # type: ignore[arg-type]
 
 
+@pytest.mark.verifies("closed form", "accelerations by hand", within="1e-10 gal", control="within")
 def test_the_mean_of_the_whole_record_is_removed() -> None:
     """Accelerations by hand; with the mean the peak would be 2080 gal, 35 times too large."""
     record = read()

@@ -67,7 +67,7 @@ def test_points_and_intervals(stripes, picture):
         np.testing.assert_allclose(points, [LEVELS, counts / 24.0], rtol=1e-12)
         low = [stats.beta.ppf(0.025, k, 25 - k) if k else 0.0 for k in counts]
         high = [stats.beta.ppf(0.975, k + 1, 24 - k) if k < 24 else 1.0 for k in counts]
-        np.testing.assert_allclose(ends, np.transpose([low, high]), atol=1e-9)
+        np.testing.assert_allclose(ends, np.transpose([low, high]), rtol=0.0, atol=1e-9)
         # negative control: the interval from the normal distribution is another
         wald = counts / 24.0 - 1.96 * np.sqrt(counts / 24.0 * (1.0 - counts / 24.0) / 24.0)
         assert np.abs(ends[:, 0] - wald).max() > 0.01
@@ -94,7 +94,7 @@ def test_uplift_is_a_step(picture):
     """Where PGA decides rocking there is no curve but a line at g tan(alpha) = g / 4."""
     upper = picture.axes[0]
     (step,) = (line for line in upper.lines if len(set(line.get_xdata())) == 1 and list(line.get_ydata()) == [0, 1])
-    assert step.get_xdata()[0] == pytest.approx(0.25 * G, rel=1e-12)
+    assert step.get_xdata()[0] == pytest.approx(0.25 * G, rel=1e-12, abs=0.0)
 
 
 def test_states_add_up(stripes, picture):
@@ -102,7 +102,7 @@ def test_states_add_up(stripes, picture):
     lower = picture.axes[1]
     heights = np.array([[bar.get_height() for bar in group] for group in lower.containers])
     np.testing.assert_allclose(heights.sum(axis=0), 1.0, rtol=1e-12)
-    np.testing.assert_allclose(heights[-1], stripes.counts["overturned"] / 24.0, atol=1e-12)
+    np.testing.assert_allclose(heights[-1], stripes.counts["overturned"] / 24.0, rtol=0.0, atol=1e-12)
     words = [text.get_text() for text in lower.get_legend().get_texts()]
     assert words[0] == "no rocking"
     assert words[-1] == "overturned"
@@ -224,7 +224,7 @@ def test_what_cannot_be_lifted_is_shaded():
     found = multiple_stripe_analysis(BLOCK, TWELVE, [1.0, 2.0, 3.0, 5.0, 8.0], 0.9)
     upper = fragility_picture(found).axes[0]
     (shade,) = _shaded(upper)
-    assert shade.get_x() + shade.get_width() == pytest.approx(0.25 * G, rel=1e-12)
+    assert shade.get_x() + shade.get_width() == pytest.approx(0.25 * G, rel=1e-12, abs=0.0)
     assert shade.get_x() < upper.get_xlim()[0]
     assert [text.get_text() for text in upper.texts] == ["not lifted"]
     assert found.counts["rocking"][found.levels < 0.25 * G].tolist() == [0, 0]
@@ -289,7 +289,7 @@ def test_lanes_are_the_closed_form(closed_form):
     (stands,) = (segment[:, 1] / unit for segment in again.get_segments())
     np.testing.assert_allclose(stands, [3.48466273332249203, 3.6311498724447945014], rtol=1e-7)
     (cross,) = (line for line in left.lines if line.get_marker() == "x")
-    assert cross.get_ydata()[0] / unit == pytest.approx(ends[0, 0], rel=1e-12)
+    assert cross.get_ydata()[0] / unit == pytest.approx(ends[0, 0], rel=1e-12, abs=0.0)
 
 
 def test_every_motion_has_a_lane_of_its_own():

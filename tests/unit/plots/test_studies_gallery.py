@@ -151,9 +151,9 @@ def test_crossings_of_many():
     shown = sorted((each.min() * conventions.g, each.max() * conventions.g) for each in bars)
     np.testing.assert_allclose(shown, one.overturning_intervals, rtol=1e-12)
     assert len(shown) == 2  # the block stands again between
-    assert first.lines[0].get_xdata()[0] * conventions.g == pytest.approx(one.minimum, rel=1e-12)
+    assert first.lines[0].get_xdata()[0] * conventions.g == pytest.approx(one.minimum, rel=1e-12, abs=0.0)
     cut = transitions_of_many_picture(found, ["a", "b", "c"], until=6.0)
-    assert cut.axes[0].get_xlim()[1] * conventions.g == pytest.approx(6.0, rel=1e-12)
+    assert cut.axes[0].get_xlim()[1] * conventions.g == pytest.approx(6.0, rel=1e-12, abs=0.0)
     for names, words in ((["a"], "must have 1 Transitions"), ([], "1 to 60 lanes")):
         with pytest.raises(InvalidValueError, match=words):
             transitions_of_many_picture(found, names)
@@ -211,7 +211,7 @@ def test_record_sets():
     left, right = figure.axes
     assert sorted(left.lines[0].get_xdata()) == sorted(motion.peak for motion in sets["far"])
     spectra = [rk.motions.spectral_acceleration(motion, 0.5, 0.05) for motion in sets["near"]]
-    assert right.lines[1].get_ydata()[1] == pytest.approx(sorted(spectra)[1], rel=1e-12)
+    assert right.lines[1].get_ydata()[1] == pytest.approx(sorted(spectra)[1], rel=1e-12, abs=0.0)
     assert legend_of(figure) == ["far: 4", "near: 3"]
     assert not math.isclose(right.lines[0].get_ydata()[1], right.lines[1].get_ydata()[1], rel_tol=1e-3)
     for given, words in (({}, "sets must be 1 to 6"), ({"pulse": [PULSE, PULSE]}, "must have two ground motions")):

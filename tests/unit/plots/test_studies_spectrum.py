@@ -107,7 +107,9 @@ def test_shares_of_many(many, pictures):
     assert (pictures["one"].axes[1].get_xscale(), lower.get_xscale()) == ("log", "linear")
     assert lower.get_ylabel() == "share over-\nturned [-]"
     for place, line in enumerate(lower.lines):
-        np.testing.assert_allclose(line.get_ydata(), (many["mode"].values[:, place] >= 0).sum(axis=0) / 5.0, atol=1e-15)
+        np.testing.assert_allclose(
+            line.get_ydata(), (many["mode"].values[:, place] >= 0).sum(axis=0) / 5.0, rtol=0.0, atol=1e-15
+        )
     assert "5 motions" in figure.get_suptitle()
 
 

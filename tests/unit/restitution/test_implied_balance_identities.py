@@ -7,6 +7,8 @@ import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.restitution import Fixed, Housner, Ked, ShiftedImpulse, energy_balance, identity_report, implied
 
+pytestmark = pytest.mark.verifies(room="restitution in the plane")
+
 BODY = rk.Block(width=1.0, height=2.0).with_feet(0.1, 1)
 ASYMMETRIC = rk.Block(width=2.0, height=1.0).with_feet(0.8, 2.0)
 
@@ -34,18 +36,19 @@ def test_the_base_reaches_from_foot_to_foot():
             r = (middle_over_base - arm * old) / (middle_over_base + arm * new)
             result = implied(ASYMMETRIC, r, onto=onto)
             assert result.impulse_arm == pytest.approx(arm, rel=1e-9)
-            assert result.impulse_x == pytest.approx(1.0 + sign * arm, rel=1e-12)
+            assert result.impulse_x == pytest.approx(1.0 + sign * arm, rel=1e-12, abs=0.0)
             assert result.within_base is (-old < arm < new)
 
 
+@pytest.mark.verifies("closed form", "1 - r^2 I_new / I_old", within="1e-12")
 def test_implied_energy():
-    """The loss is 1 - r^2 I_O'/I_O (physics 1.1), and a coefficient above sqrt(I_O/I_O') creates energy."""
+    """The loss is 1 - r^2 I_O'/I_O, and a coefficient above sqrt(I_O/I_O') creates energy."""
     old, new = (ASYMMETRIC.side(foot).moment_of_inertia for foot in ("left", "right"))
     bound = np.sqrt(old / new)
     assert bound < 1.0
     result = implied(ASYMMETRIC, 0.5)
-    assert result.energy_loss == pytest.approx(1 - 0.25 * new / old, rel=1e-12)
-    assert result.largest_coefficient == pytest.approx(bound, rel=1e-12)
+    assert result.energy_loss == pytest.approx(1 - 0.25 * new / old, rel=1e-12, abs=0.0)
+    assert result.largest_coefficient == pytest.approx(bound, rel=1e-12, abs=0.0)
     assert implied(ASYMMETRIC, bound * 0.9999).within_energy
     too_much = implied(ASYMMETRIC, bound * 1.0001)
     assert not too_much.within_energy
@@ -64,21 +67,29 @@ def test_implied_refuses(value):
         implied(BODY, 0.9, onto="up")
 
 
+@pytest.mark.verifies(
+    "closed form",
+    "energies of the stages of Mao et al. 2024, Eqs. 6 to 17",
+    within="1e-13",
+    control="within",
+    doi="10.3390/buildings14072119",
+)
 def test_ledger_totals():
     """Energies of the stages (Eqs. 6 to 17, Mao et al. 2024): I_O, Int y^2 dm, N, and r^2 I_O' halves."""
     block = rk.Block(width=1.0, height=2.0, density=1000.0)
     balance = energy_balance(block, angular_velocity=3.0)
     before = 0.5 * 9.0 * 2000.0 * (5 / 12 + 1.25)
-    assert balance.totals["before"] == pytest.approx(before, rel=1e-13)
-    assert balance.totals["stage 1"] == pytest.approx(0.5 * 9.0 * 1000.0 * 8.0 / 3.0, rel=1e-13)
-    # REF of physics 1.4: E sin^2 = .8, E sin^4 = .6894...
-    assert balance.shares["stage 1"] == pytest.approx(0.8, rel=1e-13)
-    assert balance.shares["stage 2"] == pytest.approx(0.689413284635524127, rel=1e-13)
-    assert balance.shares["after"] == pytest.approx(balance.shares["stage 2"], rel=1e-13)
-    assert balance.velocity_after == pytest.approx(3.0 * 0.830309150037216034, rel=1e-13)
+    assert balance.totals["before"] == pytest.approx(before, rel=1e-13, abs=0.0)
+    assert balance.totals["stage 1"] == pytest.approx(0.5 * 9.0 * 1000.0 * 8.0 / 3.0, rel=1e-13, abs=0.0)
+    # REF: E sin^2 = .8, E sin^4 = .6894...
+    assert balance.shares["stage 1"] == pytest.approx(0.8, rel=1e-13, abs=0.0)
+    assert balance.shares["stage 2"] == pytest.approx(0.689413284635524127, rel=1e-13, abs=0.0)
+    assert balance.shares["after"] == pytest.approx(balance.shares["stage 2"], rel=1e-13, abs=0.0)
+    assert balance.velocity_after == pytest.approx(3.0 * 0.830309150037216034, rel=1e-13, abs=0.0)
     assert balance.shares["stage 1"] != pytest.approx(balance.shares["stage 2"], rel=1e-2)
 
 
+@pytest.mark.verifies("computed anew", "a midpoint mesh of 120 cells", within="3e-4", control="within")
 @pytest.mark.parametrize("onto", ["left", "right"])
 def test_ledger_fields_integrate_to_totals(onto):
     """Each field's energy density, integrated by a midpoint mesh, is the total; O(1/n^2) = 1e-4 for n =
@@ -112,8 +123,9 @@ def broken(body, model):
     return {check.name for check in identity_report(body, model) if not check.holds}
 
 
+@pytest.mark.verifies("behaviour")
 def test_identity_report():
-    """The report finds KED's two breaches (physics 1.7), clears Housner, and catches what creates energy."""
+    """The report finds KED's two breaches, clears Housner, and catches what creates energy."""
     assert broken(BODY, Ked()) == {"coincident pivots", "inertia alone"}
     assert broken(BODY, Housner()) == set()
     assert "energy bound" in broken(ASYMMETRIC, Fixed(r=0.99))
@@ -125,6 +137,7 @@ def test_identity_report():
     assert any(words.startswith("inertia alone: violated for this body (") for words in sentences)
 
 
+@pytest.mark.verifies("negative control", "a model that sees metres, kilograms and direction")
 def test_identity_report_catches_a_broken_model():
     """Negative control: a model that sees metres, kilograms and direction fails scale, density, mirror, round
     trip."""

@@ -8,6 +8,8 @@ from scipy.integrate import solve_ivp
 
 from rocking.restitution.plastic_winkler import land
 
+pytestmark = pytest.mark.verifies(room="contact bed")
+
 BASES = {
     "whole base": (0.06, 1.0, [[-1.0, 1.0]]),
     "stocky": (1.6, 0.4, [[-0.4, 1.0]]),
@@ -62,6 +64,12 @@ def landed(kappa, back, stretches):
         del left[0]
 
 
+@pytest.mark.verifies(
+    "computed anew",
+    "the equations of the bed solved in another way, by SciPy",
+    within="1e-12",
+    control="test_gaps_matter",
+)
 @pytest.mark.parametrize(("kappa", "back", "stretches"), BASES.values(), ids=BASES)
 def test_velocity_after_the_bed(kappa, back, stretches):
     """The velocity with which the body leaves the bed agrees to twelve digits, kinks of the base included."""
@@ -70,12 +78,14 @@ def test_velocity_after_the_bed(kappa, back, stretches):
     assert velocity == pytest.approx(landed(kappa, back, stretches), rel=0.0, abs=1e-12)
 
 
+@pytest.mark.verifies("negative control", "a base without its gap")
 def test_gaps_matter():
     """Negative control: a base without its gap gives another velocity, so the comparison can fail."""
     gap = land(0.12, 1.2, np.array([[-1.2, -0.7], [0.5, 1.0]]))[1]
     assert abs(gap - land(0.12, 1.2, np.array([[-1.2, 1.0]]))[1]) > 1e-3
 
 
+@pytest.mark.verifies("invariant", "the base in two and in a hundred pieces", within="1e-12")
 def test_a_cut_without_gap_changes_nothing():
     """A base cut in two or in a hundred pieces that touch is one base."""
     whole = land(0.2, 0.9, np.array([[-0.9, 1.0]]))[1]

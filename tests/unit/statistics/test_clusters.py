@@ -10,6 +10,8 @@ from rocking.statistics import count_outcomes, fit_lognormal
 from rocking.statistics.maximum_likelihood import LogScale, with_cluster_errors
 from rocking.statistics.probit import Probit
 
+pytestmark = pytest.mark.verifies(room="statistics")
+
 LEVELS = np.geomspace(0.3, 2.1, 9)
 
 
@@ -92,6 +94,7 @@ def test_the_usual_interval_is_that_of_whole_clusters():
     assert (single.interval_method, "cluster" in single.verdict) == ("profile", False)
 
 
+@pytest.mark.verifies("computed anew", "the sandwich formula, summed cluster by cluster", within="1e-7")
 def test_errors_of_clusters_by_the_sum_over_single_clusters():
     """The covariance is that of the textbook, H^-1 M H^-1, with M summed cluster by cluster from the likelihood."""
     counts, scale = SPREAD.counts, LogScale.of(SPREAD.counts)

@@ -12,6 +12,8 @@ from scipy.special import log_ndtr, ndtr, ndtri
 from rocking.errors import InvalidValueError
 from rocking.statistics import fit_lognormal
 
+pytestmark = pytest.mark.verifies(room="statistics")
+
 LEVELS = [0.2, 0.4, 0.6, 0.8]
 FAILURES, TRIALS = [1, 8, 14, 19], [20, 20, 20, 20]
 FIT = fit_lognormal(LEVELS, FAILURES, TRIALS)
@@ -29,6 +31,9 @@ def _fall(median, dispersion):
     return math.sqrt(2.0 * max(0.0, value(FIT.median, FIT.dispersion) - value(median, dispersion)))
 
 
+@pytest.mark.verifies(
+    "closed form", "two equations of two levels, and the delta method", within="1e-9; 1e-8 of a standard error"
+)
 def test_two_levels_have_a_closed_form():
     """With two levels the curve passes through both shares: median and dispersion follow from two equations."""
     fit = fit_lognormal([0.3, 0.9], [3, 15], [20, 20])
@@ -38,13 +43,14 @@ def test_two_levels_have_a_closed_form():
     assert fit.median == pytest.approx(0.3 * math.exp(-low * dispersion), rel=1e-9)
     assert fit.fractile(0.75) == pytest.approx(0.9, rel=1e-9)
     expected = 3 * math.log(3 / 20) + 17 * math.log(17 / 20) + 15 * math.log(15 / 20) + 5 * math.log(5 / 20)
-    assert fit.log_likelihood == pytest.approx(expected, rel=1e-12)
+    assert fit.log_likelihood == pytest.approx(expected, rel=1e-12, abs=0.0)
     # the delta method on two independent shares: Var(probit) = p (1 - p) / (n phi^2)
     error = [math.sqrt(p * (1 - p) / 20) * math.sqrt(2 * math.pi) * math.exp(ndtri(p) ** 2 / 2) for p in (0.15, 0.75)]
     spread = math.hypot(*error) * math.log(3.0) / (high - low) ** 2
     assert fit.standard_errors["dispersion"] == pytest.approx(spread, rel=1e-8)
 
 
+@pytest.mark.verifies("computed anew", "the likelihood over a grid", within="1e-5")
 def test_ends_of_the_profile_interval_lie_on_the_boundary_of_the_region():
     """Over all dispersions (medians) the fall at an end is never below the quantile, and reaches it."""
     grid = np.exp(np.linspace(-2.5, 1.5, 4001))
@@ -161,6 +167,7 @@ def test_bad_questions_are_refused(call, words):
         call()
 
 
+@pytest.mark.verifies("invariant", "levels in another unit", within="1e-6")
 @settings(max_examples=25)
 @given(counts, st.floats(1e-6, 1e6))
 def test_unit_of_the_levels_scales_the_median_alone(failures, factor):
@@ -175,6 +182,7 @@ def test_unit_of_the_levels_scales_the_median_alone(failures, factor):
     assert other.log_likelihood == pytest.approx(one.log_likelihood, rel=1e-9)
 
 
+@pytest.mark.verifies("same bits", "single observations in any order")
 @settings(max_examples=25)
 @given(counts, st.randoms())
 def test_splitting_stripes_changes_nothing(failures, random):

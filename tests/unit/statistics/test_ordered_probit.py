@@ -11,6 +11,8 @@ from rocking.errors import InvalidValueError
 from rocking.statistics import fit_lognormal, fit_ordered
 from rocking.statistics.ordered_probit import nested_curves
 
+pytestmark = pytest.mark.verifies(room="statistics")
+
 LEVELS, ROCKED, OVERTURNED = [0.2, 0.4, 0.6, 0.8], [2, 9, 18, 20], [0, 3, 9, 16]
 
 
@@ -22,6 +24,7 @@ def test_separate_curves_are_the_two_fits():
         assert curve == (alone.median, alone.dispersion)
 
 
+@pytest.mark.verifies("computed anew", "a simplex search of the likelihood by SciPy", within="1e-6")
 def test_common_dispersion_against_a_direct_search():
     """Medians and the one dispersion agree with a simplex search of the likelihood of three states."""
     fit = fit_ordered(LEVELS, ROCKED, OVERTURNED, [20] * 4, method="common-dispersion")
@@ -52,6 +55,7 @@ def test_common_dispersion_recovers_the_truth():
     np.testing.assert_allclose([*fit.rocked, *fit.overturned], [0.7, 0.5, 1.3, 0.5], rtol=5e-3)
 
 
+@pytest.mark.verifies("closed form", "curves that were put in", within="1e-4")
 @pytest.mark.parametrize(
     ("medians", "dispersion"),
     [((2.0, 3.0), 0.3), ((0.1, 0.3, 1.0), 1.5), ((10.0, 30.0), 1.2), ((0.1, 2.0), 2.5), ((0.05, 1.5, 40.0), 3.0)],
@@ -65,6 +69,7 @@ def test_known_curves_steep_and_shallow(medians, dispersion):
     np.testing.assert_allclose(curves, [(median, dispersion) for median in medians], rtol=1e-4)
 
 
+@pytest.mark.verifies("computed anew", "a simplex search of the likelihood by SciPy", within="1e-6")
 def test_three_curves_of_one_dispersion_against_a_direct_search():
     """The medians of three nested states and their one dispersion agree with a simplex search of the likelihood."""
     reached, n = np.array([[3, 10, 19, 20], [2, 7, 14, 18], [0, 3, 9, 15]]), 20
@@ -102,7 +107,7 @@ def test_crossing_is_found_and_measured():
     assert "take one dispersion" in fit.verdict
     shares = fit.probabilities(grid)
     assert shares.min() >= 0.0
-    np.testing.assert_allclose(shares.sum(axis=-1), 1.0, atol=1e-15)
+    np.testing.assert_allclose(shares.sum(axis=-1), 1.0, rtol=0.0, atol=1e-15)
 
 
 def test_probabilities_add_up():
@@ -112,7 +117,7 @@ def test_probabilities_add_up():
     assert shares.shape == (2, 2, 3)
     assert shares[0, 0].tolist() == [1.0, 0.0, 0.0]
     assert np.all(shares >= 0.0)
-    np.testing.assert_allclose(shares.sum(axis=-1), 1.0, atol=1e-15)
+    np.testing.assert_allclose(shares.sum(axis=-1), 1.0, rtol=0.0, atol=1e-15)
     with pytest.raises(InvalidValueError, match="im must be finite"):
         fit.probabilities(math.nan)
 

@@ -7,6 +7,8 @@ from rocking.errors import InvalidValueError
 from rocking.statistics import Separation, fit_lognormal
 from rocking.statistics.separation import classify
 
+pytestmark = pytest.mark.verifies(room="statistics")
+
 CASES = [
     ([1, 2, 3, 4], [0, 0, 1, 1], Separation.COMPLETE, (2.0, 3.0)),
     ([1, 2, 2, 3], [0, 0, 1, 1], Separation.QUASI_COMPLETE, (2.0, 2.0)),
@@ -25,6 +27,7 @@ CASES = [
 ]
 
 
+@pytest.mark.verifies("closed form", "data whose separation is known by hand", within="every one")
 @pytest.mark.parametrize(("levels", "failures", "kind", "interval"), CASES)
 def test_kind_is_known(levels, failures, kind, interval):
     """The kind and the median interval are those read off the data by hand."""

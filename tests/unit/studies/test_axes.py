@@ -75,19 +75,19 @@ def test_classical_axes():
     """omega_p / p and a_p / (g tan alpha) give the pulse whose period and amplitude they say; linear: g alpha."""
     side = BLOCK.side("right", 9.81)
     made = case(("frequency_ratio", 3.0), ("amplitude_ratio", 2.0))
-    assert made.stretch * 0.6 == pytest.approx(2.0 * math.pi / (3.0 * side.frequency_parameter), rel=1e-14)
-    assert made.scale * 3.0 == pytest.approx(2.0 * 9.81 * 0.25, rel=1e-14)
+    assert made.stretch * 0.6 == pytest.approx(2.0 * math.pi / (3.0 * side.frequency_parameter), rel=1e-14, abs=0.0)
+    assert made.scale * 3.0 == pytest.approx(2.0 * 9.81 * 0.25, rel=1e-14, abs=0.0)
     linear = case(("frequency_ratio", 3.0), ("amplitude_ratio", 2.0), linear=True)
-    assert linear.scale * 3.0 == pytest.approx(2.0 * 9.81 * math.atan(0.25), rel=1e-14)
+    assert linear.scale * 3.0 == pytest.approx(2.0 * 9.81 * math.atan(0.25), rel=1e-14, abs=0.0)
 
 
 def test_ratios_follow_the_body():
     """With size or slenderness on the other axis the ratios refer to the changed body."""
     big = case(("semi_diagonal", 5.0), ("frequency_ratio", 3.0))
-    assert big.sides["p_right"] == pytest.approx(math.sqrt(0.75 * 9.81 / 5.0), rel=1e-14)
-    assert big.stretch * 0.6 * 3.0 * math.sqrt(0.75 * 9.81 / 5.0) == pytest.approx(2.0 * math.pi, rel=1e-14)
+    assert big.sides["p_right"] == pytest.approx(math.sqrt(0.75 * 9.81 / 5.0), rel=1e-14, abs=0.0)
+    assert big.stretch * 0.6 * 3.0 * math.sqrt(0.75 * 9.81 / 5.0) == pytest.approx(2.0 * math.pi, rel=1e-14, abs=0.0)
     slender = case(("amplitude_ratio", 2.0), ("slenderness_ratio", 8.0))
-    assert slender.scale * 3.0 == pytest.approx(2.0 * 9.81 / 8.0, rel=1e-14)
+    assert slender.scale * 3.0 == pytest.approx(2.0 * 9.81 / 8.0, rel=1e-14, abs=0.0)
 
 
 @pytest.mark.parametrize(("motion", "peak"), [(PULSE, 3.0), (RECORD, 4.0)])
@@ -95,8 +95,8 @@ def test_pga_against_pgv(motion, peak):
     """PGA scales the motion and PGV stretches its time so that both hold, in either order of the axes."""
     for x, y in ((("pga", 5.0), ("pgv", 0.7)), (("pgv", 0.7), ("pga", 5.0))):
         made = case(x, y, motion=motion)
-        assert made.scale * peak == pytest.approx(5.0, rel=1e-14)
-        assert made.scale * made.stretch * peak_velocity(motion) == pytest.approx(0.7, rel=1e-14)
+        assert made.scale * peak == pytest.approx(5.0, rel=1e-14, abs=0.0)
+        assert made.scale * made.stretch * peak_velocity(motion) == pytest.approx(0.7, rel=1e-14, abs=0.0)
 
 
 def test_pgv_alone_scales():
@@ -105,14 +105,14 @@ def test_pgv_alone_scales():
     assert (made.scale * peak_velocity(RECORD), made.stretch) == (pytest.approx(0.7), 1.0)
     made = case(("pgv", 0.7), ("period", 1.2))
     assert made.stretch == pytest.approx(2.0)
-    assert made.scale * 2.0 * 3.0 * 0.6 / math.pi == pytest.approx(0.7, rel=1e-12)
+    assert made.scale * 2.0 * 3.0 * 0.6 / math.pi == pytest.approx(0.7, rel=1e-12, abs=0.0)
 
 
 def test_measures_of_motions():
     """Velocity of a sine is a_p T / pi, of a rectangle a T; a Ricker wavelet has its period, a rectangle none."""
-    assert peak_velocity(PULSE) == pytest.approx(3.0 * 0.6 / math.pi, rel=1e-12)
-    assert peak_velocity(rk.pulses.rectangular(2.0, 0.3)) == pytest.approx(0.6, rel=1e-14)
-    assert peak_velocity(rk.pulses.cosine(3.0, 0.6)) == pytest.approx(3.0 * 0.3 / math.pi, rel=1e-12)
+    assert peak_velocity(PULSE) == pytest.approx(3.0 * 0.6 / math.pi, rel=1e-12, abs=0.0)
+    assert peak_velocity(rk.pulses.rectangular(2.0, 0.3)) == pytest.approx(0.6, rel=1e-14, abs=0.0)
+    assert peak_velocity(rk.pulses.cosine(3.0, 0.6)) == pytest.approx(3.0 * 0.3 / math.pi, rel=1e-12, abs=0.0)
     assert main_period(rk.pulses.ricker(1.0, 0.7)) == 0.7
     for motion in (rk.pulses.rectangular(2.0, 0.3), RECORD):
         with pytest.raises(InvalidValueError, match="period"):
@@ -136,15 +136,15 @@ def test_measures_of_motions():
 def test_dimensions_of_blocks(given, width, height):
     """Any two dimensions make the block that has them; density and depth stay."""
     made = changed_body(BLOCK, given)
-    assert (made.width, made.height) == pytest.approx((width, height), rel=1e-14)
+    assert (made.width, made.height) == pytest.approx((width, height), rel=1e-14, abs=0.0)
     assert (made.depth, made.density) == (0.5, 2000.0)
 
 
 def test_slenderness_alone_keeps_the_semi_diagonal():
     """A slenderness alone turns the diagonal."""
     made = changed_body(BLOCK, {"slenderness_angle": 0.4})
-    assert made.semi_diagonal == pytest.approx(BLOCK.semi_diagonal, rel=1e-14)
-    assert made.slenderness_angle == pytest.approx(0.4, rel=1e-14)
+    assert made.semi_diagonal == pytest.approx(BLOCK.semi_diagonal, rel=1e-14, abs=0.0)
+    assert made.slenderness_angle == pytest.approx(0.4, rel=1e-14, abs=0.0)
 
 
 def test_bodies_that_are_no_blocks():
@@ -153,9 +153,9 @@ def test_bodies_that_are_no_blocks():
     assert reference_side(body) == "right"
     assert reference_side(body.mirrored()) == "left"
     scaled = changed_body(body, {"semi_diagonal": 3.0})
-    assert scaled.side("right").semi_diagonal == pytest.approx(3.0, rel=1e-12)
+    assert scaled.side("right").semi_diagonal == pytest.approx(3.0, rel=1e-12, abs=0.0)
     made = case(("frequency_ratio", 3.0), ("amplitude_ratio", 2.0), body=body)
-    assert made.scale * 3.0 == pytest.approx(2.0 * 9.81 * 0.2 / 1.2, rel=1e-12)
+    assert made.scale * 3.0 == pytest.approx(2.0 * 9.81 * 0.2 / 1.2, rel=1e-12, abs=0.0)
     assert made.frequency_parameter == body.side("right", 9.81).frequency_parameter
     for name in ("slenderness_ratio", "slenderness_angle", "width", "height"):
         with pytest.raises(InvalidValueError, match="only for a Block"):
@@ -186,7 +186,7 @@ def test_restitution_axis():
 def test_restitution_is_evaluated_for_each_body():
     """Housner's coefficient follows the slenderness: r = 1 - 1.5 sin^2 alpha."""
     made = case(("slenderness_angle", 0.3), ("scale", 1.0))
-    assert made.sides["r_left"] == pytest.approx(1.0 - 1.5 * math.sin(0.3) ** 2, rel=1e-12)
+    assert made.sides["r_left"] == pytest.approx(1.0 - 1.5 * math.sin(0.3) ** 2, rel=1e-12, abs=0.0)
 
 
 def test_zero_motion_has_no_amplitude():

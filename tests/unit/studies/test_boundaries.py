@@ -15,6 +15,8 @@ from rocking.studies.adaptive_grid import AdaptiveGrid, Plane
 from rocking.studies.boundaries import chains, crossed_edges, edge_numbers, segments
 from rocking.studies.islands import connected
 
+pytestmark = pytest.mark.verifies(room="studies")
+
 BLOCK = rk.Block.from_angle(0.15, 1.0)
 HALF_SINE = rk.pulses.half_sine(1.0, 0.5)
 GRID = ("frequency_ratio", np.linspace(1.0, 9.0, 9)), ("amplitude_ratio", np.linspace(1.05, 6.05, 11))
@@ -78,6 +80,7 @@ def test_neighbours_share_edges():
     assert len(np.unique(numbers)) == 10
 
 
+@pytest.mark.verifies("closed form", "the roots of the boundary of half sines", within="1e-9", control="within")
 def test_vertices_lie_on_the_closed_form():
     """Every vertex of the half sine's boundary, on upright and level edges, satisfies its equation to 1e-9."""
     (line,) = boundary(BLOCK, HALF_SINE, *GRID, 0.9, linear=True, threads=1)
@@ -94,6 +97,7 @@ def test_vertices_lie_on_the_closed_form():
     assert (np.diff(line.points[:, 0]) > 0.0).all() or (np.diff(line.points[:, 0]) < 0.0).all()
 
 
+@pytest.mark.verifies("closed form", "the roots of the boundary of half sines", within="1e-9")
 @pytest.mark.parametrize("levels", [1, 3])
 def test_refinement_adds_vertices_on_the_curve(levels):
     """A refined boundary has more vertices, all on the closed form, and goes from margin to margin."""
@@ -147,6 +151,7 @@ def test_failed_corners_are_left_out():
     assert -3 in lattice.modes
 
 
+@pytest.mark.verifies("invariant", "the map of all points of the finest grid")
 def test_slivers_are_outlined_as_in_a_map_of_all_points():
     """Refining finds the lines that marching every point of the finest grid gives, thin gaps between modes included."""
     pulse, finest = rk.pulses.sine(1.0, 0.5), 10 * 2**3 + 1
@@ -201,6 +206,7 @@ def test_extent_of_an_island():
     assert (found.area, found.x, found.y) == (30.0, (10.0, 20.0), (2.0, 3.0))
 
 
+@pytest.mark.verifies("computed anew", "SciPy's label", within="every map")
 def test_regions_are_those_of_scipy():
     """Random maps are numbered as `scipy.ndimage.label` numbers them, neighbours also diagonally."""
     random = np.random.default_rng(1)

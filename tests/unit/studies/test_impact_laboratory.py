@@ -26,14 +26,17 @@ from rocking.studies.impact_laboratory import (
 )
 from rocking.tables import target_of, to_csv, to_dataframe, to_netcdf
 
+pytestmark = pytest.mark.verifies(room="contact bed")
+
 needs_engine = pytest.mark.skipif(not fast.available(), reason="the bed's fast engine was not built")
 
-VISCOUS = {2.0: 0.7965354225163898, 4.0: 0.9408847304180785}  # physics.md 1.5, q = 1
+VISCOUS = {2.0: 0.7965354225163898, 4.0: 0.9408847304180785}  # REF, q = 1
 
 
+@pytest.mark.verifies("closed form", "1 - 3/2 sin^2 alpha", within="1e-3", control="within")
 @needs_engine
 def test_two_points_over_slenderness():
-    """On two points the study is Housner's 1 - 1.5 sin^2 alpha (physics.md 1.1), within what 2 kHz is softer."""
+    """On two points the study is Housner's 1 - 1.5 sin^2 alpha, within what 2 kHz is softer."""
     ratios = np.array([1.5, 2.0, 4.0, 8.0])
     two, three = (study("slenderness", ratios, Laboratory(points=n, frequency=2000.0)).coefficient for n in (2, 3))
     assert two.values == pytest.approx(1.0 - 1.5 / (1.0 + ratios**2), abs=1e-3)
@@ -41,9 +44,12 @@ def test_two_points_over_slenderness():
     assert (three.values - two.values)[:2].min() > 0.03
 
 
+@pytest.mark.verifies(
+    "computed anew", "a simulation of the bed without this package, two to three digits", within="0.01"
+)
 @needs_engine
-def test_points_and_damping_of_the_specification():
-    """The row h/b = 2 of physics.md 3.4 for damping 1, to the .007 of its digits, by points and by damping."""
+def test_points_and_damping_of_another_simulation():
+    """Coefficients of a simulation without this package at h/b = 2, to its .007, by points and damping."""
     found = study("points", [2, 3, 5, 11, 41])
     assert found.coefficient.values == pytest.approx([0.700, 0.766, 0.808, 0.840, 0.850], abs=0.01)
     by_damping = study("damping", [1.0, 3.0], Laboratory(points=5))
@@ -52,9 +58,10 @@ def test_points_and_damping_of_the_specification():
     assert found.landing_velocity.attrs["units"] == "rad/s"
 
 
+@pytest.mark.verifies("invariant", "another size", within="1e-6", control="within")
 @needs_engine
 def test_size_alone_changes_nothing():
-    """One shape on one layer: k ~ w, m ~ w^2, v^2 ~ g w, so that the hardness and r do not see the size (4.1)."""
+    """One shape on one layer: k ~ w, m ~ w^2, v^2 ~ g w, so that the hardness and r do not see the size."""
     found = study("width", [0.02, 0.2, 2.0])
     assert np.ptp(found.coefficient.values) < 1e-6
     assert np.ptp(found.hardness.values) < 1e-6 * found.hardness.values[0]
@@ -88,7 +95,7 @@ def test_harder_or_faster_is_the_same():
 
 @needs_engine
 def test_friction_has_a_threshold():
-    """Above the friction that an impact needs r does not change; on too little it does (physics.md 1.2)."""
+    """Above the friction that an impact needs r does not change; on too little it does."""
     found = study("friction", [0.1, 0.5, 1.0]).coefficient.values
     # hops may touch the limit for a moment: equal to what steps matter
     assert found[1] == pytest.approx(found[2], abs=1e-5)
@@ -115,10 +122,11 @@ def test_random_bases_follow_their_seed():
     assert first[0] != first[1]
 
 
+@pytest.mark.verifies("order", "distributed impulse q = 1 in closed form", within="0.3 of the order", control="within")
 @needs_engine
 @pytest.mark.parametrize("ratio", [2.0, 4.0])
 def test_order_in_points(ratio):
-    """The viscous bed tends to distributed impulse q = 1 (physics.md 1.5) with order 2 in the spacing."""
+    """The viscous bed tends to distributed impulse q = 1 with order 2 in the spacing."""
     found = points_convergence(slenderness=ratio, limit=VISCOUS[ratio])
     assert found.error[-1] < 1e-4
     assert found.order[-1] == pytest.approx(2.0, abs=0.3)

@@ -55,7 +55,7 @@ def test_the_verdict_on_both_sides_of_every_crossing():
             response = rk.simulate(BLOCK, SINE, 0.85, scale=float(scale * factor))
             assert (response.outcome is rk.Outcome.OVERTURNED) == (mode >= 0)
     assert (found.width < 1e-11 * found.acceleration).all()
-    assert found.ratio == pytest.approx(found.acceleration / (9.80665 * math.tan(0.2)), rel=1e-14)
+    assert found.ratio == pytest.approx(found.acceleration / (9.80665 * math.tan(0.2)), rel=1e-14, abs=0.0)
 
 
 def test_the_peak_of_the_given_motion_does_not_matter():
@@ -108,7 +108,7 @@ def test_a_range_of_ones_own():
     part = minimum_overturning_acceleration(
         BLOCK, SINE, 0.85, lowest=0.5 * (first + second), highest=0.5 * (second + third), threads=1
     )
-    assert part.acceleration == pytest.approx([second], rel=1e-11)
+    assert part.acceleration == pytest.approx([second], rel=1e-11, abs=0.0)
     assert part.starts_overturned
     assert part.minimum is None
     assert part.certain is None
@@ -157,8 +157,8 @@ def test_vertical_motion_lowers_the_start():
     lightened = record.changed("with vertical", vertical=0.5 * record.acceleration)
     plain = minimum_overturning_acceleration(BLOCK, record, 0.8, points=50, threads=1)
     both = minimum_overturning_acceleration(BLOCK, lightened, 0.8, points=50, threads=1)
-    assert plain.lowest == pytest.approx(9.80665 * math.tan(0.2), rel=1e-14)
-    assert both.lowest == pytest.approx(0.1 * plain.lowest, rel=1e-14)
+    assert plain.lowest == pytest.approx(9.80665 * math.tan(0.2), rel=1e-14, abs=0.0)
+    assert both.lowest == pytest.approx(0.1 * plain.lowest, rel=1e-14, abs=0.0)
 
 
 def test_failed_histories_are_counted():

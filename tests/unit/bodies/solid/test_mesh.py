@@ -11,6 +11,8 @@ from rocking.bodies.solid import Polyhedron, box
 from rocking.bodies.solid._repair import WELD, repaired
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError
 
+pytestmark = pytest.mark.verifies(room="bodies")
+
 trimesh = pytest.importorskip("trimesh")
 
 CUBE = box(1.0, 1.0, 4.0)
@@ -38,8 +40,8 @@ def sphere(divisions=3):
 def test_formats(tmp_path, name):
     """Every format gives the prism's mass and inertia; STL, which repeats every corner, says that it was welded."""
     solid = solid_from_mesh(saved(tmp_path, V, F, name), 1000.0, units="m")
-    assert solid.mass == pytest.approx(MASS, rel=1e-12)
-    assert np.diag(solid.inertia) == pytest.approx(SPIN, rel=1e-12)
+    assert solid.mass == pytest.approx(MASS, rel=1e-12, abs=0.0)
+    assert np.diag(solid.inertia) == pytest.approx(SPIN, rel=1e-12, abs=0.0)
     assert len(solid.base.vertices) == 4
     assert [text.startswith("merged 28 of 36 vertices") for text in solid.repairs] == [True] * (name == "a.stl")
 
@@ -68,7 +70,7 @@ def test_flipped_faces():
     faces[[3, 5, 8]] = faces[[3, 5, 8], ::-1]
     done = repaired(V, faces)
     assert done.repairs == ("turned round 3 of 12 faces that looked the other way than their neighbours",)
-    assert done.shape.moments().mass == pytest.approx(4.0, rel=1e-14)
+    assert done.shape.moments().mass == pytest.approx(4.0, rel=1e-14, abs=0.0)
     # negative controls: as they are they are refused, and the bare sum is wrong
     with pytest.raises(GeometryError, match="not closed and oriented"):
         Polyhedron(V, faces)
@@ -133,7 +135,9 @@ def test_small_hole():
         repaired(vertices, faces[keep])
     done = repaired(*triangle_soup(vertices, faces[keep]), fill_holes=True)
     assert done.repairs[-1].startswith("filled 1 hole(s), together 0.074 %")
-    assert done.shape.moments().mass == pytest.approx(whole, rel=1e-12)  # a fan over a flat triangle is the triangle
+    assert done.shape.moments().mass == pytest.approx(
+        whole, rel=1e-12, abs=0.0
+    )  # a fan over a flat triangle is the triangle
 
 
 def test_duplicates_and_degenerates():
@@ -144,7 +148,7 @@ def test_duplicates_and_degenerates():
         "removed 1 faces that had shrunk to an edge or a point",
         "removed 2 faces that lay on top of others",
     )
-    assert done.shape.moments().mass == pytest.approx(4.0, rel=1e-14)
+    assert done.shape.moments().mass == pytest.approx(4.0, rel=1e-14, abs=0.0)
 
 
 FOLDED = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
@@ -171,10 +175,10 @@ def test_shells():
     """Prisms that share an edge add up, one inside another is a cavity, crossing ones are refused."""
     other = np.concatenate([F, F + 8])
     beside = repaired(np.concatenate([V, V + np.array([1.0, 1.0, 0.0])]), other)
-    assert beside.shape.moments().mass == pytest.approx(8.0, rel=1e-13)
+    assert beside.shape.moments().mass == pytest.approx(8.0, rel=1e-13, abs=0.0)
     assert "2 separate shells, 0 of them cavities" in beside.repairs[-1]
     hollow = repaired(np.concatenate([V, V * 0.5 + [0.0, 0.0, 1.0]]), other)
-    assert hollow.shape.moments().mass == pytest.approx(3.5, rel=1e-13)
+    assert hollow.shape.moments().mass == pytest.approx(3.5, rel=1e-13, abs=0.0)
     assert "1 of them cavities" in hollow.repairs[-1]
     for shift in ([0.5, 0.5, 0.0], [0.5, 0.5, 1.0], [0.3, 0.0, 2.0]):
         with pytest.raises(GeometryError, match="pass through each other"):
@@ -189,7 +193,7 @@ def test_shells_inside_shells(outward):
     vertices = np.concatenate([size * (box_.vertices - [0.0, 0.0, 0.35]) for size in sizes])
     faces = np.concatenate([box_.faces + 8 * i for i in range(4)])
     done = repaired(vertices, faces if outward else faces[:, ::-1])
-    assert done.shape.moments().mass == pytest.approx(1.3 * 0.7 * (64.0 - 27.0 + 8.0 - 1.0), rel=1e-13)
+    assert done.shape.moments().mass == pytest.approx(1.3 * 0.7 * (64.0 - 27.0 + 8.0 - 1.0), rel=1e-13, abs=0.0)
     assert done.repairs[0] == "turned 2 shell(s), 24 faces, inside out"
     assert "4 separate shells, 2 of them cavities" in done.repairs[1]
 
@@ -222,12 +226,13 @@ def test_dust():
         repaired(vertices, faces)
 
 
+@pytest.mark.verifies("invariant", "the same mesh at the origin", within="1e-9")
 def test_far_from_the_origin(tmp_path):
     """In double precision a mesh at 1e6 m keeps its inertia to 1e-9; single precision is found out."""
     offset = np.array([1e6, 2e6, 0.0])
     solid = solid_from_mesh(saved(tmp_path, V + offset, F, "a.obj"), 1000.0, units="m")
     assert np.diag(solid.inertia) == pytest.approx(SPIN, rel=1e-9)
-    assert solid.centre == pytest.approx([1e6, 2e6, 2.0], rel=1e-12)
+    assert solid.centre == pytest.approx([1e6, 2e6, 2.0], rel=1e-12, abs=0.0)
     with pytest.raises(BodyFileError, match="single-precision"):
         mesh_from_file(saved(tmp_path, V + offset, F, "a.stl"), units="m")
     near = mesh_from_file(saved(tmp_path, V + np.array([3000.0, 0.0, 0.0]), F, "b.stl"), units="m")
@@ -292,5 +297,5 @@ def test_a_tetrahedron_loses_its_doubled_face_alone():
     faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3], [1, 3, 0]])
     done = repaired(corners, faces)
     assert len(done.shape.faces) == 4
-    assert done.shape.moments().mass == pytest.approx(3.0 * 2.0 * 5.0 / 6.0, rel=1e-14)
+    assert done.shape.moments().mass == pytest.approx(3.0 * 2.0 * 5.0 / 6.0, rel=1e-14, abs=0.0)
     assert any("removed 1 face" in each for each in done.repairs)

@@ -17,6 +17,8 @@ from rocking.bodies.solid._self_crossing import check_crossings
 from rocking.cli import main
 from rocking.errors import GeometryError
 
+pytestmark = pytest.mark.verifies(room="bodies")
+
 trimesh = pytest.importorskip("trimesh")
 
 CUBE, COLUMN = box(1.0, 1.0, 1.0), box(1.0, 1.0, 4.0)
@@ -73,7 +75,7 @@ def test_a_bow_is_refused_with_its_place(tmp_path):
         read_body(lying, units="mm", up="y")
     # negative control: turned the right way, (1 + 0.9) / 2 of 4 m3
     whole = read_body(saved(tmp_path / "ok.obj", bow(0.9), COLUMN.faces), units="m", density=1000.0)
-    assert whole.mass == pytest.approx(3800.0, rel=1e-13)
+    assert whole.mass == pytest.approx(3800.0, rel=1e-13, abs=0.0)
 
 
 def test_cor_of_a_bow_is_one_sentence(capsys, tmp_path):
@@ -91,7 +93,7 @@ def test_a_corner_pulled_through_the_wall():
     """A cube turned partly inside out has a positive volume, and is refused by every door."""
     # its three faces carry 1/3 m3 along x for each metre
     sums = Polyhedron(pulled(), CUBE.faces, simple=True).moments()
-    assert sums.mass == pytest.approx(1.0 - 1.7 / 3.0, rel=1e-12)
+    assert sums.mass == pytest.approx(1.0 - 1.7 / 3.0, rel=1e-12, abs=0.0)
     for make in (Polyhedron, repaired):
         with pytest.raises(GeometryError, match="passes through itself"):
             make(pulled(), CUBE.faces)
@@ -100,7 +102,7 @@ def test_a_corner_pulled_through_the_wall():
 def test_moments_that_no_body_has():
     """The bow's own sums put its centre outside its box: a Solid refuses them even if nobody tried the surface."""
     sums = Polyhedron(bow(), COLUMN.faces, simple=True)
-    assert sums.moments().mass == pytest.approx(0.2, rel=1e-12)  # 4 (1 - 0.9) / 2
+    assert sums.moments().mass == pytest.approx(0.2, rel=1e-12, abs=0.0)  # 4 (1 - 0.9) / 2
     with pytest.raises(GeometryError, match="outside its box"):
         Solid(sums)
 
@@ -157,7 +159,7 @@ def test_lobes_that_cross_along_edges_of_the_mesh():
     with pytest.raises(GeometryError, match="winds -1 times"):
         Polyhedron(vertices, faces)
     done = repaired(vertices, faces)
-    assert done.shape.moments().mass == pytest.approx(1.9, rel=1e-12)
+    assert done.shape.moments().mass == pytest.approx(1.9, rel=1e-12, abs=0.0)
     assert any("inside out" in words for words in done.repairs)
     # negative control: the same net that does not turn over
     assert check_crossings(tower([1.0, 0.5, 0.1, 0.45, 0.9])[0][faces])
@@ -179,15 +181,20 @@ def test_touching_is_not_crossing():
             check_crossings(np.concatenate([CUBE.corners, there - 1e-3 * np.sign(shift)]))
 
 
+@pytest.mark.verifies(
+    "closed form",
+    "volumes of a torus, an angle and a frame",
+    within="5e-3 of a torus of flat faces, 1e-13 of the others",
+)
 def test_shapes_that_only_bend():
     """Convex, concave, hollow and with a hole through it: accepted, with the volumes of the closed forms."""
     ring = trimesh.creation.torus(1.0, 0.3, major_sections=96, minor_sections=48)
     done = repaired(np.array(ring.vertices), np.array(ring.faces)).shape
     assert done.moments().mass == pytest.approx(2.0 * math.pi**2 * 0.09, rel=5e-3)
     angle = extrusion([(0, 0), (2, 0), (2, 0.3), (0.3, 0.3), (0.3, 2), (0, 2)], 1.0)
-    assert Polyhedron(angle.vertices, angle.faces).moments().mass == pytest.approx(1.11, rel=1e-13)
+    assert Polyhedron(angle.vertices, angle.faces).moments().mass == pytest.approx(1.11, rel=1e-13, abs=0.0)
     frame = extrusion([(0, 0), (2, 0), (2, 2), (0, 2)], 1.0, ([(0.5, 0.5), (0.5, 1.5), (1.5, 1.5), (1.5, 0.5)],))
-    assert Polyhedron(frame.vertices, frame.faces).moments().mass == pytest.approx(3.0, rel=1e-13)
+    assert Polyhedron(frame.vertices, frame.faces).moments().mass == pytest.approx(3.0, rel=1e-13, abs=0.0)
     hollow = np.concatenate([CUBE.corners, 0.5 * CUBE.corners[:, ::-1] + [0.0, 0.0, 0.25]])
     assert check_crossings(hollow)
 
@@ -245,6 +252,7 @@ def edges_through_faces(vertices, faces, slack):
     return bool(((u > -slack) & (v > -slack) & (u + v < 1.0 + slack) & (t > -slack) & (t < 1.0 + slack)).any())
 
 
+@pytest.mark.verifies("computed anew", "every edge against every face", within="every ball")
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.floats(0.02, 0.3))
 def test_crumpled_balls_against_every_pair(seed, rough):

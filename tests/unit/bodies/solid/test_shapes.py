@@ -25,6 +25,8 @@ from rocking.bodies.solid import (
 from rocking.bodies.solid.sampling import samples
 from rocking.errors import GeometryError, InvalidValueError
 
+pytestmark = pytest.mark.verifies(room="bodies")
+
 ALL = {
     "box": box(1.0, 2.0, 3.0),
     "cylinder": cylinder(1.0, 2.0),
@@ -43,6 +45,7 @@ def inertia(shape):
     return found.mass, found.centre, found.inertia
 
 
+@pytest.mark.verifies("closed form", "formulas of box, cylinder, cone, ellipsoid and hemisphere", within="1e-13")
 @pytest.mark.parametrize(
     ("shape", "volume", "height", "about_x", "about_z"),
     [
@@ -57,13 +60,14 @@ def inertia(shape):
 def test_textbook_moments(shape, volume, height, about_x, about_z):
     """Volume, height of the centre and both principal radii of gyration squared are those of the tables."""
     mass, centre, tensor = inertia(shape)
-    assert mass == pytest.approx(volume, rel=1e-14)
+    assert mass == pytest.approx(volume, rel=1e-14, abs=0.0)
     assert centre == pytest.approx([0.0, 0.0, height], abs=1e-14)
-    assert tensor[0, 0] / mass == pytest.approx(about_x, rel=1e-13)
-    assert tensor[2, 2] / mass == pytest.approx(about_z, rel=1e-13)
+    assert tensor[0, 0] / mass == pytest.approx(about_x, rel=1e-13, abs=0.0)
+    assert tensor[2, 2] / mass == pytest.approx(about_z, rel=1e-13, abs=0.0)
     assert np.abs(tensor - np.diag(np.diag(tensor))).max() < 1e-13 * mass
 
 
+@pytest.mark.verifies("computed anew", "the divergence theorem over the sampled surface", within="1e-11")
 @pytest.mark.parametrize("name", ALL)
 def test_surface_integrals_give_the_closed_forms(name):
     """The divergence theorem over the sampled surface returns volume and second moments about any point to 1e-12."""
@@ -74,7 +78,7 @@ def test_surface_integrals_give_the_closed_forms(name):
         cone_ = np.einsum("nd,nd->n", s, areas)
         volume += cone_.sum() / 3.0
         second += np.einsum("n,ni,nj->ij", cone_, s, s) / 5.0
-    assert volume == pytest.approx(found.mass, rel=1e-12)
+    assert volume == pytest.approx(found.mass, rel=1e-12, abs=0.0)
     assert second == pytest.approx(found.second_about(point), rel=1e-11, abs=1e-12)
 
 
@@ -96,8 +100,8 @@ def test_halves_of_a_ball_are_drawn_alike():
         ]
         assert len(drawn[0]) == len(drawn[1])
         one, other = (polyhedron_moments(triangles) for triangles in drawn)
-        assert one.mass == pytest.approx(other.mass, rel=1e-12)
-        assert one.centre[2] == pytest.approx(1.0 - other.centre[2], rel=1e-12)
+        assert one.mass == pytest.approx(other.mass, rel=1e-12, abs=0.0)
+        assert one.centre[2] == pytest.approx(1.0 - other.centre[2], rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize("name", ALL)
@@ -111,6 +115,7 @@ def test_contains_agrees_with_the_volume(name):
     assert shape.contains(grid).mean() * np.prod(high - low) == pytest.approx(shape.moments().mass, rel=0.02)
 
 
+@pytest.mark.verifies("computed anew", "sums over units", within="1e-13; of second order where arcs become chords")
 @pytest.mark.parametrize("name", ALL)
 def test_cells_fill_the_shape(name):
     """Units that conform to a shape add up to its volume and centre; arcs in chords do so to second order."""
@@ -128,16 +133,18 @@ def test_cells_fill_the_shape(name):
         assert max(errors) < 1e-13
 
 
+@pytest.mark.verifies("invariant", "the plane body, times its length", within="1e-13")
 def test_prism_equals_section():
     """An extruded trapezoid has the plane body's mass, centre and polar moment, times its length."""
     section = Section.from_trapezoid(1.0, 0.4, 2.5, density=1.0, depth=3.0)
     found = Prism(section.regions[0], 3.0).moments()
-    assert found.mass == pytest.approx(section.mass, rel=1e-14)
-    assert found.inertia[2, 2] == pytest.approx(section.moment_of_inertia, rel=1e-13)
+    assert found.mass == pytest.approx(section.mass, rel=1e-14, abs=0.0)
+    assert found.inertia[2, 2] == pytest.approx(section.moment_of_inertia, rel=1e-13, abs=0.0)
     general = polyhedron_moments(Prism(section.regions[0], 3.0).corners)
     assert found.second == pytest.approx(general.second, rel=1e-12, abs=1e-13)
 
 
+@pytest.mark.verifies("invariant", "the same mesh at the origin", within="1e-9", control="within")
 def test_polyhedron_far_away():
     """At map coordinates of 1e6 m the inertia of a mesh keeps 1e-9; integrating without centring loses it all."""
     cube = box(1.0, 2.0, 4.0)
@@ -166,9 +173,10 @@ def test_rotation_keeps_what_it_must(angle, axis):
     assert turn @ axis == pytest.approx(np.array(axis), abs=1e-14)
     moments = box(1.0, 2.0, 3.0).moments()
     turned = moments.placed(turn, np.array([5.0, 6.0, 7.0]))
-    assert np.linalg.eigvalsh(turned.second) == pytest.approx(np.linalg.eigvalsh(moments.second), rel=1e-12)
+    assert np.linalg.eigvalsh(turned.second) == pytest.approx(np.linalg.eigvalsh(moments.second), rel=1e-12, abs=0.0)
 
 
+@pytest.mark.verifies("invariant", "halves, and differences of two boxes", within="1e-13")
 def test_moments_add_up():
     """A box is the sum of its halves, and a holed one the difference of two boxes."""
     whole, half = box(1.0, 2.0, 4.0).moments(), box(1.0, 2.0, 2.0).moments()
@@ -210,11 +218,12 @@ def test_refusals(make, words):
         make()
 
 
+@pytest.mark.verifies("invariant", "twice the size, and the mirror image", within="1e-12")
 def test_scaling_and_mirror():
     """Twice the size is eight times the volume and 32 times the second moment; a mirror image keeps them."""
     for shape in ALL.values():
         found, large, seen = shape.moments(), shape.scaled(2.0).moments(), shape.mirrored().moments()
-        assert large.mass == pytest.approx(8.0 * found.mass, rel=1e-13)
+        assert large.mass == pytest.approx(8.0 * found.mass, rel=1e-13, abs=0.0)
         assert large.second == pytest.approx(32.0 * found.second, rel=1e-12, abs=1e-11)
         assert seen.centre == pytest.approx(found.centre * [-1, 1, 1], abs=1e-13)
     assert Prism(Region([(0, 0), (1, 0), (0, 1)]), 2.0).mirrored().moments().mass == 1.0

@@ -17,6 +17,8 @@ from rocking.dynamics.space.impact_resolution import landed, started
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
 from rocking.restitution.space import SpatialHousner, SpatialImpact
 
+pytestmark = pytest.mark.verifies(room="rocking in space")
+
 UP = np.array([0.0, 0.0, 1.0])
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
@@ -70,7 +72,7 @@ def test_any_object_with_the_four_attributes_serves():
         centre = np.array([3.1, 1.0, 3.0])
 
     made = SpatialBody.of(Body())
-    np.testing.assert_allclose(made.centre, [0.1, 0.0, 1.0], atol=1e-15)
+    np.testing.assert_allclose(made.centre, [0.1, 0.0, 1.0], rtol=0.0, atol=1e-15)
     assert made.round
     assert made.reach == pytest.approx(0.4)
     plain = type(
@@ -81,6 +83,7 @@ def test_any_object_with_the_four_attributes_serves():
         SpatialBody.of(rk.Block(width=1.0, height=2.0))
 
 
+@pytest.mark.verifies("closed form", "the lever rule", within="1e-12")
 def test_the_ground_bears_a_body_at_rest_by_the_lever_rule():
     """Off the middle the edge bears (L - s) / L and s / L of the weight; outside the base a face is refused."""
     body = SpatialBody(3.0, np.array([0.5, 0.2, 1.0]), np.eye(3), SQUARE)
@@ -88,7 +91,7 @@ def test_the_ground_bears_a_body_at_rest_by_the_lever_rule():
     # tilted until the centre is over the edge x = 1, which runs from (1, 0) to (1, 1): static, so nothing turns
     turned = attitude.matrix(attitude.turn([0.0, 1.0, 0.0], math.atan2(0.5, 1.0)))
     rate, push = forces(body, edge(body, 1), np.zeros(3), turned[2], turned.T @ field)
-    np.testing.assert_allclose(rate, 0.0, atol=1e-14)
+    np.testing.assert_allclose(rate, 0.0, rtol=0.0, atol=1e-14)
     np.testing.assert_allclose(push, [0.8 * 30.0, 0.2 * 30.0], rtol=1e-12)
     level = forces(body, face(body), np.zeros(3), UP, field)[1]
     assert level.min() > 0.0
@@ -104,11 +107,13 @@ def test_components_with_different_steps_are_one_motion():
     ground = ground_of(x, y, pulse, scale=2.0)
     time = np.linspace(0.001, 0.9, 200)
     found = ground.at(time)
-    np.testing.assert_allclose(found[:, 0], 2.0 * np.interp(time, x.time, x.acceleration), atol=1e-12)
+    np.testing.assert_allclose(found[:, 0], 2.0 * np.interp(time, x.time, x.acceleration), rtol=0.0, atol=1e-12)
     inside = time < 0.57
-    np.testing.assert_allclose(found[inside, 1], 2.0 * np.interp(time[inside], y.time, y.acceleration), atol=1e-12)
+    np.testing.assert_allclose(
+        found[inside, 1], 2.0 * np.interp(time[inside], y.time, y.acceleration), rtol=0.0, atol=1e-12
+    )
     assert not found[~inside, 1].any()
-    np.testing.assert_allclose(found[:, 2], 2.0 * pulse.acceleration(time), atol=1e-10)
+    np.testing.assert_allclose(found[:, 2], 2.0 * pulse.acceleration(time), rtol=0.0, atol=1e-10)
     with pytest.raises(InvalidValueError, match="vertical part of its own"):
         ground_of(rk.GroundMotion(x.acceleration, 0.02, x.acceleration))
     with pytest.raises(InvalidValueError, match="GroundMotion"):

@@ -11,6 +11,8 @@ from rocking.dynamics.space.impact_laws import ModelLaw, law_of
 from rocking.errors import InvalidValueError
 from rocking.restitution.space import SpatialImpact, SpatialModel, spatial_model, spatial_models
 
+pytestmark = pytest.mark.verifies(room="restitution in space")
+
 MODELS = sorted(spatial_models())
 UP = np.array([0.0, 0.0, 1.0])
 BODIES = {
@@ -45,6 +47,12 @@ def loses(model, impact):
     return bool(0.5 * velocity @ impact.inertia @ velocity <= impact.energy * (1.0 + 1e-12))
 
 
+@pytest.mark.verifies(
+    "invariant",
+    "energy, another speed and density",
+    within="1e-12",
+    control="test_a_model_that_creates_energy_is_found_out",
+)
 @pytest.mark.parametrize("place", LANDINGS)
 @pytest.mark.parametrize("body", BODIES)
 @pytest.mark.parametrize("name", MODELS)
@@ -58,12 +66,13 @@ def test_contract_of_a_model(name, body, place):
     assert loses(model, impact)
     if place == "edge":
         assert not velocity[[0, 2]].any()
-    assert model.turned(leaning(BODIES[body], onto, speed=3.0)) == pytest.approx(3.0 * velocity, rel=1e-12)
+    assert model.turned(leaning(BODIES[body], onto, speed=3.0)) == pytest.approx(3.0 * velocity, rel=1e-12, abs=0.0)
     dense = leaning(BODIES[body].scaled(density=5.0), onto)
     assert model.turned(dense) == pytest.approx(velocity, rel=1e-12, abs=1e-14)
     assert (model.turned(impact) == velocity).all()
 
 
+@pytest.mark.verifies("negative control", "a model that speeds the body up")
 @pytest.mark.parametrize("place", LANDINGS)
 def test_a_model_that_creates_energy_is_found_out(place):
     """Negative control: the bound rejects a model that speeds the body up."""

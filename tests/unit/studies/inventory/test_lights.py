@@ -13,7 +13,10 @@ from rocking.studies.inventory import Thresholds
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.lights import Light, percent
 
+pytestmark = pytest.mark.verifies(room="studies")
 
+
+@pytest.mark.verifies("closed form", "tails of the binomial distribution", within="1e-9", control="within")
 @pytest.mark.parametrize(("hits", "count"), [(0, 7), (1, 7), (7, 7), (12, 200), (100, 200), (199, 200)])
 def test_interval_is_that_of_clopper_and_pearson(hits, count):
     """At the ends of the interval the tails of the binomial distribution hold 2.5 % each; ends 0 and 1 are exact."""
@@ -129,7 +132,7 @@ RECORDS = [GroundMotion([0.0, 1.0, -2.0, 0.0], 0.1, name="one"), GroundMotion([0
 )
 def test_level_from_words(kind, words, value):
     """A number with its unit, in SI units inside."""
-    assert IntensityLevel.of(kind, words).value == pytest.approx(value, rel=1e-14)
+    assert IntensityLevel.of(kind, words).value == pytest.approx(value, rel=1e-14, abs=0.0)
 
 
 @pytest.mark.parametrize(
@@ -146,11 +149,13 @@ def test_level_refused(kind, words):
 def test_records_are_scaled_to_the_level():
     """Each record has the level, the vertical part goes along; without a level they are as they are."""
     scaled = Hazard.of_records(RECORDS, IntensityLevel("PGA", 4.0))
-    assert [motion.peak for motion in scaled.motions] == pytest.approx([4.0, 4.0], rel=1e-14)
-    assert scaled.motions[1].vertical.max() == pytest.approx(4.0 / 3.0, rel=1e-14)
+    assert [motion.peak for motion in scaled.motions] == pytest.approx([4.0, 4.0], rel=1e-14, abs=0.0)
+    assert scaled.motions[1].vertical.max() == pytest.approx(4.0 / 3.0, rel=1e-14, abs=0.0)
     assert (scaled.vertical, scaled.synthetic, scaled.peak()) == (True, False, pytest.approx(4.0))
     velocity = Hazard.of_records(RECORDS, IntensityLevel("PGV", 0.5))
-    assert [peak_ground_velocity(motion) for motion in velocity.motions] == pytest.approx([0.5, 0.5], rel=1e-12)
+    assert [peak_ground_velocity(motion) for motion in velocity.motions] == pytest.approx(
+        [0.5, 0.5], rel=1e-12, abs=0.0
+    )
     assert velocity.velocity() == pytest.approx((0.5, 0.5))
     bare = Hazard.of_records(RECORDS)
     assert bare.motions == tuple(RECORDS)
@@ -162,7 +167,7 @@ def test_family_is_scaled_and_counted():
     """Every synthetic motion has the level; the progress hears of each."""
     told = []
     hazard = Hazard.of_family("point-source", IntensityLevel.of("PGV", "20cm/s"), count=4, seed=2, progress=told.append)
-    assert [peak_ground_velocity(motion) for motion in hazard.motions] == pytest.approx([0.2] * 4, rel=1e-12)
+    assert [peak_ground_velocity(motion) for motion in hazard.motions] == pytest.approx([0.2] * 4, rel=1e-12, abs=0.0)
     assert (sum(told), hazard.synthetic, hazard.words()) == (4, True, "PGV 0.2 m/s")
     assert "seed 2" in hazard.source
 

@@ -41,7 +41,7 @@ def test_same_object_however_it_is_written(text):
     """Commas, semicolons, tabs, decimal commas, units by the column, blanks and empty lines: one vase."""
     vase = only(text)
     assert vase.name == "vase"
-    assert (vase.width, vase.depth, vase.height) == pytest.approx((0.125, 0.2, 1.0), rel=1e-12)
+    assert (vase.width, vase.depth, vase.height) == pytest.approx((0.125, 0.2, 1.0), rel=1e-12, abs=0.0)
 
 
 def test_every_column():
@@ -166,7 +166,7 @@ def test_decimal_mark(cells, cell, value):
         with pytest.raises(InvalidValueError, match="ambiguous"):
             mark.number("width_cm", cell)
     else:
-        assert mark.number("width_cm", cell) == pytest.approx(value, rel=1e-15)
+        assert mark.number("width_cm", cell) == pytest.approx(value, rel=1e-15, abs=0.0)
 
 
 def test_a_point_before_three_digits_needs_proof_unless_commas_part_the_fields():
@@ -203,8 +203,8 @@ def test_other_names_of_columns(column, field, value):
 def test_a_narrow_base_is_not_dropped():
     """The base of 5 cm under a body of 20 cm sets the uplift: g 5/100, not g 20/100."""
     vase = only(f"{HEAD},base_cm\n{GOOD},5")
-    assert vase.uplift_acceleration("width") == pytest.approx(0.05 * 9.80665, rel=1e-14)
-    assert vase.uplift_acceleration("depth") == pytest.approx(0.05 * 9.80665, rel=1e-14)
+    assert vase.uplift_acceleration("width") == pytest.approx(0.05 * 9.80665, rel=1e-14, abs=0.0)
+    assert vase.uplift_acceleration("depth") == pytest.approx(0.05 * 9.80665, rel=1e-14, abs=0.0)
 
 
 @pytest.mark.parametrize(("line", "mark"), [("sep=;", ";"), ('"sep=;"', ";"), ("SEP=,", ","), ("sep=\t", "\t")])
@@ -246,8 +246,8 @@ SIZE = {"name": "thing", "width": 0.4, "depth": 0.3, "height": 1.2}
 def test_uplift_is_g_b_over_h():
     """Without base and centre: g B / H in either direction; the block itself says the same."""
     thing = InventoryObject(**SIZE)
-    assert thing.uplift_acceleration("width") == pytest.approx(G * 0.4 / 1.2, rel=1e-14)
-    assert thing.uplift_acceleration("depth") == pytest.approx(G * 0.3 / 1.2, rel=1e-14)
+    assert thing.uplift_acceleration("width") == pytest.approx(G * 0.4 / 1.2, rel=1e-14, abs=0.0)
+    assert thing.uplift_acceleration("depth") == pytest.approx(G * 0.3 / 1.2, rel=1e-14, abs=0.0)
     assert thing.body("width") == Block(width=0.4, height=1.2, depth=0.3)
 
 
@@ -261,10 +261,10 @@ def test_body_has_the_base_and_the_centre_that_were_measured(base, centre):
         half = 0.5 * (base or SIZE[way])
         for foot in ("left", "right"):
             side = thing.body(way).side(foot)
-            assert side.mass == pytest.approx(80.0, rel=1e-12)
-            assert side.centre_height == pytest.approx(height, rel=1e-12)
-            assert side.slenderness_angle == pytest.approx(math.atan(half / height), rel=1e-12)
-            assert side.uplift_acceleration == pytest.approx(thing.uplift_acceleration(way), rel=1e-12)
+            assert side.mass == pytest.approx(80.0, rel=1e-12, abs=0.0)
+            assert side.centre_height == pytest.approx(height, rel=1e-12, abs=0.0)
+            assert side.slenderness_angle == pytest.approx(math.atan(half / height), rel=1e-12, abs=0.0)
+            assert side.uplift_acceleration == pytest.approx(thing.uplift_acceleration(way), rel=1e-12, abs=0.0)
 
 
 def test_moment_of_inertia_is_that_of_two_rectangles():
@@ -273,13 +273,13 @@ def test_moment_of_inertia_is_that_of_two_rectangles():
     inertia = 0.0
     for mass, height, middle in ((60.0, 0.4, 0.2), (30.0, 0.8, 0.8)):
         inertia += mass * ((0.4**2 + height**2) / 12.0 + 0.2**2 + middle**2)
-    assert thing.body("width").side("left").moment_of_inertia == pytest.approx(inertia, rel=1e-12)
+    assert thing.body("width").side("left").moment_of_inertia == pytest.approx(inertia, rel=1e-12, abs=0.0)
 
 
 def test_weight_does_not_matter():
     """Frequency parameter and angle are those of any other weight."""
     light, heavy = (InventoryObject(**SIZE, mass=mass).body("width").side("left") for mass in (2.0, 2000.0))
-    assert light.frequency_parameter == pytest.approx(heavy.frequency_parameter, rel=1e-12)
+    assert light.frequency_parameter == pytest.approx(heavy.frequency_parameter, rel=1e-12, abs=0.0)
     assert light.slenderness_angle == heavy.slenderness_angle
 
 

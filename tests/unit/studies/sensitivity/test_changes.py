@@ -63,7 +63,7 @@ def test_no_flips_are_as_sure_as_there_are_motions():
     same = np.full((20, 50), ROCKED)
     found = flips_of(same, same, np.arange(20)[:, None])
     assert (found.count, found.low, found.clusters) == (0, 0.0, 20)
-    assert found.high == pytest.approx(1.0 - 0.025 ** (1.0 / 20.0), rel=1e-12)
+    assert found.high == pytest.approx(1.0 - 0.025 ** (1.0 / 20.0), rel=1e-12, abs=0.0)
 
 
 def test_one_motion_is_no_sample_of_motions():
@@ -120,7 +120,7 @@ def test_peak_rotations_differ_by_their_sizes():
         for peaks in ([0.10, -0.10, -0.2], [-0.12, 0.07, -0.3])
     )
     found = difference_of(first, second, "peak_rotation")
-    assert found.values == pytest.approx([0.02, -0.03, 0.1], rel=1e-12)
+    assert found.values == pytest.approx([0.02, -0.03, 0.1], rel=1e-12, abs=0.0)
     assert found.attrs["long_name"] == "difference of the size of peak_rotation; missing where either did not stand"
     assert found.attrs["units"] == "rad"
 
@@ -141,8 +141,8 @@ def test_equal_medians_are_farthest_apart_at_the_closed_form():
     s, t = 0.3, 0.7
     u = np.sqrt(2.0 * np.log(t / s) / (1.0 / s**2 - 1.0 / t**2))
     distance, where = curve_distance(np.zeros(2), np.array([s, t]))
-    assert abs(where) == pytest.approx(u, rel=1e-12)
-    assert distance == pytest.approx(stats.norm.cdf(u / s) - stats.norm.cdf(u / t), rel=1e-12)
+    assert abs(where) == pytest.approx(u, rel=1e-12, abs=0.0)
+    assert distance == pytest.approx(stats.norm.cdf(u / s) - stats.norm.cdf(u / t), rel=1e-12, abs=0.0)
 
 
 def test_no_place_is_farther_apart():

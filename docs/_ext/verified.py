@@ -1,0 +1,409 @@
+"""What tests verify, from their marks: the directive `claims`, the roles `claim` and `stated`, for docs/verified.md.
+
+What a test proves is the first paragraph of its docstring. How, says its mark, or that of its file where it says no
+more: ``@pytest.mark.verifies(kind, against, within=..., control=..., doi=..., room=...)``. Files are parsed and nothing
+is run; what the last ``make test`` measured stands beside what is asked if ``build/tests.xml`` is there. `faults` lists
+what is wrong with marks, and tests/unit/test_verified.py asks for it.
+"""
+
+import ast
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any, ClassVar
+from xml.etree import ElementTree
+
+from docutils import nodes
+from docutils.parsers.rst import directives
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective, SphinxRole
+
+ROOT = Path(__file__).parents[2]
+RUN = ROOT / "build" / "tests.xml"
+ALL_MARKED = ("verification", "validation")  # folders in which every test must say what it verifies
+KINDS = {
+    "closed form": "an exact solution, or a limit or a series of it, worked out on paper",
+    "computed anew": "the same number by another route that shares nothing with ours: quadrature, a general-purpose"
+    " integrator, computer algebra, exact fractions, sums over points, numbers known to many digits",
+    "order": "errors fall with the declared power of the step",
+    "invariant": "what must be kept, or must not matter: energy, mirror images, size, units, place",
+    "second engine": "our two engines for the same mechanics, which share nothing but the numbers that go in",
+    "other program": "rigid-body codes of others that know nothing of rocking",
+    "published": "numbers printed in the literature",
+    "measured": "coefficients of restitution that were measured",
+    "repeated sampling": "how often an interval holds the truth, and how draws are distributed",
+    "same bits": "every digit is the same, whoever computes, in whatever pieces and however interrupted",
+    "damage": "damaged, hostile or senseless input is refused; what is killed loses nothing",
+    "behaviour": "what is said or done in a stated situation",
+    "negative control": "something wrong on purpose, which must be noticed",
+}
+ROOMS = (
+    "bodies", "motions and records", "restitution in the plane", "restitution in space", "contact bed",
+    "rocking in the plane", "sliding, hopping and flight", "rocking in space", "statistics", "studies", "campaigns",
+    "evidence", "doors", "benchmarks",
+)  # fmt: skip
+NEEDS_NO_REFERENCE = {"behaviour", "damage", "negative control"}
+
+
+# ---- marks ----------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Claim:
+    """What a test verifies; `control` is the test of its file that must fail otherwise, or "within"."""
+
+    path: str
+    test: str
+    words: str
+    kind: str = ""
+    against: str = ""
+    within: str = ""
+    control: str = ""
+    doi: str = ""
+    room: str = ""
+    unknown: tuple[str, ...] = ()
+    numbers: frozenset[float] = field(default=frozenset(), repr=False)  # that stand in the test, or beside all tests
+
+
+@cache
+def claims(root: Path = ROOT) -> list[Claim]:
+    """Claims of all tests that are marked, and of those that should be."""
+    found = []
+    for path in sorted((root / "tests").rglob("test_*.py")):
+        found += claims_of(path.read_text("utf-8"), path.relative_to(root).as_posix())
+    return found
+
+
+def claims_of(source: str, path: str) -> list[Claim]:
+    """Claims of one file."""
+    tree = ast.parse(source)
+    tests = [each for each in tree.body if isinstance(each, ast.FunctionDef) and each.name.startswith("test_")]
+    beside = [each for each in tree.body if each not in tests]
+    of_file: dict[str, str] = {}
+    for each in beside:
+        if isinstance(each, ast.Assign) and ast.unparse(each.targets[0]) == "pytestmark":
+            of_file |= _mark(each.value)
+    shared, found = _numbers(beside), []
+    for test in tests:
+        own = {key: value for call in test.decorator_list for key, value in _mark(call).items()}
+        if not own and not of_file.get("kind") and path.split("/")[1] not in ALL_MARKED:
+            continue
+        words = " ".join((ast.get_docstring(test) or "").split("\n\n")[0].split())
+        said = {key: of_file[key] for key in of_file if key == "room" or "kind" not in own} | own
+        known = {key: said.pop(key) for key in ("kind", "against", "within", "control", "doi", "room") if key in said}
+        found.append(Claim(path, test.name, words, **known, unknown=tuple(said), numbers=shared | _numbers([test])))
+    return found
+
+
+def _mark(node: ast.expr) -> dict[str, str]:
+    for call in ast.walk(node):
+        if isinstance(call, ast.Call) and ast.unparse(call.func) == "pytest.mark.verifies":
+            words = zip(("kind", "against"), map(ast.literal_eval, call.args), strict=False)
+            return dict(words) | {str(word.arg): ast.literal_eval(word.value) for word in call.keywords}
+    return {}
+
+
+def _numbers(found: list[Any]) -> frozenset[float]:
+    """Numbers that stand in code; those in words count if there is nothing but a number."""
+    values = [each.value for node in found for each in ast.walk(node) if isinstance(each, ast.Constant)]
+    plain = [value for value in values if isinstance(value, int | float) and not isinstance(value, bool)]
+    return frozenset(map(float, plain)) | {float(v) for v in values if isinstance(v, str) and v.isdecimal()}
+
+
+def faults(found: list[Claim]) -> list[str]:
+    """What is wrong with marks."""
+    wrong = []
+    for path in dict.fromkeys(claim.path for claim in found):
+        here = [claim for claim in found if claim.path == path]
+        kinds = {claim.test: claim.kind for claim in here}
+        wrong += [f"{path}::{claim.test} {fault}" for claim in here for fault in _faults(claim, kinds)]
+    return wrong
+
+
+def _faults(claim: Claim, kinds: dict[str, str]) -> Iterator[str]:
+    if not claim.kind:
+        yield "has no mark that says what it verifies"
+        return
+    if not claim.words:
+        yield "does not say in its docstring what it proves"
+    if claim.kind not in KINDS:
+        yield f"is of the unknown kind {claim.kind!r}"
+    if claim.room not in ROOMS:
+        yield f"is of the unknown room {claim.room!r}"
+    if not claim.against and claim.kind not in NEEDS_NO_REFERENCE:
+        yield "does not say against what"
+    yield from (f"has the unknown word {name!r} in its mark" for name in claim.unknown)
+    if claim.doi and not re.fullmatch(r"10\.\d{4,9}/[^\s<>]+", claim.doi):
+        yield f"has the malformed DOI {claim.doi!r}"
+    for number in figures(claim.within):
+        # of a per cent, a thousandth, a million
+        if not any(number * unit in claim.numbers for unit in (1.0, 1e-2, 1e-3, 1e6)):
+            yield f"states {number:g} in its mark, which does not stand in the test"
+    if claim.control not in {"", "within"} and kinds.get(claim.control) != "negative control":
+        yield f"names the control {claim.control!r}, which is no negative control of its file"
+
+
+def figures(words: str) -> list[float]:
+    """Numbers in words, but for nought."""
+    found = [float(word.replace(",", "")) for word in re.findall(r"\d[\d,]*(?:\.\d+)?(?:e-?\d+)?", words)]
+    return [number for number in found if number]
+
+
+# ---- what the last run found ----------------------------------------------------------------------------------------
+
+
+@dataclass
+class Outcome:
+    """Cases of a test in the last run, and the largest deviation that it recorded."""
+
+    passed: int = 0
+    failed: int = 0
+    skipped: int = 0
+    measured: float | None = None
+
+
+@cache
+def outcomes(path: Path = RUN) -> tuple[dict[tuple[str, str], Outcome], str]:
+    """What a file of pytest's ``--junitxml`` says of each test, and of which day it is; nothing if it is not there."""
+    if not path.exists():
+        return {}, ""
+    found: dict[tuple[str, str], Outcome] = {}
+    tree = ElementTree.parse(path).getroot()
+    for case in tree.iter("testcase"):
+        key = case.get("classname", "").replace(".", "/") + ".py", case.get("name", "").partition("[")[0]
+        outcome = found.setdefault(key, Outcome())
+        ended = {each.tag for each in case}
+        outcome.failed += bool(ended & {"failure", "error"})
+        outcome.skipped += "skipped" in ended
+        outcome.passed += not ended & {"failure", "error", "skipped"}
+        for each in case.iter("property"):
+            if each.get("name") == "deviation":
+                outcome.measured = max(outcome.measured or 0.0, float(each.get("value", "nan")))
+    return found, next(tree.iter("testsuite")).get("timestamp", "")[:10]
+
+
+def how_closely(claim: Claim) -> str:
+    """What is asked for, what was measured, and what did not pass."""
+    outcome = outcomes()[0].get((claim.path, claim.test), Outcome())
+    said = [claim.within] if claim.within else []
+    said += [] if outcome.measured is None else [f"measured {outcome.measured:.2g}"]
+    said += [f"failed in {outcome.failed} cases"] if outcome.failed else []
+    said += ["skipped in the last run"] if outcome.skipped and not outcome.passed else []
+    return "; ".join(said)
+
+
+# ---- figures that files of this project state -----------------------------------------------------------------------
+
+ENGINE, SPATIAL, MUTANTS = (f"benchmarks/RESULTS-{name}.md" for name in ("engine", "spatial", "mutants"))
+STATED = {
+    "histories": (ENGINE, r"\| Verdicts of ([\d,]+) histories \| reference engine"),
+    "verdicts": (ENGINE, r"\| Verdicts of [\d,]+ histories \| reference engine \| (.+?) \|"),
+    "verdicts of MuJoCo": (ENGINE, r"\| MuJoCo, [^|]*\| [^|]*; ([\d,]+ of [\d,]+) verdicts wrong"),
+    "verdicts of pymunk": (ENGINE, r"\| pymunk, [^|]*\| [^|]*; ([\d,]+ of [\d,]+) verdicts wrong"),
+    "verdicts of DOP853": (ENGINE, r"DOP853 with events, [^|]*\| [^|]*; ([\d,]+ of [\d,]+) verdicts wrong"),
+    "verdicts of numba": (ENGINE, r"\| numba RK4, 2 substeps \| [^|]*; ([\d,]+ of [\d,]+) verdicts wrong"),
+    "verdicts of diffrax": (ENGINE, r"\| diffrax [^|]*\| [^|]*; ([\d,]+ of [\d,]+) verdicts wrong"),
+    "errors": (MUTANTS, r"drawn later: of (\d+) errors judged"),
+    "errors noticed": (MUTANTS, r"drawn later: of \d+ errors judged, (\d+) noticed"),
+    "errors without effect": (MUTANTS, r"drawn later: [^.]*? and (\d+) that change no result"),
+    "share noticed": (MUTANTS, r"drawn later: [^.]*? that change no result, (\S+ \([^)]+\))"),
+    "first errors": (MUTANTS, r"\| all \| [\d,]+ \| (\d+) \|"),
+    "first share": (MUTANTS, r"before them, \d+ were noticed: (\S+ \([^)]+\))"),
+    "damaged copies": ("tests/verification/test_fuzz_readers.py", r'"ROCKING_FUZZ", "(\d+)"'),
+    "more damaged copies": ("Makefile", r"ROCKING_FUZZ=(\d+)"),
+    "kills": ("tests/verification/test_campaign_durability.py", r'"ROCKING_KILLS", "(\d+)"'),
+    "more kills": ("Makefile", r"ROCKING_KILLS=(\d+)"),
+}
+"""Figures by name: the file that states each, and where in it."""
+
+
+def stated(name: str) -> str:
+    """Return a figure where it is stated, or counted."""
+    if name in COUNTED:
+        return COUNTED[name]()
+    path, pattern = STATED[name]
+    found = re.search(pattern, (ROOT / path).read_text("utf-8"))
+    if found is None:
+        raise LookupError(f"docs/_ext/verified.py looks for the {name} in {path}, which no longer says them")
+    return f"{int(found[1]):,}" if found[1].isdecimal() else found[1]
+
+
+def _peer(name: str, word: str) -> str:
+    """In how many of the cases in space a program of others agrees, or differs."""
+    rows = re.findall(rf"^\|  \| {name} \|.*\| (agrees|differs)[^|]*\|$", (ROOT / SPATIAL).read_text("utf-8"), re.M)
+    if not rows:
+        raise LookupError(f"{SPATIAL} has no cases of {name}")
+    return str(Counter(rows)[word])
+
+
+def _settings() -> str:
+    return str(len(re.findall(r'^        "[^"]+": \{', (ROOT / "tests/portable.py").read_text("utf-8"), re.M)))
+
+
+def _records() -> str:
+    trees = (ast.parse(path.read_text("utf-8")) for path in (ROOT / "tests").rglob("test_*.py"))
+    functions = (each for tree in trees for each in ast.walk(tree) if isinstance(each, ast.FunctionDef))
+    return str(sum("shared_records" in [argument.arg for argument in each.args.args] for each in functions))
+
+
+def _errata() -> str:
+    from rocking.evidence import errata
+
+    return str(sum(each.found for each in errata()))
+
+
+def _verdicts() -> str:
+    from rocking.evidence import claims as of_the_paper
+
+    found = Counter(each.verdict for each in of_the_paper())
+    return f"of {found.total()} claims " + ", ".join(f"{count} {verdict}" for verdict, count in found.most_common())
+
+
+def _measured() -> str:
+    from rocking.evidence import all_measurements
+
+    return str(all_measurements().slenderness.size)
+
+
+def _error(name: str) -> str:
+    """Root mean square error of a model over the measurements."""
+    import numpy as np
+
+    from rocking.evidence import all_measurements
+    from rocking.restitution import model
+
+    rows = all_measurements()
+    return f"{np.sqrt(np.mean((model(name).of_slenderness(rows.slenderness) - rows.coefficient) ** 2)):.3f}"
+
+
+def _without_measurement() -> str:
+    measured = {claim.room for claim in claims() if claim.kind == "measured"}
+    return "; ".join(
+        room for room in ROOMS if "rocking" in room or "hopping" in room or "space" in room if room not in measured
+    )
+
+
+def _run() -> str:
+    found, day = outcomes()
+    if not day:
+        return "No run of the tests is at hand, so that the tables say only what is asked for."
+    passed, failed, skipped = (sum(getattr(o, n) for o in found.values()) for n in ("passed", "failed", "skipped"))
+    return (
+        f"What was measured is of the run of {day}: {passed:,} cases passed, {failed:,} failed, and {skipped:,} were"
+        " skipped for what they need and this machine lacks."
+    )
+
+
+COUNTED = {
+    "claims": lambda: f"{len(claims()):,}",
+    "controlled": lambda: str(sum(bool(claim.control) for claim in claims())),
+    "agree MuJoCo": lambda: _peer("MuJoCo", "agrees"),
+    "differ MuJoCo": lambda: _peer("MuJoCo", "differs"),
+    "agree Bullet": lambda: _peer("Bullet", "agrees"),
+    "differ Bullet": lambda: _peer("Bullet", "differs"),
+    "settings": _settings,
+    "tests with records": _records,
+    "errata": _errata,
+    "claims of the paper": _verdicts,
+    "measurements": _measured,
+    "error of housner": lambda: _error("housner"),
+    "error of ked": lambda: _error("ked"),
+    "error of horizontal-momentum": lambda: _error("horizontal-momentum"),
+    "rooms without measurement": _without_measurement,
+    "last run": _run,
+}
+"""Figures by name that are counted here."""
+
+
+# ---- for the page ---------------------------------------------------------------------------------------------------
+
+
+def table(look: str, head: list[str], rows: list[list[list[nodes.Node] | str]], widths: list[int]) -> nodes.table:
+    """A table of words, or of nodes, that manual.css draws."""
+    group = nodes.tgroup(cols=len(head))
+    group += [nodes.colspec(colwidth=width) for width in widths]
+    group += nodes.thead("", _line(head))
+    group += nodes.tbody("", *map(_line, rows))
+    return nodes.table("", group, classes=[look])
+
+
+def _line(cells: Sequence[list[nodes.Node] | str]) -> nodes.row:
+    filled = [[nodes.Text(cell)] if isinstance(cell, str) else cell for cell in cells]
+    return nodes.row("", *(nodes.entry("", nodes.paragraph("", "", *cell)) for cell in filled))
+
+
+def words(text: str) -> list[nodes.Node]:
+    """Words of a docstring, with code between backticks."""
+    parts = enumerate(re.split(r"`+", text))
+    return [nodes.literal(part, part) if k % 2 else nodes.Text(part) for k, part in parts if part]
+
+
+def row(claim: Claim) -> list[list[nodes.Node] | str]:
+    """One claim: its words and test, against what, how closely, its control."""
+    where = f"{claim.path.removeprefix('tests/')}::{claim.test}"
+    test = nodes.literal(where, where, ids=[nodes.make_id(where)])
+    against = [nodes.strong(claim.kind, claim.kind), nodes.Text(": " if claim.against else ""), *words(claim.against)]
+    if claim.doi:
+        address = f"https://doi.org/{claim.doi}"
+        link = nodes.reference(address, f"doi:{claim.doi}", refuri=address, internal=False)
+        against += [nodes.Text(" ("), link, nodes.Text(")")]
+    control: list[nodes.Node] = [nodes.Text("in the test")] if claim.control == "within" else []
+    if claim.control.startswith("test_"):
+        place = nodes.make_id(where.replace(claim.test, claim.control))
+        control = [nodes.reference("", "another test", refid=place, internal=True)]
+    return [[*words(claim.words), nodes.Text(" "), test], against, how_closely(claim), control]
+
+
+class Claims(SphinxDirective):
+    """Tables of claims: of a room; of how many there are without one."""
+
+    option_spec: ClassVar = {"room": directives.unchanged_required}
+
+    def run(self) -> list[nodes.Node]:
+        """Return a table."""
+        for path in {claim.path for claim in claims()} | {"build/tests.xml"}:
+            self.env.note_dependency(str(ROOT / path))
+        if "room" in self.options:
+            here = [claim for claim in claims() if claim.room == self.options["room"]]
+            here.sort(key=lambda claim: (list(KINDS).index(claim.kind), claim.path))
+            head = ["what is verified, and the test", "against what", "how closely", "negative control"]
+            return [table("claims", head, [row(claim) for claim in here], [45, 25, 15, 15])]
+        each = Counter((claim.room, claim.kind) for claim in claims())
+        count = Counter(claim.kind for claim in claims())
+        kinds = table(
+            "kinds", ["kind", "tests", "what it is"], [[k, str(count[k]), w] for k, w in KINDS.items()], [20, 10, 70]
+        )
+        rows = [
+            [room, *(str(each[room, k] or "") for k in KINDS), str(sum(each[room, k] for k in KINDS))] for room in ROOMS
+        ]
+        return [kinds, table("counts", ["room", *KINDS, "all"], rows, [20] + [6] * (len(KINDS) + 1))]
+
+
+class ClaimRole(SphinxRole):
+    """One claim in a sentence, by FILE::TEST: its words, and how closely."""
+
+    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        """Return words, figure and test."""
+        (claim,) = [each for each in claims() if f"{each.path.rpartition('/')[2]}::{each.test}" == self.text]
+        figure = f"asked {how_closely(claim)}; " if claim.within else ""
+        said = nodes.Text(f"{claim.words.rstrip('.')} ({figure}")
+        return [said, nodes.literal(claim.path, claim.path.removeprefix("tests/")), nodes.Text(")")], []
+
+
+class Stated(SphinxRole):
+    """A figure by its name."""
+
+    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        """Return the figure."""
+        return [nodes.Text(stated(self.text))], []
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Tell Sphinx."""
+    app.add_directive("claims", Claims)
+    app.add_role("claim", ClaimRole())
+    app.add_role("stated", Stated())
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
