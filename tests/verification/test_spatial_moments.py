@@ -1,6 +1,6 @@
 """What stage 2 of KED keeps, for bodies in any attitude, against mass points and identities.
 
-The stages are those of docs/theory.md: the vertical velocity of every mass
+The stages are those of docs/theory: the vertical velocity of every mass
 point goes, then its part along the line to the corner, or all but the part that turns about the edge.
 """
 
