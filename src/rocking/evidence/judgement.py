@@ -13,9 +13,9 @@ The rule, which nothing but the measurements decides:
    chance more often than once in twenty.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
-from functools import lru_cache
 
 import numpy as np
 
@@ -61,8 +61,7 @@ class Judgement:
     models: tuple[TrackRecord, ...]  # in the order of the models
 
 
-@lru_cache(maxsize=64)
-def judge(models: tuple[RestitutionModel, ...], ratios: tuple[float, ...], data: DataSet) -> Judgement:
+def judge(models: Sequence[RestitutionModel], ratios: tuple[float, ...], data: DataSet) -> Judgement:
     """Judge models for a body; ratios: slenderness of its sides [-]."""
     chosen, words = _like(ratios, data)
     rows = data.rows(chosen.tolist())

@@ -42,8 +42,8 @@ def recommendation_for(
     if not isinstance(known, DataSet) or not len(known):
         raise InvalidValueError(f"measurements must be a DataSet of at least one row, got {measurements!r:.60}")
     candidates = default_models() if models is None else _chosen(models)
-    refused = {each: _refusals(each, given) for each in candidates}
-    admitted = tuple(each for each, reasons in refused.items() if not reasons)
+    refused = [(each, _refusals(each, given)) for each in candidates]
+    admitted = [each for each, reasons in refused if not reasons]
     ratios = tuple(sorted({given.side(foot).slenderness_ratio for foot in FEET}))
     judged = judge(admitted, ratios, data)
     posterior = _posterior(data)
@@ -57,7 +57,7 @@ def recommendation_for(
     rows = [_row(*each) for each in sorted(predicted, key=lambda each: each[3].rmse)]
     rows += [
         ModelForBody(each.label, each.title, Standing.EXCLUDED, {}, reasons=reasons)
-        for each, reasons in refused.items()
+        for each, reasons in refused
         if reasons
     ]
     outside, notes = _outside(given, data)
@@ -106,11 +106,12 @@ def _concerns(which: RestitutionModel, body: Body) -> tuple[str, ...]:
     if which.inertia_only or _is_rectangle(body):
         return ()
     found = []
-    for foot in FEET:
-        checks = {each.name: each for each in identity_report(body, which, onto=foot)}
-        if not checks["inertia alone"].holds:
-            here, other = checks["inertia alone"].expected, checks["inertia alone"].found
-            found.append(f"{other:.3f} instead of {here:.3f} onto the {foot} foot")
+    feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
+    for foot in feet:
+        check = next(each for each in identity_report(body, which, onto=foot) if each.name == "inertia alone")
+        if not check.holds:
+            where = "" if body.is_symmetric else f" onto the {foot} foot"
+            found.append(f"{check.found:.3f} instead of {check.expected:.3f}{where}")
     words = "two masses of the same mass, centre, inertia and base would have r ="
     return (f"{words} {', '.join(found)}; rigid bodies that move alike should not differ",) if found else ()
 
@@ -155,7 +156,7 @@ def _outside(body: Body, data: DataSet) -> tuple[tuple[str, ...], tuple[str, ...
     weighed = data.mass[np.isfinite(data.mass)]
     if weighed.size and not weighed.min() <= body.mass <= weighed.max():
         notes.append(
-            f"It has a mass of {body.mass:.3g} kg; the specimens whose mass is known have {weighed.min():.3g} to "
+            f"It has a mass of {body.mass:.4g} kg; the specimens whose mass is known have {weighed.min():.3g} to "
             f"{weighed.max():.3g} kg. No model here depends on size: that none does is not measured."
         )
     notes.append(

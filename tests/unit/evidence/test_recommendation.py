@@ -2,7 +2,7 @@
 
 import json
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -299,14 +299,16 @@ def test_a_leaning_tower_in_space_rocks_over_its_weakest_edge():
         assert dict(mirrored[each.name].coefficients) == pytest.approx(dict(each.coefficients))
 
 
+@dataclass
 class Mine(rk.restitution.RestitutionModel):
-    """A model of a user."""
+    """A model of a user, whose objects have no hash."""
 
+    factor: float = 1.1
     name = "mine"
 
     def raw_coefficient(self, body, onto):
         side = body.side(onto)
-        return 1.0 - (1.1 * side.half_width / side.centre_height) ** 2
+        return 1.0 - (self.factor * side.half_width / side.centre_height) ** 2
 
 
 def test_an_own_model_takes_part():
@@ -315,7 +317,7 @@ def test_an_own_model_takes_part():
     found = recommend(rk.Block(width=0.02, height=0.08, depth=0.02), models=[Mine(), "housner"])
     rows = (data.slenderness > 3.0) & (data.slenderness <= 6.0)
     expected = np.mean(1.0 - (1.1 / data.slenderness[rows]) ** 2 - data.coefficient[rows])
-    assert found["mine"].record.bias == pytest.approx(expected)
+    assert found["mine:factor=1.1"].record.bias == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(
