@@ -20,7 +20,7 @@ BANDS = (("h/b <= 3", 0.0, 3.0), ("3 < h/b <= 6", 3.0, 6.0), ("h/b > 6", 6.0, np
 _COLUMNS = ("slenderness", "coefficient", "low", "high", "mass")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class DataSet:
     """Measured coefficients of restitution of homogeneous rectangular blocks.
 
@@ -55,6 +55,11 @@ class DataSet:
     labels: tuple[str, ...]
     group: tuple[str, ...]
     printed: dict[str, FloatArray]
+
+    def __repr__(self) -> str:
+        """Name, how much, and between what."""
+        between = f", h/b {self.slenderness.min():g} to {self.slenderness.max():g}" if len(self) else ""
+        return f"<DataSet {self.name}: {len(self)} measurements of r{between}>"
 
     def __len__(self) -> int:
         """Return the number of rows."""
