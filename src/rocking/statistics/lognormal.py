@@ -46,7 +46,7 @@ LARGEST_LOGARITHM = 690.0
 """Beyond this a median is no float64 [-]."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LognormalFit:
     """What outcomes say about a lognormal fragility curve; `fit_lognormal` makes one.
 
@@ -71,6 +71,11 @@ class LognormalFit:
     method: str
     scale: LogScale | None = None
     curves: FittedCurves | None = None
+
+    def __repr__(self) -> str:
+        """Median and dispersion, if there are any, and from how much."""
+        found = "no curve" if self.curve is None else "median {:.4g}, dispersion {:.3g}".format(*self.curve)
+        return f"<LognormalFit: {found}, from {self.observations:g} outcomes>"
 
     @property
     def exists(self) -> bool:

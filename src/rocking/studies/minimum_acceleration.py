@@ -63,6 +63,11 @@ class Transitions:
         )
         return f"<Transitions: overturns {falls} m/s2; {searched}>" if falls else f"<Transitions: stands; {searched}>"
 
+    def __repr__(self) -> str:
+        """How many, the least, and between what they were looked for."""
+        least = "no minimum" if self.minimum is None else f"the least that overturns is {self.minimum:.5g} m/s2"
+        return f"<Transitions: {len(self)} from {self.lowest:.4g} to {self.highest:.4g} m/s2; {least}>"
+
     def __len__(self) -> int:
         return int(self.acceleration.size)
 

@@ -40,7 +40,7 @@ OWN_LAW = (
 )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
     """The outcome of an incremental dynamic analysis: that of the stripes, and the intervals between their levels.
 

@@ -30,7 +30,7 @@ DEFINITION = (
 )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class MultipleStripeAnalysis(FragilityAnalysis):
     """The outcome of a multiple stripe analysis; states and rotations are of shape (motions, levels)."""
 

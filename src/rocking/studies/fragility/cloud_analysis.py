@@ -42,7 +42,7 @@ def clearly_lifted(responses: Responses, least: float) -> BoolArray:
     return np.asarray(responses.rocked & (responses.rotation >= least) & (responses.rotation > 0.0))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CloudAnalysis(FragilityAnalysis):
     """The outcome of a cloud analysis; states and rotations have one entry a motion."""
 

@@ -98,7 +98,7 @@ class FragilityCurve:
         return lognormal_probability(np.asarray(level, dtype=np.float64), self.median, self.dispersion)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class FragilityModel:
     """Fragility curves of one body against one measure, with what they rest on.
 
@@ -155,6 +155,11 @@ class FragilityModel:
             if np.shape(counts) != self.levels.shape:
                 raise InvalidValueError(f"{name} must be {self.levels.size} counts, got shape {np.shape(counts)}")
 
+    def __repr__(self) -> str:
+        """Name, measure, and the curves."""
+        curves = "; ".join(f"{c.state}: median {c.median:.4g}, dispersion {c.dispersion:.3g}" for c in self.curves)
+        return f"<FragilityModel {self.name!r} over {self.measure} [{self.unit}]: {curves or 'no curve'}>"
+
     @property
     def highest(self) -> float:
         """Level above which all curves are one: four dispersions above every median and no level tried [its unit]."""
@@ -189,7 +194,7 @@ class FragilityModel:
 
 def model_of(
     analysis: Any, name: str, source: str = "", *, method: "OrderedMethod" = "separate", bootstrap: int = 0,
-    seed: int = 0,
+    seed: int = 0, states: Sequence[str] | None = None,
 ) -> FragilityModel:  # fmt: skip
     """Return the curves of an analysis, ready for export.
 
@@ -207,6 +212,8 @@ def model_of(
         Repetitions of the study for intervals and bands beside the usual ones; none, if 0.
     seed : int
         Seed of all random numbers.
+    states : sequence of str, optional
+        Names of the states to hand on; all if not given.
 
     Returns
     -------
@@ -216,12 +223,13 @@ def model_of(
     Raises
     ------
     InvalidValueError
-        If the method is unknown, no state has a curve, or there is no common dispersion.
+        If the method or a state is unknown, no state has a curve, or there is no common dispersion.
     """
     chosen = checks.one_of("method", method, ORDERED_METHODS)
+    wanted = list(analysis.fits) if states is None else [checks.one_of("states", s, analysis.fits) for s in states]
     subject: Subject = analysis.subject
     curves, without = [], []
-    for state, fit in analysis.fits.items():
+    for state, fit in ((name, fit) for name, fit in analysis.fits.items() if name in wanted):
         curve = curve_of(state, fit)
         if curve is None:
             without.append(state)
@@ -268,7 +276,11 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
         raise InvalidValueError(f"counts of all states are needed for one dispersion, got none of {missing[0]!r:.60}")
     tried = np.asarray(model.trials) > 0
     reached = np.array([np.asarray(model.reached[c.state], dtype=np.float64)[tried] for c in model.curves])
-    fitted = nested_curves(model.levels[tried], reached, np.asarray(model.trials, dtype=np.float64)[tried])
+    try:
+        fitted = nested_curves(model.levels[tried], reached, np.asarray(model.trials, dtype=np.float64)[tried])
+    except InvalidValueError as error:
+        names = ", ".join(curve.state for curve in model.curves)
+        raise InvalidValueError(f"{error} The states are {names}: model_of(..., states=) leaves some out") from error
     curves = []
     for curve, (median, dispersion) in zip(model.curves, fitted, strict=True):
         verdict = (

@@ -293,7 +293,7 @@ def fits_of(
     return {state.name: fit_counts(each) for state, each in zip(uncertain, counts, strict=True)}
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class FragilityAnalysis(ABC):
     """What every fragility analysis has: histories of one subject, the states that they reached, and their curves."""
 
@@ -304,6 +304,12 @@ class FragilityAnalysis(ABC):
 
     kind: ClassVar[str]
     definition: ClassVar[str]
+
+    def __repr__(self) -> str:
+        """How many histories, and what the curves are."""
+        histories, measure = self.responses.outcome.size, self.subject.measure
+        curves = "".join(f"\n  {name}: {fit!r}" for name, fit in self.fits.items())
+        return f"<{type(self).__name__}: {histories} histories over {measure.name} [{measure.unit}]{curves}>"
 
     @property
     @abstractmethod

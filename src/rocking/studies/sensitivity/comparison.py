@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _COUNTS = ("count", "gained", "lost", "compared", "unknown", "share", "low", "high")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Sensitivity:
     """Results of one study with several restitutions, compared.
 
@@ -66,6 +66,10 @@ class Sensitivity:
                 f"results must be of one shape, got {shapes[odd]} with {odd}, {shapes[self.baseline]} "
                 f"with {self.baseline}; are they of the same study?"
             )
+
+    def __repr__(self) -> str:
+        """Which choices are compared; `verdict` says how they differ."""
+        return f"<Sensitivity: {', '.join(self.labels[1:])} against {self.baseline}>"
 
     @property
     def labels(self) -> tuple[str, ...]:
