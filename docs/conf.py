@@ -24,6 +24,7 @@ extensions = [
     "commands",
     "reference",
     "section_search",
+    "notebooks",
     "scripts_as_files",
     "verified",
 ]

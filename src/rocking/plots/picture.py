@@ -16,7 +16,7 @@ class Picture(Figure):
 
     def __init__(self, style: Mapping[str, Any], **options: Any) -> None:
         super().__init__(**options)
-        self._style = dict(style)
+        self._style: Any = dict(style)
 
     def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
         image = BytesIO()

@@ -23,6 +23,9 @@ from rocking.studies.question import FAILED, Question
 
 Interval = tuple[float, float]
 
+_FEW = 3
+"""As many stretches are printed one by one."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Transitions:
@@ -57,16 +60,14 @@ class Transitions:
 
     def __repr__(self) -> str:
         """Where it overturns, and how closely that was looked for."""
-        falls = " and ".join(f"from {low:.4g} to {high:.4g}" for low, high in self.overturning_intervals)
+        stretches = self.overturning_intervals
+        falls = " and ".join(f"from {low:.4g} to {high:.4g}" for low, high in stretches[:_FEW])
+        if len(stretches) > _FEW:  # under a record there may be hundreds
+            falls = f"in {len(stretches)} stretches from {stretches[0][0]:.4g} to {stretches[-1][1]:.4g}"
         searched = (
             f"searched from {self.lowest:.4g} to {self.highest:.4g} m/s2 with a resolution of {self.resolution:.2%}"
         )
         return f"<Transitions: overturns {falls} m/s2; {searched}>" if falls else f"<Transitions: stands; {searched}>"
-
-    def __repr__(self) -> str:
-        """How many, the least, and between what they were looked for."""
-        least = "no minimum" if self.minimum is None else f"the least that overturns is {self.minimum:.5g} m/s2"
-        return f"<Transitions: {len(self)} from {self.lowest:.4g} to {self.highest:.4g} m/s2; {least}>"
 
     def __len__(self) -> int:
         return int(self.acceleration.size)

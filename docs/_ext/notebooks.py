@@ -1,0 +1,43 @@
+"""Pages that hold code become notebooks to download: without outputs, and without links into the manual."""
+
+import re
+from pathlib import Path
+
+import nbformat
+from sphinx.application import Sphinx
+
+DOWNLOAD = re.compile(r"[ \n]*<a [^>]*\.ipynb[^>]*>[^<]*</a>\.?")
+INWARD = re.compile(r"\[([^\]]+)\]\((?!https?:)[^)]*\)|\{\w+\}`([^`<]+?)(?: <[^`]*)?`")
+"""Links to other pages, in Markdown or by a role, which lead nowhere from a file that somebody has downloaded."""
+
+
+def cleaned(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
+    """Return a notebook as whoever downloads it should find it."""
+    cells = []
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            made = nbformat.v4.new_code_cell(cell.source, metadata={"tags": cell.metadata.get("tags", [])})
+        else:
+            text = INWARD.sub(lambda link: link[1] or link[2], DOWNLOAD.sub("", cell.source))
+            made = nbformat.v4.new_markdown_cell(text)
+        made.id = f"cell-{len(cells)}"  # the same at every build
+        cells.append(made)
+    kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
+    return nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": kernel, "language_info": {"name": "python"}})
+
+
+def finished(app: Sphinx, error: Exception | None) -> None:
+    """Write them."""
+    executed = Path(app.outdir).parent / "jupyter_execute"
+    if error is None and app.builder.format == "html":
+        for name in app.env.found_docs:
+            if (made := executed / f"{name}.ipynb").exists():
+                notebook = cleaned(nbformat.read(made, as_version=4))
+                nbformat.validate(notebook)
+                nbformat.write(notebook, Path(app.outdir) / f"{name}.ipynb")
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Tell Sphinx."""
+    app.connect("build-finished", finished)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
