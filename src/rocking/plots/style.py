@@ -131,9 +131,9 @@ def new_figure(
     width: float, height: float, *, rows: int = 1, columns: int = 1, **options: Any
 ) -> tuple["Figure", list["Axes"]]:
     """Return a figure of a width and a height [in] in the journal style with its axes."""
-    from rocking.plots.picture import Picture
+    from rocking.plots.shown_figure import ShownFigure
 
-    figure = Picture(_SETTINGS, figsize=(width, height), layout="constrained")
+    figure = ShownFigure(_SETTINGS, figsize=(width, height), layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False, **options)
     return figure, list(axes.ravel())
 

@@ -11,7 +11,7 @@ _DOTS, _PIXELS = 144.0, 96.0
 """Dots of the image, and pixels of a page, per inch."""
 
 
-class Picture(Figure):
+class ShownFigure(Figure):
     """A matplotlib figure that is an image wherever IPython displays it, in a style of its own."""
 
     def __init__(self, style: Mapping[str, Any], **options: Any) -> None:
