@@ -389,7 +389,8 @@ class ClaimRole(SphinxRole):
         """Return words, figure and test."""
         (claim,) = [each for each in claims() if f"{each.path.rpartition('/')[2]}::{each.test}" == self.text]
         figure = f"asked {how_closely(claim)}; " if claim.within else ""
-        said = nodes.Text(f"{claim.words.rstrip('.')} ({figure}")
+        plain = claim.words.removeprefix("REF: ").rstrip(".")
+        said = nodes.Text(f"{plain[:1].upper()}{plain[1:]} ({figure}")
         return [said, nodes.literal(claim.path, claim.path.removeprefix("tests/")), nodes.Text(")")], []
 
 

@@ -42,7 +42,7 @@ def found(folder: Path, *arguments: object, driver: Path = DRIVER) -> Any:
 @pytest.mark.parametrize("pieces", [False, True], ids=["chunks", "pieces"])
 @pytest.mark.parametrize("how", SHARES)
 def test_killed_groups_lose_nothing(tmp_path: Path, how: str, pieces: bool) -> None:
-    """The whole process group dies at once, in any phase; what was acknowledged is there, the finished equals."""
+    """The whole process group dies, in any phase: what was acknowledged is there, and the end is a quiet run's."""
     cut = ["--pieces"] if pieces else []
     kills = SHARES[how] if how == "spawn" else -(-SHARES[how] // 2)
     report = found(tmp_path, "--how", how, "--kills", kills, "--seed", 11, *cut)
