@@ -19,6 +19,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx_copybutton",
     "sphinx_gallery.gen_gallery",
+    "gallery_pictures",
     "mathml",
     "equations",
     "commands",
@@ -30,7 +31,6 @@ extensions = [
 ]
 exclude_patterns = ["gallery/**.py", "gallery/**.ipynb", "gallery/**.zip", "**/README.md", "_ext"]
 nitpicky = False
-suppress_warnings = ["config.cache"]  # the gallery is configured with an object
 
 html_theme = "furo"
 html_title = f"rocking {release}"
@@ -62,9 +62,14 @@ numpydoc_show_class_members = False
 numpydoc_xref_param_type = False
 
 sphinx_gallery_conf = {
-    "examples_dirs": str(HERE.parent / "examples"),
+    "examples_dirs": str(HERE.parent / "build" / "examples"),  # a copy, into which they may write
     "gallery_dirs": "gallery",
     "filename_pattern": r"\.py$",
+    "subsection_order": "gallery_pictures.section_order",
+    "within_subsection_order": "gallery_pictures.script_order",
+    "image_scrapers": ("gallery_pictures.scraper",),
+    "capture_repr": (),
+    "thumbnail_size": (480, 336),
     "download_all_examples": False,
     "abort_on_example_error": True,
     "remove_config_comments": True,

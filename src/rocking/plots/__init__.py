@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from rocking.plots.animation import animate_gif, animate_html
     from rocking.plots.body import body_picture, coefficient_picture
     from rocking.plots.cloud import cloud_picture, measures_picture
+    from rocking.plots.comparison import animate_comparison
     from rocking.plots.energy_stages import energy_stages_picture
     from rocking.plots.falling import falling_picture
     from rocking.plots.fragility import fragility_picture
@@ -22,10 +23,11 @@ if TYPE_CHECKING:
     from rocking.plots.sensitivity import difference_map_picture, sensitivity_picture
     from rocking.plots.solid import energy_picture, slices_picture, solid_picture
     from rocking.plots.spatial import spatial_picture
-    from rocking.plots.style import write
+    from rocking.plots.style import journal_style, new_figure, write
     from rocking.plots.transitions import transitions_of_many_picture, transitions_picture
 
 __all__ = [
+    "animate_comparison",
     "animate_gif",
     "animate_html",
     "body_picture",
@@ -39,7 +41,9 @@ __all__ = [
     "ground_motion_picture",
     "incremental_dynamic_analysis_picture",
     "inventory_picture",
+    "journal_style",
     "measures_picture",
+    "new_figure",
     "overturning_map_picture",
     "paper_figure",
     "record_set_picture",
@@ -58,12 +62,15 @@ __all__ = [
 ]
 
 _OTHERS = {
+    "animate_comparison": "comparison",
     "animate_gif": "animation",
     "animate_html": "animation",
     "coefficient_picture": "body",
     "difference_map_picture": "sensitivity",
     "energy_picture": "solid",
+    "journal_style": "style",
     "measures_picture": "cloud",
+    "new_figure": "style",
     "paper_figure": "paper_figures",
     "record_set_picture": "ground_motion",
     "refined_map_picture": "overturning_map",

@@ -71,7 +71,7 @@ def animate_html(response: Response, path: str | Path) -> Path:
     RockingError
         If the name does not end in .html, or the file cannot be written.
     """
-    target = _target(path, ".html")
+    target = target_of(path, ".html")
     try:
         target.write_text(page(response), encoding="utf-8")
     except OSError as error:
@@ -180,7 +180,7 @@ def animate_gif(
     InvalidValueError
         If a value is outside its range, or there would be more than 500 frames.
     """
-    target = _target(path, ".gif")
+    target = target_of(path, ".gif")
     lasts = round(100.0 / checks.within("fps", fps, 1.0, 50.0)) / 100.0
     speed = checks.within("speed", speed, 0.01, 100.0)
     end = scene_until(response)
@@ -203,7 +203,8 @@ def slowest_speed(response: Response, fps: float = 25.0) -> float:
     return max(1.0, float(np.ceil(100.0 * scene_until(response) / (lasts * (MOST_FRAMES - 2)))) / 100.0)
 
 
-def _target(path: str | Path, suffix: str) -> Path:
+def target_of(path: str | Path, suffix: str) -> Path:
+    """Return where an animation is written, if its name ends as it must."""
     target = Path(path)
     if target.suffix.lower() != suffix:
         raise RockingError(f"this animation is a {suffix} file, got {target.name!r}")
@@ -269,8 +270,8 @@ class _Stage:
         view.set_xlim(middle - 0.5 * wide, middle + 0.5 * wide)
         view.set_ylim(y0, y0 + high)
         self.body, self.ground = Affine2D(), Affine2D()
-        _draw_ground(view, scene, self.ground, wide)
-        _draw_body(view, scene.shape, self.body)
+        self.period = draw_ground(view, scene, self.ground)
+        draw_body(view, scene.shape, self.body)
         curve = self.figure.add_axes((0.11, 0.42 / whole, 0.86, (_CURVE - 0.55) / whole))
         self.mark = _draw_curve(curve, response, scene)
         ring: dict[str, Any] = {"markersize": 16, "markerfacecolor": "none", "markeredgewidth": 2, "color": _IMPACT}
@@ -286,10 +287,7 @@ class _Stage:
         foot = scene.shape.feet[1] if rotation > 0.0 else scene.shape.feet[0]
         camera = ground if scene.follows else 0.0
         self.body.clear().rotate_around(foot, 0.0, -rotation).translate(ground - camera, 0.0)
-        left, right = self.view.get_xlim()
-        # hatches and lines repeat, so that the ground may move as far as it likes
-        period = (right - left) / _HATCHES * (8.0 if scene.follows else 1.0)
-        self.ground.clear().translate(float(np.fmod(-ground if scene.follows else ground, period)), 0.0)
+        self.ground.clear().translate(float(np.fmod(-ground if scene.follows else ground, self.period)), 0.0)
         ratio = over_slenderness(response, np.array([rotation]))
         self.mark.set_data([time], ratio)
         self.words.set_text(f"t = {time:6.2f} s   rotation {np.degrees(rotation):7.2f} deg")
@@ -310,10 +308,13 @@ def _title(response: Response) -> list[str]:
     return [first, *wrap(rest, _LINE)] if rest else first.replace(", past", ",\npast").split("\n")
 
 
-def _draw_ground(view: "Axes", scene: Scene, moved: "Affine2D", wide: float) -> None:
+def draw_ground(view: "Axes", scene: Scene, moved: "Affine2D") -> float:
+    """Draw the ground, which a transformation moves, and return after which distance it looks the same [m]."""
     from matplotlib.collections import LineCollection
 
-    (left, right), gap = view.get_xlim(), wide / _HATCHES
+    left, right = view.get_xlim()
+    wide = right - left
+    gap = wide / _HATCHES
     view.axhline(0.0, color=INK, linewidth=0.9)
     feet = np.arange(left - wide, right + wide, gap)
     strokes = [[(x, 0.0), (x - 0.6 * gap, -0.6 * gap)] for x in feet.tolist()]
@@ -323,9 +324,12 @@ def _draw_ground(view: "Axes", scene: Scene, moved: "Affine2D", wide: float) -> 
         strokes = [[(x, 0.0), (x, 4.0 * wide)] for x in feet[::8].tolist()]
     look: dict[str, Any] = {"colors": PALE if scene.follows else GREY, "linewidths": 0.7, "zorder": 0}
     view.add_collection(LineCollection(strokes, transform=moved + view.transData, **look))
+    # hatches and lines repeat, so that the ground may move as far as it likes
+    return gap * (8.0 if scene.follows else 1.0)
 
 
-def _draw_body(view: "Axes", shape: DrawnShape, turned: "Affine2D") -> None:
+def draw_body(view: "Axes", shape: DrawnShape, turned: "Affine2D") -> None:
+    """Draw a body that a transformation turns and moves."""
     from matplotlib.patches import PathPatch
 
     place: Any = turned + view.transData

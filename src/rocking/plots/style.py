@@ -76,7 +76,7 @@ def in_journal_style(draw: Callable[P, T]) -> Callable[P, T]:
     @wraps(draw)
     def styled(*args: P.args, **options: P.kwargs) -> T:
         """Draw in the style."""
-        with _style():
+        with journal_style():
             from matplotlib.figure import Figure
 
             drawn = draw(*args, **options)
@@ -122,7 +122,26 @@ def broken(words: str, lines: int) -> str:
     return "\n".join(rows).replace("\0", " ")
 
 
-def _style() -> AbstractContextManager[None]:
+def journal_style() -> AbstractContextManager[None]:
+    """Return a context in which figures are drawn in the style of this package: sizes, lines, fonts.
+
+    Returns
+    -------
+    context manager
+        Within it matplotlib's settings are those of a journal's column; afterwards they are what they were.
+
+    Raises
+    ------
+    MissingExtraError
+        If matplotlib is not installed.
+
+    Examples
+    --------
+    >>> with journal_style():
+    ...     figure, (axes,) = new_figure(SINGLE, 2.0)
+    >>> axes.spines["top"].get_visible()
+    False
+    """
     context: AbstractContextManager[None] = extra("matplotlib", "drawing").rc_context(_SETTINGS)
     return context
 
@@ -130,7 +149,30 @@ def _style() -> AbstractContextManager[None]:
 def new_figure(
     width: float, height: float, *, rows: int = 1, columns: int = 1, **options: Any
 ) -> tuple["Figure", list["Axes"]]:
-    """Return a figure of a width and a height [in] in the journal style with its axes."""
+    """Return a figure with its axes, laid out so that no label is cut off.
+
+    Parameters
+    ----------
+    width, height : float
+        Size [in]; `SINGLE` and `DOUBLE` of `rocking.plots.style` are the columns of a journal.
+    rows, columns : int
+        Panels.
+    **options
+        Of `matplotlib.figure.Figure.subplots`, such as sharex.
+
+    Returns
+    -------
+    figure : matplotlib.figure.Figure
+        The figure; draw into it within `journal_style`.
+    axes : list of matplotlib.axes.Axes
+        Its panels, row by row.
+
+    Examples
+    --------
+    >>> figure, axes = new_figure(7.0, 3.0, columns=2)
+    >>> len(axes)
+    2
+    """
     from rocking.plots.shown_figure import ShownFigure
 
     figure = ShownFigure(_SETTINGS, figsize=(width, height), layout="constrained")
@@ -179,14 +221,14 @@ def headline(figure: "Figure", sentence: str) -> None:
     figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
 
 
-def write(figure: "Figure", path: Path) -> Path:
+def write(figure: "Figure", path: str | Path) -> Path:
     """Write a figure in the format that the suffix names.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
         The figure.
-    path : Path
+    path : str or Path
         File ending in .png, .svg or .pdf.
 
     Returns
@@ -199,6 +241,7 @@ def write(figure: "Figure", path: Path) -> Path:
     RockingError
         If the suffix is another, or the file cannot be written.
     """
+    path = Path(path)
     metadata: dict[str, dict[str, Any]] = {
         ".png": {"Software": None},
         ".svg": {"Date": None, "Creator": None},
@@ -207,7 +250,7 @@ def write(figure: "Figure", path: Path) -> Path:
     if path.suffix not in metadata:
         raise RockingError(f"a picture is .png, .svg or .pdf, got {path.name!r}")
     try:
-        with _style():
+        with journal_style():
             figure.savefig(path, metadata=metadata[path.suffix])
     except OSError as error:
         raise RockingError(f"cannot write {path}: {error.strerror or error}") from error

@@ -1,0 +1,67 @@
+"""A cloud of motions as a campaign
+================================
+
+What do motions as they are, not scaled to anything, say about a cabinet? A campaign keeps every history, fits the
+rotations over a measure, and ranks the measures. For researchers with many records.
+"""
+
+import csv
+from tempfile import TemporaryDirectory
+
+from rocking.campaigns.jobs import Job, JobFolder, analyses, export, measure_comparison
+from rocking.plots import cloud_picture, write
+
+# %%
+# The job, as a file would hold it: `rocking campaign run cabinet.toml --out CAMPAIGN` runs the same.
+
+job = Job.of_text("""
+[campaign]
+name = "cabinet under far earthquakes"
+kind = "cloud"
+[body]
+units = "m"
+width = 0.3
+height = 1.5
+[motions]
+synthetic = "point-source"
+count = 250
+seed = 1
+[restitution]
+model = "ked"
+[fragility]
+measure = "pgv"
+factor = 3.0
+states = [0.3]
+[export]
+measures = ["pga", "pgv", "p pgv/(g tan alpha)", "pgv/pga", "sa(1.0)", "arias", "cav"]
+columns = ["magnitude", "ln distance_km"]
+""")
+
+with TemporaryDirectory() as home:
+    campaign = JobFolder.create(f"{home}/campaign", job)
+    campaign.run()
+    (found,) = analyses(campaign).values()
+    ranked = measure_comparison(campaign)
+    # from the shell: rocking campaign export CAMPAIGN --out measures=cabinet_measures.csv
+    table = export(campaign, "cabinet_measures.csv", "measures")
+
+# %%
+# The regression, and what becomes of the cabinet at the median: the parts of the probability add up to one.
+
+line, fit = found.regression, found.fits["overturned"]
+print(f"{line.count} rocked and stayed standing, {int((found.responses.overturned == 1.0).sum())} overturned")
+print(f"ln(theta/alpha) = {line.intercept:.2f} + {line.slope:.2f} ln(PGV), scatter {line.scatter:.2f}")
+print(f"overturning: median PGV {fit.median:.2f} m/s, dispersion {fit.dispersion:.2f}")
+parts = found.parts(fit.median, 0.3)
+assert abs(sum(float(part) for part in parts.values()) - 1.0) < 1e-12
+assert abs(float(parts["overturned"]) - 0.5) < 1e-9
+write(cloud_picture(found), "campaign_of_a_cloud.png")
+
+# %%
+# Which measure says most: the one with the least scatter. The file says the same.
+
+for score in ranked.scores:
+    print(f"  {score.measure:20s} efficiency {score.efficiency:.2f}")
+with table.open(encoding="utf-8") as file:
+    rows = list(csv.DictReader(file))
+assert [float(row["efficiency"]) for row in rows] == [score.efficiency for score in ranked.scores]

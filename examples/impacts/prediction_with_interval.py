@@ -1,0 +1,33 @@
+"""A coefficient with its interval
+===============================
+
+Which coefficient should I take, and how sure is it? The default is calibrated with the published measurements and
+comes with a 95 % interval; where the measurements end, it says so. For engineers who have to give a number and
+stand by it.
+"""
+
+import rocking as rk
+from rocking.evidence._coefficient_table import outside_evidence
+from rocking.plots import coefficient_picture, write
+
+# %%
+# A body from a file: a marble figure on a pedestal of brick.
+
+statue = rk.examples.body("statue")
+prediction = rk.evidence.calibrate().predict(statue)
+print(f"r = {prediction.coefficient:.3f}, 95 % interval {prediction.low:.3f} to {prediction.high:.3f}")
+assert prediction.low < prediction.coefficient < prediction.high
+
+# %%
+# Nobody has measured a block that is wider than high: its interval is an extrapolation.
+
+flat = rk.Block(width=2.0, height=1.0)
+print(outside_evidence(flat))
+assert "extrapolation" in outside_evidence(flat)
+
+# %%
+# All models for both feet, each with the interval that its errors at the measurements give it, and where this body
+# lies among them. The command `rocking cor statue.toml --out statue.png` draws the same.
+
+tables = {foot: rk.evidence.coefficient_table(statue, onto=foot) for foot in ("left", "right")}
+write(coefficient_picture(statue, tables), "prediction_with_interval.png")

@@ -1,0 +1,50 @@
+"""An overturning map
+==================
+
+Which pulses overturn a block? Over frequency and amplitude there are two ways to fall, and between them a region
+where a stronger pulse leaves standing what a weaker one overturns. For researchers, and for whoever believes that
+stronger is worse.
+"""
+
+import numpy as np
+
+import rocking as rk
+from rocking.plots import overturning_map_picture, write
+from rocking.studies import boundary, overturning_map, safe_beyond_overturning
+
+# %%
+# 160 x 160 sine pulses, as ratios: frequency over the frequency parameter `p` of the block, amplitude over what
+# just lifts it.
+
+block = rk.Block(width=0.5, height=2.0)
+pulse = rk.pulses.sine(amplitude=3.0, period=0.8)
+axes = ("frequency_ratio", np.linspace(0.5, 10.0, 160)), ("amplitude_ratio", np.linspace(1.0, 12.0, 160))
+found = overturning_map(block, pulse, *axes, restitution=0.85)
+
+share = {mode: float((found["mode"] == mode).mean()) for mode in (0, 1)}
+beyond = safe_beyond_overturning(found)
+print(f"{share[0]:.1%} overturns without impact, {share[1]:.1%} after one impact")
+print(f"{float(beyond.mean()):.1%} stays standing although a weaker pulse of the same frequency overturns it")
+assert min(share.values()) > 0.05
+assert beyond.any()
+# a pulse of at most g tan(alpha) lifts nothing
+assert (found["mode"].sel(amplitude_ratio=1.0) == -2).all()
+
+# %%
+# The boundary is found by bisection and comes as polylines: a step across it changes the verdict.
+
+lines = boundary(block, pulse, *axes, restitution=0.85, tolerance=1e-5)
+longest = max(lines, key=lambda line: len(line.points))
+print(f"boundary: {len(lines)} lines, the longest has {len(longest.points)} vertices")
+x, y = longest.points[len(longest.points) // 2]
+around = [
+    overturning_map(block, pulse, ("frequency_ratio", [x * a, x * a * 1.01]), ("amplitude_ratio", [y * b]), 0.85)
+    for a, b in ((0.98, 1.02), (1.02, 0.98))
+]
+assert {bool((one["mode"] >= 0).any()) for one in around} == {True, False}
+
+# %%
+# Brown without an impact, orange after one; blue lines say how far the block rocks where it stands, in parts of
+# alpha.
+
+write(overturning_map_picture(found, lines), "overturning_map_of_a_pulse.png")
