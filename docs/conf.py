@@ -69,7 +69,6 @@ sphinx_gallery_conf = {
     "within_subsection_order": "gallery_pictures.script_order",
     "image_scrapers": ("gallery_pictures.scraper",),
     "capture_repr": (),
-    "thumbnail_size": (480, 336),
     "download_all_examples": False,
     "abort_on_example_error": True,
     "remove_config_comments": True,

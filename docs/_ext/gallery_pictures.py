@@ -9,10 +9,9 @@ import shutil
 from pathlib import Path
 from typing import Any
 
-from PIL import Image
+from PIL import Image, ImageChops, ImageOps
 from sphinx.application import Sphinx
 from sphinx_gallery import gen_rst
-from sphinx_gallery.scrapers import figure_rst
 
 SECTIONS = {
     "impacts": [
@@ -64,8 +63,26 @@ SECTIONS = {
 NAMED = re.compile(r'"(\w+\.(?:png|gif))"')
 """How a script names a picture that it writes."""
 
-_WIDEST = 1500
-"""Dots across a picture of a page: twice the width of its text."""
+PARTS = {
+    "prediction_with_interval": (1, 0, (0.0, 0.0, 0.68, 1.0)),
+    "league_with_own_model": (1, 0, (0.28, 0.0, 1.0, 1.0)),
+    "record_from_a_file": (1, 0, (0.0, 0.08, 0.62, 1.0)),
+    "processing_a_motion": (1, 0, (0.6, 0.08, 1.0, 1.0)),
+    "one_cabinet_three_models": (1, 66, (0.0, 0.08, 1.0, 0.52)),
+    "response_to_a_pulse": (1, 0, (0.0, 0.26, 1.0, 0.71)),
+    "free_rocking_decay": (1, 0, (0.0, 0.26, 1.0, 0.49)),
+    "beyond_the_slenderness_angle": (2, 48, (0.0, 0.08, 1.0, 0.56)),
+    "fragility_by_stripes": (1, 0, (0.0, 0.0, 1.0, 0.66)),
+    "inventory_of_objects": (1, 0, (0.0, 0.05, 0.62, 0.92)),
+    "does_the_restitution_model_matter": (1, 0, (0.34, 0.0, 0.9, 0.84)),
+    "refined_map_with_boundary": (1, 0, (0.5, 0.1, 1.0, 0.86)),
+    "falling_by_direction": (1, 0, (0.0, 0.06, 0.36, 0.86)),
+    "which_intensity_measure": (1, 0, (0.0, 0.1, 0.6, 1.0)),
+}
+"""What a thumbnail shows, if not a whole first picture: which picture, frame, part (left, top, right, bottom)."""
+
+_INCH, _WIDEST, _THUMBNAIL = 120, 900, (480, 336)
+"""Dots of a page in an inch of a picture, width of its text [px], and size of a thumbnail, of which half is shown."""
 
 
 def section_order(folder: str) -> int:
@@ -85,19 +102,44 @@ def scraper(block: Any, variables: dict[str, Any], conf: dict[str, Any]) -> str:
     for name in dict.fromkeys(NAMED.findall(block.content)):
         written = Path(variables["src_file"]).with_name(name)
         target = Path(next(variables["image_path_iterator"])).with_suffix(written.suffix)
-        if written.suffix == ".png":
-            _light(written, target)
-        else:
-            shutil.copyfile(written, target)
-        shown.append(target)
-    return "".join(figure_rst([each], conf["src_dir"]) for each in shown)
+        width = _light(written, target) if written.suffix == ".png" else _copied(written, target)
+        path = "/" + target.relative_to(conf["src_dir"]).as_posix()
+        alt = written.stem.replace("_", " ")
+        shown.append(f"\n.. image:: {path}\n   :alt: {alt}\n   :width: {width}px\n   :class: gallery-picture\n")
+    return "\n".join(shown)
 
 
-def _light(written: Path, target: Path) -> None:
-    """Copy a picture as wide as a page shows it, in 256 colours."""
+def _light(written: Path, target: Path) -> int:
+    """Copy a picture in the dots and colours that a page needs, and return its width on the page [px]."""
     with Image.open(written) as picture:
-        picture.thumbnail((_WIDEST, 10 * _WIDEST))
+        width = min(round(picture.width / picture.info["dpi"][0] * _INCH), _WIDEST)
+        picture.thumbnail((2 * width, 20 * width))
         picture.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(target, optimize=True)
+    return width
+
+
+def _copied(written: Path, target: Path) -> int:
+    """Copy a film, and return its width [px]."""
+    shutil.copyfile(written, target)
+    with Image.open(target) as film:
+        return film.width
+
+
+def thumbnails(app: Sphinx) -> None:
+    """Draw the thumbnails anew: a part of the picture that one recognises, without its margin, on white."""
+    for section, scripts in SECTIONS.items():
+        folder = Path(app.srcdir) / "gallery" / section / "images"
+        for script in scripts:
+            number, frame, part = PARTS.get(script, (1, 0, (0.0, 0.0, 1.0, 1.0)))
+            (source,) = folder.glob(f"sphx_glr_{script}_{number:03}.*")
+            (thumbnail,) = (folder / "thumb").glob(f"sphx_glr_{script}_thumb.*")
+            with Image.open(source) as picture:
+                picture.seek(frame)
+                shown = picture.convert("RGB")
+            box = [round(edge * size) for edge, size in zip(part, 2 * shown.size, strict=True)]
+            shown = shown.crop(box)
+            shown = shown.crop(ImageChops.difference(shown, Image.new("RGB", shown.size, "white")).getbbox())
+            ImageOps.pad(shown, _THUMBNAIL, Image.Resampling.LANCZOS, "white").save(thumbnail)
 
 
 def notebook(blocks: Any, conf: dict[str, Any], folder: Any) -> dict[str, Any]:
@@ -117,6 +159,7 @@ _plain_notebook = gen_rst.jupyter_notebook
 def setup(app: Sphinx) -> dict[str, bool]:
     """Let notebooks show pictures, and scripts run in a copy of their folder, into which they write."""
     gen_rst.jupyter_notebook = notebook
+    app.connect("builder-inited", thumbnails, priority=900)
     here = Path(app.srcdir)
     shutil.rmtree(copy := here.parent / "build" / "examples", ignore_errors=True)
     shutil.copytree(here.parent / "examples", copy, ignore=shutil.ignore_patterns("__pycache__"))

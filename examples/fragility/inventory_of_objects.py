@@ -5,6 +5,8 @@ Where should a museum begin? A list of objects in centimetres and kilograms, an 
 list in plain words, the worst first. For conservators and facility managers: nothing has to be known about rocking.
 """
 
+from pathlib import Path
+
 import rocking as rk
 from rocking.plots import inventory_picture, write
 from rocking.reports.inventory_folder import write_inventory
@@ -43,6 +45,6 @@ assert [row.name for row in assessment.not_assessed] == ["framed mirror on a sta
 # %%
 # The same as a folder to hand on: a page, a PDF, a workbook, and tables.
 
-written, left_out = write_inventory(assessment, "inventory")
+written, left_out = write_inventory(assessment, Path("inventory"))
 print("wrote", ", ".join(path.name for path in written), *left_out)
 assert {path.suffix for path in written} >= {".html", ".csv"}

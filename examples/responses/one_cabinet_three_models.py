@@ -14,12 +14,9 @@ from rocking.plots import animate_comparison
 
 cabinet = rk.Block(width=0.6, height=2.0, depth=0.5, density=300.0)
 pulse = rk.pulses.sine(amplitude=7.6, period=0.5)
+models = {"Housner 1963": "housner", "Horizontal momentum": "horizontal-momentum", "KED, Mao et al. 2024": "ked"}
 responses = {}
-for name, model in {
-    "Housner 1963": "housner",
-    "Horizontal momentum": "horizontal-momentum",
-    "KED, Mao et al. 2024": "ked",
-}.items():
+for name, model in models.items():
     response = rk.simulate(cabinet, pulse, restitution=model)
     responses[f"{name}: r = {response.parameters.right.coefficient:.3f}"] = response
     print(f"{model:20s} {response.outcome.value}")
@@ -27,8 +24,8 @@ for name, model in {
 assert [response.outcome.name for response in responses.values()] == ["ROCKED", "OVERTURNED", "OVERTURNED"]
 
 # %%
-# All three until their first impact are one. There Housner's model takes a little more of the speed than the
-# others: enough to stand.
+# Until their first impact all three are the same. There Housner's model takes a little more of the speed than the
+# others do: enough to stand.
 
 title = "The same cabinet, the same pulse, three models of the impact"
 animate_comparison(responses, "rocking.gif", title=title, speed=0.8, until=4.0)
