@@ -6,12 +6,15 @@ the notebook show it.
 
 import re
 import shutil
+import warnings
 from pathlib import Path
 from typing import Any
 
 from PIL import Image, ImageChops, ImageOps
 from sphinx.application import Sphinx
 from sphinx_gallery import gen_rst
+
+from rocking.errors import PlausibilityWarning
 
 SECTIONS = {
     "impacts": [
@@ -159,6 +162,7 @@ _plain_notebook = gen_rst.jupyter_notebook
 def setup(app: Sphinx) -> dict[str, bool]:
     """Let notebooks show pictures, and scripts run in a copy of their folder, into which they write."""
     gen_rst.jupyter_notebook = notebook
+    warnings.simplefilter("error", PlausibilityWarning)  # what examples show was meant
     app.connect("builder-inited", thumbnails, priority=900)
     here = Path(app.srcdir)
     shutil.rmtree(copy := here.parent / "build" / "examples", ignore_errors=True)

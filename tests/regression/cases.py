@@ -354,7 +354,7 @@ def examples() -> dict[str, Case]:
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         return {"code": done.returncode, "out": done.stdout.splitlines(), "files": trees.of_files(folder)}
 
-    scripts = sorted((ROOT / "examples").glob("*.py"))
+    scripts = sorted((ROOT / "examples").glob("*/*.py"))
     return {path.stem: lambda folder, path=path: run(path, folder) for path in scripts}
 
 

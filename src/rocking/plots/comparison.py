@@ -121,7 +121,7 @@ def _frames(
         place = (k / len(scenes), (_CURVES + _CAPTION) / whole, 1.0 / len(scenes), tall / whole)
         view = figure.add_axes(place, xlim=(x0, x1), ylim=(y0, y1))
         panels.append(_Panel(view, curves, caption, response, scenes[k], k))
-    canvas = FigureCanvasAgg(figure)
+    canvas: Any = FigureCanvasAgg(figure)
     moving = [artist for panel in panels for artist in panel.moving]
     for artist in moving:
         artist.set_animated(True)
@@ -167,10 +167,8 @@ class _Panel:
         self.body, self.ground = Affine2D(), Affine2D()
         self.period = draw_ground(view, scene, self.ground)
         draw_body(view, scene.shape, self.body)
-        color, under = (
-            look(number)["color"],
-            {"transform": view.transAxes, "ha": "center", "va": "top", "fontsize": 9.5},
-        )
+        color: str = look(number)["color"]
+        under: dict[str, Any] = {"transform": view.transAxes, "ha": "center", "va": "top", "fontsize": 9.5}
         view.text(0.5, -0.02, caption, color=color, **under)
         self.verdict = view.text(0.5, -0.14, "", fontweight="bold", **under)
         (self.curve,) = curves.plot([], [], **look(number))

@@ -16,7 +16,7 @@ from rocking.dynamics import free_rocking, simulate
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions import GroundMotion
 from rocking.motions.pulses import rectangular, sine
-from rocking.plots import animate_gif, animate_html
+from rocking.plots import animate_comparison, animate_gif, animate_html
 from rocking.plots.animation import page, page_data, slowest_speed
 from rocking.plots.animation_scene import DrawnShape, fall_of, scene_of
 
@@ -374,3 +374,40 @@ def test_where_bodies_lie(rocked):
     assert DrawnShape.of(BLOCK).lying == pytest.approx((-0.5 * math.pi, 0.5 * math.pi), abs=1e-12)
     leans = Section([Region([(-0.25, 0.0), (0.25, 0.0), (1.25, 1.0), (-0.75, 1.0)])])
     assert DrawnShape.of(leans).lying == pytest.approx((-math.atan(2.0), 0.25 * math.pi), abs=1e-12)
+
+
+def test_a_comparison_shows_each_response_to_its_end(rocked, tmp_path):
+    """Equal responses look the same side by side; where one falls, its panel alone is another at the end."""
+    fallen = simulate(BLOCK, sine(5.0, 0.8), 0.9)
+    assert fallen.outcome.name == "OVERTURNED"
+    sizes, ends = [], []
+    for second in (rocked, fallen):
+        path = animate_comparison({"one": rocked, "two": second}, tmp_path / "film.gif", fps=20.0, until=2.0)
+        with Image.open(path) as film:
+            assert film.n_frames == 2.0 / 0.05 + 1
+            durations = []
+            for k in range(film.n_frames):
+                film.seek(k)
+                durations.append(film.info["duration"])
+            assert durations == [50] * 40 + [2000]
+            sizes.append(film.size)
+            frame = np.asarray(film.convert("L"))[40 : film.height // 3] < 250
+            ends.append((frame[:, : film.width // 2].sum(), frame[:, film.width // 2 :].sum()))
+    (left, right), (_, lying) = ends
+    assert abs(left - right) < 0.02 * left  # to the dots at the edges of what is drawn
+    assert lying < 0.7 * left  # what has fallen leaves the upper part of its panel
+
+
+def test_a_comparison_refuses(rocked, tmp_path):
+    """One response alone, an ending that is no film, and more frames than a page wants to carry."""
+    with pytest.raises(InvalidValueError, match="2 to 4"):
+        animate_comparison({"one": rocked}, tmp_path / "film.gif")
+    both = {"one": rocked, "two": rocked}
+    with pytest.raises(RockingError, match="this animation is a"):
+        animate_comparison(both, tmp_path / "film.png")
+    with pytest.raises(InvalidValueError, match="at most 500 frames"):
+        animate_comparison(both, tmp_path / "film.gif", speed=0.01)
+    with pytest.raises(InvalidValueError, match="until"):
+        animate_comparison(both, tmp_path / "film.gif", until=0.0)
+    with pytest.raises(RockingError, match="cannot write"):
+        animate_comparison(both, tmp_path / "none" / "film.gif", until=0.2)
