@@ -50,9 +50,9 @@ def flying(p: float) -> tuple[Operations, int]:
 @pytest.mark.verifies(
     "computed anew", "operations of a step, read off the source by hand", within="every operation", control="within"
 )
-@pytest.mark.parametrize(("p", "order"), [(1.0, 6), (3.0, 8)])
+@pytest.mark.parametrize(("p", "order"), [(1.0, 6), (3.0, 8)])  # by p dt = 0.01 and 0.03
 def test_a_step_takes_what_is_written(p: float, order: int) -> None:
-    """p dt = 0.01 takes order 6, 0.03 order 8."""
+    """A step of order 6, and one of order 8, takes the operations that are written in the engine, and no others."""
     found, steps = flying(p)
     assert found.steps == steps
     assert found.total == steps * by_hand(order)

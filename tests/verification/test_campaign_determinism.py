@@ -79,7 +79,7 @@ def test_workers_and_chunks_do_not_matter(
 @unforked
 @pytest.mark.parametrize("workers", [1, 2, 4, 8])
 def test_chunks_of_one(tmp_path: Path, workers: int) -> None:
-    """Each history a chunk of its own."""
+    """Each history a chunk of its own, by 1 to 8 workers: the bits of a bare run."""
     few = histories(120)
     campaign = Campaign.create(tmp_path / "c", few, 1)
     campaign.run(**FORK, workers=workers, order_seed=1)
@@ -100,7 +100,7 @@ def test_hash_does_not_depend_on_the_size(tmp_path: Path, chunk: int) -> None:
 def test_start_of_processes_does_not_matter(
     tmp_path: Path, work: HistoryTable, bare: Arrays, start_method: str
 ) -> None:
-    """Spawned, forked, and forked from a server."""
+    """Processes spawned, forked, and forked from a server: the bits of a bare run."""
     if os.name == "nt" and start_method != "spawn":
         pytest.skip("this system does not fork")
     campaign = Campaign.create(tmp_path / "c", work, 200)

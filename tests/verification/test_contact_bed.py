@@ -188,7 +188,7 @@ def test_friction_threshold(ratio: float, friction: float) -> None:
 
 @pytest.mark.verifies("closed form", "0.25 without friction, Housner's 0.7 from mu = 6/17 on", within="1e-9")
 def test_friction_reference_values() -> None:
-    """REF at lambda = 2: mu = 0 gives .25, mu = 6/17 gives Housner's .7."""
+    """Two points with friction at lambda = 2: mu = 0 gives .25, mu = 6/17 gives Housner's .7."""
     block = slender(2.0)
     values = [
         impulsive(block, ContactBed.uniform(block, 2, dashpots(block), friction=Coulomb(mu))).coefficient
@@ -223,7 +223,7 @@ def test_contact_time_of_a_linear_point() -> None:
 
 @pytest.mark.verifies("closed form", "Hertz's depth and time of contact", within="1e-6 in depth, 1e-8 in time")
 def test_contact_time_of_a_hertz_point() -> None:
-    """d_max = (5 m v^2 / 4 k)^(2/5) and t = 2.9432 d_max / v."""
+    """A Hertz point: d_max = (5 m v^2 / 4 k)^(2/5) and t = 2.9432 d_max / v."""
     law = Hertz(3e9, 0.05).numbers(1000.0)
     time, depth, ratio = dropped(law, speed=0.5)
     greatest = (5.0 * 1000.0 * 0.5**2 / (4.0 * law.stiffness)) ** 0.4

@@ -156,7 +156,7 @@ def setup_block(ratio: float) -> Block:
 
 @pytest.mark.verifies("closed form", "1 - 3/2 sin^2 alpha", within="3e-3")
 def test_two_points_are_housner() -> None:
-    """n = 2 is 1 - 1.5 sin^2 alpha within .003 for the hardest bed, and more points lose less."""
+    """Two points: r = 1 - 1.5 sin^2 alpha within .003 for the hardest bed, and more points lose less."""
     for ratio in (1.5, 2.0, 4.0, 8.0):
         r = [model("contact-bed", points=n, hardness=1000.0).coefficient(setup_block(ratio)) for n in POINTS]
         assert r[0] == pytest.approx(1.0 - 1.5 / (1.0 + ratio**2), abs=3e-3)
@@ -166,7 +166,7 @@ def test_two_points_are_housner() -> None:
 @pytest.mark.verifies("closed form", "Housner's impact onto any feet", within="3e-3")
 @pytest.mark.parametrize("onto", ["left", "right"])
 def test_two_points_are_housner_for_a_plumb_line_off_the_middle(onto: Foot) -> None:
-    """n = 2 gives r = (I_C + m h^2 - m b b') / (I_C + m h^2 + m b'^2) within .003, or keeps energy."""
+    """Two points: r = (I_C + m h^2 - m b b') / (I_C + m h^2 + m b'^2) within .003, or keeps energy."""
     for ratio, shift in itertools.product((1.5, 3.0), (0.0, 0.2, 0.5)):
         body = setup_block(ratio).with_feet(0.0, 0.2 - 0.1 * shift)
         old, new = (0.1, 0.1 - 0.1 * shift) if onto == "right" else (0.1 - 0.1 * shift, 0.1)

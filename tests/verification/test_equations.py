@@ -163,7 +163,7 @@ def test_friction_demand_at_uplift(ratio):
 @pytest.mark.filterwarnings("ignore:the ground would have to pull")  # of a block thrown over only the start counts here
 @pytest.mark.parametrize("engine", ENGINES)
 def test_friction_demand_of_a_response(engine):
-    """REF: the same at the first instant of a rectangular pulse; 5 / 3 is the limit of strong ones."""
+    """REF: friction at the first instant of a rectangular pulse; 5 / 3 is the limit of strong ones."""
     block = rk.Block(width=1.0, height=4.0)
     cases = [(0.25 * G * ratio, 0.1, demand) for ratio, demand in DEMAND.items() if ratio > 1.0]
     for push, length, expected in [*cases, (2e5, 1e-3, 5.0 / 3.0)]:

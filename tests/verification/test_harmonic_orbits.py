@@ -26,7 +26,7 @@ pytestmark = pytest.mark.verifies(room="rocking in the plane")
 
 ENGINES = ("fast", "reference")
 ALPHA, P = 0.22, 2.3
-ORBITS = {  # A, W, r: v, psi, and the largest x on a grid of 200 intervals, which is what was published
+ORBITS = {  # A, W, r: v, psi, and the largest x on a grid of 200 intervals, which is what is known
     (1.2, 3.0, 0.9): (0.790917702767388788, 2.964739583815217, 0.24127183716905),
     (2.0, 4.0, 0.9): (0.795424033581792961, 3.000765317364408, 0.18903728384261),
     (2.0, 5.0, 0.85): (0.624486486704868229, 2.921913011680982, 0.12264095421697),
@@ -114,7 +114,7 @@ def turn(case, psi, v, engine):
     within="1e-13",
 )
 @pytest.mark.parametrize("case", ORBITS)
-def test_the_quadratic_gives_the_published_orbits(case):
+def test_the_quadratic_gives_the_known_orbits(case):
     """REF: velocity and phase of the three orbits, and of the unstable partner of the first."""
     v, psi, _ = ORBITS[case]
     slow, quick = symmetric_orbits(*case)

@@ -60,7 +60,7 @@ def on_stretches(stretches, ratio=2.0):
 
 @pytest.mark.verifies("closed form", "Housner's impact onto any feet, 16 digits", within="1e-14", control="within")
 def test_housner_on_inner_feet():
-    """REF: 1 x 4 m on feet at .1 and .7 m; swapped directions or symmetric feet do not
+    """Housner, REF: 1 x 4 m on feet at .1 and .7 m; swapped directions or symmetric feet do not
     pass."""
     body = block(4.0).with_feet(0.1, 0.7)
     rightward = rk.coefficient_of_restitution(body, "housner", onto="right")
@@ -81,7 +81,7 @@ def test_housner_on_inner_feet():
 )
 @pytest.mark.parametrize("ratio", [0.71, 1.0, 2.0, 4.0, 30.0])
 def test_housner_of_a_rectangle(ratio):
-    """r = 1 - 3/2 sin^2(alpha) = (2 l^2 - 1)/(2 (l^2 + 1)) (Eq. 5, Mao et al. 2024)."""
+    """Housner: r = 1 - 3/2 sin^2(alpha) = (2 l^2 - 1)/(2 (l^2 + 1)) (Eq. 5, Mao et al. 2024)."""
     r = rk.coefficient_of_restitution(block(ratio), "housner")
     assert r == pytest.approx((2 * ratio**2 - 1) / (2 * (ratio**2 + 1)), rel=1e-12, abs=0.0)
     assert r != pytest.approx(1 - ratio**-2 / (1 + ratio**-2), rel=1e-5)
@@ -104,7 +104,7 @@ def test_housner_stops_below_its_domain():
 @pytest.mark.verifies("closed form", "cos^2 alpha", within="1e-13", control="within")
 @pytest.mark.parametrize("ratio", [0.01, 0.5, 1.0, 4.0, 100.0])
 def test_horizontal_momentum_is_cos_squared(ratio):
-    """r = cos^2(alpha) = l^2/(1 + l^2) for a rectangle, not cos(alpha)."""
+    """Horizontal momentum: r = cos^2(alpha) = l^2/(1 + l^2) for a rectangle, not cos(alpha)."""
     r = rk.coefficient_of_restitution(block(ratio), "horizontal-momentum")
     assert r == pytest.approx(ratio**2 / (1 + ratio**2), rel=1e-13, abs=0.0)
     assert r != pytest.approx(np.cos(block(ratio).slenderness_angle), rel=1e-5)
@@ -114,7 +114,7 @@ def test_horizontal_momentum_is_cos_squared(ratio):
 @pytest.mark.parametrize("ratio", [0.8, 2.0, 6.0])
 @pytest.mark.parametrize("k", [0.0, 0.25, 2 / 3, 1.0])
 def test_shifted_impulse(ratio, k):
-    """r_k = (1 + 4 l^2 - 3k)/(1 + 4 l^2 + 3k); k = 0 loses nothing, k = 1 is Housner."""
+    """Shifted impulse: r_k = (1 + 4 l^2 - 3k)/(1 + 4 l^2 + 3k); k = 0 loses nothing, k = 1 is Housner."""
     r = rk.coefficient_of_restitution(block(ratio), "shifted-impulse", k=k)
     assert r == pytest.approx((1 + 4 * ratio**2 - 3 * k) / (1 + 4 * ratio**2 + 3 * k), rel=1e-13, abs=0.0)
     assert implied(block(ratio), r).impulse_ratio == pytest.approx(k, abs=1e-12)
@@ -123,7 +123,7 @@ def test_shifted_impulse(ratio, k):
 
 @pytest.mark.verifies("closed form", "1 and Housner's coefficient", within="1e-14", control="within")
 def test_shifted_impulse_ends():
-    """k = 0 gives 1 and k = 1 Housner also for an asymmetric body; k = 0.9 does not."""
+    """Shifted impulse: k = 0 gives 1 and k = 1 Housner also for an asymmetric body; k = 0.9 does not."""
     body = portal().with_feet(0.05, 1.0)
     for onto in ("left", "right"):
         housner = rk.coefficient_of_restitution(body, "housner", onto=onto)
@@ -147,7 +147,7 @@ def test_shifted_impulse_ends():
     ],
 )
 def test_impulse_position_that_ked_implies(ratio, k):
-    """REF: implied k of KED, four digits; Housner implies 1 and cos^2 something else."""
+    """Impulse position k that KED implies, REF, four digits; Housner implies 1 and cos^2 something else."""
     assert implied(block(ratio), Ked().coefficient(block(ratio))).impulse_ratio == pytest.approx(k, abs=5e-5)
     momentum = HorizontalMomentum().coefficient(block(ratio))
     assert implied(block(ratio), momentum).impulse_ratio != pytest.approx(k, abs=5e-5)
@@ -156,7 +156,7 @@ def test_impulse_position_that_ked_implies(ratio, k):
 @pytest.mark.verifies("closed form", "3 l / (1 + 4 l^2)", within="1e-12", control="within")
 @pytest.mark.parametrize(("ratio", "friction"), [(0.75, 9 / 13), (1.0, 0.6), (2.0, 6 / 17)])
 def test_friction_that_housner_needs(ratio, friction):
-    """REF: mu = 3 l/(1 + 4 l^2); at k = 2/3 it is two thirds of that."""
+    """Friction that Housner's impact takes, REF: mu = 3 l/(1 + 4 l^2); at k = 2/3 it is two thirds of that."""
     demand = [implied(block(ratio), ShiftedImpulse(k=k).coefficient(block(ratio))).friction_demand for k in (1, 2 / 3)]
     assert demand == pytest.approx([friction, 2 * friction / 3], rel=1e-12, abs=0.0)
     assert demand[1] != pytest.approx(friction, rel=1e-2)
@@ -168,7 +168,7 @@ def test_friction_that_housner_needs(ratio, friction):
 @pytest.mark.verifies("closed form", "coefficients to 15 digits", within="1e-13", control="within")
 @pytest.mark.parametrize(("ratio", "values"), R_Q.items())
 def test_distributed_impulse_reference(ratio, values):
-    """REF for q = 0, 1, 2, per body and vectorised; q = 1.01 does not pass for 1."""
+    """Distributed impulse, REF for q = 0, 1, 2, per body and vectorised; q = 1.01 does not pass for 1."""
     for q, value in enumerate(values):
         assert DistributedImpulse(q=q).coefficient(block(ratio)) == pytest.approx(value, rel=1e-13, abs=0.0)
         assert DistributedImpulse(q=q).of_slenderness([ratio, 7.0])[0] == pytest.approx(value, rel=1e-13, abs=0.0)
@@ -177,7 +177,7 @@ def test_distributed_impulse_reference(ratio, values):
 
 @pytest.mark.verifies("closed form", "coefficients to 16 digits", within="1e-13", control="within")
 def test_distributed_impulse_asymmetric_reference():
-    """REF: I_C = 5/3, h = 2, levers .5 and 1.2, q = 1, and the way back; their product is
+    """Distributed impulse, REF: I_C = 5/3, h = 2, levers .5 and 1.2, q = 1, and the way back; their product is
     below 1."""
     there = DistributedImpulse(q=1.0).of_geometry(ImpactGeometry(*map(np.asarray, (2.0, 0.5, 1.2, 1 / 3, 4 / 3))))
     back = DistributedImpulse(q=1.0).of_geometry(ImpactGeometry(*map(np.asarray, (2.0, 1.2, 0.5, 1 / 3, 4 / 3))))
@@ -323,7 +323,7 @@ def test_distributed_impulse_slender_limit(q):
 @pytest.mark.verifies("computed anew", "coefficients to 8 digits", within="8 digits", control="within")
 @pytest.mark.parametrize(("ratio", "value"), WINKLER.items())
 def test_plastic_winkler_reference(ratio, value):
-    """Coefficients of rectangles are REF in all 8 digits; another slenderness is not."""
+    """Plastic Winkler bed: coefficients of rectangles are REF in all 8 digits; another slenderness is not."""
     assert round(PlasticWinkler().coefficient(block(ratio)), 8) == value
     assert round(PlasticWinkler().coefficient(block(ratio * 1.0001)), 8) != value
 
@@ -349,7 +349,7 @@ def test_plastic_winkler_long_arrays():
 
 @pytest.mark.verifies("computed anew", "coefficients to 8 digits", within="6e-9", control="within")
 def test_plastic_winkler_long_arrays_keep_the_printed_digits():
-    """REF to 8 digits also where they come out of an array of 100 values."""
+    """Plastic Winkler bed, REF to 8 digits also where they come out of an array of 100 values."""
     ratios = np.concatenate([list(WINKLER), np.linspace(0.5, 5.0, 94)])
     found = PlasticWinkler().of_slenderness(ratios)[: len(WINKLER)]
     assert found == pytest.approx(list(WINKLER.values()), abs=6e-9)

@@ -123,7 +123,7 @@ def test_quadrature_criterion_rejects_wrong_forms():
 @pytest.mark.verifies("computed anew", "coefficients to 15 digits and more", within="1e-14")
 @pytest.mark.parametrize(("ratio", "value"), REF.items())
 def test_reference_values(ratio, value, agreement):
-    """REF values to 1e-14, for arrays and for a Block of any size."""
+    """KED of rectangles: REF values to 1e-14, for arrays and for a Block of any size."""
     block = rk.Block(width=3.0, height=3.0 * ratio, depth=0.2, density=100.0)
     agreement(error(Ked().of_slenderness([ratio])[0], mp.mpf(value)), 1e-14)
     # a Block's own height/width is rounded: its ratio may be one unit in the last place off
@@ -149,7 +149,7 @@ def test_table_2_to_all_digits(ratio, printed):
 
 @pytest.mark.verifies("closed form", "(3 pi / 8) l^3 (1 - 8 l / (5 pi))", within="2.0 l^2", control="within")
 def test_squat_limit():
-    """r^2 = (3 pi/8) l^3 (1 - 8 l/(5 pi) + O(l^2)); an exponent or factor off by little
+    """Squat limit: r^2 = (3 pi/8) l^3 (1 - 8 l/(5 pi) + O(l^2)); an exponent or factor off by little
     fails."""
 
     def follows(leading):
@@ -166,7 +166,7 @@ def test_squat_limit():
     "closed form", "1 - 1/l^2 + 3 pi / (16 l^3) + 1 / (5 l^4)", within="2.0 / l of the last term", control="within"
 )
 def test_slender_limit():
-    """r = 1 - 1/l^2 + 3 pi/(16 l^3) + 1/(5 l^4) + ... (the last term from the integrals)."""
+    """Slender limit: r = 1 - 1/l^2 + 3 pi/(16 l^3) + 1/(5 l^4) + ... (the last term from the integrals)."""
 
     ratios = np.array([30.0, 100.0, 300.0])
 

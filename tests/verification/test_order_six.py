@@ -44,7 +44,7 @@ def errors(reach: float, strength: float, settings: Settings, seed: int = 3) -> 
     ("reach", "strength"), [(0.024, 1.0), (0.01, 3.0), (0.01, 10.0), (0.005, 10.0), (0.005, 30.0), (0.002, 100.0)]
 )
 def test_the_order_that_is_taken_is_good_to_1e_8(reach: float, strength: float, agreement: Any) -> None:
-    """Whichever order is taken, up to 100 g."""
+    """Peaks are right to 1e-8 alpha whichever order is taken, up to 100 g."""
     agreement(errors(reach, strength, Settings()).max(), 1e-8)
 
 

@@ -69,7 +69,7 @@ def mode_two(omega):
 @pytest.mark.verifies("closed form", "1 / (1 - exp(-p T))", within="1e-10")
 @pytest.mark.parametrize("length", RECTANGLE)
 def test_rectangles(length):
-    """REF: one crossing, at A = 1 / (1 - exp(-p T))."""
+    """Rectangles, REF: one crossing, at A = 1 / (1 - exp(-p T))."""
     found = crossings(rk.pulses.rectangular(1.0, length / P), 0.9)
     assert found.ratio == pytest.approx([RECTANGLE[length]], rel=1e-10, abs=0.0)
     assert RECTANGLE[length] == pytest.approx(1.0 / (1.0 - math.exp(-length)), rel=1e-15, abs=0.0)
@@ -81,7 +81,7 @@ def test_rectangles(length):
 )
 @pytest.mark.parametrize("omega", HALF_SINE)
 def test_half_sines(omega, agreement):
-    """REF: one crossing; Housner's sqrt(1 + Omega^2) is rejected by the same check."""
+    """Half sines, REF: one crossing; Housner's sqrt(1 + Omega^2) is rejected by the same check."""
     found = crossings(rk.pulses.half_sine(1.0, period(omega)), 0.9)
     (ratio,) = found.ratio
     agreement(abs(ratio / HALF_SINE[omega] - 1.0), 1e-10)
@@ -163,7 +163,7 @@ def test_nonlinear_rectangles(tangent, ratio, p_time):
     "computed anew", "boundaries to 17 and 8 digits", within="1e-10, and 1e-7 where 8 digits are known"
 )
 def test_nonlinear_full_sine():
-    """REF: Omega = 3, tan alpha = 1/3, r = 0.85; the last two are published with eight digits."""
+    """REF: full sine, Omega = 3, tan alpha = 1/3, r = 0.85: all three crossings by the exact equations."""
     block = rk.Block.from_angle(math.atan(1.0 / 3.0), 0.7)
     pulse = rk.pulses.sine(1.0, 2.0 * math.pi / (3.0 * block.frequency_parameter))
     found = minimum_overturning_acceleration(block, pulse, 0.85, threads=1)
@@ -265,4 +265,4 @@ def test_survivors_lean_beyond_the_top(sines):
             linear=True, threads=1,
         )  # fmt: skip
         assert point["mode"].item() == -1
-        assert point["peak_ratio"].item() == pytest.approx(published, abs=0.006)  # published with three digits
+        assert point["peak_ratio"].item() == pytest.approx(published, abs=0.006)  # known to three digits

@@ -148,7 +148,7 @@ def test_squat_bodies_stop(slenderness):
 @pytest.mark.verifies("closed form", "0.25 without friction, 0.7 from mu = 6/17 on", within="1e-9")
 @pytest.mark.parametrize(("mu", "r"), [(0.0, 0.25), (6.0 / 17.0, 0.7), (0.5, 0.7)])
 def test_impact_with_friction_is_the_reference_value(mu, r):
-    """REF, lambda = 2: r(0) = 0.25, r(6/17) = 0.7, and 0.7 beyond."""
+    """Impact with friction, REF, lambda = 2: r(0) = 0.25, r(6/17) = 0.7, and 0.7 beyond."""
     _, impact = _knock(Block(width=1.0, height=2.0), mu)
     assert impact["velocity_after"] / impact["velocity_before"] == pytest.approx(r, rel=1e-9, abs=0.0)
 
@@ -156,7 +156,7 @@ def test_impact_with_friction_is_the_reference_value(mu, r):
 @pytest.mark.verifies("closed form", "r(mu) of one foot that slips", within="1e-9", control="within")
 @pytest.mark.parametrize("mu", [0.05, 0.2, 0.34])
 def test_impact_that_slips_is_the_closed_form(mu):
-    """r = (I - m b^2 + mu m b h) / (I + m b^2 - mu m b h); the frictionless one is told apart."""
+    """An impact that slips: r = (I - m b^2 + mu m b h) / (I + m b^2 - mu m b h); the frictionless one is told apart."""
     block = Block(width=1.0, height=2.0)
     inertia, lever, height = 5.0 / 12.0, 0.5, 1.0
     r = (inertia - lever**2 + mu * lever * height) / (inertia + lever**2 - mu * lever * height)
@@ -169,14 +169,14 @@ def test_impact_that_slips_is_the_closed_form(mu):
 @pytest.mark.verifies("closed form", "mu = 0.6 at h/b = 1", within="1e-9")
 @pytest.mark.parametrize(("mu", "slips"), [(0.6 * (1.0 + HAIR), False), (0.6 * (1.0 - HAIR), True)])
 def test_friction_of_the_impact_without_slip(mu, slips):
-    """REF: lambda = 1 takes mu = 0.6, to 1e-9."""
+    """Impact without slip, REF: lambda = 1 takes mu = 0.6, to 1e-9."""
     assert bool(_knock(Block(width=1.0, height=1.0), mu)[1]["slips"]) is slips
 
 
 @pytest.mark.verifies("closed form", "1 - 3/2 (1 + e) sin^2 alpha", within="1e-9")
 @pytest.mark.parametrize(("slenderness", "bounce"), [(4.0, 0.3), (2.0, 0.5), (2.0, 0.05)])
 def test_bouncing_impact_is_the_closed_form(slenderness, bounce):
-    """r = 1 - 3/2 (1 + e) sin^2 alpha; the new foot leaves with 2 b e theta'."""
+    """Bouncing: r = 1 - 3/2 (1 + e) sin^2 alpha; the new foot leaves with 2 b e theta'."""
     block = Block(width=1.0, height=slenderness)
     response, impact = _knock(block, 5.0, bounce)
     r = 1.0 - 1.5 * (1.0 + bounce) * math.sin(block.slenderness_angle) ** 2

@@ -189,7 +189,7 @@ def test_nonlinear_rectangles(tangent, ratio, p_time, engine, agreement):
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(
     ("expected", "impacts", "digits"),
-    [(1.43078991141167367, 1, 1e-10), (3.4697991, 1, 3e-8), (3.6856831, 0, 3e-8)],  # as many as are published
+    [(1.43078991141167367, 1, 1e-10), (3.4697991, 1, 3e-8), (3.6856831, 0, 3e-8)],  # as many as are known
 )
 def test_nonlinear_sine(expected, impacts, digits, engine):
     """REF: the three boundaries of a full sine, Omega = 3, tan alpha = 1/3, r = 0.85."""
@@ -205,7 +205,7 @@ def test_nonlinear_sine(expected, impacts, digits, engine):
 @pytest.mark.verifies("computed anew", "time and velocity to 17 digits", within="1e-11 and 1e-10")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_first_impact_of_the_nonlinear_sine(engine):
-    """REF: time of the first impact and velocity before it at A = 1.35."""
+    """Exact equations, REF: time of the first impact of a full sine and velocity before it at A = 1.35."""
     alpha = math.atan(1.0 / 3.0)
     block = rk.Block.from_angle(alpha, 2.0)
     p = block.frequency_parameter
@@ -280,7 +280,7 @@ def test_beyond_the_top_and_back(omega, published, engine):
     found = outcomes(unit_pulse("sine", omega), [scale], 0.9, engine)
     reached = abs(found["peak_rotation"][0]) / ALPHA
     assert found["outcome"][0] == Outcome.ROCKED.code
-    assert reached == pytest.approx(published, abs=0.006)  # published with three digits
+    assert reached == pytest.approx(published, abs=0.006)  # known to three digits
     assert reached == pytest.approx(largest_below_mode_two(omega), abs=1e-7)
 
 

@@ -93,7 +93,7 @@ def test_axis_operator():
 @pytest.mark.verifies("closed form", "(4 l^2 - 5) / (4 l^2 + 7)", within="1e-13")
 @pytest.mark.parametrize("slenderness", [1.5, 2.0, 4.0, 8.0])
 def test_housner_over_the_diagonal(slenderness):
-    """REF: (4 l^2 - 5)/(4 l^2 + 7) for a square prism of any slenderness."""
+    """Housner over the diagonal: (4 l^2 - 5)/(4 l^2 + 7) for a square prism of any slenderness."""
     solid = Solid(box(1.0, 1.0, slenderness))
     result = impact_in_space(solid, [-1, 1, 0], pivot=(-0.5, -0.5), onto=(0.5, 0.5), model="housner")
     value = (4.0 * slenderness**2 - 5.0) / (4.0 * slenderness**2 + 7.0)

@@ -52,7 +52,7 @@ def over_feet(apart, model="ked-3d"):
 @pytest.mark.verifies("closed form", "k to 3 or 4 digits, and r of an impulse at k", within="2e-3 of k, 1e-3 of r")
 @pytest.mark.parametrize(("apart", "k"), [(1.0, 0.525), (0.8, 0.621), (0.5, 1.004), (0.3, 2.10), (0.1, 15.7)])
 def test_the_impulse_of_a_block_on_narrow_feet(apart, k):
-    """REF (printed to 3 or 4 digits): k before the cut; above 1 it is cut, and said: Housner's impact."""
+    """Impulse of a block on narrow feet, REF: k before the cut; above 1 it is cut, and said: Housner's impact."""
     assert impulse_position(on_feet(apart)).at(np.array([1.0, 0.0])) == pytest.approx(k, rel=2e-3)
     assert (SpatialFlag.CUT in over_feet(apart).flags) == (k > 1.0)
     # one impulse at k of the half distance b: r = (I_C + m h^2 - m k b^2) / (I_C + m h^2 + m k b^2)
