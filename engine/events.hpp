@@ -138,8 +138,8 @@ void Kernel<G, U, N, D, Z, L>::settle(int i) {
     if (over(i)) return conclude(i);
     if (!(after <= here(i).calm)) return;
     const std::int64_t block = block_at(i);  // soon at rest: then these are needed
-    __builtin_prefetch(motions.horizontal.within.data() + block);
-    __builtin_prefetch(motions.horizontal.later.data() + block);
+    ROCKING_PREFETCH(motions.horizontal.within.data() + block);
+    ROCKING_PREFETCH(motions.horizontal.later.data() + block);
     if (comes_to_rest(i, after)) {
         note(i, kRest, now(i, 0.0), 0.0, 0.0, 0.0);
         rest(i);

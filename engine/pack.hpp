@@ -19,11 +19,22 @@
 #define ROCKING_ROLLED _Pragma("GCC unroll 1")
 #define ROCKING_INLINE inline __attribute__((always_inline))
 #define ROCKING_APART __attribute__((noinline))
+#elif defined(_MSC_VER)
+#define ROCKING_UNROLL
+#define ROCKING_ROLLED
+#define ROCKING_INLINE __forceinline
+#define ROCKING_APART __declspec(noinline)
 #else
 #define ROCKING_UNROLL
 #define ROCKING_ROLLED
 #define ROCKING_INLINE inline
 #define ROCKING_APART
+#endif
+
+#if defined(__GNUC__) || defined(__clang__)
+#define ROCKING_PREFETCH(place) __builtin_prefetch(place)
+#else
+#define ROCKING_PREFETCH(place) static_cast<void>(place)
 #endif
 
 namespace rocking {

@@ -247,7 +247,7 @@ void Kernel<G, U, N, D, Z, L>::lift(int i, std::int64_t at, int side, double whe
     u[i] = alpha[i];
     v[i] = 0.0;
     move(i, when);
-    for (int k = 8; k <= 32; k += 8) __builtin_prefetch(motions.data + at + k);  // until its turn comes in step()
+    for (int k = 8; k <= 32; k += 8) ROCKING_PREFETCH(motions.data + at + k);  // until its turn comes in step()
     if (idx[i] >= last[i]) return finish(i, lane.uplifts || lane.impacts ? kRocked : kNoUplift, kGood);
     if (!lane.uplifts) lane.first_uplift = now(i, 0.0);
     ++lane.uplifts;

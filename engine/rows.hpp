@@ -118,11 +118,11 @@ void Kernel<G, U, N, D, Z, L>::look_for_one() {
         // What rows further on will need comes from memory in the meantime. It stands here because compilers take calls
         // of functions that do nothing else for calls that do nothing.
         if (const Shake* shake = shake_of(next + 6)) {
-            __builtin_prefetch(shake);
-            __builtin_prefetch(reinterpret_cast<const char*>(shake + 1) - 1);
+            ROCKING_PREFETCH(shake);
+            ROCKING_PREFETCH(reinterpret_cast<const char*>(shake + 1) - 1);
         }
         if (const Shake* shake = shake_of(next + 3))
-            for (int k = 0; k < 24; k += 4) __builtin_prefetch(motions.horizontal.within.data() + shake->block + k);
+            for (int k = 0; k < 24; k += 4) ROCKING_PREFETCH(motions.horizontal.within.data() + shake->block + k);
         if (!valid(rows, row, motions.shakes.size())) write_invalid(row);
         else if (prepare(row)) return;
     }
@@ -187,8 +187,8 @@ bool Kernel<G, U, N, D, Z, L>::prepare(std::int64_t row) {
             return false;
         }
     }
-    for (int k = 0; k < 6; ++k) __builtin_prefetch(motions.data + ready.from + 8 * k);
-    __builtin_prefetch(&motions.horizontal.later[shake.block + (ready.from - shake.first) / (kBlock * stride)]);
+    for (int k = 0; k < 6; ++k) ROCKING_PREFETCH(motions.data + ready.from + 8 * k);
+    ROCKING_PREFETCH(&motions.horizontal.later[shake.block + (ready.from - shake.first) / (kBlock * stride)]);
     return true;
 }
 

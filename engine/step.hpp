@@ -41,7 +41,7 @@ void Kernel<G, U, N, D, Z, L>::sweep() {
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& near) {
     // every lane reads a motion of its own, more streams than processors foresee: lines ahead, a lane a turn
-    for (int r = 0; r < count; ++r) __builtin_prefetch(motions.data + idx[base + r * P + work.sweeps % P] + 16);
+    for (int r = 0; r < count; ++r) ROCKING_PREFETCH(motions.data + idx[base + r * P + work.sweeps % P] + 16);
     ROCKING_ROLLED
     for (int r = 0; r < count; ++r) {
         forcing(base, r);

@@ -7,7 +7,7 @@
 #include "radau.hpp"
 
 // A loop over points is compiled twice where the compiler can choose at run time.
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__)
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__GLIBC__)
 #define ROCKING_BED_CLONES __attribute__((target_clones("avx2", "default")))
 #else
 #define ROCKING_BED_CLONES

@@ -20,7 +20,7 @@ template <class T>
 using Line = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 // Wider registers change nothing but the time: no product is fused with a sum.
-#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__)
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__)
 #define ROCKING_WIDER __attribute__((target_clones("avx2", "default")))
 #else
 #define ROCKING_WIDER

@@ -140,7 +140,7 @@ Result Run<D>::result() const {
     if (r.outcome == kFailed) return r;
     const bool over = r.outcome == kOverturned;
     r.still_rocking = r.outcome == kRocked && stance_->contact != kRest;
-    r.peak_tilt = over ? 0.5 * M_PI : std::asin(lesser(1.0, std::sqrt(peak_)));
+    r.peak_tilt = over ? 1.57079632679489661923 : std::asin(lesser(1.0, std::sqrt(peak_)));
     r.peak_time = over ? over_time_ : peak_time_;
     r.peak_spin = std::sqrt(fastest_);
     if (!over) return r;

@@ -1,5 +1,7 @@
 // What goes into a history and what comes out of it.
 #pragma once
+#include <limits>
+
 #include "rest.hpp"
 
 namespace rocking::spatial {
@@ -21,7 +23,7 @@ struct Row {
     Vec velocity;
 };
 
-constexpr double kNan = __builtin_nan("");
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Result {
     int outcome = kFailed, status = kInvalid, over_contact = -1, over_number = -1;

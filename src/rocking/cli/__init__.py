@@ -3,15 +3,17 @@
 import sys
 import warnings
 from collections.abc import Sequence
+from typing import Any
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and leave with its exit code: 0 done, 2 refused, 130 interrupted."""
-    from typer.exceptions import TyperException
+    from typer import BadParameter
 
     from rocking.cli.application import application
     from rocking.errors import RockingError, SlowEngineWarning
 
+    click_exception: Any = BadParameter.__mro__[2]  # versions of typer differ in where they keep click
     arguments = sys.argv[1:] if arguments is None else list(arguments)
     try:
         with warnings.catch_warnings():
@@ -22,7 +24,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except RockingError as error:
         print(f"rocking: {error}", file=sys.stderr)
         sys.exit(2)
-    except TyperException as error:
+    except click_exception as error:
         print(f"rocking: {_refusal(error, arguments)}; see rocking --help", file=sys.stderr)
         sys.exit(2)
     except OSError as error:
