@@ -8,7 +8,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test docs coverage portable portable-quick lint golden engine campaign fuzz fuzz-web durability questions bench mutants lock clean
+.PHONY: help demo test docs oldest packages coverage portable portable-quick lint golden engine campaign fuzz fuzz-web durability questions bench mutants lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
@@ -23,6 +23,8 @@ help:
 	@echo "make campaign the long verifications    make durability  kill campaigns 300 times"
 	@echo "make fuzz-web thousands of damaged requests to the web application, 50 users at once"
 	@echo "make mutants  deliberate errors in the numerical core, and how many the tests notice (3 hours; goes on where it stopped)"
+	@echo "make oldest   the unit tests with the oldest dependencies that are admitted"
+	@echo "make packages the source distribution and, from it, a wheel, into dist; what is in them, the index page, the workflow"
 	@echo "make clean    remove what was made"
 
 $(VENV)/created:
@@ -115,6 +117,25 @@ portable: $(VENV)/dev $(ENGINE)
 # What decides events, under the same settings.
 portable-quick: $(VENV)/dev $(ENGINE)
 	$(BIN)/python tests/portable.py -q -x --no-header -n 2 $(PORTABLE)
+
+# In an environment of its own, whose libraries warn of each other; the engine is that of the checkout.
+OLDEST := build/oldest
+$(OLDEST)/created: $(ENGINE) requirements/oldest.txt
+	@$(PYTHON) -m venv $(OLDEST)
+	@$(OLDEST)/bin/python -m pip install --quiet -r requirements/oldest.txt pytest pytest-xdist hypothesis mpmath sympy httpx
+	@touch $@
+oldest: $(OLDEST)/created
+	PYTHONPATH=src $(OLDEST)/bin/python -m pytest tests/unit -n 2 --dist loadfile -o filterwarnings=default -m "not timed and not browser and not newest"
+
+# The manual that `make docs` made goes into both.
+MANUAL := src/rocking/app/manual
+packages: $(VENV)/dev
+	rm -rf dist $(MANUAL)
+	if [ -d build/manual ]; then cp -r build/manual $(MANUAL); fi
+	$(BIN)/uv build --quiet; status=$$?; rm -rf $(MANUAL); exit $$status
+	$(BIN)/uvx twine check --strict dist/*
+	$(BIN)/uvx check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	$(BIN)/uvx zizmor --offline .github
 
 fuzz: $(VENV)/dev
 	ROCKING_FUZZ=100000 $(BIN)/python -m pytest tests/verification/test_fuzz_readers.py tests/unit/motions_formats/test_miniseed.py \

@@ -12,7 +12,7 @@ from typing import Any
 
 _FENCED = re.compile(r"(^```.*?^```$)", re.MULTILINE | re.DOTALL)  # code: nothing in it is a link
 _PICTURE = re.compile(r"!\[([^\]]*)\]\(([^)\s]+)\)")
-_LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|!\[[^\]]*\]\([^)]*\))+)\]\(([^)\s]+)\)")
+_LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|!\[[^\]]*\]\([^)]*\))*)\]\(([^)\s]+)\)")
 _TAG = re.compile(r"<img\b[^>]*>|</?(?:picture|source|video)\b[^>]*>", re.IGNORECASE)
 _TAGGED = re.compile(r'\b(src|srcset|href)="([^"]+)"')
 _ABSOLUTE = re.compile(r"[a-z]+:|//", re.IGNORECASE)

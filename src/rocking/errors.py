@@ -6,12 +6,12 @@ from importlib import import_module
 from types import ModuleType
 
 _EXTRAS = {
-    "matplotlib": "plots",
     "jinja2": "report",
     "typst": "report",
     "ezdxf": "dxf",
+    "h5netcdf": "netcdf",
+    "h5py": "netcdf",
     "obspy": "obspy",
-    "trimesh": "mesh",
     "openpyxl": "excel",
     "pyarrow": "parquet",
     "distributed": "dask",
@@ -80,12 +80,16 @@ def how_to_install(what: str, module: str, error: ImportError) -> str:
 
     Examples
     --------
+    >>> how_to_install("reading DXF", "ezdxf", ImportError(name="ezdxf"))
+    'reading DXF needs ezdxf: pip install "rocking[dxf]"'
     >>> how_to_install("a table", "xarray", ImportError(name="pandas"))
-    "a table needs pandas: pip install '.[data]' in the folder of rocking's source"
+    'a table needs pandas: pip install pandas'
     """
     package = module.partition(".")[0]
     missing = (error.name or package).partition(".")[0]
-    return f"{what} needs {missing}: pip install '.[{_EXTRAS.get(package, 'data')}]' in the folder of rocking's source"
+    # quoted twice as every shell understands it; brackets alone are a pattern to some
+    wanted = f'"rocking[{_EXTRAS[package]}]"' if package in _EXTRAS else missing
+    return f"{what} needs {missing}: pip install {wanted}"
 
 
 def extra(module: str, what: str) -> ModuleType:

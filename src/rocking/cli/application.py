@@ -7,6 +7,7 @@ from pathlib import Path
 
 import typer
 
+from rocking.cli.completion import words_on_the_line
 from rocking.version import SOFTWARE
 
 _MODULES = {"models": "catalogues", "formats": "catalogues"}
@@ -23,11 +24,10 @@ def application(arguments: Sequence[str] | None = None) -> typer.Typer:
         help="Predict what an impact costs a rocking body, with the evidence beside every number.",
         no_args_is_help=True,
         pretty_exceptions_enable=False,
-        add_completion=False,
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback()(_root)
-    named = arguments[0] if arguments else ""
+    named = next(iter(arguments or words_on_the_line()), "")
     for name in COMMANDS:
         module = _MODULES.get(name, name)
         if arguments is None or name == named:

@@ -6,13 +6,19 @@ from typing import Annotated, Any
 
 import typer
 
+from rocking.cli import completion
 from rocking.cli.page import Page, deliver
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 
 def models(
-    name: Annotated[str | None, typer.Argument(help="One model, or my_file.py:MyModel; all if left out.")] = None,
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            help="One model, or my_file.py:MyModel; all if left out.", autocompletion=completion.every_model
+        ),
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """List the restitution models, in the plane and in space: reference, assumptions, domain, known defects."""

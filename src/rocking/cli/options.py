@@ -4,6 +4,7 @@ from typing import Annotated, Any
 
 import typer
 
+from rocking.cli import completion
 from rocking.spec import document as tables
 
 SIZE, HOW, OUTPUT = "Size, in place of a body file", "How it is computed", "Output"
@@ -32,6 +33,7 @@ Set = Annotated[
     list[str] | None,
     typer.Option(
         "--set",
+        autocompletion=completion.keys,
         help="Any key of the question's file, again for more: settings.gravity=9.81, settings.linear=true, "
         "motion.time_step=0.01, body.up=y; docs/questions.md lists them all.",
         rich_help_panel=HOW,
@@ -43,16 +45,35 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_pa
 _BODIES = "TOML, or WKT, GeoJSON, DXF, or a mesh STL, OBJ, PLY with --units, or GLB"
 BodyFile = Annotated[str | None, typer.Argument(help=f"Body file: {_BODIES}; left out with --width.")]
 Record = Annotated[
-    str | None, typer.Argument(help="Record file, file#COMPONENT, or a pulse such as sine:amplitude=3,period=0.8.")
+    str | None,
+    typer.Argument(
+        help="Record file, file#COMPONENT, or a pulse such as sine:amplitude=3,period=0.8.",
+        autocompletion=completion.pulses,
+    ),
 ]
 Motion = Annotated[
-    list[str] | None, typer.Option(help="The same, as an option; along an axis x=FILE, y=FILE and z=FILE, which is up.")
+    list[str] | None,
+    typer.Option(
+        help="The same, as an option; along an axis x=FILE, y=FILE and z=FILE, which is up.",
+        autocompletion=completion.pulses,
+    ),
 ]
-Motions = Annotated[list[str] | None, typer.Option("--motion", help="The same, as an option; again for more.")]
-Restitution = Annotated[str, typer.Option(help="Model as in rocking models, my_file.py:MyModel, or a coefficient.")]
+Motions = Annotated[
+    list[str] | None,
+    typer.Option("--motion", help="The same, as an option; again for more.", autocompletion=completion.pulses),
+]
+Restitution = Annotated[
+    str,
+    typer.Option(
+        help="Model as in rocking models, my_file.py:MyModel, or a coefficient.", autocompletion=completion.models
+    ),
+]
 Restitutions = Annotated[
     list[str] | None,
-    typer.Option(help="Model as in rocking models, or a coefficient; again for more, to compare; ked if none."),
+    typer.Option(
+        help="Model as in rocking models, or a coefficient; again for more, to compare; ked if none.",
+        autocompletion=completion.models,
+    ),
 ]
 Scale = Annotated[float, key(tables.MotionKeys, "scale")]
 

@@ -4,7 +4,6 @@ import hashlib
 import platform
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field
-from importlib.metadata import version
 from importlib.resources import files
 from typing import Any
 
@@ -164,6 +163,7 @@ def made_with() -> dict[str, str]:
     import scipy
 
     from rocking.evidence.measurements import provenance
+    from rocking.version import SOFTWARE
 
     source, data = provenance(), files("rocking.evidence").joinpath("data")
     prints = [
@@ -171,7 +171,7 @@ def made_with() -> dict[str, str]:
         for name in (f"mao2024_table{i}.csv" for i in (1, 2, 3))
     ]
     return {
-        "Made with": f"rocking {version('rocking')}, Python {platform.python_version()}, numpy {np.__version__}, "
+        "Made with": f"{SOFTWARE}, Python {platform.python_version()}, numpy {np.__version__}, "
         f"scipy {scipy.__version__}",
         "Measurements": f"{source['source']}, doi:{source['doi']}, {source['licence']}",
         "SHA-256": ", ".join(prints),

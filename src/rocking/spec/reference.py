@@ -58,6 +58,13 @@ def reference() -> str:
     return "\n".join([*chain(*questions), "## The keys of body files\n", *chain(*bodies)]) + "\n"
 
 
+def keys_of(name: str) -> list[str]:
+    """Return the keys of a table as they are written; none where no table has the name."""
+    if name not in _TABLES:
+        return []
+    return [field.alias or key for key, field in _TABLES[name][0].model_fields.items()]
+
+
 def _table(name: str, table: type[BaseModel], where: str = "") -> Iterator[str]:
     yield "### The file" if name == "the file" else f"### [{name}]"
     yield f"\n{(table.__doc__ or '').splitlines()[0]}{where}\n"

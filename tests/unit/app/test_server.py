@@ -153,7 +153,7 @@ def test_missing_extra_is_a_sentence(monkeypatch, capsys, tmp_path):
     with pytest.raises(SystemExit) as left:
         main(["serve", "--data", str(tmp_path), "--no-browser"])
     assert left.value.code == 2
-    assert "pip install '.[web]'" in capsys.readouterr().err
+    assert 'pip install "rocking[web]"' in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "::1"])

@@ -259,7 +259,7 @@ def test_dxf_extra_missing(tmp_path, monkeypatch):
         return real(name, *rest, **more)
 
     monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(MissingExtraError, match=r"^reading DXF needs ezdxf: pip install '\.\[dxf\]'"):
+    with pytest.raises(MissingExtraError, match=r'^reading DXF needs ezdxf: pip install "rocking\[dxf\]"'):
         read_body(tmp_path / "a.dxf", units="m")
 
 

@@ -67,7 +67,7 @@ def test_recognition_needs_no_obspy() -> None:
 @pytest.mark.skipif(not WITHOUT, reason="ObsPy is installed")
 def test_without_obspy_the_extra_is_named() -> None:
     """The error says what to install."""
-    with pytest.raises(MissingExtraError, match=r"needs obspy: pip install '\.\[obspy\]'"):
+    with pytest.raises(MissingExtraError, match=r'needs obspy: pip install "rocking\[obspy\]"'):
         MINISEED.read(Source("a", b"000001D XX".ljust(512, b"\0")))
 
 

@@ -48,7 +48,7 @@ def test_recognition_needs_no_obspy() -> None:
 @pytest.mark.skipif(not WITHOUT, reason="ObsPy is installed")
 def test_without_obspy_the_extra_is_named() -> None:
     """The error says what to install."""
-    with pytest.raises(MissingExtraError, match=r"needs obspy: pip install '\.\[obspy\]'"):
+    with pytest.raises(MissingExtraError, match=r'needs obspy: pip install "rocking\[obspy\]"'):
         SAC.read(Source("a.sac", typed(VALUES)), units="m/s2")
 
 

@@ -85,7 +85,7 @@ def test_folder_has_every_form(assessment, tmp_path, monkeypatch):
     written, left_out = write_inventory(assessment, tmp_path / "a" / "b")
     assert [path.name for path in written] == [f"inventory.{kind}" for kind in ("html", "pdf", "csv", "json")]
     assert sorted((tmp_path / "a" / "b").iterdir()) == sorted(written)
-    assert left_out == ["the spreadsheet needs openpyxl: pip install '.[excel]' in the folder of rocking's source"]
+    assert left_out == ['the spreadsheet needs openpyxl: pip install "rocking[excel]"']
     assert written[1].read_bytes().startswith(b"%PDF")
     assert written[2].read_bytes().startswith(b"\xef\xbb\xbfrank,")
     assert "'=cmd()" in written[2].read_text(encoding="utf-8-sig")

@@ -1,0 +1,44 @@
+"""Try an installation as somebody does who has just made it: the first lines of README, and two commands.
+
+``python first_lines.py README.md [--without-engine]`` in an empty folder, by the Python that has the package.
+"""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+COMMANDS = (
+    "cor --width 1 --height 4",
+    "simulate --width 0.5 --height 2 --motion sine:amplitude=3,period=0.8 --restitution ked --out r.png",
+)
+_TOLD = re.compile(r"\s*(?:(\d\.\d+):|\"(.+)\"$)")  # a number or a text at the beginning of a comment is the answer
+
+
+def main(readme: str, *options: str) -> None:
+    """Run all of it, and stop at what gives another answer than README says."""
+    block = re.search(r"```python\n(.*?)```", Path(readme).read_text("utf-8"), re.DOTALL)
+    assert block is not None, f"{readme} has no Python in it"
+    names: dict[str, object] = {}
+    checked = 0
+    for line in block[1].splitlines():
+        code, _, comment = line.partition("#")
+        told = _TOLD.match(comment)
+        if told is None:
+            exec(code, names)
+            continue
+        value, (number, words) = eval(code, names), told.groups()
+        assert value == words if words else f"{value:.{len(number) - 2}f}" == number, (line, value)
+        checked += 1
+    assert checked, f"{readme} says of no line what it gives"
+    from rocking.dynamics.plane import fast_engine
+
+    assert fast_engine.available() is ("--without-engine" not in options), "an engine was or was not expected"
+    for command in COMMANDS:
+        subprocess.run([sys.executable, "-m", "rocking", *command.split()], check=True, stdout=subprocess.DEVNULL)
+    assert Path("r.png").read_bytes().startswith(b"\x89PNG")
+    print(f"{checked} answers of {readme} and {len(COMMANDS)} commands, on Python {sys.version.split()[0]}")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
