@@ -122,10 +122,12 @@ portable-quick: $(VENV)/dev $(ENGINE)
 OLDEST := build/oldest
 $(OLDEST)/created: $(ENGINE) requirements/oldest.txt
 	@$(PYTHON) -m venv $(OLDEST)
-	@$(OLDEST)/bin/python -m pip install --quiet -r requirements/oldest.txt pytest pytest-xdist hypothesis mpmath sympy httpx
+	@$(OLDEST)/bin/python -m pip install --quiet -r requirements/oldest.txt pytest pytest-xdist hypothesis mpmath sympy httpx numpydoc pyyaml \
+		"readme-renderer[md]" scikit-build-core
 	@touch $@
 oldest: $(OLDEST)/created
-	PYTHONPATH=src $(OLDEST)/bin/python -m pytest tests/unit -n 2 --dist loadfile -o filterwarnings=default -m "not timed and not browser and not newest"
+	PYTHONPATH=$(abspath src) $(OLDEST)/bin/python -m pytest tests/unit -n 2 --dist loadfile -o filterwarnings= -W ignore::DeprecationWarning \
+		-W "ignore:check the input" -m "not timed and not browser and not pinned"
 
 # The manual that `make docs` made goes into both.
 MANUAL := src/rocking/app/manual

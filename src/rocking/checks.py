@@ -20,6 +20,8 @@ def number(name: str, value: Any, unit: str = "-") -> float:
     if isinstance(value, (bool, np.bool_, str, bytes, complex)) or value is None:
         raise InvalidValueError(f"{name} must be a number [{unit}], got {value!r}")
     try:
+        if getattr(value, "ndim", 0):
+            raise TypeError  # numpy before 2.4 takes an array of one number for it
         result = float(value)
     except (TypeError, ValueError, OverflowError) as error:
         raise InvalidValueError(f"{name} must be one number [{unit}], got {_short(value)}") from error

@@ -9,6 +9,7 @@ import os
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 import rocking as rk
 from rocking import conventions
@@ -55,10 +56,10 @@ def _frustum(rng):
     z = np.linspace(0.0, height, 2001)
     a = radius * (1.0 + (rng.uniform(0.4, 1.6) - 1.0) * z / height)
     slices = 2000.0 * np.pi * np.square(a)
-    mass = np.trapezoid(slices, z)
-    middle = np.trapezoid(slices * z, z) / mass
-    axial = 0.5 * np.trapezoid(slices * np.square(a), z)
-    across = 0.5 * axial + np.trapezoid(slices * np.square(z), z) - mass * middle**2
+    mass = trapezoid(slices, z)
+    middle = trapezoid(slices * z, z) / mass
+    axial = 0.5 * trapezoid(slices * np.square(a), z)
+    across = 0.5 * axial + trapezoid(slices * np.square(z), z) - mass * middle**2
     return SpatialBody(float(mass), np.array([0.0, 0.0, middle]), np.diag([across, across, axial]), radius)
 
 

@@ -1,5 +1,6 @@
 """The command line: what `rocking --help` lists."""
 
+import re
 import sys
 import warnings
 from collections.abc import Sequence
@@ -46,7 +47,7 @@ def _refusal(error: Exception, arguments: list[str]) -> str:
         return f"{option} {new}"
     message = error.format_message() if hasattr(error, "format_message") else str(error)
     hints = [decimal_comma(word) for word in arguments if not word.partition("=")[2].strip("+-,0123456789")]
-    return f"{message}{next(filter(None, hints), '') if 'valid number' in message else ''}"
+    return f"{message}{next(filter(None, hints), '') if re.search('valid (number|float)', message) else ''}"
 
 
 class _Notes:

@@ -14,6 +14,7 @@ from rocking.dynamics.impact_laws import RandomRestitution
 from rocking.errors import InvalidValueError
 from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration, calibrate
 from rocking.evidence.likelihood import scatter
+from rocking.portable import trapezoid
 from rocking.restitution import ImpactGeometry
 from rocking.restitution.implied import energy_bound
 from rocking.restitution.shifted_impulse import shifted
@@ -68,13 +69,13 @@ class RestitutionDistribution:
     @property
     def mean(self) -> float:
         """Expected coefficient [-]."""
-        return float(np.trapezoid(self.quantiles, dx=1.0 / (self.quantiles.size - 1)))
+        return trapezoid(self.quantiles, 1.0 / (self.quantiles.size - 1))
 
     @property
     def standard_deviation(self) -> float:
         """Standard deviation [-]."""
         moved = (self.quantiles - self.mean) ** 2
-        return float(np.sqrt(np.trapezoid(moved, dx=1.0 / (self.quantiles.size - 1))))
+        return float(np.sqrt(trapezoid(moved, 1.0 / (self.quantiles.size - 1))))
 
     def quantile(self, probability: Any, onto: Foot | None = None) -> FloatArray:
         """Return the coefficients that are not exceeded with given probabilities.

@@ -25,6 +25,7 @@ from rocking.motions.integrals import (
 from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.pulse import Pulse
 from rocking.motions.spectrum import response_spectrum
+from rocking.portable import trapezoid
 
 HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)
 """Periods of Housner's spectrum intensity [s]: every 0.01 s."""
@@ -92,7 +93,7 @@ def cumulative_absolute_velocity(motion: GroundMotion) -> float:
     >>> cumulative_absolute_velocity(GroundMotion([1.0, -1.0], 1.0))
     1.0
     """
-    return float(np.trapezoid(np.abs(checked_motion(motion).acceleration), dx=motion.time_step))  # Eq. 143
+    return trapezoid(np.abs(checked_motion(motion).acceleration), motion.time_step)  # Eq. 143
 
 
 def housner_intensity(motion: GroundMotion, damping: float = 0.05) -> float:
@@ -111,7 +112,7 @@ def housner_intensity(motion: GroundMotion, damping: float = 0.05) -> float:
         The intensity, by the trapezoidal rule with 0.01 s [m].
     """
     pseudo = response_spectrum(motion, HOUSNER_PERIODS, damping).pseudo_velocity
-    return float(np.trapezoid(pseudo, HOUSNER_PERIODS))  # Eq. 144
+    return trapezoid(pseudo, np.diff(HOUSNER_PERIODS))  # Eq. 144
 
 
 def spectral_acceleration(motion: GroundMotion, period: float, damping: float = 0.05) -> float:

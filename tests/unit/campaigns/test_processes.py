@@ -189,5 +189,5 @@ def test_work_is_taken_as_it_is_needed(tmp_path, work):
 def test_missing_dask_has_a_sentence(tmp_path, work, monkeypatch):
     """The extra is named."""
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(MissingExtraError, match=r"needs distributed: pip install '\.\[dask\]'"):
+    with pytest.raises(MissingExtraError, match=r'needs distributed: pip install "rocking\[dask\]"'):
         Campaign.create(tmp_path / "c", work).run(DaskExecutor("tcp://127.0.0.1:9"))

@@ -247,6 +247,7 @@ def test_executor_that_is_closed_early_waits_for_its_thread(tmp_path, hooked):
     assert len(list(tmp_path.glob("*.shard"))) == 1
 
 
+@pytest.mark.skipif(np.__version__.startswith("1."), reason="numpy 1 has its rules by thread, which a context has not")
 def test_rules_of_the_caller_hold_for_the_histories(tmp_path, hooked):
     """What NumPy does about an overflow is a matter of the thread: it is that of whoever runs the campaign."""
     campaign = Campaign.create(tmp_path / "c", hooked(lambda first: np.exp(np.float64(1e4))), 50)

@@ -405,7 +405,7 @@ def test_kill_resume_export(run, job, tmp_path):
     os.killpg(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=30)
     assert (process.returncode, out) == (3, "")
-    assert err.startswith("rocking: stopped: ")
+    assert err.lstrip().startswith("rocking: stopped: ")
     assert len(err.splitlines()) == 1
     code, out, _ = run("resume", folder, "--json")
     assert (code, json.loads(out)["resumed_chunks"] >= before + 3) == (0, True)

@@ -41,6 +41,6 @@ def test_quantities_have_their_unit(capsys, monkeypatch, command):
     """The line of each option that takes a quantity names its unit, within the panels; lengths say how to change it."""
     page = shown(capsys, monkeypatch, command)
     for option, unit in UNITS[command].items():
-        (line,) = [line for line in page.splitlines() if f" {option} <" in line]
+        (line,) = [line for line in page.splitlines() if re.search(rf" {option} +[<A-Z]", line)]
         assert unit in line
     assert "\u256d\u2500 Output \u2500" in page

@@ -92,7 +92,7 @@ def test_folder_has_every_form(assessment, tmp_path, monkeypatch):
     plain = json.loads(written[3].read_text(encoding="utf-8"))
     assert {item["name"] for item in plain["objects"]} == {"tall vase", "display case", "chest", "=cmd()"}
     assert plain["columns_not_read"] == ["room"]
-    with pytest.raises(MissingExtraError, match=r"'\.\[excel\]'"):
+    with pytest.raises(MissingExtraError, match=r'"rocking\[excel\]"'):
         write_spreadsheet(assessment, tmp_path / "x.xlsx")
     # a file in the place of the folder is refused in one sentence
     (tmp_path / "taken").write_text("", encoding="utf-8")

@@ -218,7 +218,7 @@ def test_disk_full(finished, tmp_path, monkeypatch):
 def test_missing_extra(finished, tmp_path, monkeypatch):
     """Without pyarrow the sentence names what to install."""
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(MissingExtraError, match=r"Parquet needs pyarrow: pip install '\.\[parquet\]'"):
+    with pytest.raises(MissingExtraError, match=r'Parquet needs pyarrow: pip install "rocking\[parquet\]"'):
         export(finished("histories"), tmp_path / "r.parquet")
 
 
