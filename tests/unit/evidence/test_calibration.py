@@ -251,6 +251,7 @@ def test_quantiles_converge_with_the_grid(axis):
     assert coarse[1] > 100.0 * errors[1]
 
 
+@pytest.mark.pinned
 def test_what_is_kept_is_what_would_be_computed():
     """The posterior and the misfits of `make calibration`, computed anew: rounding alone may part them."""
     kept, anew = calibrate(), calibrate_on(all_measurements())
