@@ -69,8 +69,10 @@ NAMED = re.compile(r'"(\w+\.(?:png|gif))"')
 PARTS = {
     "prediction_with_interval": (1, 0, (0.0, 0.0, 0.68, 1.0)),
     "league_with_own_model": (1, 0, (0.28, 0.0, 1.0, 1.0)),
+    "impact_laboratory": (1, 0, (0.0, 0.0, 0.37, 1.0)),
     "record_from_a_file": (1, 0, (0.0, 0.08, 0.62, 1.0)),
     "processing_a_motion": (1, 0, (0.6, 0.08, 1.0, 1.0)),
+    "synthetic_record_sets": (1, 0, (0.5, 0.0, 1.0, 0.88)),
     "one_cabinet_three_models": (1, 66, (0.0, 0.08, 1.0, 0.52)),
     "response_to_a_pulse": (1, 0, (0.0, 0.26, 1.0, 0.71)),
     "free_rocking_decay": (1, 0, (0.0, 0.26, 1.0, 0.49)),
@@ -79,6 +81,8 @@ PARTS = {
     "inventory_of_objects": (1, 0, (0.0, 0.05, 0.62, 0.92)),
     "does_the_restitution_model_matter": (1, 0, (0.34, 0.0, 0.9, 0.84)),
     "refined_map_with_boundary": (1, 0, (0.5, 0.1, 1.0, 0.86)),
+    "solid_statue": (1, 0, (0.0, 0.0, 0.7, 1.0)),
+    "round_base_by_corners": (1, 0, (0.0, 0.0, 0.36, 1.0)),
     "falling_by_direction": (1, 0, (0.0, 0.06, 0.36, 0.86)),
     "which_intensity_measure": (1, 0, (0.0, 0.1, 0.6, 1.0)),
 }
