@@ -74,7 +74,7 @@ PARTS = {
     "processing_a_motion": (1, 0, (0.6, 0.08, 1.0, 1.0)),
     "synthetic_record_sets": (1, 0, (0.5, 0.0, 1.0, 0.88)),
     "one_cabinet_three_models": (1, 66, (0.0, 0.08, 1.0, 0.52)),
-    "response_to_a_pulse": (1, 0, (0.0, 0.26, 1.0, 0.71)),
+    "response_to_a_pulse": (1, 0, (0.0, 0.26, 1.0, 0.49)),
     "free_rocking_decay": (1, 0, (0.0, 0.26, 1.0, 0.49)),
     "beyond_the_slenderness_angle": (2, 48, (0.0, 0.08, 1.0, 0.56)),
     "fragility_by_stripes": (1, 0, (0.0, 0.0, 1.0, 0.66)),
@@ -88,8 +88,8 @@ PARTS = {
 }
 """What a thumbnail shows, if not a whole first picture: which picture, frame, part (left, top, right, bottom)."""
 
-_INCH, _WIDEST, _THUMBNAIL = 120, 900, (480, 336)
-"""Dots of a page in an inch of a picture, width of its text [px], and size of a thumbnail, of which half is shown."""
+_INCH, _WIDEST, _THUMBNAIL, _MARGIN = 120, 900, (456, 312), 12
+"""Dots of a page in an inch of a picture, width of its text [px], and size of a thumbnail with its margin, of which half is shown."""
 
 
 def section_order(folder: str) -> int:
@@ -146,7 +146,8 @@ def thumbnails(app: Sphinx) -> None:
             box = [round(edge * size) for edge, size in zip(part, 2 * shown.size, strict=True)]
             shown = shown.crop(box)
             shown = shown.crop(ImageChops.difference(shown, Image.new("RGB", shown.size, "white")).getbbox())
-            ImageOps.pad(shown, _THUMBNAIL, Image.Resampling.LANCZOS, "white").save(thumbnail)
+            inner = ImageOps.pad(shown, _THUMBNAIL, Image.Resampling.LANCZOS, "white")
+            ImageOps.expand(inner, _MARGIN, "white").save(thumbnail)
 
 
 def notebook(blocks: Any, conf: dict[str, Any], folder: Any) -> dict[str, Any]:
