@@ -89,7 +89,7 @@ PARTS = {
 """What a thumbnail shows, if not a whole first picture: which picture, frame, part (left, top, right, bottom)."""
 
 _INCH, _WIDEST, _THUMBNAIL, _MARGIN = 120, 900, (456, 312), 12
-"""Dots of a page in an inch of a picture, width of its text [px], and size of a thumbnail with its margin, of which half is shown."""
+"""Dots of a page in an inch of a picture, width of its text [px]; thumbnails and their margin at twice their size."""
 
 
 def section_order(folder: str) -> int:
