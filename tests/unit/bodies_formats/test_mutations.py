@@ -16,7 +16,9 @@ from rocking.errors import RockingError
 pytestmark = pytest.mark.verifies(room="bodies")
 
 EXAMPLES = examples.path("statue").parent
-TOML = [path.read_text(encoding="utf-8") for path in sorted(EXAMPLES.glob("*.toml"))] + [
+PLANE = [text for path in sorted(EXAMPLES.glob("*.toml")) if "[solid" not in (text := path.read_text("utf-8"))]
+TOML = [
+    *PLANE,
     'units = "m"\n[mass_points]\npoints = [[0, 1], [0.5, 2]]\nmasses = [1, 2.5]\nfeet = [-1, 1]\ncontact = [[-1, 0]]',
     'units = "in"\nname = "x"\n[block]\nwidth = 10\nheight = 20.5\ndensity = 1e3\nfeet = [1, 9]',
     'units = "ft"\n[ellipse]\nwidth = 1\nheight = 2\nsides = 12',
