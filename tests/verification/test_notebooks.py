@@ -18,7 +18,10 @@ sys.path.append(str(DOCS / "_ext"))
 cleaned = import_module("notebooks").cleaned
 
 PATH_IS_SET = 'os.environ["PATH"] = sysconfig.get_path("scripts")'
-pytestmark = pytest.mark.filterwarnings("ignore")  # those of kernels and their sockets are not ours
+pytestmark = [
+    pytest.mark.verifies("behaviour", room="doors"),
+    pytest.mark.filterwarnings("ignore"),  # those of kernels and their sockets are not ours
+]
 
 
 def offered(text, name="page.md"):
@@ -72,6 +75,7 @@ def page(*cells):
     return front + "\n\n".join(f"```{{code-cell}} ipython3\n{cell}\n```" for cell in cells)
 
 
+@pytest.mark.verifies(control="within")
 def test_a_notebook_finds_the_command(tmp_path):
     """A kernel whose shell does not know the environment finds `rocking` after the cell of the pages, not before."""
     setting = f'import os, sysconfig\n{PATH_IS_SET} + os.pathsep + os.environ["PATH"]'
