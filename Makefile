@@ -157,7 +157,8 @@ mutants: $(VENV)/mutants $(ENGINE)
 	$(BIN)/python -m benchmarks.mutants
 
 campaign: $(VENV)/dev $(ENGINE)
-	ROCKING_CAMPAIGN=1 $(BIN)/python -m pytest tests/verification tests/unit/evidence/test_calibration.py tests/unit/test_gallery.py -q
+	ROCKING_CAMPAIGN=1 $(BIN)/python -m pytest tests/verification tests/validation \
+		tests/unit/evidence/test_calibration.py tests/unit/test_gallery.py -q
 
 lock: $(VENV)/created
 	$(PIP) install uv

@@ -129,3 +129,29 @@ def warn(sentence: str, category: type[Warning]) -> None:
     }:
         level, frame = level + 1, frame.f_back
     warnings.warn(sentence, category, stacklevel=level)
+
+
+def silenced(category: type[Warning]) -> bool:
+    """Whether warnings of a class are ignored wherever they come from: their sentences need not be computed.
+
+    Parameters
+    ----------
+    category : type
+        Class of the warning.
+
+    Returns
+    -------
+    bool
+        False where a filter depends on the sentence or on the module that warns.
+
+    Examples
+    --------
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("ignore", PureRockingWarning)
+    ...     silenced(PureRockingWarning), silenced(PlausibilityWarning)
+    (True, False)
+    """
+    for action, message, about, module, line in warnings.filters:
+        if issubclass(category, about):
+            return action == "ignore" and message is None and module is None and not line
+    return False

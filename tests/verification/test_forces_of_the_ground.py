@@ -234,6 +234,27 @@ def test_a_ground_that_falls_twice_as_fast_as_gravity_is_told(engine: str) -> No
         assert rk.Outcome.FLEW.value in response.doubts()[0] or "overturned" in response.doubts()[0]
 
 
+@pytest.mark.verifies("behaviour")
+def test_what_nobody_hears_is_not_followed_and_what_is_asked_is_followed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The history that may fly is computed for a warning that is heard, not for one that is ignored, and once."""
+    followed = []
+    monkeypatch.setattr(rk.dynamics.Response, "_flown", lambda response, friction: followed.append(friction) or "flew")
+    up = np.full(80, -2.0 * g)
+    motion = rk.GroundMotion(0.5 * np.sin(np.arange(80.0)), 0.01, vertical=up)
+    response = rk.simulate(LEANING, motion, 0.9)
+    assert response.lost_contact
+    assert followed == []
+    assert response.doubts() == response.doubts() == ["flew"]
+    assert followed == [None]
+    with warnings.catch_warnings():
+        # a filter of sentences may let some through
+        warnings.filterwarnings("ignore", message="flew", category=PureRockingWarning)
+        rk.simulate(LEANING, motion, 0.9)
+    with pytest.warns(PureRockingWarning, match="flew"):
+        rk.simulate(LEANING, motion, 0.9)
+    assert followed == [None] * 3
+
+
 @pytest.mark.verifies("negative control", "a weak motion without a vertical part")
 def test_nothing_is_said_where_contact_holds() -> None:
     """Without a vertical part, a weak motion: no warning, and the least force is between nought and one."""

@@ -12,7 +12,7 @@ from rocking.statistics import fit_lognormal
 pytestmark = pytest.mark.verifies(room="statistics")
 
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
-STUDIES = 5000 if CAMPAIGN else 480
+STUDIES = 5000 if CAMPAIGN else 240
 MEDIAN, DISPERSION, MOTIONS = 0.8, 0.6, 30
 LEVELS = MEDIAN * np.exp(np.linspace(-1.6, 1.6, 8) * DISPERSION)
 COARSE = MEDIAN * np.exp((np.linspace(-2.5, 2.5, 8) + 0.2) * DISPERSION)

@@ -1,7 +1,7 @@
 """Every text reader against damaged files: a refusal, or a record that its own header does not contradict.
 
 What the header states is read a second time by `stated_by_headers`, which shares nothing with the readers. The number
-of damaged copies a format is 2000, or the environment variable ROCKING_FUZZ; the tests of miniSEED and SAC, beside
+of damaged copies a format is 1000, or the environment variable ROCKING_FUZZ; the tests of miniSEED and SAC, beside
 their other tests, follow it with a part of it.
 """
 
@@ -21,7 +21,7 @@ from rocking.motions.formats import Component, Record, RecordFormat, Source, for
 
 pytestmark = pytest.mark.verifies(room="motions and records")
 
-COPIES = int(os.environ.get("ROCKING_FUZZ", "2000"))
+COPIES = int(os.environ.get("ROCKING_FUZZ", "1000"))
 BINARY = {"miniseed", "sac"}
 TEXT_FORMATS = [name for name in formats() if name not in BINARY]
 UNCLEAR = "read, though the second reading does not understand the header"

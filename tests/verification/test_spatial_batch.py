@@ -24,7 +24,7 @@ pytestmark = [
     pytest.mark.skipif(not fast_engine.available(), reason="the batch engine was not built"),
 ]
 
-CASES = 1000 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 20
+CASES, FOLLOWED = (1000, 12) if os.environ.get("ROCKING_CAMPAIGN") == "1" else (12, 8)
 STEP, LENGTH = 0.02, 8.0
 G = 9.81
 TOWER = SpatialBody.box(1.0, 1.3, 4.0)
@@ -141,8 +141,8 @@ def _first_three(body, motion, scale, law):
 )
 def test_the_first_three_impacts_are_those_of_the_reference_engine(agreement):
     """Times to 1e-6 s and attitudes to 1e-6 over random bodies, motions and laws."""
-    found = np.array([_first_three(*_case(seed)) for seed in range(100, 112)])
-    assert found[:, 1].sum() > 15
+    found = np.array([_first_three(*_case(seed)) for seed in range(100, 100 + FOLLOWED)])
+    assert found[:, 1].sum() > 1.25 * FOLLOWED
     agreement(found[:, 0].max(), 1e-6)
 
 

@@ -1,7 +1,7 @@
 """Round bases under ordinary records: every history ends, energy closes, and what is held down is real physics.
 
 With ROCKING_CAMPAIGN=1 both engines are compared on 60
-cases instead of 6.
+cases instead of 4, and 360 records shake round bodies instead of 110.
 """
 
 import math
@@ -35,6 +35,7 @@ STEP, LENGTH, G = 0.02, 8.0, 9.81
 LAWS = ["housner-3d", "horizontal-momentum-3d", 0.9, 0.98]
 CYLINDER = SpatialBody.cylinder(0.5, 2.0)
 CAMPAIGN = os.environ.get("ROCKING_CAMPAIGN") == "1"
+COUNTS = {"three": 200, "one": 80, "along and up": 80} if CAMPAIGN else {"three": 50, "one": 30, "along and up": 30}
 built = pytest.mark.skipif(not fast_engine.available(), reason="the batch engine was not built")
 
 
@@ -76,10 +77,10 @@ def _reference(seed, **options):
 
 @pytest.mark.verifies("behaviour")
 @built
-@pytest.mark.parametrize(("components", "count"), [("three", 200), ("one", 80), ("along and up", 80)])
-def test_round_bodies_end_with_a_result(components, count):
+@pytest.mark.parametrize("components", COUNTS)
+def test_round_bodies_end_with_a_result(components):
     """Cylinders and frusta under records of one to three components, four laws: 99 % of the histories have a result."""
-    outcomes = []
+    outcomes, count = [], COUNTS[components]
     for seed in range(count):
         body, (x, y, z), scale = _case(seed)
         motion = {"three": (x, y, z), "one": (x,), "along and up": (x, None, z)}[components]
@@ -250,11 +251,11 @@ def test_rolling_with_hardly_any_energy_comes_to_rest():
 def test_both_engines_find_the_same_outcome():
     """Outcomes of random cases; peaks to 1e-6 where the reference engine tells of no near-flat passage."""
     compared = 0
-    for seed in range(30, 90 if CAMPAIGN else 36):
+    for seed in range(30, 90 if CAMPAIGN else 34):
         body, motion, scale = _case(seed)
         slow, fast = _reference(seed), batch_in_space(body, motion, scales=scale)
         assert fast.outcome.item() == slow.outcome.code, seed
         if slow.outcome is Outcome.ROCKED and not slow.near_flat_passages:
             assert fast["peak_tilt"].item() == pytest.approx(slow.peak_tilt, rel=1e-6)
         compared += 1
-    assert compared >= 6
+    assert compared >= 4

@@ -1,6 +1,7 @@
 """ked-3d: where the impulse acts, steps of any size, energy, pull, against REF numbers (CONTRIBUTING.md)."""
 
 import math
+import os
 from itertools import pairwise
 
 import numpy as np
@@ -19,6 +20,8 @@ from rocking.restitution.space.impulse_position import impulse_position
 
 pytestmark = pytest.mark.verifies(room="restitution in space")
 
+# random steps of each body
+STEPS = 4000 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 1000
 UP = np.array([0.0, 0.0, 1.0])
 BENT = rk.Section.from_points([(0, 0), (1.0, 0), (0.9, 2.2), (0.5, 2.6), (0.2, 1.4)])
 BODIES = {
@@ -148,13 +151,13 @@ def impact_of(solid, old, new, velocity):
 )
 @pytest.mark.parametrize("name", BODIES)
 def test_steps_keep_momentum_about_the_impulse_and_create_no_energy(name):
-    """4,000 random steps of each asymmetric body: energy never rises; equal to the equations written anew, to 1e-9.
+    """Random steps of each asymmetric body, 4,000 or 1,000: energy never rises; the equations written anew, to 1e-9.
 
     Wherever Housner's impulse pushes, so does this one: those are the only steps that the engine takes. Negative
     control: k of the wrong sign, which mirrors X, creates energy in a quarter of the steps.
     """
     solid, gains, pulls, moved = BODIES[name], 0, 0, 0
-    for old, new, velocity in states(solid, 4000, 7):
+    for old, new, velocity in states(solid, STEPS, 7):
         impact, k = impact_of(solid, old, new, velocity), min(impulse_position(solid).at(new - old), 1.0)
         made = SpatialKed().turned(impact)
         energy = 0.5 * made @ impact.inertia @ made
@@ -173,9 +176,9 @@ def test_steps_keep_momentum_about_the_impulse_and_create_no_energy(name):
             np.testing.assert_allclose(made, expected, rtol=1e-9, atol=1e-9)
             wrong = of_mass(solid, old, new, velocity, -k)
             gains += 0.5 * wrong @ impact.inertia @ wrong > impact.energy
-    assert gains > 1000
-    assert pulls < (0.12 if name == "squat" else 0.06) * 4000  # as docs/theory/space_impacts.md says
-    assert moved < 0.02 * 4000
+    assert gains > 0.25 * STEPS
+    assert pulls < (0.12 if name == "squat" else 0.06) * STEPS  # as docs/theory/space_impacts.md says
+    assert moved < 0.02 * STEPS
 
 
 @pytest.mark.verifies("invariant", "energy before the step", within="1e-12")

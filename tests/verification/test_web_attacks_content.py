@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import os
 import re
 import time
 import tomllib
@@ -211,8 +212,12 @@ EXPORTS = [
 ]  # fmt: skip
 
 
-SLOW = {"report.pdf", "animation.html", "picture/response.svg", "picture/body.png"}
-"""Tried with every seventh name."""
+PICTURES = ("SVG", "mathematics of a picture")
+SLOW = {
+    "picture/response.svg": PICTURES, "picture/body.png": PICTURES, "report.pdf": ("typesetting",),
+    "animation.html": ("script", "end of CDATA", "style"),
+}  # fmt: skip
+"""Tried with the names that could do something there; with ROCKING_CAMPAIGN=1 with all."""
 
 
 def inert_csv(text: str) -> None:
@@ -259,7 +264,8 @@ def inert(kind: str, data: bytes, name: str) -> None:
 def test_hostile_names_are_inert(client: TestClient, export: str) -> None:
     """No name of a body does anything in any export, nor to the name of the file and its head; or it is refused."""
     made = 0
-    names = list(NAMES.values())[:: 7 if export in SLOW else 1]
+    every = os.environ.get("ROCKING_CAMPAIGN") == "1"
+    names = [NAMES[name] for name in (NAMES if every else SLOW.get(export, NAMES))]
     for name in names:
         answer = client.post(f"/api/{export}", json={**GOOD, "body": {**BLOCK, "name": name}})
         assert answer.status_code in {200, 422}, (name, answer.text[:300])

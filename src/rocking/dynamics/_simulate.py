@@ -284,7 +284,7 @@ def _followed(  # noqa: PLR0913 - what the two questions have in common
         body, motion, restitution, Settings(**settings), rotation=rotation, angular_velocity=angular_velocity,
         engine=engine, stream=stream, **how,
     )  # fmt: skip
-    for sentence in response.doubts():
+    for sentence in () if errors.silenced(PureRockingWarning) else response.doubts():
         errors.warn(sentence, PureRockingWarning)
     return response
 

@@ -181,8 +181,15 @@ class Response(ResponseBase):
         """
         # what nobody gave decides no flight: the feet are then kept from sliding
         given = None if isinstance(friction, Assumed) else friction
-        told = [self._flown(given)] if self.lost_contact else []
+        if self.lost_contact and given not in self._flights:
+            self._flights[given] = self._flown(given)
+        told = [self._flights[given]] if self.lost_contact else []
         return told if friction is None else [*told, *self.contact.slips(friction)]
+
+    @cached_property
+    def _flights(self) -> dict[float | None, str]:
+        """What the body does if it may fly, by the coefficient of friction: a history of its own, followed once."""
+        return {}
 
     def _flown(self, friction: float | None) -> str:
         from rocking.dynamics.plane.energy_balance import LEAVES

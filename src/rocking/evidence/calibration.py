@@ -12,7 +12,7 @@ Priors: ``k ~ N(0.6, 0.12)`` cut to [0, 1]; ``1 - eta ~ Beta(1.5, 98.5)`` (mean 
 import hashlib
 import math
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -129,12 +129,20 @@ class Calibration:
         return self._predicted(*_geometry(np.frombuffer(ratios), "right"))
 
     def _predicted(self, geometry: ImpactGeometry, bound: FloatArray) -> tuple[FloatArray, ...]:
-        eta, k, s, gamma = self.samples.T[:, :, None]
+        samples, weight = self._distinct
+        eta, k, s, gamma = samples.T[:, :, None]
         mean = np.clip(eta * shifted(geometry, k), 0.0, bound)
         sd = scatter(mean, s, gamma)
-        low, high = (_quantile(mean, sd, p) for p in (0.5 * (1.0 - LEVEL), 0.5 * (1.0 + LEVEL)))
-        spread = np.sqrt((sd**2 + mean**2).mean(axis=0) - mean.mean(axis=0) ** 2)
-        return mean.mean(axis=0), np.clip(low, 0.0, bound), np.clip(high, 0.0, bound), spread
+        low, high = (_quantile(mean, sd, weight, p) for p in (0.5 * (1.0 - LEVEL), 0.5 * (1.0 + LEVEL)))
+        middle = (weight * mean).sum(axis=0)
+        spread = np.sqrt((weight * (sd**2 + (mean - middle) ** 2)).sum(axis=0))
+        return middle, np.clip(low, 0.0, bound), np.clip(high, 0.0, bound), spread
+
+    @cached_property
+    def _distinct(self) -> tuple[FloatArray, FloatArray]:
+        """Samples without repetition, a quarter of them: they lie on a grid; and their shares, as a column."""
+        samples, count = np.unique(self.samples, axis=0, return_counts=True)
+        return samples, (count / count.sum())[:, None]
 
     def draw(self, count: int, seed: int) -> FloatArray:
         """Draw parameters from the posterior.
@@ -357,22 +365,28 @@ def _facts(grid: FloatArray, weight: FloatArray) -> dict[str, float]:
     return {"mean": mean, "sd": math.sqrt(float(((grid - mean) ** 2 * weight).sum())), "low": low, "high": high}
 
 
-def _quantile(mean: FloatArray, sd: FloatArray, level: float) -> FloatArray:
-    """Return a quantile of equally likely normals, those of a column together: Newton's method within a bracket."""
+def _quantile(mean: FloatArray, sd: FloatArray, weight: FloatArray, level: float) -> FloatArray:
+    """Return a quantile of mixtures of normals, one a column: Newton's method within a bracket; weight: a column."""
     low, high = (mean - 8.0 * sd).min(axis=0), (mean + 8.0 * sd).max(axis=0)
-    value = mean.mean(axis=0)
+    value = (weight * mean).sum(axis=0)
+    sought = np.arange(value.size)  # columns whose quantile still moves
     for _ in range(100):
-        z = (value - mean) / sd
-        excess = normal_cdf(z).mean(axis=0) - level  # Eq. 137
-        low, high = np.where(excess < 0.0, value, low), np.where(excess < 0.0, high, value)
-        slope = (np.exp(-0.5 * z * z) / sd).mean(axis=0) / math.sqrt(2.0 * math.pi)
+        now, spread = value[sought], sd[:, sought]
+        z = (now - mean[:, sought]) / spread
+        excess = (weight * normal_cdf(z)).sum(axis=0) - level  # Eq. 137
+        low, high = np.where(excess < 0.0, now, low), np.where(excess < 0.0, high, now)
+        slope = (weight * np.exp(-0.5 * z * z) / spread).sum(axis=0) / math.sqrt(2.0 * math.pi)
         with np.errstate(divide="ignore", invalid="ignore"):
-            following = value - excess / slope
-        following = np.where((following > low) & (following < high), following, 0.5 * (low + high))
-        if np.abs(following - value).max() < 1e-13:
-            return np.asarray(following)
-        value = following
-    return np.asarray(value)
+            step = excess / slope
+        # at the root rounding may point out of the bracket
+        moved = ~(np.abs(step) < 1e-13)
+        following = now - step
+        inside = ~moved | ((following > low) & (following < high))
+        value[sought] = np.where(inside, following, 0.5 * (low + high))
+        if not moved.any():
+            break
+        sought, low, high = sought[moved], low[moved], high[moved]
+    return value
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,7 @@ from rocking.studies.fragility import model_of, to_csv, to_nrml
 PERIODS = [round(0.4 + 0.05 * k, 2) for k in range(24)]
 STRIPES = job(
     "stripes", BODY, f"[motions]\npulse = {[f'sine:amplitude=1,period={period}' for period in PERIODS]}\n",
-    "[fragility]\nlevels = { from = 2, to = 8, count = 13 }\nstates = [0.3]\n", name="many states", seed=6,
+    "[fragility]\nlevels = { from = 2, to = 8, count = 7 }\nstates = [0.3]\n", name="many states", seed=6,
 )  # fmt: skip
 ASKED = STRIPES + "[export]\nbootstrap = 99\n"
 
@@ -46,7 +46,7 @@ def from_python(bootstrap, seed):
     """Return the model of the same study by the Python calls."""
     motions = [rk.pulses.sine(1.0, period) for period in PERIODS]
     body = rk.Block(width=0.5, height=2.0)
-    found = multiple_stripe_analysis(body, motions, np.linspace(2.0, 8.0, 13), states=(0.3,))
+    found = multiple_stripe_analysis(body, motions, np.linspace(2.0, 8.0, 7), states=(0.3,))
     return model_of(found, "many states", bootstrap=bootstrap, seed=seed)
 
 
