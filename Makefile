@@ -158,7 +158,7 @@ mutants: $(VENV)/mutants $(ENGINE)
 
 campaign: $(VENV)/dev $(ENGINE)
 	ROCKING_CAMPAIGN=1 $(BIN)/python -m pytest tests/verification tests/validation \
-		tests/unit/evidence/test_calibration.py tests/unit/test_gallery.py -q
+		tests/unit/evidence/test_calibration.py tests/unit/evidence/test_comparison.py tests/unit/test_gallery.py -q
 
 lock: $(VENV)/created
 	$(PIP) install uv

@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import tempfile
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -83,6 +84,7 @@ def counted(batch: Histories, p: np.ndarray | None = None, rotation: np.ndarray 
     return Operations(*(int(n) for n in counts), outcome)
 
 
+@cache
 def _built() -> ctypes.CDLL | None:
     compiler = next(filter(None, map(shutil.which, ("c++", "g++", "clang++"))), None)
     if compiler is None:

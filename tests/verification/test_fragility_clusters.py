@@ -56,8 +56,12 @@ def _few(random, motions, levels=LEVELS):
 VARIATES = {"median": 0.0, "dispersion": None, 0.16: float(ndtri(0.16))}
 
 
-FEW = [pytest.param(n, LEVELS, id=f"{n}") for n in (7, 11, 20)]
-FEW += [pytest.param(n, COARSE, id=f"{n} coarse") for n in ((7, 11, 20) if CAMPAIGN else (7,))]
+# the fewest are the hardest
+FEW = [
+    pytest.param(n, levels, id=f"{n}{words}")
+    for levels, words in ((LEVELS, ""), (COARSE, " coarse"))
+    for n in ((7, 11, 20) if CAMPAIGN else (7,))
+]
 
 
 @pytest.mark.verifies(

@@ -1,7 +1,7 @@
 """Round bases under ordinary records: every history ends, energy closes, and what is held down is real physics.
 
-With ROCKING_CAMPAIGN=1 both engines are compared on 60
-cases instead of 4, and 360 records shake round bodies instead of 110.
+With ROCKING_CAMPAIGN=1 both engines are compared on 60 cases instead of 4, and 360 records shake round bodies instead
+of 110.
 """
 
 import math

@@ -386,7 +386,7 @@ def _quantile(mean: FloatArray, sd: FloatArray, weight: FloatArray, level: float
         if not moved.any():
             break
         sought, low, high = sought[moved], low[moved], high[moved]
-    return value
+    return np.asarray(value)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,7 @@
 """The rule of comparison: its coverage, its symmetry, what it says of the published measurements."""
 
 import dataclasses
+import os
 
 import numpy as np
 import pytest
@@ -40,14 +41,16 @@ def test_coverage_of_the_paired_interval():
     """Models whose errors share their noise: 95 % intervals hold the true difference in 88 to 98 % of 400 studies.
 
     Percentile intervals from 39 rows are a little narrow (Efron & Tibshirani 1993, ch. 14), hence the lower limit. The
-    control draws anew for the second model: it holds the truth nearly always, and would resolve nothing.
+    control draws anew for the second model: it holds the truth nearly always, and would resolve nothing. Without
+    ROCKING_CAMPAIGN=1 there are 150 studies, of which a share has a standard deviation of 2 %: 1 % more is allowed.
     """
+    studies, more = (400, 0.0) if os.environ.get("ROCKING_CAMPAIGN") == "1" else (150, 0.01)
     random, bias, sd = np.random.default_rng(4), (0.03, 0.02), 0.03
     truth = np.hypot(bias[0], sd) - np.hypot(bias[1], sd)
     # every row a specimen, in one data set
     data = dataclasses.replace(DATA, labels=tuple(map(str, range(39))), group=("all",) * 39)
     paired = unpaired = 0
-    for _ in range(400):
+    for _ in range(studies):
         noise = sd * random.normal(size=39)
         models = [data.coefficient + noise + each for each in bias]
         found = compare(data, *models)
@@ -55,8 +58,8 @@ def test_coverage_of_the_paired_interval():
         one, other = (resampled((model - data.coefficient) ** 2, drawn(data)) for model in models)
         low, high = np.quantile(one - other[::-1], [0.025, 0.975])
         unpaired += low <= truth <= high
-    assert 0.88 < paired / 400 < 0.98
-    assert unpaired / 400 > 0.98
+    assert 0.88 - more < paired / studies < 0.98 + more
+    assert unpaired / studies > 0.98
 
 
 def test_rows_of_one_specimen_are_drawn_together():
