@@ -1,8 +1,7 @@
 """Fragility statistics: an independent probit fit, the true coverage of every interval, and separation.
 
 ROCKING_CAMPAIGN=1 in the environment repeats the coverage with ten times as many studies, that of the bootstrap and of
-bands with 10,000 in place of 300 within 2 % in place of 3 % (a share of 300 has a standard deviation of 1.3 %), and
-with the bootstrap of clouds.
+bands with 10,000 in place of 300 (a share of 300 has a standard deviation of 1.3 %), and with the bootstrap of clouds.
 """
 
 import os
@@ -23,7 +22,7 @@ pytestmark = pytest.mark.verifies(room="statistics")
 
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
 STUDIES = 10_000 if CAMPAIGN else 1000
-DEAR, OFF = (10_000, 0.02) if CAMPAIGN else (300, 0.03)
+DEAR = 10_000 if CAMPAIGN else 300
 MEDIAN, DISPERSION = 0.8, 0.6
 PARAMETERS = (0.5, "dispersion", 0.16)
 
@@ -153,11 +152,17 @@ def _bootstrap_coverage(design, studies, trials):
     return hits / studies
 
 
-@pytest.mark.verifies("repeated sampling", "1,000 studies whose truth is known", within="93 to 97 %", control="within")
+@pytest.mark.verifies(
+    "repeated sampling",
+    "300 studies whose truth is known",
+    within="92 to 98 %; 93 to 97 % in campaigns",
+    control="within",
+)
 def test_bootstrap_intervals_cover_as_often_as_they_say():
     """The studentised bootstrap covers in 95 % of many studies; cut to half its width it does not."""
     whole, half = _bootstrap_coverage(_stripes, DEAR, [40] * 8)
-    assert np.all(np.abs(whole - 0.95) <= OFF), whole
+    least, most = (0.93, 0.97) if CAMPAIGN else (0.92, 0.98)
+    assert np.all((whole >= least) & (whole <= most)), whole
     assert np.all(half < 0.93), half
 
 
@@ -170,7 +175,9 @@ def test_bootstrap_intervals_of_clouds_cover_as_often_as_they_say():
     assert np.all(half < 0.93), half
 
 
-@pytest.mark.verifies("repeated sampling", "1,000 studies whose truth is known", within="93 to 97 %")
+@pytest.mark.verifies(
+    "repeated sampling", "300 studies whose truth is known", within="92 to 98 %; 93 to 97 % in campaigns"
+)
 def test_bands_cover_as_often_as_they_say():
     """The pointwise 95 % band holds the true curve in 95 % of many studies at each of three levels."""
     levels, failures = _stripes(DEAR, seed=5)
@@ -178,7 +185,8 @@ def test_bands_cover_as_often_as_they_say():
     truth = ndtr(np.log(places / MEDIAN) / DISPERSION)
     bands = [fit_lognormal(levels, z, [40] * 8).band(places) for z in failures]
     share = np.mean([(low <= truth) & (truth <= high) for low, high in bands], axis=0)
-    assert np.all(np.abs(share - 0.95) <= OFF), share
+    least, most = (0.93, 0.97) if CAMPAIGN else (0.92, 0.98)
+    assert np.all((share >= least) & (share <= most)), share
 
 
 @pytest.mark.verifies("repeated sampling", "parameters that were put in", within="4 standard errors of less than 0.01")
