@@ -2,7 +2,12 @@
 
 from pathlib import Path
 
+from rocking.motions.intensity import MEASURES
+from rocking.motions.pulses import catalogue
+from rocking.motions.synthetic import families
+from rocking.spec import construction
 from rocking.spec.reference import reference
+from rocking.studies import axes
 
 ROOT = Path(__file__).parents[2]
 
@@ -13,3 +18,19 @@ def test_the_documentation_of_keys_is_that_of_the_tables():
     assert (ROOT / "docs" / "questions.md").read_text(encoding="utf-8").endswith(text)
     rows = [line for line in text.splitlines() if line.startswith("| `")]
     assert [row for row in rows if row.endswith("|  |")] == []
+
+
+def test_the_keys_of_a_body_are_documented():
+    """The table of [body], which no description makes, has every key that may stand beside a file or an angle."""
+    page = (ROOT / "docs" / "questions.md").read_text(encoding="utf-8")
+    table = page.partition("### [body]")[2].partition("###")[0]
+    keys = {"file", *construction._BESIDE_FILE, *construction._OUTSIDE, "width", "height", *construction._OF_ANGLE}
+    assert {key for key in keys if f"`{key}`" not in table} == set()
+
+
+def test_names_that_stand_as_values_are_documented():
+    """Every axis, measure, synthetic family and pulse is in the documentation, and what is none is not."""
+    text = reference().partition("## Names that stand as values")[2].partition("## The keys of body files")[0]
+    names = [f"`{name}`" for name in (*axes(), *MEASURES, *families())] + [f"`{name}:" for name in catalogue()]
+    assert [name for name in names if f"| {name}" not in text] == []
+    assert "| `amplitude`" not in text

@@ -64,7 +64,7 @@ def _file(text: str, kinds: dict[str, Export]) -> tuple[str, Path]:
     if equals and name in kinds:
         path = Path(rest)
         if path.suffix.lower() not in kinds[name].endings:
-            raise InvalidValueError(f"{_article(name)} is {_or(kinds[name].endings)}, got {path.name!r:.60}")
+            raise InvalidValueError(f"{name} is {_or(kinds[name].endings)}, got {path.name!r:.60}")
         return name, path
     path = Path(text)
     chosen = next((kind for kind, export in kinds.items() if path.suffix.lower() in export.endings), None)
@@ -78,7 +78,7 @@ def _possible(kinds: dict[str, Export]) -> str:
     parts = []
     for name, export in kinds.items():
         prefix = f"{name}=FILE with " if seen & set(export.endings) else ""
-        parts.append(f"{_article(name)} ({prefix}{_or(export.endings)})")
+        parts.append(f"{name} ({prefix}{_or(export.endings)})")
         seen |= set(export.endings)
     return ", ".join(parts)
 
@@ -86,10 +86,6 @@ def _possible(kinds: dict[str, Export]) -> str:
 def described(kinds: dict[str, Export]) -> str:
     """Return the kinds of files, for the help of `--out`."""
     return f"Write a file, again for more; its ending says what: {_possible(kinds)}."
-
-
-def _article(name: str) -> str:
-    return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
 
 
 def _or(endings: Sequence[str]) -> str:

@@ -34,8 +34,8 @@ Set = Annotated[
     typer.Option(
         "--set",
         autocompletion=completion.keys,
-        help="Any key of the question's file, again for more: settings.gravity=9.81, settings.linear=true, "
-        "motion.time_step=0.01, body.up=y; docs/questions.md lists them all.",
+        help="A key of the question's file, again for more: settings.gravity=9.81, settings.linear=true, "
+        "motion.time_step=0.01, body.up=y; the manual lists them all.",
         rich_help_panel=HOW,
     ),
 ]

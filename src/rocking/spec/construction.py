@@ -140,6 +140,7 @@ def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Soli
 
 
 _BESIDE_FILE = ("units", "density", "up", "fill_holes", "base_tolerance")
+_OF_ANGLE = (*_OUTSIDE, "slenderness_angle", "semi_diagonal", "depth", "density")
 
 
 def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | Solid:
@@ -159,9 +160,8 @@ def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | So
 
 def _from_angle(table: dict[str, Any]) -> Body:
     """Return a block by its slenderness angle [rad] and its semi-diagonal."""
-    allowed = {"units", "slenderness_angle", "semi_diagonal", "depth", "density", "name", "note"}
-    if odd := sorted(set(table) - allowed):
-        raise InvalidValueError(f"unknown key {odd[0]!r:.60}{suggestion(odd[0], sorted(allowed))}")
+    if odd := sorted(set(table) - set(_OF_ANGLE)):
+        raise InvalidValueError(f"unknown key {odd[0]!r:.60}{suggestion(odd[0], sorted(_OF_ANGLE))}")
     if missing := sorted({"units", "slenderness_angle", "semi_diagonal"} - set(table)):
         raise InvalidValueError(f"{missing[0]} is missing: a block has slenderness_angle, semi_diagonal and units")
     scale = length_unit(table["units"])

@@ -2,6 +2,7 @@
 
 import types
 from collections.abc import Iterator
+from inspect import signature
 from itertools import chain
 from typing import Any, Literal, Union, get_args, get_origin
 
@@ -9,20 +10,24 @@ from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
 from rocking.bodies.formats import schema
+from rocking.dynamics import Settings
 from rocking.spec import document
 from rocking.spec.fields import JobTable, Values
+from rocking.studies.inventory import Thresholds
 
 _TABLES: dict[str, tuple[type[JobTable], str]] = {
     "response": (document.ResponseTable, "`rocking simulate`"),
-    "motion": (document.ComponentsTable, "`rocking simulate`, `rocking motion`; [[motions]] of a study has records and "
-               "count, and pulse may be a list"),
+    "motion": (document.ComponentsTable, "`rocking simulate`, `rocking motion`"),
+    "[motions]": (document.MotionTable, "every study"),
     "restitution": (document.RestitutionTable, "every question"),
+    "restitution.distribution": (document.RandomTable, "every question but [inventory]"),
     "settings": (document.SettingsTable, "every question"),
     "map": (document.MapTable, "`rocking map`"),
     "minimum": (document.MinimumTable, "`rocking minimum`"),
     "spectrum": (document.SpectrumTable, "`rocking spectrum`"),
     "fragility": (document.FragilityTable, "`rocking fragility`"),
     "inventory": (document.InventoryTable, "`rocking inventory`"),
+    "inventory.thresholds": (document.ThresholdsTable, "`rocking inventory`"),
     "histories": (document.HistoriesTable, "campaigns of kind histories"),
     "campaign": (document.CampaignTable, "`rocking campaign`"),
     "export": (document.ExportTable, "`rocking campaign export`"),
@@ -55,7 +60,7 @@ def reference() -> str:
     """Return a table of keys for every table of a question and of a body file: name, kind, usual value, meaning."""
     questions = [_table(name, table, f" Of {where}.") for name, (table, where) in _TABLES.items()]
     bodies = [_table(name, table) for name, table in _BODIES.items()]
-    return "\n".join([*chain(*questions), "## The keys of body files\n", *chain(*bodies)]) + "\n"
+    return "\n".join([*chain(*questions), *_names(), "## The keys of body files\n", *chain(*bodies)]) + "\n"
 
 
 def keys_of(name: str) -> list[str]:
@@ -65,13 +70,48 @@ def keys_of(name: str) -> list[str]:
     return [field.alias or key for key, field in _TABLES[name][0].model_fields.items()]
 
 
+def _names() -> Iterator[str]:
+    """Give the names that stand as values: axes of maps, measures, synthetic families, pulses."""
+    from rocking.motions.intensity import MEASURES
+    from rocking.motions.pulses import catalogue
+    from rocking.motions.synthetic import families
+    from rocking.studies.axis import axes
+
+    measures = [(name, f"{measure.words} [{measure.unit}]") for name, measure in MEASURES.items()]
+    pulses = [
+        (
+            f"{name}:{','.join(f'{key}=' for key in signature(make).parameters)}",
+            _first_line(make).removeprefix("Return "),
+        )
+        for name, make in catalogue().items()
+    ]
+    yield "## Names that stand as values\n"
+    for title, head, rows in (
+        ("Axes of a map", "axis", [(name, f"{axis.words} [{axis.unit}]") for name, axis in axes().items()]),
+        ("Measures of intensity", "measure", [*measures, ("sa(T)", "spectral acceleration at the period T [m/s2]")]),
+        ("Families of synthetic motions", "family", [(name, family.title) for name, family in families().items()]),
+        ("Pulses", "pulse", pulses),
+    ):
+        yield f"### {title}\n\n| {head} | what it is |\n|---|---|"
+        yield from (f"| `{name}` | {words.replace('[1]', '[-]').rstrip('.')} |" for name, words in rows)
+        yield ""
+
+
+def _first_line(documented: Any) -> str:
+    return str(documented.__doc__ or "").splitlines()[0].replace("``", "`")
+
+
 def _table(name: str, table: type[BaseModel], where: str = "") -> Iterator[str]:
     yield "### The file" if name == "the file" else f"### [{name}]"
-    yield f"\n{(table.__doc__ or '').splitlines()[0]}{where}\n"
+    yield f"\n{_first_line(table)}{where}\n"
     yield "| key | kind | if left out | meaning |"
     yield "|---|---|---|---|"
     for key, field in table.model_fields.items():
         usual = "needed" if field.is_required() else _usual(field.default)
+        if table is document.SettingsTable and not usual:
+            usual = _usual_setting(key)
+        elif table is document.ThresholdsTable:
+            usual = _usual(getattr(Thresholds(), key))
         yield f"| `{field.alias or key}` | {_kind(field.annotation)} | {usual} | {field.description or ''} |"
     yield ""
 
@@ -80,6 +120,15 @@ def _usual(value: Any) -> str:
     if value is None or value is PydanticUndefined or isinstance(value, JobTable):
         return ""
     return f"`{str(value).lower() if isinstance(value, bool) else value}`"
+
+
+def _usual_setting(key: str) -> str:
+    """Return the usual value of a setting: one, or that of rocking, with friction and in space."""
+    ways = {"rocking": "", "contact": " with friction", "space": " in space"}
+    values = {words: getattr(Settings(mechanics=mechanics), key) for mechanics, words in ways.items()}
+    if len({*values.values()}) == 1:
+        return _usual(values[""])
+    return ", ".join(_usual(value) + words for words, value in values.items() if value is not None)
 
 
 def _kind(annotation: Any) -> str:

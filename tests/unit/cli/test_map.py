@@ -173,7 +173,7 @@ REFUSALS = [
     (("--restitution", "ked", "--y", "restitution=0.5,0.9"), "leave the option out"),
     (("--refine", "0"), "--refine must be in"),
     (("--refine", "2", "--restitution", "ked", "--restitution", "0.9"), "--refine is for one"),
-    (("--out", "a.gif"), "by its ending a file is a picture (.png"),
+    (("--out", "a.gif"), "by its ending a file is picture (.png"),
     (("--out", "a.png", "--x", "frequency_ratio=2"), "at least two values"),
     (("--out", "no-such-folder/a.csv"), "no folder"),
     (("--set", "settings.engine=warp"), "settings.engine must be"),

@@ -123,7 +123,7 @@ REFUSALS = [
     ((*SIZE, PULSE, "--levels", "13"), "levels must be"),
     ((*SIZE, PULSE, "--restitution", "no-such"), "no-such"),
     ((*SIZE, PULSE, "--restitution", "-0.5"), "restitution"),
-    ((*SIZE, PULSE, "--out", "a.txt"), "by its ending a file is a picture (.png"),
+    ((*SIZE, PULSE, "--out", "a.txt"), "by its ending a file is picture (.png"),
     ((*SIZE, PULSE, "--out", "no-such-folder/a.csv"), "no folder"),
     ((*SIZE, PULSE, "--set", "settings.engine=warp"), "settings.engine must be"),
     ((*SIZE, "sine:amplitude=0,period=1"), "peak above zero"),

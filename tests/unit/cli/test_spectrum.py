@@ -101,7 +101,7 @@ REFUSALS = [
     ((SINE, "--periods", "1:5:99999", "--slenderness", "4:8:200"), "rocking campaign"),
     ((SINE, "--restitution", "no-such"), "no-such"),
     ((SINE, "--scale", "nan"), "scale"),
-    ((SINE, "--out", "a.bmp"), "by its ending a file is a picture (.png"),
+    ((SINE, "--out", "a.bmp"), "by its ending a file is picture (.png"),
     ((SINE, "--out", "no-such-folder/a.nc"), "no folder"),
     ((SINE, "--set", "settings.gravity=0"), "settings.gravity must be"),
 ]
