@@ -12,7 +12,7 @@ from fastapi.exceptions import RequestValidationError
 from pydantic import ValidationError
 from starlette.exceptions import HTTPException
 from starlette.middleware import Middleware
-from starlette.responses import FileResponse, RedirectResponse
+from starlette.responses import FileResponse
 from starlette.staticfiles import StaticFiles
 
 from rocking.app.answers import ERRORS, JsonAnswer, describe_api, error_answer, refusal
@@ -135,10 +135,6 @@ def _add_pages(app: FastAPI) -> None:
     @app.get("/api-docs", include_in_schema=False)
     def api_docs() -> FileResponse:
         return FileResponse(STATIC / "api-docs.html")
-
-    @app.get("/manual", include_in_schema=False)
-    def manual() -> RedirectResponse:
-        return RedirectResponse("/manual/")
 
     built = next((each for each in _MANUALS if (each / "index.html").exists()), STATIC / "manual")
     app.mount("/manual", StaticFiles(directory=built, html=True), name="manual")

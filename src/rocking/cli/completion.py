@@ -28,6 +28,13 @@ def every_model(incomplete: str) -> list[str]:
     return models(incomplete) + [name for name in spatial_models() if name.startswith(incomplete)]
 
 
+def examples(incomplete: str) -> list[str]:
+    """Return the examples whose names begin so."""
+    from rocking.examples import catalogue
+
+    return [name for name in catalogue() if name.startswith(incomplete)]
+
+
 def pulses(incomplete: str) -> list[str]:
     """Return the pulses whose names begin so, once a letter says that no file is meant."""
     from rocking.motions.pulses import catalogue

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking.bodies import Solid
-from rocking.cli import options
+from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
 from rocking.cli.exports import PICTURES, Export, Exports, draw, write_records
 from rocking.cli.numbers import in_unit, side_line
@@ -59,7 +59,10 @@ def cor(
     onto: Annotated[str, typer.Option(help="Foot on which the body lands: right, left or both.")] = "both",
     restitution: Annotated[
         list[str] | None,
-        typer.Option(help="Model, again for more: ked, 0.98*ked, shifted-impulse:k=0.6, file.py:MyModel; or ked-3d."),
+        typer.Option(
+            help="Model, again for more: ked, 0.98*ked, shifted-impulse:k=0.6, file.py:MyModel; or ked-3d.",
+            autocompletion=completion.every_model,
+        ),
     ] = None,
     eta: Annotated[float, typer.Option(help="Interface factor in (0, 1] on every model.")] = 1.0,
     identities: Annotated[

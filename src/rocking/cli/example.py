@@ -10,12 +10,16 @@ from typing import Annotated, Any
 import typer
 
 from rocking import checks, examples
+from rocking.cli import completion
 from rocking.cli.page import Page, deliver
 from rocking.errors import InvalidValueError
 
 
 def example(
-    name: Annotated[str | None, typer.Argument(help="One example; all are listed if left out.")] = None,
+    name: Annotated[
+        str | None,
+        typer.Argument(help="One example; all are listed if left out.", autocompletion=completion.examples),
+    ] = None,
     listed: Annotated[bool, typer.Option("--list", help="Only say what it would write and run.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Write over files of the same names.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print as JSON what there is, and run nothing.")] = False,

@@ -2,8 +2,8 @@
 
 The rule, which nothing but the measurements decides:
 
-1. Judged by are the measurements in the slenderness bands in which the sides of the body lie (the nearest band if it is
-   outside all of them); all measurements where those are of fewer than five specimens.
+1. Judged by are the measurements in the slenderness bands in which the sides of the body lie; all measurements where
+   those are of fewer than five specimens.
 2. Models stand as they are, nothing fitted. The calibrated default stands by predictions of calibrations that have not
    seen the data set of the measurement.
 3. A model is set aside if its root mean square error of r is above that of the closest by a paired bootstrap interval

@@ -80,8 +80,11 @@ def _verdict(made: "Recommendation") -> list[str]:
         return []
     remains = [each for each in made.models if each.name in made.remaining]
     over = [each.name for each in remains if each.outcome is Outcome.OVERTURNED]
-    words = f"Under this motion {len(over)} of the {len(remains)} models that remain overturn it"
-    words += f" ({', '.join(over)})" if over else ""
+    if len(remains) == 1:
+        words = f"Under this motion it {'overturns' if over else 'does not overturn'} by the one model that remains"
+    else:
+        words = f"Under this motion {len(over)} of the {len(remains)} models that remain overturn it"
+        words += f" ({', '.join(over)})" if over else ""
     sure = (len(over) == len(remains) and share.low > 0.95) or (not over and share.high < 0.05)
     end = "the choice of the model does not decide" if sure else "the coefficient decides: report both verdicts"
     return [f"{words}, and {share}: {end}."]
@@ -89,6 +92,8 @@ def _verdict(made: "Recommendation") -> list[str]:
 
 def _settled(made: "Recommendation", low: "ModelForBody", high: "ModelForBody") -> list[str]:
     """Say what a measurement must be, to tell the models of the envelope apart."""
+    if low is high:
+        return ["r measured on this body would replace every model."]
     apart, place = max((abs(high.coefficients[key] - low.coefficients[key]), key) for key in low.coefficients)
     if not made.prediction:
         return [f"What would settle it: r measured on this body, with a standard error below {apart / APART:.2g}."]

@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -71,18 +71,23 @@ def _posterior(data: DataSet) -> Calibration:
 
 
 def _chosen(models: Sequence[Any]) -> list[RestitutionModel]:
-    if isinstance(models, (str, RestitutionModel)):
-        models = [models]
-    found = {each.label: each for each in map(model, models)}
+    found = {each.label: each for each in map(model, _several(models))}
+    if CALIBRATED in found:
+        raise InvalidValueError(f"{CALIBRATED!r} is the default, which is judged anyhow; give your model another name")
     for each in found.values():
         if isinstance(each.model if isinstance(each, Interface) else each, Fixed):
             raise InvalidValueError(
                 f"{each.label} is a value given by hand: nothing that was measured on other bodies can judge it; if it "
                 "was measured on this body it is better than every model"
             )
-    if not found:
-        raise InvalidValueError("models must be at least one, got none")
     return list(found.values())
+
+
+def _several(models: Any) -> list[Any]:
+    several = list(models) if isinstance(models, Iterable) and not isinstance(models, str) else [models]
+    if not several:
+        raise InvalidValueError("models must be at least one, got none")
+    return several
 
 
 def _refusals(which: RestitutionModel, body: Body) -> tuple[str, ...]:
@@ -170,11 +175,9 @@ def _picked(
 ) -> Recommendation:
     """Apply the rule: the calibrated default for a number unless it is set aside, then the closest that remains."""
     open_ = Recommendation(body, tuple(rows), judged, outside, notes, "", ())
-    standing = {each.name: each.standing for each in rows}
     remains = [each for each in rows if each.name in open_.remaining]
     holds = [each for each in rows if each.standing is not Standing.EXCLUDED]
-    calibrated = standing.get(CALIBRATED) in (Standing.CLOSEST, Standing.UNRESOLVED)
-    number = CALIBRATED if calibrated else (remains or holds)[0].name if judged and holds else ""
+    number = CALIBRATED if CALIBRATED in open_.remaining else (remains or holds)[0].name if judged and holds else ""
     by_value = sorted(remains or holds, key=lambda each: product(each.coefficients))
     envelope = tuple(dict.fromkeys(each.name for each in (by_value[:1] + by_value[-1:])))
     return replace(open_, prediction=number, envelope=envelope)
@@ -248,7 +251,7 @@ def _in_space(solid: Solid, motion: Any, models: Sequence[Any] | None) -> Recomm
         depth = [float(np.cross(edge.direction, corner.point - edge.point)[2]) for corner in base.corners]
         onto, place = base.corners[depth.index(max(depth))], "the far corner"
     rows = []
-    for each in [spatial_model(name) for name in ([models] if isinstance(models, str) else models or spatial_models())]:
+    for each in [spatial_model(name) for name in _several(spatial_models() if models is None else models)]:
         found = impact_in_space(solid, -edge.direction, pivot=edge, onto=onto, model=each)
         reasons = tuple(flag.value for flag in found.flags)
         standing = Standing.EXCLUDED if reasons else Standing.UNJUDGED

@@ -40,6 +40,8 @@ def written(files: Mapping[str, bytes], folder: Path, *, force: bool) -> list[Pa
     paths = {folder / name: content for name, content in files.items()}
     if not folder.is_dir():
         raise InvalidValueError(f"no folder {str(folder)!r} to write {', '.join(files)} into")
+    if folders := [str(path) for path in paths if path.is_dir()]:
+        raise InvalidValueError(f"{', '.join(folders)}: a folder of that name is there already; take another folder")
     if not force and (odd := [path for path, content in paths.items() if holds_another(path, content)]):
         raise InvalidValueError(
             f"{', '.join(map(str, odd))}: there already, with something else in it; take another folder, or write over "
@@ -52,4 +54,4 @@ def written(files: Mapping[str, bytes], folder: Path, *, force: bool) -> list[Pa
 
 def holds_another(path: Path, content: bytes) -> bool:
     """Return whether there is something of that name that is not what would be written."""
-    return path.exists() and not (path.is_file() and path.read_bytes() == content)
+    return path.exists() and path.read_bytes() != content

@@ -32,6 +32,8 @@ def offered(line, shell="bash"):
         ("rocking m", {"map", "minimum", "models", "motion"}, "cor"),
         ("rocking simulate --re", {"--restitution"}, "--friction"),
         ("rocking simulate --restitution h", {"housner", "horizontal-momentum"}, "ked"),
+        ("rocking cor --restitution ked", {"ked", "ked-3d"}, "housner"),
+        ("rocking example st", {"statue", "stele", "stripes"}, "pier"),
         ("rocking models ked", {"ked", "ked-3d", "ked-3d-point"}, "housner"),
         ("rocking simulate b.toml ric", {"ricker:"}, "sine:"),
         ("rocking map --set settings.o", {"settings.order="}, "settings.gravity="),

@@ -16,6 +16,7 @@ from rocking.conventions import opposite
 from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.evidence import all_measurements, judgement, restitution_distribution
 from rocking.restitution import recommend
+from rocking.restitution.space import spatial_model
 
 FORMULAS = {
     "housner": lambda ratio: 1.0 - 1.5 / (1.0 + ratio**2),
@@ -311,6 +312,13 @@ class Mine(rk.restitution.RestitutionModel):
         return 1.0 - (self.factor * side.half_width / side.centre_height) ** 2
 
 
+class Calibrated(Mine):
+    """A model of a user that is called as the default is."""
+
+    name = "calibrated"
+    label = "calibrated"
+
+
 def test_an_own_model_takes_part():
     """It is judged by the same measurements as the others: here its formula is close to cos^2."""
     data = all_measurements()
@@ -328,6 +336,10 @@ def test_an_own_model_takes_part():
         (lambda: recommend(SLENDER, models=["0.9*fixed:r=0.9"]), InvalidValueError, "a value given by hand"),
         (lambda: recommend(SLENDER, models=[]), InvalidValueError, "models must be at least one"),
         (lambda: recommend(SLENDER, models=["husner"]), UnknownModelError, "husner"),
+        (lambda: recommend(SLENDER, models=0.9), UnknownModelError, "got 0.9"),
+        (lambda: recommend(SLENDER, models=[Calibrated()]), InvalidValueError, "another name"),
+        (lambda: recommend(Solid(box(1.0, 1.0, 4.0)), models=[]), InvalidValueError, "models must be at least one"),
+        (lambda: recommend(Solid(box(1.0, 1.0, 4.0)), models=0.9), UnknownModelError, "called 0.9"),
         (lambda: recommend(SLENDER, measurements=[0.9]), InvalidValueError, "measurements must be a DataSet"),
         (lambda: recommend(Solid(box(1.0, 1.0, 4.0)), 1.0), InvalidValueError, "follows a Solid in space"),
         (lambda: recommend(SLENDER)["husner"], KeyError, "husner"),
@@ -336,6 +348,25 @@ def test_an_own_model_takes_part():
 def test_refusals(question, error, words):
     with pytest.raises(error, match=words):
         question()
+
+
+def test_where_one_model_remains_there_is_no_choice_to_settle():
+    """Plane and in space, in the singular too; a model in space may be an object."""
+    found = recommend(rk.Block(width=1.0, height=4.0, density=2000.0), rk.pulses.sine(3.0, 0.5), models="ked")
+    assert found.remaining == ("calibrated",)
+    assert "it does not overturn by the one model that remains, and 0 % of 400 draws overturn" in found.advice[-2]
+    assert found.advice[-1] == "r measured on this body would replace every model."
+    solid = Solid(box(1.0, 1.0, 4.0))
+    assert recommend(solid, models=spatial_model("ked")).advice == recommend(solid, models="ked").advice
+    assert recommend(solid, models="ked").advice[-1] == found.advice[-1]
+
+
+def test_outside_of_what_was_measured_the_default_stays_the_number():
+    """Also where it is further off, as nothing is set aside there."""
+    found = recommend(rk.Block(width=1.0, height=0.4), measurements=as_if("ked"))
+    assert found.outside
+    assert found["calibrated"].standing.value == "further off"
+    assert found.prediction == "calibrated"
 
 
 def test_every_form_says_the_same():

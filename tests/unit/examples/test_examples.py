@@ -213,6 +213,14 @@ def test_a_file_of_the_user_is_not_written_over(tmp_path):
         rk.examples.write("statue", tmp_path / "none")
 
 
+def test_a_folder_of_the_name_of_a_file_is_left(tmp_path):
+    """Refused before anything is written, also with force."""
+    (tmp_path / "near-fault.csv").mkdir()
+    with pytest.raises(InvalidValueError, match=r"near-fault\.csv: a folder of that name is there already"):
+        rk.examples.write("statue", tmp_path, force=True)
+    assert [path.name for path in tmp_path.iterdir()] == ["near-fault.csv"]
+
+
 def test_the_catalogue_prints():
     """A line for each on a terminal; a row for each, escaped, in a notebook."""
     lines = repr(rk.examples.catalogue()).splitlines()
