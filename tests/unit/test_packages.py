@@ -183,11 +183,24 @@ def test_the_workflow_publishes_what_it_tried():
     jobs = WORKFLOW["jobs"]
     systems = jobs["wheels"]["strategy"]["matrix"]["system"]
     assert [sum(each.startswith(name) for each in systems) for name in ("ubuntu", "macos", "windows")] == [2, 2, 1]
-    assert set(jobs["publish"]["needs"]) == set(jobs) - {"publish"}
+    assert {*jobs["publish"]["needs"], jobs["wheels"]["needs"]} == set(jobs) - {"publish"}
     assert jobs["publish"]["if"] == "github.ref_type == 'tag'"
     assert jobs["publish"]["permissions"] == {"id-token": "write"}
     for step in [step for job in jobs.values() for step in job["steps"] if "uses" in step]:
         assert re.search(r"@[0-9a-f]{40}$", step["uses"]), step
+
+
+def test_the_workflow_s_packages_bring_the_manual():
+    """Wheels and sources wait for the manual, and lay it into the package; only packages are published."""
+    jobs = WORKFLOW["jobs"]
+    for job in (jobs["wheels"], jobs["source"]):
+        (fetched,) = [each["with"] for each in job["steps"] if "download-artifact" in each.get("uses", "")]
+        (kept,) = [each["with"] for each in job["steps"] if "upload-artifact" in each.get("uses", "")]
+        assert job["needs"] == "manual"
+        assert fetched == {"name": "manual", "path": PYPROJECT["tool"]["scikit-build"]["sdist"]["include"][0]}
+        assert kept["name"].startswith("dist-")
+    (published,) = [each["with"] for each in jobs["publish"]["steps"] if "download-artifact" in each["uses"]]
+    assert published["pattern"] == "dist-*"
 
 
 def test_files_that_the_workflow_names_exist():
