@@ -2,7 +2,7 @@
 =================
 
 Where do I get ground motions without a database? Three stochastic models make them by seed: the same seed gives the
-same bits on every computer. For teachers, developers, and studies that need more motions than were ever recorded.
+same motion on every computer. For teachers, developers, and studies that need more motions than were ever recorded.
 """
 
 import numpy as np

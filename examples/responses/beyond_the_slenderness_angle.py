@@ -21,7 +21,7 @@ while overturned - standing > 1e-9:
     overturned, standing = (middle, standing) if falls else (overturned, middle)
 
 # %%
-# Two amplitudes that differ by less than a millionth of a thousandth: one overturns, the other comes back from 1.56
+# Two amplitudes that differ by at most a billionth of a m/s2: one overturns, the other comes back from 1.56
 # alpha, without a single impact.
 
 response, fallen = (rk.simulate(block, rk.pulses.sine(amplitude, 0.75), 0.85) for amplitude in (standing, overturned))

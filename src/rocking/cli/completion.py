@@ -4,7 +4,7 @@ import os
 
 import typer
 
-_TABLES_OF_ALL = ("motion", "restitution", "settings")
+_TABLES_OF_ALL = ("motion", "settings")
 
 
 def words_on_the_line() -> list[str]:
@@ -46,6 +46,7 @@ def keys(context: typer.Context, incomplete: str) -> list[str]:
     """Return the keys of the tables of a command's question that begin so."""
     from rocking.spec.reference import keys_of
 
-    own = {"simulate": "response"}.get(context.info_name or "", context.info_name or "")
-    every = [f"{table}.{key}=" for table in (own, *_TABLES_OF_ALL) for key in keys_of(table)]
+    command = context.info_name or ""
+    own = ("response", "restitution") if command == "simulate" else (command,)
+    every = [f"{table}.{key}=" for table in (*own, *_TABLES_OF_ALL) for key in keys_of(table)]
     return [key for key in every if key.startswith(incomplete)]

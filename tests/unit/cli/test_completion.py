@@ -37,6 +37,8 @@ def offered(line, shell="bash"):
         ("rocking models ked", {"ked", "ked-3d", "ked-3d-point"}, "housner"),
         ("rocking simulate b.toml ric", {"ricker:"}, "sine:"),
         ("rocking map --set settings.o", {"settings.order="}, "settings.gravity="),
+        ("rocking simulate --set res", {"response.free=", "restitution.value="}, "settings.order="),
+        ("rocking map --set ", {"map.refine=", "motion.scale="}, "restitution.value="),
         ("rocking simulate --set response.f", {"response.free=", "response.friction="}, "map.x="),
     ],
 )
