@@ -406,7 +406,7 @@ def test_kill_resume_export(run, job, tmp_path):
     out, err = process.communicate(timeout=30)
     assert (process.returncode, out) == (3, "")
     assert err.lstrip().startswith("rocking: stopped: ")
-    assert len(err.splitlines()) == 1
+    assert len(err.strip().splitlines()) == 1
     code, out, _ = run("resume", folder, "--json")
     assert (code, json.loads(out)["resumed_chunks"] >= before + 3) == (0, True)
     assert run("export", folder, "--out", tmp_path / "r.nc")[0] == 0
