@@ -16,7 +16,7 @@ from rocking.restitution import RestitutionModel
 
 _RESAMPLES = 4000
 _SEED = 20240710
-_FEWEST = 5  # specimens; of four that agree, one in eight does so by chance
+FEWEST = 5  # specimens; of four that agree, one in eight does so by chance
 
 MEASURES: dict[str, Callable[[FloatArray], FloatArray]] = {
     "r": lambda r: r,
@@ -98,7 +98,7 @@ def _compared(
     one, other = (resampled(each, weight) for each in squares)
     with np.errstate(invalid="ignore"):
         low, high = np.nanquantile(one - other, [0.025, 0.975]).tolist()
-    if len({column.tobytes() for column in weight.T}) < _FEWEST:
+    if len({column.tobytes() for column in weight.T}) < FEWEST:
         low, high = -np.inf, np.inf
     by_group = {name: _compared([each[rows] for each in squares], own, {}) for name, (rows, own) in groups.items()}
     return Comparison(first, second, low, high, by_group)

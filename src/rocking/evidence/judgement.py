@@ -21,12 +21,9 @@ import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
 from rocking.evidence.calibration import unseen
-from rocking.evidence.comparison import Difference, bias, compare, loss_rmse, rmse
+from rocking.evidence.comparison import FEWEST, Difference, bias, compare, loss_rmse, rmse
 from rocking.evidence.measurements import BANDS, DataSet
 from rocking.restitution import RestitutionModel
-
-FEWEST = 5
-"""Specimens, below which a band is too little to judge by."""
 
 
 class Standing(Enum):

@@ -24,6 +24,10 @@ def product(coefficients: Mapping[str, float]) -> float:
     return math.prod(coefficients.values())
 
 
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
 @dataclass(frozen=True, eq=False)
 class ModelForBody:
     """A model and one body: what it gives, how it stands, what to know.
@@ -107,8 +111,8 @@ class ModelForBody:
             "coefficient_of_restitution": dict(self.coefficients),
             "low_95": dict(self.low),
             "high_95": dict(self.high),
-            "energy_left_after_both_feet": self.energy_left,
-            "impacts_to_half_energy": self.impacts_to_half,
+            "energy_left_after_both_feet": _finite(self.energy_left),
+            "impacts_to_half_energy": _finite(self.impacts_to_half),
             "bias": None if record is None else record.bias,
             "rmse": None if record is None else record.rmse,
             "loss_rmse": None if record is None else record.loss_rmse,
@@ -116,7 +120,7 @@ class ModelForBody:
             "reasons": list(self.reasons),
             "concerns": list(self.concerns),
             "outcome": None if self.outcome is None else self.outcome.name.lower(),
-            "peak_rotation_over_alpha": self.peak_ratio,
+            "peak_rotation_over_alpha": _finite(self.peak_ratio),
         }
 
 
@@ -204,16 +208,16 @@ class Recommendation:
         head, rows = self.table
         widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
         lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in (head, *rows)]
-        return "\n".join([*(line.rstrip() for line in lines), words.legend(self), "", *self.evidence, *self.advice])
+        shown = [*(line.rstrip() for line in lines), *filter(None, [words.legend(self)]), ""] if rows else []
+        return "\n".join([*shown, *self.evidence, *self.advice])
 
     __repr__ = __str__
 
     def _repr_markdown_(self) -> str:
         head, rows = self.table
         lines = ["| " + " | ".join(row) + " |" for row in (head, ("---",) * len(head), *rows)]
-        return "\n".join(
-            [*lines, "", words.legend(self), "", *(f"- {each}" for each in (*self.evidence, *self.advice))]
-        )
+        shown = [*lines, "", words.legend(self), ""] if rows else []
+        return "\n".join([*shown, *(f"- {each}" for each in (*self.evidence, *self.advice))])
 
     def as_dict(self) -> dict[str, Any]:
         """Return everything as plain values.

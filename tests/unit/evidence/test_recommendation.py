@@ -369,6 +369,15 @@ def test_outside_of_what_was_measured_the_default_stays_the_number():
     assert found.prediction == "calibrated"
 
 
+def test_plain_values_are_of_json():
+    """What is not known is None, and no NaN; where no model says anything there is no table of none."""
+    for body in (STATUE, Solid(box(1.0, 1.0, 4.0)), Solid(cylinder(1.0, 4.0))):
+        json.dumps(recommend(body).as_dict(), allow_nan=False)
+    words = str(recommend(Solid(cylinder(1.0, 4.0))))
+    assert words.startswith("Extrapolation: it rocks in space")
+    assert "|" not in recommend(Solid(cylinder(1.0, 4.0)))._repr_markdown_()
+
+
 def test_every_form_says_the_same():
     """Words, Markdown, plain values and a dataset hold the same numbers."""
     found = recommend(STATUE)
