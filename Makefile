@@ -105,6 +105,7 @@ questions: $(VENV)/dev
 
 # A warning is an error, and so is an example that fails. `rocking serve` has it under /manual, and wheels that are built after it bring it.
 docs: $(VENV)/dev $(ENGINE)
+	@rm -rf build/manual
 	$(BIN)/sphinx-build -W --keep-going -q -j 2 -b html -d build/doctrees docs build/manual
 
 WHAT ?= compare

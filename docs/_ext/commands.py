@@ -63,11 +63,8 @@ class Command(SphinxDirective):
         kept = Path(self.env.srcdir) / "pictures" / f"{self.env.docname.replace('/', '-')}-{self.options['show']}"
         kept.parent.mkdir(exist_ok=True)
         shutil.copyfile(folder(self.env.docname) / self.options["show"], kept)
-        return [
-            nodes.image(
-                uri=f"/{kept.relative_to(self.env.srcdir)}", alt=f"{self.options['show']}, which the command wrote"
-            )
-        ]
+        self.env.note_dependency(str(kept))  # a page whose picture is gone is read again
+        return [nodes.image(uri=f"/pictures/{kept.name}", alt=f"{self.options['show']}, which the command wrote")]
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

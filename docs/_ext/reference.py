@@ -15,6 +15,7 @@ ROOMS = {
     "rocking": "The front door",
     "rocking.examples": "Examples",
     "rocking.bodies": "Bodies",
+    "rocking.bodies.shapes": "Shapes in the plane",
     "rocking.bodies.solid": "Solids",
     "rocking.bodies.formats": "Files of bodies",
     "rocking.motions": "Ground motions",
@@ -51,7 +52,8 @@ def names_of(module: ModuleType) -> list[str]:
     return sorted(
         key
         for key, value in vars(module).items()
-        if not key.startswith("_") and getattr(value, "__module__", module.__name__) == module.__name__
+        if not (key.startswith("_") or inspect.ismodule(value))
+        and getattr(value, "__module__", module.__name__) == module.__name__
     )
 
 

@@ -352,7 +352,7 @@ def row(claim: Claim) -> list[list[nodes.Node] | str]:
         against += [nodes.Text(" ("), link, nodes.Text(")")]
     control: list[nodes.Node] = [nodes.Text("in the test")] if claim.control == "within" else []
     if claim.control.startswith("test_"):
-        place = nodes.make_id(where.replace(claim.test, claim.control))
+        place = nodes.make_id(where.removesuffix(claim.test) + claim.control)
         control = [nodes.reference("", "another test", refid=place, internal=True)]
     return [[*words(claim.words), nodes.Text(" "), test], against, how_closely(claim), control]
 

@@ -4,6 +4,7 @@ const ASKING = new Set(
     "should that the there this to use was what when where which who why will with you your").split(" "),
 );
 const SPELLED = new Map([["center", "centre"], ["centers", "centres"], ["meter", "metre"], ["meters", "metres"], ["color", "colour"]]);
+const WEIGHTS = { how_to: 1.7, reference: 0.5, changes: 0.5 };
 const words = (term) => {
   const word = term.toLowerCase();
   if (ASKING.has(word)) return null;
@@ -19,7 +20,7 @@ const index = new MiniSearch({
     boost: { title: 5, page: 1.5 },
     fuzzy: (term) => (term.length > 5 ? 0.2 : false),
     prefix: (term) => term.length > 3,
-    boostDocument: (id, term, section) => (section.address.startsWith("reference/") ? 0.5 : 1),
+    boostDocument: (id, term, section) => WEIGHTS[section.address.split(/[/.]/)[0]] ?? 1,
   },
 });
 index.addAll(sections);

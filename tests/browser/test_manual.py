@@ -17,7 +17,7 @@ QUESTIONS = {
     "record format": "Which record formats are read?",
     "resume a campaign": "How do I resume a campaign?",
     "center of mass": "How do I give a centre of mass?",  # as others spell it
-    "overturing map": "How do I draw an overturning map?",  # as fingers spell it
+    "draw overturing map": "How do I draw an overturning map?",  # as fingers spell it
 }
 
 
