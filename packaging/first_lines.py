@@ -11,6 +11,7 @@ from pathlib import Path
 COMMANDS = (
     "cor --width 1 --height 4",
     "simulate --width 0.5 --height 2 --motion sine:amplitude=3,period=0.8 --restitution ked --out r.png",
+    "example statue",
 )
 _TOLD = re.compile(r"\s*(?:(\d\.\d+):|\"(.+)\"$)")  # a number or a text at the beginning of a comment is the answer
 
