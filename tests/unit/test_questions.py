@@ -1,11 +1,17 @@
 """The documentation of the keys of a question, and the options that say them, come from its tables."""
 
+import tomllib
 from pathlib import Path
 
+import pytest
+
+from rocking.errors import InvalidValueError
 from rocking.motions.intensity import MEASURES
 from rocking.motions.pulses import catalogue
 from rocking.motions.synthetic import families
 from rocking.spec import construction
+from rocking.spec.document import CampaignDocument, ResponseDocument
+from rocking.spec.reading import checked
 from rocking.spec.reference import reference
 from rocking.studies import axes
 
@@ -26,6 +32,20 @@ def test_the_keys_of_a_body_are_documented():
     table = page.partition("### [body]")[2].partition("###")[0]
     keys = {"file", *construction._BESIDE_FILE, *construction._OUTSIDE, "width", "height", *construction._OF_ANGLE}
     assert {key for key in keys if f"`{key}`" not in table} == set()
+
+
+def test_the_files_on_the_page_are_questions():
+    """Both files that docs/questions.md shows are what they say, and neither is of the other kind."""
+    page = (ROOT / "docs" / "questions.md").read_text(encoding="utf-8")
+    response, study = (tomllib.loads(block.partition("```")[0]) for block in page.split("```toml")[1:])
+    study["campaign"] = {"name": "map", "kind": "overturning-map"}
+    assert checked(ResponseDocument, response).restitution.models == ["ked", "housner"]
+    assert checked(CampaignDocument, study).map.x.count == 60
+    for tables in (response, study):
+        construction.any_body_of(tables["body"], None)
+    for kind, tables in ((ResponseDocument, study), (CampaignDocument, response)):
+        with pytest.raises(InvalidValueError):
+            checked(kind, tables)
 
 
 def test_names_that_stand_as_values_are_documented():

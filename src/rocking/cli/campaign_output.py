@@ -110,7 +110,7 @@ def show_verification(folder: Path, as_json: bool) -> None:
         print_json({"folder": str(folder), "whole": check.whole, **vars(check)})
     else:
         share = f"{check.verified} of {check.histories} histories were read and are what was written"
-        print(f"{folder}: {share}, in {check.chunks} chunks{'' if check.whole else ' and pieces of others'}")
+        print(f"{folder}: {share}, in {_chunks(check.chunks)}{'' if check.whole else ' and pieces of others'}")
         for sentence in check.damaged:
             print(f"damaged: {sentence}")
         for first, last in check.missing:
@@ -139,7 +139,7 @@ def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> 
     else:
         over = " x ".join(f"{size} {name}" for name, size in job.study.dims.items())
         print(f"{path}: {facts['campaign']} ({facts['kind']}), {len(job.inputs)} input files, no mistake found")
-        print(f"  histories  {estimate.histories} = {over}, in {estimate.chunks} chunks of {estimate.chunk}")
+        print(f"  histories  {estimate.histories} = {over}, in {_chunks(estimate.chunks)} of {estimate.chunk}")
         if estimate.later is not None:
             print("             in the first round, as are time and disk; what it finds decides on later rounds:")
             low, high = estimate.later
@@ -178,15 +178,21 @@ def _facts(job_status: JobStatus) -> dict[str, Any]:
     return facts if job_status.rounds is None else facts | {"rounds_begun": job_status.rounds}
 
 
+def _chunks(number: int) -> str:
+    return f"{number} chunk{'' if number == 1 else 's'}"
+
+
 def _sentence(job_status: JobStatus) -> str:
     status, name, folder = job_status.status, job_status.name, job_status.path
     if status is None:
         return f"{name}: nothing is computed yet; go on with: {resume(folder)}"
     if job_status.complete:
         many = "" if job_status.rounds is None else f"{job_status.rounds} rounds, "
-        return f"{name}: all {status.histories} histories ({many}{status.chunks} chunks) are safe in {folder}"
+        return f"{name}: all {status.histories} histories ({many}{_chunks(status.chunks)}) are safe in {folder}"
     now = f"{status.running} runs it" if status.running else f"go on with: {resume(folder)}"
-    share = f"{status.histories_done} of {status.histories} histories ({status.chunks_done} of {status.chunks} chunks)"
+    share = (
+        f"{status.histories_done} of {status.histories} histories ({status.chunks_done} of {_chunks(status.chunks)})"
+    )
     if job_status.rounds is not None:
         share = f"round {job_status.rounds} has begun, how many follow is not known; of these rounds {share}"
     return f"{name}: {share} are safe in {folder}; {now}"
