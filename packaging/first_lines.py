@@ -1,4 +1,4 @@
-"""Try an installation as somebody does who has just made it: the first lines of README, and two commands.
+"""Try an installation as somebody does who has just made it: the first lines of README, and three commands.
 
 ``python first_lines.py README.md [--without-engine]`` in an empty folder, by the Python that has the package.
 """
