@@ -90,7 +90,7 @@ def write(folder: Path) -> None:
         text += f".. list-table::\n   :widths: 30 70\n\n{table}\n\n" + "\n".join(described)
         (folder / f"{room}.rst").write_text(text, "utf-8")
     rooms = "\n".join(f"   {title} <{room}>" for room, title in ROOMS.items())
-    title = "Reference of Python"
+    title = "Python reference"
     (folder / "index.rst").write_text(
         f"{title}\n{'=' * len(title)}\n\n.. toctree::\n   :maxdepth: 1\n\n{rooms}\n", "utf-8"
     )
