@@ -228,22 +228,31 @@ def test_energy_kept_is_that_of_free_rocking(body):
     assert row.energy_left ** (row.impacts_to_half / 2.0) == pytest.approx(0.5)
 
 
-def test_a_motion_gives_every_model_its_verdict():
+@pytest.mark.parametrize(("amplitude", "ends"), [(4.0, rk.Outcome.ROCKED), (5.4, rk.Outcome.OVERTURNED)])
+def test_a_motion_gives_every_model_its_verdict(amplitude, ends):
     """Verdicts and peaks are those of `simulate` with each model, and the scattered ones count beside them."""
-    pulse = rk.pulses.sine(amplitude=5.4, period=0.8)
+    pulse = rk.pulses.sine(amplitude=amplitude, period=0.8)
     found = recommend(STATUE, pulse)
+    assert {each.outcome for each in found.models} == {ends}
     for name in ("housner", "ked", "horizontal-momentum"):
         response = rk.simulate(STATUE, pulse, name)
         assert found[name].outcome is response.outcome
         if response.outcome is rk.Outcome.ROCKED:
-            alpha = STATUE.side("right" if response.peak_rotation > 0.0 else "left").slenderness_angle
+            turned = response.rotation[np.abs(response.rotation).argmax()]
+            alpha = STATUE.side("right" if turned > 0.0 else "left").slenderness_angle
             assert found[name].peak_ratio == pytest.approx(abs(response.peak_rotation) / alpha, rel=1e-6)
     assert found.overturned.low <= found.overturned.count / found.overturned.draws <= found.overturned.high
+
+
+def test_what_a_weak_and_a_strong_motion_decide():
+    """None and all overturn, whatever the model; where a part of what scatters stands, the coefficient decides."""
     weak, strong = (recommend(STATUE, rk.pulses.sine(amplitude=a, period=0.8)) for a in (0.5, 40.0))
     assert (weak.overturned.count, strong.overturned.count) == (0, strong.overturned.draws)
     assert all(each.outcome is rk.Outcome.NO_UPLIFT for each in weak.models)
     assert all(each.outcome is rk.Outcome.OVERTURNED for each in strong.models)
-    assert "does not decide" in " ".join(weak.advice)
+    assert all("does not decide" in " ".join(each.advice) for each in (weak, strong))
+    part = replace(strong, overturned=replace(strong.overturned, count=350, low=0.84, high=0.90))
+    assert "the coefficient decides" in " ".join(part.advice)
 
 
 def test_coefficients_scatter_as_bodies_do():
@@ -257,6 +266,31 @@ def test_coefficients_scatter_as_bodies_do():
         # 400 draws: standard errors of these quantiles are 0.0015, 0.001, 0.0015
         np.testing.assert_allclose(np.quantile(drawn, [0.1, 0.5, 0.9]), exact, atol=0.006)
     assert np.corrcoef(left, right)[0, 1] > 0.9
+    other = recommend(rk.Block(width=0.02, height=0.05, depth=0.02), measurements=as_if("housner"))
+    row, drawn = other["housner"], recommending._draws(other, calibrate())[0]
+    assert drawn.mean() == pytest.approx(row.coefficients["left"], abs=0.2 * row.scatter("left"))
+    assert drawn.std() == pytest.approx(row.scatter("left"), rel=0.15)
+
+
+def test_scatter_is_that_of_the_side_that_is_not_cut():
+    """Intervals end at the energy bound: 0.9 to 1 above, 0.7 below, of a standard deviation of 0.2 / 1.96."""
+    cut = replace(recommend(SLENDER)["ked"], coefficients={"left": 0.9}, low={"left": 0.7}, high={"left": 1.0})
+    assert cut.scatter("left") == pytest.approx(0.2 / 1.96, rel=1e-4)
+
+
+def test_how_well_must_be_measured():
+    """Between two values 3.92 standard errors: 97.5 % of measurements lie nearer to the right one."""
+    found = recommend(SLENDER)
+    low, high = (found[name].coefficients["left"] for name in found.envelope)
+    assert f"with a standard error below {(high - low) / 3.92:.2g}," in found.advice[-1]
+
+
+def test_a_mass_beyond_those_measured_is_said():
+    """Of 0.15 kg nothing is said, of 150 kg and of a gram what was measured."""
+    light, usual, heavy = (
+        recommend(rk.Block(width=0.02, height=0.16, depth=0.02, density=density)) for density in (15.0, 2400.0, 2.4e6)
+    )
+    assert ["It has a mass of" in " ".join(each.notes) for each in (light, usual, heavy)] == [True, False, True]
 
 
 def test_a_motion_that_the_coefficient_decides():
