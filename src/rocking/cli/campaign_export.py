@@ -98,7 +98,7 @@ def _check(folder: JobFolder, to: Path, what: str, restitution: str | None, cros
 
 def _words(what: str, facts: dict[str, Any]) -> str:
     if "rounds" not in facts:
-        return f"{what} of {facts['histories']} histories"
+        return f"{facts['histories']} histories" if what == "histories" else f"{what} of {facts['histories']} histories"
     if what == "histories":
         return f"{facts['histories']} histories of the first round, of {facts['all_histories']} in all rounds"
     return f"{what} of {facts['histories']} histories in {facts['rounds']} rounds"

@@ -138,7 +138,8 @@ def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> 
         print_json(facts)
     else:
         over = " x ".join(f"{size} {name}" for name, size in job.study.dims.items())
-        print(f"{path}: {facts['campaign']} ({facts['kind']}), {len(job.inputs)} input files, no mistake found")
+        files = "1 input file" if len(job.inputs) == 1 else f"{len(job.inputs)} input files"
+        print(f"{path}: {facts['campaign']} ({facts['kind']}), {files}, no mistake found")
         print(f"  histories  {estimate.histories} = {over}, in {_chunks(estimate.chunks)} of {estimate.chunk}")
         if estimate.later is not None:
             print("             in the first round, as are time and disk; what it finds decides on later rounds:")

@@ -69,7 +69,7 @@ class ModelForBody:
 
     @property
     def energy_left(self) -> float:
-        """Share of the energy left after an impact onto each foot; NaN where a coefficient is not known [-]."""
+        """Share of the energy left after two impacts, one onto each foot; NaN where a coefficient is not known [-]."""
         return product(self.coefficients) ** 2 if len(self.coefficients) == len(FEET) else math.nan  # Eq. 113
 
     def scatter(self, onto: Foot) -> float:
