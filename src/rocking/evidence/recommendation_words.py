@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from rocking.evidence.recommendation import ModelForBody, Recommendation
 
 LEGEND = (
-    "kept: energy left after two impacts, one onto each foot; to half: impacts that halve the energy; bias, error: mean "
-    "and root mean square of r less the measurement."
+    "kept: energy left after two impacts, one onto each foot; to half: impacts that halve the energy; bias, error: "
+    "mean and root mean square of r less the measurement."
 )
 """What the columns of the table are, those of r apart."""
 
