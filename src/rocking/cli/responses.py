@@ -129,7 +129,10 @@ class RockingAnswer:
         return [
             *body_lines(response.body, response.settings.gravity, self.length),
             ("motion", ground),
-            ("restitution", f"{parameters.label}, {value}"),
+            (
+                "restitution",
+                parameters.label if hasattr(parameters.law, "quantile") else f"{parameters.label}, {value}",
+            ),
             ("engine", f"{response.engine}{equations}"),
         ]
 

@@ -132,6 +132,13 @@ def _kind(name: str) -> type[RestitutionModel]:
     return found
 
 
+_CALIBRATED = (
+    "'calibrated' is no model but what the measurements say of a body: give the number that rocking cor prints, or let "
+    "it scatter by --set restitution.distribution={posterior=true}, in Python "
+    "rk.evidence.restitution_distribution(body).per_history(seed=1)"
+)
+
+
 def _factor(eta: Any) -> float:
     return checks.within("eta", eta, 0.0, 1.0, open_low=True, hint="the interface factor can only lose energy")
 
@@ -150,6 +157,8 @@ def _parsed(words: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, f
         given[key.strip()] = _value(key.strip(), value)
     name = checks.spelling(name, _MODELS)
     if name not in _MODELS:
+        if name == "calibrated":
+            raise UnknownModelError(_CALIBRATED)
         there, near = ", ".join(_MODELS), checks.nearest(name, _MODELS)
         raise UnknownModelError(f"no restitution model named {name!r}; there are {there}{near}")
     kind = _kind(name)

@@ -334,7 +334,7 @@ def test_nothing_to_export(run, tmp_path):
         ),
         ((*SIZE, *FAMILY, "--restitution", "1.5"), "restitution"),
         ((*SIZE, *FAMILY, "--set", "settings.engine=slow"), "settings.engine must be one of 'auto'"),
-        ((*SIZE, *FAMILY, "--out", "p.jpg"), "by its ending a file is a picture"),
+        ((*SIZE, *FAMILY, "--out", "p.jpg"), "by its ending a file is picture"),
         ((*SIZE, *FAMILY, "--out", "nowhere/c.csv"), "no folder 'nowhere'"),
         ((*SIZE, *FAMILY, "--measure", "housner", "--levels", "1,2", "--out", "n.xml"), "OpenQuake knows pga"),
         (
