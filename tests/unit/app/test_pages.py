@@ -29,6 +29,7 @@ def served(tmp_path):
         thread = threading.Thread(target=running.run, kwargs={"sockets": [door]})
         thread.start()
         while not running.started:
+            assert thread.is_alive(), "the server did not start"
             time.sleep(0.01)
         yield app, settings.origin
         running.should_exit = True
