@@ -29,6 +29,14 @@ def test_pasted_points_become_the_body(page: Any, shot: Callable[..., Any]) -> N
     shot(page, "body-polygon")
 
 
+def test_a_polygon_chosen_before_the_first_answer_has_vertices(page: Any) -> None:
+    """The board is never empty: without facts of the server the polygon is the rectangle that was typed."""
+    made = """async () => (await import('/views/body-shapes.js')).asShape(
+        { units: 'cm', width: 60, height: 200, depth: 40 }, 'section', null)"""
+    outline = [[0, 0], [60, 0], [60, 200], [0, 200]]
+    assert page.evaluate(made) == {"units": "cm", "section": {"region": [{"outline": outline}], "depth": 40}}
+
+
 def test_points_are_read_in_every_usual_form(page: Any) -> None:
     """Tabs, semicolons, commas, blanks and decimal commas mean the same; three columns and words are refused."""
     read = """async text => (await import('/views/body-points.js')).parsePoints(text)"""

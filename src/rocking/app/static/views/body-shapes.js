@@ -42,14 +42,15 @@ export const pathOfShape = (body) => (body[shapeOf(body)] ? `body.${shapeOf(body
 export const asShape = (body, shape, facts) => {
   const { units, name } = body;
   const from = tableOfShape(body);
-  const [width, height] = spans(facts, units);
+  const [width, height] = spans(facts, units, from);
+  const drawn = regionsOf(facts, units);
   const common = { depth: from.depth, density: from.density ?? firstDensity(body) };
   const sizes = {
     block: { width, height },
     trapezoid: { base: width, top: round(width * 0.6), height, lean: 0 },
     ellipse: { width, height, sides: 24 },
     regular_polygon: { sides: 6, radius: round(height / 2) },
-    section: { region: regionsOf(facts, units), depth: common.depth },
+    section: { region: drawn.length ? drawn : [rectangle(width, height)], depth: common.depth },
   };
   const table = clean(shape === "section" ? sizes.section : { ...sizes[shape], ...common });
   return clean(shape === "block" ? { units, name, ...table } : { units, name, [shape]: table });
@@ -70,9 +71,12 @@ export const regionsOf = (facts, units) => {
 
 const firstDensity = (body) => body.section?.region?.[0]?.density;
 
-const spans = (facts, units) => {
+const rectangle = (width, height) => ({ outline: [[0, 0], [width, 0], [width, height], [0, height]] });
+
+// Before the first answer there are no facts: then the sizes that are typed.
+const spans = (facts, units, { width, height }) => {
   const points = (facts?.outline ?? []).flatMap((each) => each.outline);
-  if (!points.length) return [0.5, 2].map((each) => fromMetres(each, units));
+  if (!points.length) return [width ?? fromMetres(0.5, units), height ?? fromMetres(2, units)];
   return [0, 1].map((axis) => {
     const values = points.map((each) => each[axis]);
     return round(fromMetres(spanOf(values), units));
