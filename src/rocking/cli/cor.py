@@ -76,10 +76,16 @@ def cor(
     as_json: options.AsJson = False,
 ) -> None:
     """Print the coefficient of restitution of a body under every model, with its interval and what it implies."""
+    from rocking.restitution import recommend as recommended
+
     exports = Exports.of(out, EXPORTS)
     arguments = Arguments(context, "body", "settings")
     if odd := sorted(set(arguments.sets.get("settings", {})) - {"gravity"}):
         raise InvalidValueError(f"--set settings.{odd[0]}: an impact takes gravity only")
+    if recommend and eta != 1.0:
+        raise InvalidValueError(
+            "--recommend says what was measured, with its interface; --eta is what you know of yours: leave one out"
+        )
     subject, gravity = _body(arguments, quiet=as_json)
     length = arguments.length or "m"
     if isinstance(subject, Solid):
@@ -91,24 +97,15 @@ def cor(
             raise InvalidValueError(
                 f"a body in space rocks about every edge of its base, so it takes no {', '.join(stated)}"
             )
-        found = _recommended(subject, restitution) if recommend else None
+        found = recommended(subject, models=restitution) if recommend else None
         answer: Any = SolidAnswer.of(subject, restitution, gravity, length, found)
     else:
         from rocking.reports.body_facts import ImpactAnswer
 
         models = None if restitution is None else [_model(text) for text in restitution]
         impact = ImpactAnswer.of(subject, models, onto=onto, eta=eta, gravity=gravity, identities=identities)
-        answer = PlaneAnswer(impact, length, _recommended(subject, models, eta) if recommend else None)
+        answer = PlaneAnswer(impact, length, recommended(subject, models=models) if recommend else None)
     deliver(answer, exports, as_json=as_json)
-
-
-def _recommended(body: Any, models: list[Any] | None, eta: float = 1.0) -> Any:
-    from rocking.restitution import model, recommend
-    from rocking.restitution import models as known
-
-    if eta != 1.0:
-        models = [model(each, eta=eta) for each in models or (name for name in known() if name != "fixed")]
-    return recommend(body, models=models)
 
 
 def _model(text: str) -> Any:
