@@ -211,7 +211,8 @@ def bar(what: str, total: int, *, quiet: bool) -> Iterator[Callable[[Progress], 
         TextColumn("{task.fields[rate]}"), TimeElapsedColumn(), TextColumn("{task.fields[left]}"),
     )  # fmt: skip
     hidden = quiet or not sys.stderr.isatty()
-    with Bar(*columns, console=Console(stderr=True), transient=True, disable=hidden) as shown:
+    # quiet too: older versions of rich end a bar that is not shown with an empty line
+    with Bar(*columns, console=Console(stderr=True, quiet=hidden), transient=True, disable=hidden) as shown:
         task = shown.add_task(what.replace("[", "\\["), total=total, rate="", left="")
 
         def tell(progress: Progress) -> None:

@@ -33,7 +33,9 @@ def _animate(answer: Any, path: Path) -> None:
     from rich.console import Console
     from rich.progress import Progress
 
-    with Progress(console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty()) as progress:
+    hidden = not sys.stderr.isatty()
+    # quiet too: older versions of rich end a bar that is not shown with an empty line
+    with Progress(console=Console(stderr=True, quiet=hidden), transient=True, disable=hidden) as progress:
         task = progress.add_task("frames")
         animate_gif(
             answer.response,
