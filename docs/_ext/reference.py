@@ -10,6 +10,7 @@ from pathlib import Path
 from types import ModuleType
 
 from sphinx.application import Sphinx
+from sphinx.pycode import ModuleAnalyzer
 
 ROOMS = {
     "rocking": "The front door",
@@ -42,7 +43,8 @@ ROOMS = {
     "rocking.errors": "Errors and warnings",
     "rocking.conventions": "Conventions and constants",
 }
-BASES = "object, BaseException, float, int, str, tuple, dict, Enum, StrEnum, IntEnum"  # whose members Python describes
+# whose members Python describes
+BASES = "object, BaseException, float, int, str, tuple, dict, Enum, StrEnum, IntEnum, AttributeError, ImportError"
 
 
 def names_of(module: ModuleType) -> list[str]:
@@ -79,7 +81,7 @@ def write(folder: Path) -> None:
                     else []
                 )
             elif not callable(value):
-                described.append(f".. autodata:: {room}.{name}\n")
+                described.append(constant(room, name, value))
             else:
                 home = homes.setdefault(id(value), f"{room}.{name}")
                 rows.append(f":py:obj:`{name} <{home}>`\n     - {first_lines(value)}")
@@ -94,6 +96,13 @@ def write(folder: Path) -> None:
     (folder / "index.rst").write_text(
         f"{title}\n{'=' * len(title)}\n\n.. toctree::\n   :maxdepth: 1\n\n{rooms}\n", "utf-8"
     )
+
+
+def constant(room: str, name: str, value: object) -> str:
+    """What asks for the words on a constant, or shows it where it has none: Python's on its type would stand there."""
+    if ("", name) in ModuleAnalyzer.for_module(room).find_attr_docs():
+        return f".. autodata:: {room}.{name}\n"
+    return f".. py:data:: {room}.{name}\n   :value: {value!r:.80}\n"
 
 
 def documented(path: str, value: object) -> str:

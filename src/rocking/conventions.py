@@ -20,6 +20,7 @@ g: Final = 9.80665
 """Standard gravity [m/s2] (exact by definition, 3rd CGPM 1901)."""
 
 FEET: Final[tuple[Foot, Foot]] = ("left", "right")
+"""The two feet of a plane body, in the order of arrays by foot."""
 
 LENGTH_UNITS: Final[dict[str, float]] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
 """Length of one unit in metres; units are always named, never guessed."""
