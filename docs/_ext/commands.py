@@ -3,6 +3,7 @@
 They run one after the other in a folder that the commands of a page share; `:show: FILE` shows a picture of theirs.
 """
 
+import atexit
 import os
 import shlex
 import shutil
@@ -25,7 +26,9 @@ WIDE = "100"  # columns of the terminal
 @cache
 def folder(page: str) -> Path:
     """Where the commands of a page run."""
-    return Path(tempfile.mkdtemp(prefix=page.replace("/", "-")))
+    kept = Path(tempfile.mkdtemp(prefix=page.replace("/", "-")))
+    atexit.register(shutil.rmtree, kept, ignore_errors=True)
+    return kept
 
 
 def printed(line: str, where: Path, status: int) -> str:

@@ -169,18 +169,20 @@ def nearest(word: Any, known: Iterable[str]) -> str:
     """
     if not isinstance(word, str):
         return ""
-    if comma := decimal_comma(word):
+    if comma := number_hint(word):
         return comma
     near = difflib.get_close_matches(word[:60].casefold(), list(known), n=1)
     return f"; did you mean {near[0]!r}?" if near else ""
 
 
-def decimal_comma(words: str) -> str:
-    """Return the end of an error about words in which a number has a decimal comma; else nothing.
+def number_hint(words: str) -> str:
+    """Return the end of an error about words in which a number has a decimal comma, or a unit; else nothing.
 
-    >>> decimal_comma("sine:amplitude=0,5,period=1")
-    '; numbers have a decimal point: 0.5'
+    >>> number_hint("sine:amplitude=0,5,period=1"), number_hint("50 cm")
+    ('; numbers have a decimal point: 0.5', '; it takes no unit behind the number, 50: the help says how to give one')
     """
+    if unit := re.fullmatch(r"([+-]?[0-9.]+) ?(?!e\d+$)([a-zA-Z][a-zA-Z/0-9]*)", words):
+        return f"; it takes no unit behind the number, {unit[1]}: the help says how to give one"
     found = re.search(r"(?<![\d.,])([+-]?\d+),(\d+)(?!,?[\d.])", words)
     return f"; numbers have a decimal point: {found[1]}.{found[2]}" if found else ""
 

@@ -132,7 +132,7 @@ def _add_pages(app: FastAPI) -> None:
     for kind, suffix in (("text/javascript", ".js"), ("text/css", ".css"), ("image/svg+xml", ".svg")):
         mimetypes.add_type(kind, suffix)  # the registry of some systems says text/plain, which browsers then refuse
 
-    @app.get("/api-docs", include_in_schema=False)
+    @app.api_route("/api-docs", methods=["GET", "HEAD"], include_in_schema=False)
     def api_docs() -> FileResponse:
         return FileResponse(STATIC / "api-docs.html")
 

@@ -34,19 +34,26 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except KeyboardInterrupt:
         print("rocking: interrupted", file=sys.stderr)
         sys.exit(130)
+    except Exception as error:
+        from rocking.restitution.from_file import in_own_model
+
+        if not (sentence := in_own_model(error)):
+            raise
+        print(f"rocking: {sentence}", file=sys.stderr)
+        sys.exit(2)
     sys.exit(code or 0)
 
 
 def _refusal(error: Exception, arguments: list[str]) -> str:
     """Return why the words make no sense, with how an option of earlier is said now, or a comma for a point."""
-    from rocking.checks import decimal_comma  # numpy with it, which help does not need
+    from rocking.checks import number_hint  # numpy with it, which help does not need
     from rocking.cli.options import renamed
 
     option = str(getattr(error, "option_name", ""))
     if new := renamed(option):
         return f"{option} {new}"
     message = error.format_message() if hasattr(error, "format_message") else str(error)
-    hints = [decimal_comma(word) for word in arguments if not word.partition("=")[2].strip("+-,0123456789")]
+    hints = [number_hint(word) for word in arguments if not word.partition("=")[2].strip("+-,0123456789")]
     return f"{message}{next(filter(None, hints), '') if re.search('valid (number|float)', message) else ''}"
 
 

@@ -293,7 +293,7 @@ class MapAnswer:
             page.line()
             head = ("restitution", "against", "flips", "share", "only with the second", "only with the first")
             rows = [(a, b, str(f.count), percent(f.share), str(f.gained), str(f.lost)) for a, b, f in self._pairs()]
-            page.table(head, rows, head[:2])
+            page.table(head, rows, head[:2], whole=(0, 1))
             page.line(self.compared.verdict)
 
     def _share_rows(self) -> list[tuple[str, ...]]:

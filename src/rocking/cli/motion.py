@@ -99,7 +99,7 @@ def _periods(text: str) -> list[float]:
         numbers = [float(part) for part in texts]
     except ValueError as error:
         raise InvalidValueError(f"periods must be numbers such as 0.1,0.5,1 [s], got {text[:60]!r}") from error
-    hint = checks.decimal_comma(text).removeprefix("; ")
+    hint = checks.number_hint(text).removeprefix("; ")
     return [checks.positive("periods", number, "s", hint) for number in numbers]
 
 

@@ -34,7 +34,7 @@ def quantity(name: str, text: str, unit: str) -> tuple[float, str]:
     match, known = _NUMBER.fullmatch(text.strip()), UNITS[unit]
     if match is None or (match[2] and match[2] not in known):
         allowed = f", alone or with one of {', '.join(known)}" if known else " without a unit"
-        raise InvalidValueError(f"{name} must be a number{allowed}, got {text!r:.60}{checks.decimal_comma(text)}")
+        raise InvalidValueError(f"{name} must be a number{allowed}, got {text!r:.60}{checks.number_hint(text)}")
     value = float(match[1]) * (known[match[2]] if match[2] else 1.0)
     if not math.isfinite(value):
         raise InvalidValueError(f"{name} must be a finite number, got {text!r:.60}")
@@ -85,7 +85,7 @@ def _quantities(name: str, texts: list[str], unit: str) -> tuple[list[float], st
     pairs = [quantity(name, text, unit) for text in texts]
     written = [one for _, one in pairs]
     if "" in written and any(written):  # 0.1:1g could mean either
-        why = checks.decimal_comma(",".join(texts))
+        why = checks.number_hint(",".join(texts))
         raise InvalidValueError(f"{name} must have a unit at every number or at none, got {':'.join(texts)!r:.60}{why}")
     return [value for value, _ in pairs], written[0]
 

@@ -14,7 +14,7 @@ from rocking.spec.document import NEEDS, OF_FILES, CampaignDocument
 from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
 from rocking.spec.study import StudyProblem
 
-TABLES = ("body", "motion", "settings")
+TABLES = ("body", "motion", "restitution", "settings")
 """Tables of which `--set` changes a key, beside the one that a study has of its own."""
 
 
@@ -35,6 +35,10 @@ def problem_of(kind: str, arguments: Arguments, motions: list[dict[str, Any]], *
     """Return the problem of the document that was typed, which has some tables beside the settings."""
     own = NEEDS[kind]
     settings = {"settings": arguments.sets.get("settings", {})}
+    if stated := arguments.sets.get("restitution"):
+        if option := arguments.spelt("restitution"):
+            raise InvalidValueError(f"{option} and --set restitution.{next(iter(stated))} say the same: leave one out")
+        tables["restitution"] = stated
     document = {"campaign": {"name": own, "kind": kind}, "motions": motions, **settings, **tables}
     return _in_memory(checked(CampaignDocument, document), CommandFiles(Path()))
 

@@ -331,12 +331,12 @@ def pulse(words: str) -> Pulse:
     for item in filter(None, tail.split(",")):
         key, equals, value = (part.strip() for part in item.partition("="))
         if not equals or key in given:
-            why = checks.decimal_comma(words)
+            why = checks.number_hint(words)
             raise UnknownModelError(f"write a pulse as sine:amplitude=3,period=0.8, got {words!r}{why}")
         try:
             given[key] = int(value) if key == "n" else float(value)
         except ValueError as error:
-            raise InvalidValueError(f"{key} must be a number, got {value!r}") from error
+            raise InvalidValueError(f"{key} must be a number, got {value!r}{checks.number_hint(value)}") from error
     try:
         return known[name](**given)
     except TypeError as error:

@@ -5,21 +5,26 @@ import hashlib
 import inspect
 import re
 import sys
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from rocking.errors import UnknownModelError
+from rocking.errors import RockingError, UnknownModelError
 from rocking.restitution.model import RestitutionModel
+from rocking.restitution.registry import built, model, number, parameters_in
 
-_WORD = re.compile(r"(?P<path>.+\.py)(?::(?P<name>\w*))?")
+_WORD = re.compile(r"(?:(?P<eta>[^*]+)\*)?(?P<path>.+?\.py)(?::(?P<name>\w*)(?::(?P<parameters>.*))?)?")
 _SOURCES: dict[type, tuple[str, str]] = {}
+_FILES: set[str] = set()
 
 
 def file_of(word: str) -> str | None:
     """Return the file that a word names, if it names one.
 
-    >>> file_of("models/mine.py:Mine"), file_of("0.98*ked")
+    >>> file_of("0.98*models/mine.py:Mine:share=0.3"), file_of("0.98*ked")
     ('models/mine.py', None)
     """
     found = _WORD.fullmatch(word)
@@ -36,32 +41,49 @@ def model_in_file(word: str, path: Path | None = None) -> RestitutionModel:
         raise UnknownModelError(f"no file {file}") from error
     except (OSError, ValueError) as error:
         raise UnknownModelError(f"{file} cannot be read: {error}") from error
-    return _made(source, str(file), (found and found["name"]) or "")
+    eta, _, name, parameters = found.groups("") if found else ("", "", "", "")
+    kind = _kind(source, str(file), name)
+    given = parameters_in(parameters, word, {})
+    with blamed(str(file)):
+        made = built(kind, f"{file.name}:{kind.__name__}", given)
+    return model(made, eta=number("eta", eta)) if eta else made
 
 
-def _made(source: str, where: str, name: str) -> RestitutionModel:
+@contextmanager
+def blamed(where: str) -> Iterator[None]:
+    """Say of an error in a file of the user's own where it is."""
     try:
-        module = _module(source, where)
-        kinds = {
-            key: kind
-            for key, kind in inspect.getmembers(module, inspect.isclass)
-            if issubclass(kind, RestitutionModel) and kind.__module__ == module.__name__
-        }
-        if len(kinds) == 1 and not name:
-            (name,) = kinds
-        if name not in kinds:
-            raise UnknownModelError(
-                f"{where} has no restitution model {name or '(name one)'}; it has {', '.join(kinds) or 'none'}"
-            )
-        made: RestitutionModel = kinds[name]()
-    except UnknownModelError:
+        yield
+    except RockingError:
         raise
     except Exception as error:
-        raise UnknownModelError(f"{where} failed: {type(error).__name__}: {error}") from error
+        raise UnknownModelError(in_own_model(error) or f"{where} failed: {type(error).__name__}: {error}") from error
+
+
+def in_own_model(error: BaseException) -> str:
+    """Return what failed in a model of the user's own, and on which line; nothing if it is no such error."""
+    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename in _FILES]
+    return f"{frames[-1].filename}, line {frames[-1].lineno}: {type(error).__name__}: {error}" if frames else ""
+
+
+def _kind(source: str, where: str, name: str) -> type[RestitutionModel]:
+    with blamed(where):
+        module = _module(source, where)
+    kinds = {
+        key: kind
+        for key, kind in inspect.getmembers(module, inspect.isclass)
+        if issubclass(kind, RestitutionModel) and kind.__module__ == module.__name__
+    }
+    if len(kinds) == 1 and not name:
+        (name,) = kinds
+    if name not in kinds:
+        raise UnknownModelError(
+            f"{where} has no restitution model {name or '(name one)'}; it has {', '.join(kinds) or 'none'}"
+        )
     for kind in kinds.values():
         _SOURCES[kind] = (source, where)
         copyreg.pickle(kind, _reduced)
-    return made
+    return kinds[name]
 
 
 def _module(source: str, where: str) -> ModuleType:
@@ -70,6 +92,7 @@ def _module(source: str, where: str) -> ModuleType:
     if name not in sys.modules:
         module = ModuleType(name)
         module.__file__ = where
+        _FILES.add(where)
         sys.modules[name] = module
         try:
             exec(compile(source, where, "exec"), module.__dict__)  # the user's own, who asked for it
@@ -80,4 +103,8 @@ def _module(source: str, where: str) -> ModuleType:
 
 
 def _reduced(made: RestitutionModel) -> tuple[Any, ...]:
-    return _made, (*_SOURCES[type(made)], type(made).__name__), vars(made) or None
+    return _blank, (*_SOURCES[type(made)], type(made).__name__), vars(made) or None
+
+
+def _blank(source: str, where: str, name: str) -> RestitutionModel:
+    return object.__new__(_kind(source, where, name))

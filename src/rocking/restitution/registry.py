@@ -145,36 +145,50 @@ def _factor(eta: Any) -> float:
 
 def _parsed(words: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, float]:
     factor, star, rest = words.partition("*")
-    eta = _factor(_value("eta", factor)) if star else 1.0
+    eta = _factor(number("eta", factor)) if star else 1.0
     name, _, tail = (rest if star else words).strip().partition(":")
-    given = dict(parameters)
-    for item in filter(None, tail.split(",")):
-        key, equals, value = item.partition("=")
-        if not equals:
-            raise UnknownModelError(f"write parameters as name:k=0.6, got {words!r}{checks.decimal_comma(words)}")
-        if key.strip() in given:
-            raise UnknownModelError(f"{key.strip()} is given twice for model {words!r}")
-        given[key.strip()] = _value(key.strip(), value)
+    given = parameters_in(tail, words, parameters)
     name = checks.spelling(name, _MODELS)
     if name not in _MODELS:
         if name == "calibrated":
             raise UnknownModelError(_CALIBRATED)
         there, near = ", ".join(_MODELS), checks.nearest(name, _MODELS)
         raise UnknownModelError(f"no restitution model named {name!r}; there are {there}{near}")
-    kind = _kind(name)
+    return built(_kind(name), name, given), eta
+
+
+def parameters_in(text: str, words: str, beside: dict[str, Any]) -> dict[str, Any]:
+    """Return the parameters that are written behind a name, and those given beside it."""
+    given = dict(beside)
+    for item in filter(None, text.split(",")):
+        key, equals, value = item.partition("=")
+        if not equals:
+            raise UnknownModelError(
+                "write parameters as name:k=0.6, and a model of your own as my_file.py:MyModel, got "
+                f"{words!r}{checks.number_hint(words)}"
+            )
+        if key.strip() in given:
+            raise UnknownModelError(f"{key.strip()} is given twice for model {words!r}")
+        given[key.strip()] = number(key.strip(), value)
+    return given
+
+
+def built(kind: type[RestitutionModel], name: str, given: dict[str, Any]) -> RestitutionModel:
+    """Return a model with its parameters."""
     try:
-        return kind(**given), eta
+        return kind(**given)
     except TypeError as error:
         names = ", ".join(getattr(kind, "__dataclass_fields__", {}))
         takes = f"takes the parameter {names}" if names else "takes no parameters"
         raise UnknownModelError(f"model {name!r} {takes}, got {', '.join(given) or 'none'}") from error
 
 
-def _value(name: str, words: str) -> float:
+def number(name: str, words: str) -> float:
+    """Return the number that a parameter was given in words."""
     try:
         return float(words)
     except ValueError as error:
-        raise InvalidValueError(f"{name} must be a number, got {words!r}") from error
+        raise InvalidValueError(f"{name} must be a number, got {words!r}{checks.number_hint(words)}") from error
 
 
 _by_name = model  # what the parameter of the next function hides

@@ -3,13 +3,14 @@
 import pytest
 
 from rocking.bodies import Block
-from rocking.checks import decimal_comma, nearest
+from rocking.checks import nearest, number_hint
 from rocking.cli import main
 from rocking.errors import RockingError, UnknownModelError
 from rocking.motions import measure
 from rocking.motions.formats.reader import format_named
 from rocking.motions.pulses import pulse
 from rocking.restitution import model
+from rocking.restitution.from_file import in_own_model
 from rocking.restitution.space import spatial_model, spatial_models
 from rocking.studies.axis import axis_of
 
@@ -46,6 +47,8 @@ def test_capitals_do_not_matter(same):
         (lambda: model("0,9"), "numbers have a decimal point: 0.9"),
         (lambda: pulse("sine:amplitude=0,5,period=1"), "numbers have a decimal point: 0.5"),
         (lambda: model("fixed:r=0,93"), "numbers have a decimal point: 0.93"),
+        (lambda: model("mine:Mine"), "a model of your own as my_file.py:MyModel"),
+        (lambda: pulse("sine:amplitude=0.3g,period=1"), "it takes no unit behind the number, 0.3"),
     ],
 )
 def test_what_was_meant(ask, meant):
@@ -58,7 +61,7 @@ def test_what_was_meant(ask, meant):
 def test_nothing_is_guessed_from_far():
     """Negative control: a word unlike all others, a list of numbers and a map's range get no suggestion."""
     assert nearest("zzz", ["housner", "ked"]) == ""
-    assert decimal_comma("0.1,0.5,1") == decimal_comma("1,2,4") == decimal_comma("a=1,b=2") == ""
+    assert number_hint("0.1,0.5,1") == number_hint("1,2,4") == number_hint("a=1,b=2") == number_hint("1e5") == ""
     with pytest.raises(UnknownModelError) as refused:
         model("zzz")
     assert "did you mean" not in str(refused.value)
@@ -72,6 +75,7 @@ def test_nothing_is_guessed_from_far():
         (("minimum", *SIZE, PULSE, "--lowest", "0,1g"), "numbers have a decimal point: 0.1"),
         (("motion", PULSE, "--periods", "0,5"), "numbers have a decimal point: 0.5"),
         (("simulat", *SIZE, PULSE), "Did you mean 'simulate'"),
+        (("cor", "--width", "50cm", "--height", "2"), "it takes no unit behind the number, 50"),
         (("models", "hausner"), "did you mean 'housner'"),
         (("simulate", "quake.at2", "statue.toml"), "the body comes first, then the motion: statue.toml quake.at2"),
         (("map", "quake.at2", "statue.stl"), "the body comes first, then the motion: statue.stl quake.at2"),
@@ -122,3 +126,22 @@ def test_an_option_of_before_or_an_unknown_key_says_the_new_way(capsys, words, s
     with pytest.raises(SystemExit) as stop:
         main([str(word) for word in words])
     assert (stop.value.code, sentence in capsys.readouterr().err) == (2, True)
+
+
+def test_own_model_that_fails_is_one_sentence(refuses, tmp_path):
+    """Its file and line, not a list of ours; other errors of the program are not swallowed."""
+    (tmp_path / "mine.py").write_text(
+        "from rocking.restitution import RestitutionModel\nclass Mine(RestitutionModel):\n    name = title = 'mine'\n"
+        "    def raw_coefficient(self, body, onto):\n        return 1 / 0\n",
+        encoding="utf-8",
+    )
+    refuses(("cor", *SIZE, "--restitution", f"{tmp_path / 'mine.py'}:Mine"), "mine.py, line 5: ZeroDivisionError")
+    assert in_own_model(ZeroDivisionError("ours")) == ""
+
+
+def test_restitution_of_a_study_by_its_table(refuses):
+    """What `--restitution` cannot say is said by `--set`; both at once contradict each other."""
+    refuses(
+        ("map", *SIZE, PULSE, "--restitution", "ked", "--set", "restitution.value=0.9"),
+        "--restitution and --set restitution.value say the same: leave one out",
+    )

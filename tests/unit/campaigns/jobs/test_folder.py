@@ -11,6 +11,7 @@ import pytest
 from campaign_jobs import BODY, PULSE, axes, finished
 from campaign_jobs import job as text_of_job
 
+from rocking import Block
 from rocking.campaigns import CampaignDamagedError, CampaignMismatchError
 from rocking.campaigns.jobs import Job, JobFolder, forecast, status_of, verified
 from rocking.errors import InvalidValueError, UnknownModelError
@@ -242,3 +243,28 @@ def test_what_is_wrong_with_the_file_is_said(own, source, words):
             Job.read(own / "job.toml")
     with pytest.raises(UnknownModelError, match="no file"):
         model_in_file("nowhere.py:Mine")
+
+
+SHARED = """from dataclasses import dataclass
+from rocking.restitution import RestitutionModel
+@dataclass(frozen=True)
+class Shared(RestitutionModel):
+    share: float
+    name = "shared"
+    title = "a share"
+    def raw_coefficient(self, body, onto):
+        return self.share / (1.0 - self.share)
+"""
+
+
+def test_parameters_and_factor_of_an_own_model(own):
+    """They are written as those of every model, go with it to another process, and are missed by name."""
+    (own / "shared.py").write_text(SHARED, encoding="utf-8")
+    word = f"{own / 'shared.py'}:Shared"
+    made = pickle.loads(pickle.dumps(model_in_file(f"0.5*{word}:share=0.25")))
+    block = Block(width=1.0, height=4.0)
+    assert made.coefficient(block, "right") == pytest.approx(0.5 / 3.0, rel=1e-15)
+    assert model_in_file(f"{word}:share=0.25").coefficient(block, "right") == pytest.approx(1.0 / 3.0, rel=1e-15)
+    for wrong in ("", ":part=0.3", ":share=0.3,part=1"):
+        with pytest.raises(UnknownModelError, match=r"'shared.py:Shared' takes the parameter share, got"):
+            model_in_file(word + wrong)
