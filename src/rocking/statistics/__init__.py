@@ -11,15 +11,19 @@ if TYPE_CHECKING:
     from rocking.statistics.least_squares import Regression, regression
     from rocking.statistics.lognormal import LognormalFit, fit_counts, fit_lognormal
     from rocking.statistics.ordered_probit import OrderedFit, fit_ordered
+    from rocking.statistics.scores import Forecasts, ReliabilityBin, Score, logistic_left_out
     from rocking.statistics.separation import Separation
 
 __all__ = [
     "CensoredFit",
     "Counts",
+    "Forecasts",
     "Goodness",
     "LognormalFit",
     "OrderedFit",
     "Regression",
+    "ReliabilityBin",
+    "Score",
     "Separation",
     "StateCounts",
     "count_outcomes",
@@ -28,6 +32,7 @@ __all__ = [
     "fit_crossings",
     "fit_lognormal",
     "fit_ordered",
+    "logistic_left_out",
     "regression",
     "share_interval",
 ]
@@ -39,6 +44,7 @@ _HOMES = {
     "least_squares": ("Regression", "regression"),
     "lognormal": ("LognormalFit", "fit_counts", "fit_lognormal"),
     "ordered_probit": ("OrderedFit", "fit_ordered"),
+    "scores": ("Forecasts", "ReliabilityBin", "Score", "logistic_left_out"),
     "separation": ("Separation",),
 }
 
