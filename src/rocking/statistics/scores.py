@@ -200,10 +200,8 @@ class Forecasts:
         return found
 
     def _surprise(self) -> FloatArray:
-        with np.errstate(divide="ignore"):
-            return -(
-                xlogy(self.outcome, self.probability) + xlogy(1.0 - self.outcome, 1.0 - self.probability)
-            )  # Eq. 231
+        p, yes = self.probability, self.outcome
+        return np.asarray(-xlogy(yes, p) - xlogy(1.0 - yes, 1.0 - p), dtype=np.float64)  # Eq. 231
 
     def _foreseen(self) -> FloatArray:
         return np.where((self.probability >= 0.5) == (self.outcome == 1.0), 1.0, 0.0)
