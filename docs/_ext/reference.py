@@ -102,7 +102,7 @@ def constant(room: str, name: str, value: object) -> str:
     """What asks for the words on a constant, or shows it where it has none: Python's on its type would stand there."""
     if ("", name) in ModuleAnalyzer.for_module(room).find_attr_docs():
         return f".. autodata:: {room}.{name}\n"
-    return f".. py:data:: {room}.{name}\n   :value: {value!r:.80}\n"
+    return f".. py:data:: {name}\n   :value: {value!r:.80}\n"
 
 
 def documented(path: str, value: object) -> str:
