@@ -95,6 +95,10 @@ _HISTORY = (
 _HISTORY_WITH_FRICTION = (
     Quantity("residual_displacement", "m", "displacement of the centre of mass at the end, relative to the ground"),
     Quantity("friction_usage", "1", "largest horizontal force over friction times the vertical one; 1 where it slides"),
+    Quantity(
+        "impacts_replaced", "1", "impacts in which Stronge's law stood in for one that has no solution or gains energy"
+    ),
+    Quantity("shocks", "1", "impacts without collision: of a foot that slides where no contact force is possible"),
 )
 _HISTORY_IN_SPACE = (
     Quantity("over_contact", "1", f"{_spelled(_CONTACTS)} over which it fell, -1 none"),

@@ -44,6 +44,7 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
     *,
     friction: float | None = None,
     bounce: float = 0.0,
+    bounce_law: str = "newton",
     scale: float = 1.0,
     rotation: float = 0.0,
     angular_velocity: Any = 0.0,
@@ -87,7 +88,11 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
         given, it rocks alone, and a `PureRockingWarning` says where the ground would have to pull, and what the body
         then does.
     bounce : float
-        Newton's coefficient of normal velocities, in [0, 1), with friction [-].
+        Coefficient of normal restitution, in [0, 1), with friction [-].
+    bounce_law : {"newton", "poisson", "stronge"}
+        What `bounce` is the ratio of: normal velocities (Newton), normal impulses (Poisson), or, squared, the work of
+        the normal impulses (Stronge). They differ where sliding stops or turns during an impact. Where Newton's or
+        Poisson's would create energy, or has no solution, Stronge's stands in.
     scale : float
         Factor on all components of the motion [-].
     rotation, angular_velocity : float
@@ -141,8 +146,8 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
     }  # fmt: skip
     return _followed(
         body, components_of(motion) if in_space(body) else in_plane(motion), restitution, settings, friction=friction,
-        bounce=bounce, rotation=rotation, angular_velocity=angular_velocity, start=start, engine=engine, stream=stream,
-        scale=scale, duration=duration,
+        bounce=bounce, bounce_law=bounce_law, rotation=rotation, angular_velocity=angular_velocity, start=start,
+        engine=engine, stream=stream, scale=scale, duration=duration,
     )  # fmt: skip
 
 
@@ -165,6 +170,7 @@ def free_rocking(  # type: ignore[misc]  # noqa: PLR0913 - as for `simulate`
     *,
     friction: float | None = None,
     bounce: float = 0.0,
+    bounce_law: str = "newton",
     angular_velocity: Any = 0.0,
     start: "Start | SpatialStart | None" = None,
     gravity: float = conventions.g,
@@ -190,6 +196,8 @@ def free_rocking(  # type: ignore[misc]  # noqa: PLR0913 - as for `simulate`
         As for `simulate`.
     friction, bounce : float, optional
         As for `simulate` [-].
+    bounce_law : {"newton", "poisson", "stronge"}
+        As for `simulate`.
     angular_velocity : float, or array_like of shape (3,) in space
         theta' at the start, in space in axes of the ground [rad/s].
     start : Start or SpatialStart, optional
@@ -234,8 +242,8 @@ def free_rocking(  # type: ignore[misc]  # noqa: PLR0913 - as for `simulate`
     }  # fmt: skip
     return _followed(
         body, (None, None, None) if in_space(body) else None, restitution, settings, friction=friction, bounce=bounce,
-        rotation=rotation, angular_velocity=angular_velocity, start=start, engine=engine, stream=stream,
-        duration=duration,
+        bounce_law=bounce_law, rotation=rotation, angular_velocity=angular_velocity, start=start, engine=engine,
+        stream=stream, duration=duration,
     )  # fmt: skip
 
 
@@ -247,6 +255,7 @@ def _followed(  # noqa: PLR0913 - what the two questions have in common
     *,
     friction: float | None,
     bounce: float,
+    bounce_law: str,
     rotation: float,
     angular_velocity: Any,
     start: Any,
@@ -262,7 +271,7 @@ def _followed(  # noqa: PLR0913 - what the two questions have in common
         from rocking.dynamics.space.histories import response_in_space
 
         body = SpatialBody.of(body)
-        refuse("a body in space", friction=friction, bounce=bounce, engine=engine, stream=stream)
+        refuse("a body in space", friction=friction, bounce=bounce, bounce_law=bounce_law, engine=engine, stream=stream)
         if not np.ndim(angular_velocity) and angular_velocity:
             raise InvalidValueError("angular_velocity of a body in space must be three numbers [rad/s], got one")
         spin = angular_velocity if np.ndim(angular_velocity) else (0.0, 0.0, 0.0)
@@ -277,9 +286,9 @@ def _followed(  # noqa: PLR0913 - what the two questions have in common
         refuse("a body with friction", engine=engine, stream=stream)
         return response_with_contact(
             body, motion, friction, restitution, Settings(**settings, mechanics="contact"), bounce=bounce,
-            start=_start(start, Start) or Start(rotation, angular_velocity), **how,
+            bounce_law=bounce_law, start=_start(start, Start) or Start(rotation, angular_velocity), **how,
         )  # fmt: skip
-    refuse("a body without friction=, which rocks alone", bounce=bounce, start=start)
+    refuse("a body without friction=, which rocks alone", bounce=bounce, bounce_law=bounce_law, start=start)
     response = response_of_rocking(
         body, motion, restitution, Settings(**settings), rotation=rotation, angular_velocity=angular_velocity,
         engine=engine, stream=stream, **how,
@@ -290,8 +299,8 @@ def _followed(  # noqa: PLR0913 - what the two questions have in common
 
 
 _USUAL: dict[str, tuple[Any, ...]] = {
-    "friction": (None,), "bounce": (0.0,), "engine": ("auto", "reference"), "stream": (0,), "start": (None,),
-    "twin": (False,), "threads": (None,), "duration": (None,),
+    "friction": (None,), "bounce": (0.0,), "bounce_law": ("newton",), "engine": ("auto", "reference"),
+    "stream": (0,), "start": (None,), "twin": (False,), "threads": (None,), "duration": (None,),
 }  # fmt: skip
 
 

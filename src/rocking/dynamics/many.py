@@ -32,6 +32,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     *,
     friction: Any = None,
     bounce: float = 0.0,
+    bounce_law: str = "newton",
     scale: Any = 1.0,
     gravity: float = conventions.g,
     engine: str = "auto",
@@ -60,7 +61,9 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     friction : float or array_like, optional
         Coulomb's coefficients between plane bodies and ground [-]: they may slide, hop and fly, as in `simulate`.
     bounce : float
-        Newton's coefficient of normal velocities, in [0, 1), with friction [-].
+        Coefficient of normal restitution, in [0, 1), with friction [-].
+    bounce_law : {"newton", "poisson", "stronge"}
+        What `bounce` is the ratio of, as for `simulate`.
     scale : float or array_like
         Factors on the motions [-].
     gravity : float
@@ -118,7 +121,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     }  # fmt: skip
     several: list[Any] = list(bodies) if isinstance(bodies, (list, tuple)) else [bodies]
     if any(map(in_space, several)) and not any(isinstance(body, Body) for body in several):
-        refuse("bodies in space", twin=twin, friction=friction, bounce=bounce)
+        refuse("bodies in space", twin=twin, friction=friction, bounce=bounce, bounce_law=bounce_law)
         settings = Settings(**given, mechanics="space, many")
         return _in_space(several, motions, restitution, scale, start, settings, duration, engine, threads, progress)
     body_list = _several("bodies", bodies, (Body,))
@@ -129,22 +132,29 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     if not restitutions:
         raise InvalidValueError("restitution must be at least one model, got none")
     if friction is None:
-        refuse("bodies without friction=, which rock alone from rest", bounce=bounce, start=start, duration=duration)
+        refuse(
+            "bodies without friction=, which rock alone from rest",
+            bounce=bounce,
+            bounce_law=bounce_law,
+            start=start,
+            duration=duration,
+        )
         return _rocking_alone(
             body_list, motion_list, scales, restitutions, Settings(**given), twin, threads, engine, progress
         )
     from rocking.dynamics.contact.histories import many_with_contact
 
-    refuse("bodies with friction", twin=twin, threads=threads, engine=engine)
+    refuse("bodies with friction", twin=twin)
     settings, mus = Settings(**given, mechanics="contact"), _row("friction", friction)
-    results = many_with_contact(
-        body_list, motion_list, scales, restitutions, mus, settings, bounce, start, duration, progress
-    )
+    results, ran = many_with_contact(
+        body_list, motion_list, scales, restitutions, mus, settings, bounce=bounce, bounce_law=bounce_law, start=start,
+        duration=duration, engine=engine, threads=threads, progress=progress,
+    )  # fmt: skip
     return _dataset(
         body_list, motion_list, {"scale": scales, "restitution": list(map(_label, restitutions)), "friction": mus},
         results, settings,
         {
-            "engine": "reference: Taylor series with events and complementarity", "bounce": bounce,
+            "engine": ran, "bounce": bounce, "bounce_law": bounce_law,
             "start": repr(start or "at rest"), "duration_s": np.nan if duration is None else duration,
         },
     )  # fmt: skip

@@ -39,12 +39,13 @@ class NextMode(NamedTuple):
 
     mode: Mode
     tolerance: float  # below it, over their scale, coefficients counted as zero [-]
+    alone: bool = True  # whether no other one is possible that moves the body differently
 
 
 def choose(base: PlaneBase, state: ContactState, ground: GroundSeries, friction: float) -> NextMode | Status:
     """Return the mode that follows a state.
 
-    Returns the mode; where there is none, or where two of them move the body differently, a status that says so.
+    Returns the mode; of several the first: contacts last, and stick, where they can. Where there is none, a status.
     """
     weight = weight_of(ground)
     tried = [(mode, mode_series(base, state, mode, ground, friction, _ORDER)) for mode in candidates(base, state)]
@@ -53,7 +54,7 @@ def choose(base: PlaneBase, state: ContactState, ground: GroundSeries, friction:
         good = [(m, c) for m, c, found in possible if consistent(found, 1.0, tolerance)]  # Eq. 20
         if good:
             same = all(_agree(good[0][1], other, base.size) for _, other in good[1:])
-            return NextMode(good[0][0], tolerance) if same else Status.AMBIGUOUS
+            return NextMode(good[0][0], tolerance, same)
     return Status.NO_CONTACT_FORCE
 
 

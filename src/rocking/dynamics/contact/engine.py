@@ -19,9 +19,9 @@ from rocking.dynamics.contact.impact_resolution import (
     Struck,
     cleaned,
     largest_speed,
-    strike,
     strike_with,
 )
+from rocking.dynamics.contact.impulse_growth import impact_of, shock
 from rocking.dynamics.contact.mode_series import GroundSeries, ModeSeries, mode_series, value
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import first_fall, shifted
@@ -77,7 +77,7 @@ class ContactEngine:
             self._step()
         history = self.history
         history.status, history.lies = self.ended or Status.GOOD, self.lies
-        history.passed, history.end = self.passed, self._now
+        history.passed, history.end, history.last_x = self.passed, self._now, self.state.x
         return history
 
     # ---- from event to event ----------------------------------------------------------------------------------------
@@ -110,7 +110,7 @@ class ContactEngine:
         full = mode_series(self.base, self.state, self.mode, ground, self.law.friction, _ORDER)
         part = self._trusted(full)
         if not part > 0.0:
-            self.ended = Status.NOT_FINITE if full.stiff > 0.0 else Status.NO_CONTACT_FORCE
+            self._shocked(Status.NOT_FINITE if full.stiff > 0.0 else Status.NO_CONTACT_FORCE)
             return
         whole, here = full.shortened(part), ground.shortened(part)
         stretch = whole.unit * self.pace
@@ -195,11 +195,26 @@ class ContactEngine:
 
     def _strike(self, mode: Mode, dropped: float = 0.0) -> None:
         """Resolve an impact of the feet that touch; rounding in its place is booked with it."""
-        before = self.state
-        struck = self._struck(before, mode)
+        struck = self._struck(self.state, mode)
         if isinstance(struck, Status):
             self.ended = struck
             return
+        self._go_on(struck, dropped)
+
+    def _shocked(self, otherwise: Status) -> None:
+        """Strike a foot that slides where no contact force is possible; end with a status where that is not it."""
+        self.events, self.changed = self.events + 1, self.changed + 1
+        stopped = self.events >= self.settings.most_events or self.changed > _MOST_CHANGES
+        struck = otherwise if stopped else shock(self.base, self.state, self.law)
+        if isinstance(struck, Status):
+            self.ended = otherwise
+            return
+        self.history.shocks += 1
+        self._go_on(struck)
+
+    def _go_on(self, struck: Struck, dropped: float = 0.0) -> None:
+        """Note an impact, and what follows it."""
+        before = self.state
         rounding = 1e-13 * largest_speed(self.base, before)
         after = self._calmed(cleaned(self.base, struck, rounding))
         loss = dropped + kinetic(self.base, before) - kinetic(self.base, after)
@@ -213,11 +228,13 @@ class ContactEngine:
             foot = -mode.feet[0]
             r = law.restitution[0 if foot < 0 else 1]
             imposed = strike_with(self.base, before, foot, law.friction, r)
-            if imposed is not None:
+            if isinstance(imposed, Struck):
                 return imposed
         bounces = {foot: law.bounce * -away(self.base, before, foot) for foot in before.touching}
         bounce = {foot: law.bounce if v > self.slowest else 0.0 for foot, v in bounces.items()}
-        return strike(self.base, before, law.friction, bounce)
+        found, replaced = impact_of(self.base, before, law, bounce)
+        self.history.replaced += replaced
+        return found
 
     def _calmed(self, after: ContactState) -> ContactState:
         """Let a body that hardly moves after an impact stand, if the ground lets it."""
@@ -237,7 +254,7 @@ class ContactEngine:
         self.changed += 1
         found = choose(self.base, self.state, self._ground(1.0 / self.pace), self.law.friction)
         if isinstance(found, Status):
-            self.ended = found
+            self._shocked(found)
             return
         if self.changed > _MOST_CHANGES:
             self.ended = Status.STUCK

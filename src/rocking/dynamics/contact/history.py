@@ -51,6 +51,9 @@ class History:
     slid: float = 0.0
     usage: float = 0.0
     peak: float = 0.0
+    replaced: int = 0  # impacts in which Stronge's law stood in for another one
+    shocks: int = 0  # impacts without collision (Painleve)
+    last_x: float = math.nan  # displacement of the centre at the end [m]
     pieces: list[SmoothPiece] = field(default_factory=list)
     blows: list[Blow] = field(default_factory=list)
     changes: list[tuple[float, Mode]] = field(default_factory=list)

@@ -18,6 +18,8 @@ from rocking import checks, plausibility
 from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, ContactState, PlaneBase, along, away, kept, kinetic
 from rocking.outcome import Status
 
+BOUNCE_LAWS = ("newton", "poisson", "stronge")
+
 
 @dataclass(frozen=True)
 class GroundContact:
@@ -28,10 +30,14 @@ class GroundContact:
     friction : float
         Coulomb coefficient mu, the same for sticking and sliding [-].
     bounce : float
-        Newton's coefficient e_N of normal restitution, 0 for plastic impacts [-].
+        Coefficient e of normal restitution, 0 for plastic impacts [-].
     restitution : tuple of float, optional
         Imposed coefficients theta_dot_after / theta_dot_before for landing left and right, which replace the
         complementarity problem at rocking impacts [-].
+    bounce_law : {"newton", "poisson", "stronge"}
+        What `bounce` is the ratio of: normal velocities (Newton), normal impulses (Poisson), or, squared, the work of
+        the normal impulses (Stronge 1990). Where Newton's or Poisson's law would create energy, as they may with
+        friction, or has no solution, Stronge's stands in; it never creates any.
 
     Raises
     ------
@@ -42,12 +48,14 @@ class GroundContact:
     friction: float
     bounce: float = 0.0
     restitution: tuple[float, float] | None = None
+    bounce_law: str = "newton"
 
     def __post_init__(self) -> None:
         """Check every value."""
         checks.within("friction", self.friction, 0.0, 1e6, hint="1e6 for feet that never slide")
-        hint = "a ratio of normal velocities; at 1 bounces never end"
+        hint = "a ratio of velocities, impulses or, squared, of energies; at 1 bounces never end"
         checks.within("bounce", self.bounce, 0.0, 1.0, open_high=True, hint=hint)
+        checks.one_of("bounce_law", self.bounce_law, BOUNCE_LAWS)
         plausibility.warn(plausibility.of_friction(self.friction))
 
 
@@ -69,12 +77,10 @@ def strike(base: PlaneBase, state: ContactState, friction: float, bounce: dict[i
     bounce: e_N of each foot that touches [-]. Returns the state after it with the impulses; a status where there is no
     solution, where two of them differ, or where energy would be created.
     """
-    targets = {foot: -bounce[foot] * away(base, state, foot) for foot in state.touching}  # Eq. 70
-    speed = largest_speed(base, state)
-    # Eq. 20
-    good = [s for s in _solutions(base, state, friction, targets) if _valid(base, s, friction, targets, speed)]
+    good = list(placed(base, state, friction, bounce))
     if not good:
         return Status.NO_CONTACT_FORCE
+    speed = largest_speed(base, state)
     first = good[0].state
     for other in (struck.state for struck in good[1:]):
         gap = max(abs(first.u - other.u), abs(first.w - other.w), base.height * abs(first.spin - other.spin))
@@ -83,6 +89,20 @@ def strike(base: PlaneBase, state: ContactState, friction: float, bounce: dict[i
     if kinetic(base, first) > kinetic(base, state) * (1.0 + 10.0 * _ROUNDING):
         return Status.ENERGY_GAIN
     return good[0]
+
+
+def placed(base: PlaneBase, state: ContactState, friction: float, bounce: dict[int, float]) -> Iterator[Struck]:
+    """Every solution of Newton's law and Coulomb's, sticking before sliding; bounce: e of each foot [-]."""
+    targets = {foot: -bounce[foot] * away(base, state, foot) for foot in state.touching}  # Eq. 70
+    speed = largest_speed(base, state)
+    # Eq. 20
+    return (s for s in _solutions(base, state, friction, targets) if _valid(base, s, friction, targets, speed))
+
+
+def cleared(base: PlaneBase, struck: Struck, before: ContactState) -> bool:
+    """Whether no foot that touches moves into the ground after an impact."""
+    slack = _ROUNDING * largest_speed(base, before)
+    return all(away(base, struck.state, foot) >= -slack for foot in before.touching)
 
 
 def largest_speed(base: PlaneBase, state: ContactState) -> float:
