@@ -203,9 +203,9 @@ class Impact {
             if (restitution) left -= kind == Bounce::poisson ? p : work;
             else taken -= work;
             if (!whole) continue;
-            if (restitution || !(e > 0.0)) break;
-            restitution = true, vn = 0.0;
             left = kind == Bounce::poisson ? e * normal : e * e * taken;  // Eq. 231, 232
+            if (restitution || !(left > 0.0)) break;
+            restitution = true, vn = 0.0;
         }
         Struck made;
         made.state = s_, made.slip = slip;

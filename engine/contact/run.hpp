@@ -8,7 +8,7 @@
 namespace rocking::contact {
 
 constexpr int kBlock = 32;
-constexpr double kWhole = 1.0 - 1e-13, kClosed = 1e-13, kTolerance = 1e-12, kLongest = 0.5, kPatience = 60.0;
+constexpr double kWhole = 1.0 - 1e-13, kClosed = 1e-13, kTolerance = 1e-12, kLongest = 0.5, kPatience = 60.0, kLight = 1e-9;
 
 struct Range {
     double low, high;
@@ -63,9 +63,10 @@ class Run {
         : b_(base), m_(motion), law_(law), row_(row), set_(set), s_(row.start) {}
 
     Result run() {
+        s_ = cleaned(b_, s_, 1e-13 * largest_speed(b_, s_));  // what the caller's sine left of zero
         bool falls = false;
         for (int foot : {kLeft, kRight}) falls |= (s_.touching & foot) && away(b_, s_, foot) < 0.0;
-        if (falls) strike(kFlight, 0.0);
+        if (falls) strike(kFlight);
         else change();
         note_peak(s_.rotation, 0.0);
         while (!done_ && !over()) step();
@@ -197,7 +198,7 @@ class Run {
     }
 
     void note_usage(double tangential, double normal) {
-        if (tangential > r_.friction_usage * law_.friction * normal && normal > 0.0)
+        if (tangential > r_.friction_usage * law_.friction * normal && normal > kLight * set_.gravity)
             r_.friction_usage = std::max(r_.friction_usage, law_.friction > 0.0 ? tangential / normal / law_.friction : 1.0);  // Eq. 78
     }
 
@@ -245,10 +246,10 @@ class Run {
             if (feet == kBoth) s_.rotation = s_.rise = 0.0;
             else s_.rise = arm(b_, b_.lever[feet], before.rotation).rise;
         }
-        strike(mode_, before.rise - s_.rise);
+        strike(mode_);
     }
 
-    void strike(Mode mode, double) {
+    void strike(Mode mode) {
         Struck made;
         const Impact impact(b_, s_, law_);
         bool resolved = false, stands_in = false;

@@ -209,6 +209,7 @@ class ContactAnswer:
             "friction": law.friction,
             "friction_assumed": isinstance(law.friction, Assumed),
             "bounce": law.bounce,
+            "bounce_law": law.bounce_law,
             "imposed_restitution": imposed,
             "gravity_m_s2": response.settings.gravity,
             "outcome": response.outcome.name.lower(),

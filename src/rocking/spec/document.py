@@ -331,7 +331,10 @@ class ResponseTable(JobTable):
 
     free: float | None = _key("no motion: let go at this share of the slenderness angle; negative to the left [-]")
     friction: float | None = _key("coefficient of friction, which lets the body slide, hop and fly [-]", None, gt=0.0)
-    bounce: float | None = _key("with friction: Newton's coefficient of normal velocities, from 0 [-]", None, ge=0.0)
+    bounce: float | None = _key("with friction: coefficient of normal restitution, from 0 [-]", None, ge=0.0)
+    bounce_law: Literal["newton", "poisson", "stronge"] | None = _key(
+        "with bounce: what it is the ratio of: normal velocities (newton), impulses, or, squared, energies (stronge)"
+    )
     assumed_friction: float = Field(
         gt=0.0,
         default_factory=lambda: DEFAULT_FRICTION,
@@ -342,6 +345,8 @@ class ResponseTable(JobTable):
     def _bounces(self) -> "ResponseTable":
         if self.bounce is not None and self.friction is None:
             raise refused("pure rocking does not leave the ground: bounce goes with friction")
+        if self.bounce_law is not None and self.friction is None:
+            raise refused("pure rocking does not leave the ground: bounce_law goes with friction")
         if self.friction is not None and "assumed_friction" in self.model_fields_set:
             raise refused("give friction, which lets the body slide, or assumed_friction, not both")
         return self

@@ -33,7 +33,8 @@ class ResponseProblem:
     settings: Settings = field(default_factory=Settings)  # how to integrate
     engine: str = "auto"
     friction: float | None = None  # coefficient of friction with which the body slides and hops [-]
-    bounce: float = 0.0  # Newton's coefficient of normal velocities, with friction [-]
+    bounce: float = 0.0  # coefficient of normal restitution, with friction [-]
+    bounce_law: str = "newton"  # what it is the ratio of
     assumed_friction: float = DEFAULT_FRICTION  # what pure rocking is compared with [-]
     free: float | None = None  # first rotation over the slenderness angle of the side it leans to [-]
     scale: float = 1.0  # factor on the motion [-]
@@ -68,7 +69,7 @@ class ResponseProblem:
         if self.mechanics == "rocking":
             options["engine"] = self.engine
         if self.mechanics == "contact":
-            options |= {"friction": self.friction, "bounce": self.bounce}
+            options |= {"friction": self.friction, "bounce": self.bounce, "bounce_law": self.bounce_law}
         with warnings.catch_warnings():  # whoever shows the response shows its doubts
             warnings.simplefilter("ignore", PureRockingWarning)
             if self.motion is None:
@@ -88,7 +89,11 @@ def problem_of(
     mechanics = "rocking" if start.friction is None else "contact"
     if isinstance(body, Solid):
         mechanics = "space"
-        _refuse("a body in space has an engine of its own", start, {"free", "friction", "bounce", "assumed_friction"})
+        _refuse(
+            "a body in space has an engine of its own",
+            start,
+            {"free", "friction", "bounce", "bounce_law", "assumed_friction"},
+        )
     if mechanics != "rocking":
         _refuse(
             f"{_MECHANICS[mechanics]} has one engine, with the full equations", tables.settings, {"linear", "engine"}
@@ -110,6 +115,7 @@ def problem_of(
         engine=tables.settings.engine,
         friction=start.friction,
         bounce=start.bounce or 0.0,
+        bounce_law=start.bounce_law or "newton",
         assumed_friction=start.assumed_friction,
         free=start.free,
         scale=scale if scale is not None else 1.0 if table is None else table.scale,

@@ -33,7 +33,7 @@ def test_labels(table):
     assert dict(table.sizes) == {"body": 2, "motion": 2, "scale": 2, "restitution": 2, "friction": 2}
     assert table["restitution"].values.tolist() == ["ked", "complementarity alone"]
     assert all(each.attrs["units"] and each.attrs["long_name"] for each in table.values())
-    assert table.attrs["engine"].startswith("reference")
+    assert table.attrs["engine"].startswith("fast")
 
 
 @pytest.mark.parametrize("body", range(2))
@@ -41,7 +41,10 @@ def test_labels(table):
 def test_each_is_what_simulate_gives(table, body, mu):
     one = rk.simulate(BODIES[body], MOTIONS[0], "ked", scale=1.0, friction=FRICTION[mu], duration=4.0)
     row = table.isel(body=body, motion=0, scale=1, restitution=0, friction=mu)
-    assert {name: float(row[name]) for name in TO_ORIGIN} == {name: float(of(one)) for name, of in TO_ORIGIN.items()}
+    expected = {name: float(of(one)) for name, of in TO_ORIGIN.items() if name != "residual_displacement"}
+    assert {name: float(row[name]) for name in expected} == pytest.approx(expected, rel=1e-9)
+    if one.outcome is not rk.Outcome.OVERTURNED:  # the samples of one that falls end before it lies
+        assert float(row["residual_displacement"]) == pytest.approx(one.displacement[-1], rel=1e-9)
 
 
 @pytest.mark.parametrize("scale", [-0.9, 0.9, -2.0, 2.0])
@@ -93,8 +96,9 @@ def test_a_history_without_a_result_is_neither():
     ("options", "says"),
     [
         ({"friction": 0.3, "twin": True}, "twin is nothing for bodies with friction"),
-        ({"friction": 0.3, "threads": 2}, "threads is nothing for bodies with friction"),
-        ({"friction": 0.3, "engine": "fast"}, "engine is nothing for bodies with friction"),
+        ({"friction": 0.3, "threads": 0}, "threads must be a whole number"),
+        ({"friction": 0.3, "engine": "quick"}, "engine must be one of"),
+        ({"friction": 0.3, "bounce_law": "hertz"}, "bounce_law must be one of"),
         ({"friction": 0.3, "linear": True}, "linear"),
         ({"friction": -0.3}, "friction must be"),
         ({"friction": [0.3, float("nan")]}, "friction must be"),

@@ -18,6 +18,9 @@ SAMPLED = (
     "impact_loss", "slid", "regime",
 )  # fmt: skip
 
+_LIGHT = 1e-9
+"""Force over the weight below which a foot that is let go holds rounding, and no friction is asked for."""
+
 
 class SmoothPiece(NamedTuple):
     """A smooth piece of the history."""
@@ -115,7 +118,7 @@ class History:
         for instant in (0.0, at):
             normal = sum(value(c, instant) for c in series.normals.values())
             tangential = abs(value(series.tangential, instant))
-            if tangential > 0.0 and normal > 0.0:
+            if tangential > 0.0 and normal > _LIGHT * self.gravity:
                 self.usage = max(self.usage, tangential / normal / friction if friction else 1.0)  # Eq. 78
 
     def sample(self, row: int, state: ContactState, mode: Mode, series: ModeSeries | None, at: float) -> None:

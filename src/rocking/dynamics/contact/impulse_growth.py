@@ -137,10 +137,10 @@ def _grow(
         work, owed = work - done, owed - (p if law == "poisson" else done)
         if stops < ends:
             continue
-        if restitution or e <= 0.0:
+        owed = e * normal if law == "poisson" else e * e * work  # Eq. 231, 232
+        if restitution or not owed > 0.0:
             break
         restitution, v_n = True, 0.0
-        owed = e * normal if law == "poisson" else e * e * work  # Eq. 231, 232
     spin = state.spin + (tangential * r_z - normal * r_x) / base.inertia
     after = state._replace(u=state.u + tangential, w=state.w + normal, spin=spin)
     return Struck(after, {0: normal}, tangential, slip)
