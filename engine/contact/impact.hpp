@@ -190,11 +190,11 @@ class Impact {
         bool restitution = false;
         for (int part = 0; part < 8; ++part) {
             slip = vt > 0.0 ? 1 : vt < 0.0 ? -1 : std::fabs(a.nt) <= mu * a.tt ? 0 : a.nt > 0.0 ? 1 : -1;
-            const double pull = slip ? -slip * mu : -a.nt / a.tt, up = a.nn + pull * a.nt, right = slip ? a.nt + pull * a.tt : 0.0;  // Eq. 230
+            const double pull = slip ? -slip * mu : -a.nt / a.tt, up = a.nn + pull * a.nt, right = slip ? a.nt + pull * a.tt : 0.0;  // Eq. 236
             const double stops = vt * right < 0.0 ? -vt / right : HUGE_VAL;
             double ends = up > 0.0 && !(shocked && part == 0) ? -vn / up : HUGE_VAL;
             if (restitution && kind == Bounce::poisson) ends = left;
-            if (restitution && kind != Bounce::poisson) ends = 2.0 * left / (vn + std::sqrt(vn * vn + 2.0 * up * left));  // Eq. 232
+            if (restitution && kind != Bounce::poisson) ends = 2.0 * left / (vn + std::sqrt(vn * vn + 2.0 * up * left));  // Eq. 238
             const bool whole = !(stops < ends);
             const double p = whole ? ends : stops;
             if (!std::isfinite(p)) break;
@@ -203,7 +203,7 @@ class Impact {
             if (restitution) left -= kind == Bounce::poisson ? p : work;
             else taken -= work;
             if (!whole) continue;
-            left = kind == Bounce::poisson ? e * normal : e * e * taken;  // Eq. 231, 232
+            left = kind == Bounce::poisson ? e * normal : e * e * taken;  // Eq. 237, 238
             if (restitution || !(left > 0.0)) break;
             restitution = true, vn = 0.0;
         }

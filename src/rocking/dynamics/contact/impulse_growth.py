@@ -121,14 +121,14 @@ def _grow(
     while True:
         slip = _slip(v_t, nt, friction * tt)
         f = -slip * friction if slip else -nt / tt
-        up, drift = nn + f * nt, nt + f * tt if slip else 0.0  # Eq. 230
+        up, drift = nn + f * nt, nt + f * tt if slip else 0.0  # Eq. 236
         stops = -v_t / drift if v_t * drift < 0.0 else math.inf
         if not restitution:
             ends = -v_n / up if up > 0.0 and not shocked else math.inf
         elif law == "poisson":
             ends = owed
         else:
-            ends = 2.0 * owed / (v_n + math.sqrt(v_n * v_n + 2.0 * up * owed))  # Eq. 232
+            ends = 2.0 * owed / (v_n + math.sqrt(v_n * v_n + 2.0 * up * owed))  # Eq. 238
         shocked = False
         p = min(stops, ends)
         done = (v_n + 0.5 * up * p) * p
@@ -137,7 +137,7 @@ def _grow(
         work, owed = work - done, owed - (p if law == "poisson" else done)
         if stops < ends:
             continue
-        owed = e * normal if law == "poisson" else e * e * work  # Eq. 231, 232
+        owed = e * normal if law == "poisson" else e * e * work  # Eq. 237, 238
         if restitution or not owed > 0.0:
             break
         restitution, v_n = True, 0.0
