@@ -111,7 +111,6 @@ inline int zeros(const double* c, int n, double* out) {
     return count;
 }
 
-// Where on (0, 1] a polynomial that starts above zero first goes below it; 2 if nowhere. Touching zero is not falling.
 // Whether bounds on the series of one foot that carries already say that nothing happens.
 inline bool uneventful(Mode m, const Series& c, double mu) {
     if (m.feet != kLeft && m.feet != kRight) return false;
@@ -124,6 +123,7 @@ inline bool uneventful(Mode m, const Series& c, double mu) {
     return push > 1e-6 * std::fabs(normal[0]) && open > 1e-6 * high && high < kHalfPi && (m.slip ? slide > 1e-6 * std::fabs(c.sliding[0]) : grip > 1e-6 * mu * normal[0]);
 }
 
+// Where on (0, 1] a polynomial that starts above zero first goes below it; 2 if nowhere. Touching zero is not falling.
 inline double first_fall(const double* c, int n) {
     double low = c[0];
     for (int k = 1; k < n; ++k) low += std::min(c[k], 0.0);

@@ -88,7 +88,7 @@ class Run {
     // The motion of the next while; a stretch that has begun is shifted.
     Ground ground(double unit) const {
         Ground g;
-        g.unit = unit, g.lift[0] = set_.gravity;
+        g.unit = unit, g.lift[0] = set_.gravity, g.small = 0.1 * set_.tolerance;
         if (!shaking()) return g;
         g.terms = m_.terms;
         const double *push = m_.push + stretch_ * m_.terms, *lift = m_.lift ? m_.lift + stretch_ * m_.terms : nullptr;

@@ -6,9 +6,9 @@ namespace rocking::contact {
 
 constexpr int kMost = 24, kTerms = kMost + 1, kGround = 8;
 
-// a_x and g + a_z over a unit of time.
+// a_x and g + a_z over a unit of time, and how small the terms must be that a series leaves out.
 struct Ground {
-    double push[kGround] = {}, lift[kGround] = {}, unit = 0.0;
+    double push[kGround] = {}, lift[kGround] = {}, unit = 0.0, small = 1e-16;
     int terms = 1;
     double weight() const { return std::max(std::fabs(lift[0]) + std::fabs(push[0]), 1e-3); }
 };
@@ -67,7 +67,7 @@ inline void flight(const Base& b, const State& s, const Ground& g, int order, Se
     for (; n <= order; ++n) {
         if (n) power *= s.spin * g.unit / n;
         sines[n] = power * turns[n % 4], lowered[n] = power * lowers[n % 4];
-        if (n >= least && std::fabs(power) < 1e-18) {
+        if (n >= least && std::fabs(power) < 0.01 * g.small) {
             c.converged = true, ++n;
             break;
         }
@@ -91,7 +91,7 @@ inline void pivoting(const Base& b, const State& s, Mode m, const Ground& g, dou
     x[0] = r.x, z[0] = r.z, turn[0] = s.spin * g.unit;
     c.rotation[0] = s.rotation, c.rotation[1] = turn[0];
     c.stiff = m.slip ? (r.x * (r.x + pull * r.z) + j) / (j + r.x * r.x) : 1.0;
-    const double compliance = unit2 / (j + r.x * r.x + r.z * r.z), nothing = 1e-16 * g.weight() * unit2 / b.size;
+    const double compliance = unit2 / (j + r.x * r.x + r.z * r.z), nothing = g.small * g.weight() * unit2 / b.size;
     int small = 0, k = 0;
     c.converged = false;
     for (; k + 2 <= order; ++k) {

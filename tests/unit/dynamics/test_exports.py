@@ -157,7 +157,7 @@ EVERY = RESPONSES | {
     "pure, at rest": rk.simulate(BODY, rk.pulses.sine(1.0, 0.5), "ked"),
     "slide and rock": rk.simulate(SQUAT, rk.pulses.sine(9.0, 0.9), None, friction=0.62),
     "slide": rk.simulate(SQUAT, WAVE, None, friction=0.2),
-    "no force": rk.free_rocking(
+    "struck": rk.free_rocking(
         SQUAT, restitution=None, friction=2.5, start=Start(rotation=0.1, horizontal_velocity=1.0)
     ),
     "rest": rk.simulate(SQUAT, WAVE, None, friction=1.0, scale=0.1),
@@ -269,7 +269,7 @@ def test_tables_are_the_response():
     spelt = [(a, b, c.name.lower(), "-".join(map(str, points))) for a, b, c, points in corner.intervals]
     assert list(rows) == spelt
     assert "vertex" in tables["interval"].columns["contact"].values
-    assert not EVERY["no force"].exported().beside["interval"].columns["start"].values.size
+    assert EVERY["struck"].exported().beside["impact"].columns["time"].values[0] == 0.0
 
 
 def test_direction_is_told_only_where_it_overturned():
