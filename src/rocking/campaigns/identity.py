@@ -36,6 +36,8 @@ _SHOWN = 5
 def engine_of(histories: Histories) -> str:
     """Return the engine that computes here: of the same text, ``fast, 0123456789abcdef``, are the same bits."""
     engine = fast_engine.chosen(histories.engine, histories.law)
+    if histories.settings.friction is not None:
+        return f"{engine}, {_fingerprint(engine, '', 'contact')}"
     return f"{engine}, {_fingerprint(engine, fast_engine.instruction_set() if engine == 'fast' else '')}"
 
 
@@ -45,12 +47,13 @@ def kind_of(name: str) -> str:
 
 
 @cache
-def _fingerprint(engine: str, instruction_set: str) -> str:
+def _fingerprint(engine: str, instruction_set: str, mechanics: str = "rocking") -> str:
     """Hash the results of a few histories; the instruction set is what the cache tells engines apart by."""
     digest = hashlib.sha256()
     count = _EACH if engine == "fast" else _OF_REFERENCE
-    for motions, law, settings in _batches():
-        results = Batch(motions, law, settings, 1, engine).run(count, lambda first, last: _rows(count))[0]
+    for motions, law, settings in (each for each in _batches() if each[2].mechanics == mechanics):
+        rows = _rows(count, one_base=mechanics == "contact")
+        results = Batch(motions, law, settings, 1, engine).run(count, rows.part)[0]
         for name, kind in RESULTS.items():
             digest.update(np.ascontiguousarray(results[name], np.dtype(kind).newbyteorder("<")).tobytes())
     return digest.hexdigest()[:16]
@@ -76,6 +79,8 @@ def _batches() -> list[tuple[list[Segments], ImpactLaw, Settings]]:
         (flat, ConstantRestitution(), Settings(gravity=9.8125, order=6)),
         (upright, by_speed, Settings(gravity=9.8125)),
         (pulses, by_speed, Settings(gravity=9.8125, linear=True)),
+        (pulses, ConstantRestitution(), Settings(gravity=9.8125, friction=0.3125)),
+        (upright, ConstantRestitution(), Settings(gravity=9.8125, friction=0.75, bounce=0.25)),
     ]
 
 
@@ -85,8 +90,8 @@ def _noise(factor: int, size: float) -> FloatArray:
     return np.asarray(size * ((number * number * factor + 11 * number) % 101 - 50) / 64.0, np.float64)
 
 
-def _rows(count: int) -> Rows:
-    """Bodies from squat to slender, one of which no engine can take."""
+def _rows(count: int, *, one_base: bool) -> Rows:
+    """Bodies from squat to slender, one of which no engine can take; one_base: whose sides have one height and one I_C."""
     k = np.arange(_EACH)[-count:]
     alpha = 0.0625 + 0.03125 * (k * 5 % 13)
     values = {
@@ -96,6 +101,8 @@ def _rows(count: int) -> Rows:
         "share_right": 1.0 - k / 64.0, "share_left": 0.5 + k / 64.0,
         "scale": np.where(k == _EACH - 1, np.nan, 0.5 + k / 16.0), "rotation": np.where(k % 5 == 4, 0.03125, 0.0),
     }  # fmt: skip
+    if one_base:
+        values |= {f"{name}_left": values[f"{name}_right"] for name in ("alpha", "p", "q")}
     return Rows.of(count, k % 4, k, **values)
 
 

@@ -1,5 +1,6 @@
 """A body as the equations of motion see it: angle, frequency parameter and coefficient on either side."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -13,6 +14,9 @@ from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, 
 from rocking.errors import InvalidValueError
 from rocking.restitution import RestitutionModel, model
 from rocking.restitution.implied import energy_bound
+
+COMPLEMENTARITY = "complementarity alone"
+"""What restitution=None is called, with friction."""
 
 # rounding in I_O and r together
 _ROUNDING = 1e-9
@@ -141,7 +145,9 @@ class RockingParameters:
         return side.coefficient * factor
 
     @classmethod
-    def of_body(cls, body: Body, restitution: Any, gravity: float) -> "RockingParameters":
+    def of_body(
+        cls, body: Body, restitution: Any, gravity: float, *, friction: float | None = None
+    ) -> "RockingParameters":
         """Return a body with its coefficients of restitution.
 
         Parameters
@@ -153,11 +159,14 @@ class RockingParameters:
             ``{"left": .., "right": ..}``; or a law for what changes from impact to impact.
         gravity : float
             Acceleration of gravity [m/s2].
+        friction : float, optional
+            With it the body may slide and hop, and the restitution may be None: no coefficient is imposed, impacts
+            are plastic by complementarity, or as `bounce` says [-].
 
         Returns
         -------
         RockingParameters
-            The body as the equations see it.
+            The body as the equations see it; coefficients are NaN where none is imposed.
 
         Raises
         ------
@@ -168,7 +177,11 @@ class RockingParameters:
             raise InvalidValueError(f"body must be a Block, Section or MassPoints, got {body!r:.60}")
         law = restitution if isinstance(restitution, ImpactLaw) else ConstantRestitution()
         base = getattr(restitution, "times", 1.0) if isinstance(restitution, ImpactLaw) else restitution
-        coefficients, label = coefficients_of(base, body)
+        coefficients: Mapping[str, float]
+        if base is None and friction is not None:
+            coefficients, label = {foot: math.nan for foot in FEET}, COMPLEMENTARITY
+        else:
+            coefficients, label = coefficients_of(base, body)
         made: dict[Foot, RockingSide] = {}
         for foot in FEET:
             most, side = energy_bound(body, foot), body.side(foot, gravity)
@@ -227,7 +240,7 @@ def _share(law: ImpactLaw, onto: Foot, r: float, most: float) -> float:
     """Part of a distribution within the energy bound of a side; what cannot be cut there is refused beyond it."""
     drawn = _truncated(law)
     largest = r * (drawn.quantile(1.0, onto) if drawn else law.largest)
-    if largest <= most * (1.0 + _ROUNDING):
+    if largest <= most * (1.0 + _ROUNDING) or math.isnan(r):
         return 1.0
     if drawn:
         share = drawn.share_within(most / r, onto)

@@ -15,6 +15,9 @@ from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarni
 ORDERS = (4, 6, 8)
 """Orders that the fast engine has been compiled for."""
 
+BOUNCE_LAWS = ("newton", "poisson", "stronge")
+"""What the coefficient of normal restitution may be the ratio of: velocities, impulses or, squared, energies."""
+
 SHORTEST_STEP = 1e-6
 """Least `Settings.longest_step` [-]."""
 
@@ -77,7 +80,9 @@ class Settings:
         Bound on the last two terms of a Taylor step: over the angle alpha (and the size R with contact) 1e-15; for
         quaternions of unit length 1e-17 in space (1e-13 for many bodies) [-].
     mechanics : {"rocking", "contact", "space", "space, many"}
-        Whose usual values and ranges these are.
+        Whose usual values and ranges these are; with `friction` those of contact.
+    friction, bounce, bounce_law : optional
+        Of studies whose bodies may slide, hop and fly: as for `simulate` [-].
 
     Raises
     ------
@@ -99,9 +104,16 @@ class Settings:
     order: int = None  # type: ignore[assignment]
     tolerance: float = None  # type: ignore[assignment]
     mechanics: str = "rocking"
+    friction: float | None = None
+    bounce: float = 0.0
+    bounce_law: str = "newton"
 
     def __post_init__(self) -> None:
         """Check every value."""
+        if self.friction is not None:
+            self._check_ground()
+        elif self.bounce or self.bounce_law != "newton":
+            raise InvalidValueError("bounce and bounce_law go with friction: pure rocking does not leave the ground")
         own = _OWN[self.mechanics]
         made: dict[str, float] = {
             "gravity": checks.within("gravity", self.gravity, 0.0, 1e6, unit="m/s2", open_low=True),
@@ -131,18 +143,32 @@ class Settings:
             object.__setattr__(self, name, number)
         plausibility.warn(plausibility.of_gravity(self.gravity))
 
+    def _check_ground(self) -> None:
+        if self.mechanics not in {"rocking", "contact"}:
+            raise InvalidValueError(f"friction is no setting of {self.mechanics}; {self._has(_OWN[self.mechanics])}")
+        object.__setattr__(self, "mechanics", "contact")
+        friction = checks.positive("friction", self.friction)
+        made = {
+            "friction": friction,
+            "bounce": checks.within("bounce", self.bounce, 0.0, 1.0, open_high=True),
+            "bounce_law": checks.one_of("bounce_law", self.bounce_law, BOUNCE_LAWS),
+        }
+        for name, value in made.items():
+            object.__setattr__(self, name, value)
+        plausibility.warn(plausibility.of_friction(friction))
+
     def _has(self, own: dict[str, Any]) -> str:
         return f"it has gravity, most_events, {', '.join(own)}"
 
     @property
     def stated(self) -> dict[str, Any]:
         """Values by name, of the settings that these mechanics have."""
-        return {
-            field.name: getattr(self, field.name)
-            for field in fields(self)
-            if field.name in {"gravity", "most_events", *_OWN[self.mechanics]}
-            or (field.name == "linear" and self.mechanics == "rocking")
-        }
+        has = {"gravity", "most_events", *_OWN[self.mechanics]}
+        if self.mechanics == "rocking":
+            has.add("linear")
+        if self.friction is not None:
+            has |= {"friction", "bounce", "bounce_law"}
+        return {field.name: getattr(self, field.name) for field in fields(self) if field.name in has}
 
 
 def settings_of(gravity: float, options: dict[str, Any]) -> Settings:

@@ -46,7 +46,7 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
     x, y : Axis or (str, array_like)
         Axes, or their names and values: frequency_ratio, amplitude_ratio, scale, pga [m/s2], pgv [m/s], period [s],
         duration [s], semi_diagonal [m], slenderness_ratio, slenderness_angle [rad], width [m], height [m],
-        restitution.
+        restitution, friction.
     restitution : as for `simulate`
         Not used where it is an axis.
     gravity : float
@@ -59,7 +59,8 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
         Levels of refinement along the boundaries between modes, each of half the spacing of the one before; see
         `refined_map`.
     **settings
-        Fields of `Settings`, and ``engine``.
+        Fields of `Settings`, and ``engine``; with ``friction`` (or as an axis) the body may slide, hop and fly, and
+        the restitution may be None, as for `simulate`.
 
     Returns
     -------
@@ -153,4 +154,6 @@ def map_arrays(  # noqa: PLR0913
             "refined_peak_ratio": points.peak_ratio,
         }  # fmt: skip
     stated = {**plane.question.attributes(work), "contact": contact_words(results["lost_contact"])}
+    if "friction" in {plane.x.name, plane.y.name}:
+        del stated["setting_friction"]
     return MapArrays((plane.x, plane.y), variables, stated)

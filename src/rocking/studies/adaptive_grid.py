@@ -38,8 +38,14 @@ class Plane:
     def of(cls, body: Any, motion: Any, x: Any, y: Any, restitution: Any, **options: Any) -> "Plane":
         """Return a plane from what a user gives; options: gravity [m/s2], threads, engine and fields of `Settings`."""
         threads, engine = options.pop("threads", None), options.pop("engine", "auto")
+        axes = axis_of(x), axis_of(y)
+        for axis in axes:
+            if axis.name == "friction":
+                if options.get("friction") is not None:
+                    raise InvalidValueError("friction is an axis: leave friction= out")
+                options["friction"] = float(axis.values[-1])
         settings = settings_of(options.pop("gravity"), options)
-        return cls(Question(body, motion, restitution, settings, threads, engine), axis_of(x), axis_of(y))
+        return cls(Question(body, motion, restitution, settings, threads, engine), *axes)
 
     def case(self, x: FloatArray, y: FloatArray) -> Case:
         """Return the variations at some points: bodies first, then restitution, time, amplitude and velocity."""

@@ -234,6 +234,10 @@ _ALL = (
         "restitution", "1", "coefficient of restitution, ratio of velocities", "restitution", RESTITUTION,
         _restitution, _check_law, high=1.0, low_is_allowed=True,
     ),
+    Axis(
+        "friction", "1", "coefficient of friction between body and ground", "friction", RESTITUTION,
+        lambda case, values: {"sides": {**case.sides, "friction": values}}, high=1e6,
+    ),
 )  # fmt: skip
 
 

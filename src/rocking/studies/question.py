@@ -11,6 +11,7 @@ import numpy as np
 from rocking import quantities
 from rocking.bodies import Block, Body
 from rocking.conventions import FloatArray
+from rocking.dynamics.contact.fast_engine import FAST
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.batch import Batch, Rows
@@ -59,7 +60,9 @@ class Question:
 
     def parameters_of(self, body: Body) -> RockingParameters:
         """Return another body with the same restitution, evaluated for it."""
-        return RockingParameters.of_body(body, self.restitution, self.settings.gravity)
+        return RockingParameters.of_body(
+            body, self.restitution, self.settings.gravity, friction=self.settings.friction
+        )
 
     def run(
         self,
@@ -100,7 +103,7 @@ class Question:
         motion = self.motion
         return {
             "software": SOFTWARE,
-            "engine": f"fast ({instruction_set()})" if work else "reference",
+            "engine": self._engine_words(work),
             "body": repr(self.body),
             "motion": motion.name,
             "motion_provenance": "; ".join(getattr(motion, "provenance", ())) or repr(motion),
@@ -109,6 +112,12 @@ class Question:
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in self.settings.stated.items()},
             **{f"work_{k}": v for k, v in work.items()},
         }
+
+
+    def _engine_words(self, work: dict[str, int]) -> str:
+        if self.settings.friction is not None:
+            return FAST
+        return f"fast ({instruction_set()})" if work else "reference"
 
 
 @dataclass(frozen=True)
@@ -230,7 +239,10 @@ def modes_of(results: Arrays) -> np.ndarray:
     [-2, -1, 1, -3]
     """
     outcome = np.asarray(results["outcome"])
-    modes = {Outcome.OVERTURNED: results["impacts"], Outcome.NO_UPLIFT: UNLIFTED, Outcome.FAILED: FAILED}
+    modes = {
+        Outcome.OVERTURNED: results["impacts"], Outcome.NO_UPLIFT: UNLIFTED, Outcome.SLID: UNLIFTED,
+        Outcome.FAILED: FAILED,
+    }  # fmt: skip
     chosen = np.select([outcome == each.code for each in modes], list(modes.values()), SURVIVED)
     return np.asarray(chosen, dtype=np.int64)
 

@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.impact_resolution import BOUNCE_LAWS, GroundContact
-from rocking.dynamics.settings import CompiledEngine, Settings
+from rocking.dynamics.settings import BOUNCE_LAWS, CompiledEngine, Settings
 from rocking.motions.segments import Segments
 
 NUMBERS = (
@@ -51,7 +50,7 @@ def run_compiled(
     library: Any,
     values: dict[str, Any],
     motion: Any,
-    law: GroundContact,
+    bounce_law: str,
     touching: Any,
     *,
     settings: Settings,
@@ -59,11 +58,10 @@ def run_compiled(
 ) -> dict[str, np.ndarray]:
     """Return the results of histories by name: `FLOATS` and `WHOLES`.
 
-    values: the keys of `NUMBERS`, numbers or arrays; motion: numbers of the motions; law: whose `bounce_law` counts;
+    values: the keys of `NUMBERS`, numbers or arrays; motion: numbers of the motions;
     touching: 1 for the left foot plus 2 for the right one.
     """
-    code = BOUNCE_LAWS.index(law.bounce_law)
-    columns = np.broadcast_arrays(*(values[name] for name in NUMBERS), motion, code, touching)
+    columns = np.broadcast_arrays(*(values[name] for name in NUMBERS), motion, BOUNCE_LAWS.index(bounce_law), touching)
     numbers: FloatArray = np.column_stack([np.ravel(each) for each in columns[:-3]]).astype(np.float64)
     choices = np.column_stack([np.ravel(each) for each in columns[-3:]]).astype(np.int64)
     results, counts = np.full((len(numbers), len(FLOATS)), np.nan), np.zeros((len(numbers), len(WHOLES)), np.int64)

@@ -13,6 +13,7 @@ from rocking import checks, conventions, plausibility
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.dynamics.contact.base import PlaneBase, Start, state_at_start
+from rocking.dynamics.contact.batch import AFTER, FINE, ends_of
 from rocking.dynamics.contact.engine import ContactEngine
 from rocking.dynamics.contact.fast_engine import FAST, NUMBERS, REFERENCE, chosen, library_of, run_compiled
 from rocking.dynamics.contact.impact_resolution import GroundContact
@@ -27,8 +28,7 @@ from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, of_results, overturned
 
-# sqrt(g / R) times the step between samples of a pulse's response, and times what is followed after the motion
-_FINE, _AFTER, _FREE = 0.1, 15.0, 60.0
+_FREE = 60.0
 PIECE = 1 << 14
 """Histories that are handed to the fast engine at a time."""
 
@@ -129,9 +129,9 @@ class _Table:
         numbers = [(base.inertia, base.height, base.left, base.right) for base in self.bases]
         starts = [state_at_start(self.start, base) for base in self.bases]
         ends = np.array([
-            [_end(motion, each, base, self.settings.gravity, self.duration)
+            [ends_of(_length(motion, slow, self.duration), each.step, isinstance(motion, Pulse), slow)
              for motion, each in zip(self.motions, segments, strict=True)]
-            for base in self.bases
+            for slow in (math.sqrt(base.size / self.settings.gravity) for base in self.bases)
         ])  # fmt: skip
         shape = (len(self.bases), len(self.motions), self.scales.size, self.imposed.shape[1], self.friction.size)
         touching = np.array([sum(1 if foot < 0 else 2 for foot in each.touching) for each in starts])
@@ -145,7 +145,9 @@ class _Table:
             values |= {"end": ends[body, motion]}
             values |= dict(zip(NUMBERS[10:], np.array([each[:6] for each in starts])[body].T, strict=True))
             pieces.append(
-                run_compiled(library, values, motion, self.law, touching[body], settings=self.settings, threads=threads)
+                run_compiled(
+                    library, values, motion, self.law.bounce_law, touching[body], settings=self.settings, threads=threads
+                )
             )
             if progress is not None:
                 progress(last - first)
@@ -204,29 +206,20 @@ def _imposed(body: Body, restitution: Any, settings: Settings) -> tuple[float, f
     return parameters.left.coefficient, parameters.right.coefficient
 
 
-def _length(motion: GroundMotion | Pulse, base: PlaneBase, gravity: float, duration: float | None) -> float:
+def _length(motion: GroundMotion | Pulse, slow: float, duration: float | None) -> float:
+    """How long to follow a body [s]; slow: sqrt(R / g)."""
     if duration is not None:
         return checks.positive("duration", duration, "s")
-    return motion.duration + _AFTER * math.sqrt(base.size / gravity)
-
-
-def _end(
-    motion: GroundMotion | Pulse, segments: Segments, base: PlaneBase, gravity: float, duration: float | None
-) -> float:
-    """When a history ends: on a sample of what the reference engine follows [s]."""
-    length, step = _length(motion, base, gravity, duration), segments.step
-    if isinstance(motion, Pulse):
-        step /= max(1, math.ceil(step / (_FINE * math.sqrt(base.size / gravity))))
-    return max(1, math.ceil(length / step - 1e-9)) * step
+    return motion.duration + AFTER * slow
 
 
 def _segments(motion: object, base: PlaneBase, gravity: float, duration: float | None) -> Segments:
     slow = math.sqrt(base.size / gravity)
     if motion is None:
         length = _FREE * slow if duration is None else checks.positive("duration", duration, "s")
-        return ground_at_rest(length / max(1, math.ceil(length / (_FINE * slow) - 1e-9)), length)
+        return ground_at_rest(length / max(1, math.ceil(length / (FINE * slow) - 1e-9)), length)
     if not isinstance(motion, (GroundMotion, Pulse)):
         raise InvalidValueError(f"motion must be a GroundMotion, a pulse or None, got {motion!r:.60}")
-    length = _length(motion, base, gravity, duration)
+    length = _length(motion, slow, duration)
     segments = motion.segments()
-    return followed(segments, length, math.ceil(segments.step / (_FINE * slow)), motion)
+    return followed(segments, length, math.ceil(segments.step / (FINE * slow)), motion)

@@ -16,9 +16,8 @@ from typing import NamedTuple
 
 from rocking import checks, plausibility
 from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, ContactState, PlaneBase, along, away, kept, kinetic
+from rocking.dynamics.settings import BOUNCE_LAWS
 from rocking.outcome import Status
-
-BOUNCE_LAWS = ("newton", "poisson", "stronge")
 
 
 @dataclass(frozen=True)
@@ -55,7 +54,7 @@ class GroundContact:
         checks.within("friction", self.friction, 0.0, 1e6, hint="1e6 for feet that never slide")
         hint = "a ratio of velocities, impulses or, squared, of energies; at 1 bounces never end"
         checks.within("bounce", self.bounce, 0.0, 1.0, open_high=True, hint=hint)
-        checks.one_of("bounce_law", self.bounce_law, BOUNCE_LAWS)
+        object.__setattr__(self, "bounce_law", checks.one_of("bounce_law", self.bounce_law, BOUNCE_LAWS))
         plausibility.warn(plausibility.of_friction(self.friction))
 
 

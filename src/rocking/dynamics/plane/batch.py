@@ -22,20 +22,22 @@ PIECE = 1 << 16
 _CHUNK = 64
 ROWS = (
     "alpha_right", "alpha_left", "p_right", "p_left", "r_right", "r_left", "q_right", "q_left",
-    "share_right", "share_left", "scale", "rotation", "velocity",
+    "share_right", "share_left", "scale", "rotation", "velocity", "friction",
 )  # fmt: skip
 """Numbers that make a history, beside the number of its motion and its stream."""
 
 SIDES_UNTOLD = {"q_right": np.nan, "q_left": np.nan, "share_right": 1.0, "share_left": 1.0}
 """What is taken where a side is not told whole: forces of the ground are not known, draws are from all of a law."""
 
+_UNTOLD = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0, "friction": np.nan}
+
 
 @dataclass(frozen=True)
 class Rows:
     """Histories to compute, one entry each; a piece of a larger whole."""
 
-    # the keys of `ROWS` [rad, rad/s, -, -, -, -, rad, rad/s]; q is m R^2 / I_o of a side, share the part of a
-    # distribution that its coefficient is drawn from
+    # the keys of `ROWS` [rad, rad/s, -, -, -, -, rad, rad/s, -]; q is m R^2 / I_o of a side, share the part of a
+    # distribution that its coefficient is drawn from; the friction is that of the settings where it is NaN
     values: dict[str, FloatArray]
     motion: np.ndarray  # number of the motion
     stream: np.ndarray  # number of the history, for random coefficients
@@ -43,7 +45,7 @@ class Rows:
     @classmethod
     def of(cls, count: int, motion: Any = 0, stream: Any = None, **values: Any) -> "Rows":
         """Return rows from numbers and arrays, which are repeated to the count."""
-        given = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0} | SIDES_UNTOLD | values
+        given = _UNTOLD | SIDES_UNTOLD | values
         if set(given) != set(ROWS):
             odd = sorted(set(given) ^ set(ROWS))
             raise InvalidValueError(f"rows have {', '.join(ROWS)}; missing or unknown: {', '.join(odd)}")
@@ -94,6 +96,8 @@ class Batch:
         check_threads(threads)
         if self.law.per_history:
             return self._constant.run(count, lambda a, b: drawn_rows(rows(a, b), self.law), progress, threads)
+        if self.settings.friction is not None:
+            return self._run_with_contact(count, rows, progress, threads)
         library = self._library if fast_engine.chosen(self.engine, self.law) == "fast" else None
         results = fast_engine.empty_results(count)
         total: dict[str, int] = {}
@@ -116,6 +120,35 @@ class Batch:
             if progress is not None:
                 progress(last - first)
         return results, total
+
+    def _run_with_contact(
+        self,
+        count: int,
+        rows: Callable[[int, int], Rows],
+        progress: Callable[[int], None] | None,
+        threads: int | None,
+    ) -> tuple[fast_engine.Arrays, dict[str, int]]:
+        if not isinstance(self.law, ConstantRestitution):
+            raise InvalidValueError(
+                "with friction a history has one coefficient of restitution, or one that is drawn once for it, got "
+                f"{type(self.law).__name__}"
+            )
+        results, steps = fast_engine.empty_results(count), 0
+        for first in range(0, count, PIECE):
+            piece = rows(first, min(first + PIECE, count))
+            found = self._with_contact.run(piece.values, piece.motion, threads or self.threads or processors())
+            steps += int(found["steps"].sum())
+            for name, values in results.items():
+                values[first : first + len(piece)] = found[name]
+            if progress is not None:
+                progress(len(piece))
+        return results, {"steps": steps}
+
+    @cached_property
+    def _with_contact(self) -> Any:
+        from rocking.dynamics.contact.batch import RowsWithContact
+
+        return RowsWithContact(self.motions, self.settings, self.engine)
 
     @cached_property
     def _constant(self) -> "Batch":

@@ -53,7 +53,7 @@ class Subject:
         rest = dict(options)
         engine = rest.pop("engine", "auto")
         settings = settings_of(rest.pop("gravity", conventions.g), rest)
-        parameters = RockingParameters.of_body(body, restitution, settings.gravity)
+        parameters = RockingParameters.of_body(body, restitution, settings.gravity, friction=settings.friction)
         all_motions = motions if isinstance(motions, MotionSet) else MotionList(motions)
         return cls(parameters, all_motions, measure(measure_name), settings, engine)
 
