@@ -91,7 +91,7 @@ def _noise(factor: int, size: float) -> FloatArray:
 
 
 def _rows(count: int, *, one_base: bool) -> Rows:
-    """Bodies from squat to slender, one of which no engine can take; one_base: whose sides have one height and one I_C."""
+    """Bodies from squat to slender, one of which no engine can take; one_base: of one height and one I_C."""
     k = np.arange(_EACH)[-count:]
     alpha = 0.0625 + 0.03125 * (k * 5 % 13)
     values = {

@@ -110,6 +110,7 @@ def fragility(
     density: options.Density = None,
     units: options.Units = None,
     sets: options.Set = None,
+    friction: options.Friction = None,
     threads: options.Threads = None,
     name: Annotated[
         str | None,

@@ -59,6 +59,7 @@ def minimum(
     density: options.Density = None,
     units: options.Units = None,
     sets: options.Set = None,
+    friction: options.Friction = None,
     threads: options.Threads = None,
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,

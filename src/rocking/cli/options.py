@@ -39,6 +39,7 @@ Set = Annotated[
         rich_help_panel=HOW,
     ),
 ]
+Friction = Annotated[float | None, key(tables.StudySettingsTable, "friction", rich_help_panel=HOW)]
 Threads = Annotated[int | None, typer.Option(help="Threads; the results do not depend on them.", rich_help_panel=HOW)]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=OUTPUT)]
 

@@ -10,7 +10,8 @@ from rocking.cli.page import Page, sentence
 from rocking.conventions import LENGTH_UNITS, Assumed, given_or_assumed
 from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome, Regime
-from rocking.spec.response import COMPLEMENTARITY, ResponseProblem
+from rocking.spec.construction import COMPLEMENTARITY
+from rocking.spec.response import ResponseProblem
 
 _FIRST_IMPACTS = 10
 """Impacts of pure rocking that are printed."""

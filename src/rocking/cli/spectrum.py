@@ -44,6 +44,7 @@ def spectrum(
     scale: Annotated[float, options.key(SpectrumTable, "scale")] = 1.0,
     units: options.RecordUnits = None,
     sets: options.Set = None,
+    friction: options.Friction = None,
     threads: options.Threads = None,
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,

@@ -34,7 +34,7 @@ def problem_in(file: Path, own: str, sets: Sequence[str] | None = None) -> Study
 def problem_of(kind: str, arguments: Arguments, motions: list[dict[str, Any]], **tables: Any) -> StudyProblem:
     """Return the problem of the document that was typed, which has some tables beside the settings."""
     own = NEEDS[kind]
-    settings = {"settings": arguments.sets.get("settings", {})}
+    settings = {"settings": arguments.table("settings", {"friction": arguments.options.get("friction")})}
     if stated := arguments.sets.get("restitution"):
         if option := arguments.spelt("restitution"):
             raise InvalidValueError(f"{option} and --set restitution.{next(iter(stated))} say the same: leave one out")

@@ -179,7 +179,7 @@ class RockingParameters:
         base = getattr(restitution, "times", 1.0) if isinstance(restitution, ImpactLaw) else restitution
         coefficients: Mapping[str, float]
         if base is None and friction is not None:
-            coefficients, label = {foot: math.nan for foot in FEET}, COMPLEMENTARITY
+            coefficients, label = dict.fromkeys(FEET, math.nan), COMPLEMENTARITY
         else:
             coefficients, label = coefficients_of(base, body)
         made: dict[Foot, RockingSide] = {}

@@ -28,19 +28,33 @@ if TYPE_CHECKING:
 MOST_IN_MEMORY = 100_000
 """Synthetic motions that may be put into a list with others; a set of one family alone is made piece by piece."""
 
+COMPLEMENTARITY = "complementarity"
+"""Restitution of a body that slides and hops: its rocking impacts follow from complementarity, as all others do."""
+
 _OUTSIDE = ("units", "name", "note")
 
 
 def restitutions_of(
-    table: "RestitutionTable", seed: int, bodies: Sequence[Body | Solid] = (), inputs: InputFiles | None = None
+    table: "RestitutionTable",
+    seed: int,
+    bodies: Sequence[Body | Solid] = (),
+    inputs: InputFiles | None = None,
+    *,
+    friction: float | None = None,
 ) -> dict[str, Any]:
-    """Return models, coefficients, pairs by side or laws, as `simulate` takes them, by their label."""
+    """Return models, coefficients, pairs by side or laws, as `simulate` takes them, by their label.
+
+    friction: with it a word stands for no restitution [-].
+    """
     in_space = any(isinstance(body, Solid) for body in bodies)
     with located("restitution"):
         if in_space and (table.distribution is not None or table.left is not None):
             raise InvalidValueError("a body in space takes model, models, value or values")
         pairs: list[tuple[str, Any]] = []
         for text in table.models or ([table.model] if table.model else []):
+            if text == COMPLEMENTARITY and friction is not None:
+                pairs.append((text, None))
+                continue
             try:
                 pairs.append((text, float(text)))
             except ValueError:

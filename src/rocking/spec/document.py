@@ -228,6 +228,11 @@ class SpectrumTable(JobTable):
     scale: float = _key("factor on the acceleration of the ground [-]", 1.0)
 
 
+_BOUNCE_LAW = (
+    "with bounce: what it is the ratio of: normal velocities (newton), impulses, or, squared, energies (stronge)"
+)
+
+
 class HistoriesTable(JobTable):
     """What the histories of a campaign are made with, beside bodies, motions and restitutions."""
 
@@ -261,6 +266,14 @@ class SettingsTable(JobTable):
         return self.model_dump(exclude={"engine"}, exclude_none=True)
 
 
+class StudySettingsTable(SettingsTable):
+    """How to integrate: what is left out has its usual value. Friction is of studies; one history has its own table."""
+
+    friction: Positive | None = _key("coefficient of friction, with which bodies slide, hop and fly [-]")
+    bounce: float | None = _key("with friction: coefficient of normal restitution, from 0 [-]", None, ge=0.0)
+    bounce_law: Literal["newton", "poisson", "stronge"] | None = _key(_BOUNCE_LAW)
+
+
 class CampaignDocument(JobTable):
     """A job file."""
 
@@ -275,7 +288,7 @@ class CampaignDocument(JobTable):
     minimum: MinimumTable | None = None
     inventory: InventoryTable | None = None
     export: ExportTable | None = None
-    settings: SettingsTable = Field(default_factory=SettingsTable)
+    settings: StudySettingsTable = Field(default_factory=StudySettingsTable)
 
     @property
     def is_adaptive(self) -> bool:
@@ -332,9 +345,7 @@ class ResponseTable(JobTable):
     free: float | None = _key("no motion: let go at this share of the slenderness angle; negative to the left [-]")
     friction: float | None = _key("coefficient of friction, which lets the body slide, hop and fly [-]", None, gt=0.0)
     bounce: float | None = _key("with friction: coefficient of normal restitution, from 0 [-]", None, ge=0.0)
-    bounce_law: Literal["newton", "poisson", "stronge"] | None = _key(
-        "with bounce: what it is the ratio of: normal velocities (newton), impulses, or, squared, energies (stronge)"
-    )
+    bounce_law: Literal["newton", "poisson", "stronge"] | None = _key(_BOUNCE_LAW)
     assumed_friction: float = Field(
         gt=0.0,
         default_factory=lambda: DEFAULT_FRICTION,

@@ -21,7 +21,7 @@ _TABLES: dict[str, tuple[type[JobTable], str]] = {
     "[motions]": (document.MotionTable, "every study"),
     "restitution": (document.RestitutionTable, "every question"),
     "restitution.distribution": (document.RandomTable, "every question but [inventory]"),
-    "settings": (document.SettingsTable, "every question"),
+    "settings": (document.StudySettingsTable, "every question"),
     "map": (document.MapTable, "`rocking map`"),
     "minimum": (document.MinimumTable, "`rocking minimum`"),
     "spectrum": (document.SpectrumTable, "`rocking spectrum`"),
@@ -108,7 +108,7 @@ def _table(name: str, table: type[BaseModel], where: str = "") -> Iterator[str]:
     yield "|---|---|---|---|"
     for key, field in table.model_fields.items():
         usual = "needed" if field.is_required() else _usual(field.default)
-        if table is document.SettingsTable and not usual:
+        if table is document.StudySettingsTable and not usual:
             usual = _usual_setting(key)
         elif table is document.ThresholdsTable:
             usual = _usual(getattr(Thresholds(), key))

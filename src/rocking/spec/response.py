@@ -17,9 +17,6 @@ from rocking.spec.reading import InputFiles, located
 if TYPE_CHECKING:
     from rocking.spec.document import ResponseDocument, ResponseTables
 
-COMPLEMENTARITY = "complementarity"
-"""Restitution of a body that slides and hops: its rocking impacts follow from complementarity, as all others do."""
-
 _MECHANICS = {"rocking": "pure rocking", "contact": "sliding and hopping", "space": "a body in space"}
 
 
@@ -100,10 +97,7 @@ def problem_of(
         )
     with located("settings"):
         settings = Settings(mechanics=mechanics, **tables.settings.stated())
-    if mechanics == "contact" and tables.restitution.model == COMPLEMENTARITY:
-        restitutions = {COMPLEMENTARITY: None}
-    else:
-        restitutions = restitutions_of(tables.restitution, 0, [body], inputs)
+    restitutions = restitutions_of(tables.restitution, 0, [body], inputs, friction=start.friction)
     if mechanics != "rocking" and len(restitutions) > 1:
         names = ", ".join(restitutions)
         raise InvalidValueError(f"restitution: {_MECHANICS[mechanics]} is computed with one, got {names}")

@@ -41,7 +41,8 @@ class StudyProblem:
             with located("body" if len(document.body or []) == 1 else f"body[{k}]"):
                 bodies.append(body_of(table, inputs))
         motions = motions_of(document.motions, inputs)
-        restitutions = restitutions_of(document.restitution, document.campaign.seed, bodies, inputs)
+        seed, friction = document.campaign.seed, settings.friction
+        restitutions = restitutions_of(document.restitution, seed, bodies, inputs, friction=friction)
         return cls(document, bodies, motions, restitutions, settings, inputs)
 
     @property

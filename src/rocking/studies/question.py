@@ -60,9 +60,7 @@ class Question:
 
     def parameters_of(self, body: Body) -> RockingParameters:
         """Return another body with the same restitution, evaluated for it."""
-        return RockingParameters.of_body(
-            body, self.restitution, self.settings.gravity, friction=self.settings.friction
-        )
+        return RockingParameters.of_body(body, self.restitution, self.settings.gravity, friction=self.settings.friction)
 
     def run(
         self,
@@ -103,7 +101,7 @@ class Question:
         motion = self.motion
         return {
             "software": SOFTWARE,
-            "engine": self._engine_words(work),
+            "engine": engine_words(self.settings, fast=bool(work)),
             "body": repr(self.body),
             "motion": motion.name,
             "motion_provenance": "; ".join(getattr(motion, "provenance", ())) or repr(motion),
@@ -112,12 +110,6 @@ class Question:
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in self.settings.stated.items()},
             **{f"work_{k}": v for k, v in work.items()},
         }
-
-
-    def _engine_words(self, work: dict[str, int]) -> str:
-        if self.settings.friction is not None:
-            return FAST
-        return f"fast ({instruction_set()})" if work else "reference"
 
 
 @dataclass(frozen=True)
@@ -184,6 +176,13 @@ class Case:
     def values(self) -> dict[str, FloatArray]:
         """What the engine is told of each variation."""
         return {**self.sides, "scale": self.scale}
+
+
+def engine_words(settings: Settings, *, fast: bool) -> str:
+    """Return which engine computes a study, in words."""
+    if settings.friction is not None:
+        return FAST
+    return f"fast ({instruction_set()})" if fast else "reference"
 
 
 def reference_side(body: Body) -> str:

@@ -16,6 +16,7 @@ from rocking.campaigns.identity import software
 from rocking.dynamics.plane import fast_engine
 from rocking.restitution import RestitutionModel
 from rocking.spec.reading import document_of, located, read_text
+from rocking.studies.question import engine_words
 
 if TYPE_CHECKING:
     from rocking.campaigns.jobs.study import Study
@@ -142,7 +143,7 @@ class Job:
             "histories_key": histories.key(),
             "restitution": [_model(label, restitution) for label, restitution in problem.restitutions.items()],
             "settings": problem.settings.stated,
-            "engine": f"{engine} ({fast_engine.instruction_set()})" if engine == "fast" else engine,
+            "engine": engine_words(problem.settings, fast=engine == "fast"),
             "seeds": {
                 "campaign": campaign.seed,
                 "motions": [table.seed or 0 for table in self.document.motions if table.synthetic is not None],

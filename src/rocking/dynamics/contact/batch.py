@@ -84,7 +84,7 @@ def ends_of(length: Any, step: Any, pulse: Any, slow: Any) -> FloatArray:
 
 
 def _side(values: dict[str, FloatArray], foot: str, settings: Settings) -> dict[str, FloatArray]:
-    """What alpha, p and q say of a side: R, h, b [m], and I_C / m [m2]."""
+    """Return what alpha, p and q say of a side: R, h, b [m], and I_C / m [m2]."""
     alpha, p, q = (values[f"{name}_{foot}"] for name in ("alpha", "p", "q"))
     with np.errstate(all="ignore"):
         size = settings.gravity * q / p**2  # Eq. 26
@@ -100,6 +100,7 @@ def _start(table: dict[str, Any], rotation: FloatArray, velocity: FloatArray) ->
     arm = (lever * cosine - height * sine, -lever * sine - height * cosine)  # Eq. 58
     rise = lever * sine - 2.0 * height * np.sin(0.5 * rotation) ** 2  # Eq. 59
     table |= {
-        "x": lever - arm[0], "rise": rise, "rotation": rotation, "spin": velocity, "u": -arm[1] * velocity, "w": arm[0] * velocity,
+        "x": lever - arm[0], "rise": rise, "rotation": rotation,
+        "u": -arm[1] * velocity, "w": arm[0] * velocity, "spin": velocity,
     }  # fmt: skip
     return np.where(rotation == 0.0, 3, np.where(foot > 0.0, 2, 1))

@@ -144,11 +144,8 @@ class _Table:
             values |= dict(zip(("imposed_left", "imposed_right"), self.imposed[body, choice].T, strict=True))
             values |= {"end": ends[body, motion]}
             values |= dict(zip(NUMBERS[10:], np.array([each[:6] for each in starts])[body].T, strict=True))
-            pieces.append(
-                run_compiled(
-                    library, values, motion, self.law.bounce_law, touching[body], settings=self.settings, threads=threads
-                )
-            )
+            law, how = self.law.bounce_law, self.settings
+            pieces.append(run_compiled(library, values, motion, law, touching[body], settings=how, threads=threads))
             if progress is not None:
                 progress(last - first)
         return _columns({name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]})

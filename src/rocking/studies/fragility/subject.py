@@ -37,6 +37,9 @@ Motions = MotionSet | Motion | Sequence[Motion]
 Progress = Callable[[int], None] | None
 
 
+_ROCKED = Outcome.ROCKED, Outcome.ROCKED_AND_SLID, Outcome.FLEW
+
+
 @dataclass(frozen=True, eq=False)
 class Subject:
     """A body with its restitution, a set of motions, and the measure of their intensity."""
@@ -74,9 +77,11 @@ class Subject:
     def uplift_threshold(self) -> float | None:
         """Level above which every motion lifts the body, and below which none does; None if the measure has none.
 
-        There is one for PGA, absolute or normalised, of a body with equal sides under horizontal motions.
+        There is one for PGA, absolute or normalised, of a body with equal sides under horizontal motions that does not
+        slide before.
         """
-        if self.measure.uplift is None:
+        friction, gravity = self.settings.friction, self.settings.gravity
+        if self.measure.uplift is None or (friction is not None and friction * gravity <= self.scale.threshold):
             return None
         equal = math.isclose(
             self.parameters.right.slenderness_angle, self.parameters.left.slenderness_angle, rel_tol=1e-12
@@ -220,7 +225,7 @@ class Responses:
     @property
     def rocked(self) -> BoolArray:
         """Which histories rocked and stayed standing."""
-        return np.asarray(self.outcome == Outcome.ROCKED.code)
+        return np.isin(self.outcome, [each.code for each in _ROCKED])
 
     @property
     def overturned(self) -> FloatArray:
@@ -248,9 +253,11 @@ class Responses:
         return variables
 
     def counts(self) -> dict[Outcome, int]:
-        """Return how many were not lifted, rocked, overturned; those without a result are in none."""
-        outcomes = Outcome.NO_UPLIFT, Outcome.ROCKED, Outcome.OVERTURNED
-        return {outcome: int((self.outcome == outcome.code).sum()) for outcome in outcomes}
+        """Return how many were not lifted, rocked, overturned, and slid or flew; those without a result are in none."""
+        counts = {outcome: int((self.outcome == outcome.code).sum()) for outcome in Outcome}
+        del counts[Outcome.FAILED]
+        always = Outcome.NO_UPLIFT, Outcome.ROCKED, Outcome.OVERTURNED
+        return {outcome: n for outcome, n in counts.items() if n or outcome in always}
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from rocking import checks
 from rocking.conventions import FEET, FloatArray, Foot
 from rocking.dynamics.content import full_name
 from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, ImpactLaw, RandomRestitution
-from rocking.dynamics.parameters import cut_words
+from rocking.dynamics.parameters import COMPLEMENTARITY, cut_words
 from rocking.dynamics.plane.batch import Rows, drawn_rows
 from rocking.errors import InvalidValueError
 from rocking.restitution import RestitutionModel, model
@@ -43,7 +43,9 @@ def named_restitutions(restitutions: Any) -> dict[str, Any]:
 
 
 def label_of(choice: Any) -> str:
-    """Return the name of a choice of restitution."""
+    """Return the name of a choice of restitution; None goes with friction."""
+    if choice is None:
+        return COMPLEMENTARITY
     if isinstance(choice, (str, RestitutionModel)):
         return model(choice).label
     if isinstance(choice, DrawnRestitution):

@@ -80,6 +80,18 @@ def test_file_is_the_dataset_of_the_call(finished, tmp_path, kind, chunk, call):
     assert "contact" in attributes
 
 
+def test_map_with_friction(finished, tmp_path, text):
+    """Bodies that slide, hop and fly: every bit and attribute of the call."""
+    words = text("overturning-map", 13) + "[settings]\nfriction = 0.3\nbounce = 0.1\n"
+    found = opened(finished("overturning-map", 13, words), tmp_path)
+    axes = ("frequency_ratio", np.linspace(1, 7, 9)), ("amplitude_ratio", np.linspace(1, 9, 7))
+    wanted = overturning_map(BLOCK, rk.pulses.sine(3.0, 0.6), *axes, friction=0.3, bounce=0.1)
+    same(found, wanted, [*wanted.data_vars])
+    attributes = {name: value for name, value in wanted.attrs.items() if not name.startswith("work_")}
+    assert {name: found.attrs[name] for name in attributes} == attributes
+    assert not (wanted["mode"] == sines()["mode"]).all()
+
+
 def test_map_of_bodies_and_restitutions(finished, tmp_path, text):
     """Axes that change the body, with two models: each is the map of its own call."""
     words = text("overturning-map", 13).replace("frequency_ratio", "semi_diagonal").replace("amplitude_ratio", "scale")

@@ -58,8 +58,8 @@ def minimum_study(problem: StudyProblem) -> Study:
     motions, settings = MotionList([problem.motions[k] for k in range(len(problem.motions))]), problem.settings
     with located("body"):
         parameters = [
-            [RockingParameters.of_body(b, restitution, settings.gravity) for b in problem.bodies]
-            for restitution in problem.restitutions.values()
+            [RockingParameters.of_body(b, each, settings.gravity, friction=settings.friction) for b in problem.bodies]
+            for each in problem.restitutions.values()
         ]
     sides = [sides_of(row) for row in parameters]
     with located("minimum"):

@@ -116,7 +116,10 @@ def inventory_study(problem: StudyProblem) -> Study:
 def _product(problem: StudyProblem, bodies: Sequence[Body], scales: np.ndarray) -> tuple[Product, dict[str, Any]]:
     """Return bodies with every motion, scale and restitution, and what a Python call says of such a study."""
     settings, restitutions = problem.settings, list(problem.restitutions.values())
-    parameters = [[RockingParameters.of_body(body, each, settings.gravity) for body in bodies] for each in restitutions]
+    gravity, friction = settings.gravity, settings.friction
+    parameters = [
+        [RockingParameters.of_body(body, each, gravity, friction=friction) for body in bodies] for each in restitutions
+    ]
     columns = [sides_of(row) for row in parameters]
     sides = {name: np.stack([column[name] for column in columns], axis=-1) for name in columns[0]}
     law, engine = parameters[0][0].law, problem.document.settings.engine
