@@ -28,7 +28,7 @@ BLOCK = rk.Block(width=0.5, height=1.2)
 TANGENT = 0.5 / 1.2
 
 
-@pytest.mark.verifies("independent code", "maps with friction against single histories", within="1e-9")
+@pytest.mark.verifies("second engine", "the reference engine, one history at a time", within="1e-9")
 @pytest.mark.parametrize("restitution", [None, "ked", {"left": 0.7, "right": 0.6}])
 def test_a_map_is_its_single_histories(restitution):
     """Cell by cell the reference engine, which follows one history, of a body without symmetry; time is stretched."""
@@ -67,7 +67,7 @@ def test_sliding_before_rocking():
                 assert outcome in {Outcome.ROCKED, Outcome.OVERTURNED, Outcome.ROCKED_AND_SLID}
 
 
-@pytest.mark.verifies("independent code", "with rough ground the engine of pure rocking", within="1e-9")
+@pytest.mark.verifies("second engine", "the engine of pure rocking", within="1e-9")
 def test_rough_ground_is_pure_rocking():
     """Imposed coefficients and feet that never slide: the engine of pure rocking, which shares nothing with this one.
 
@@ -85,6 +85,7 @@ def test_rough_ground_is_pure_rocking():
     assert int((smooth["mode"] != pure["mode"]).where(kept, False).sum()) > 5
 
 
+@pytest.mark.verifies("second engine", "the reference engine with each drawn coefficient", within="1e-9")
 def test_a_draw_for_each_history():
     """Coefficients drawn once for a history are the same as given one by one."""
     law = SampledRestitution.normal(0.8, 0.05, seed=3)
@@ -98,6 +99,7 @@ def test_a_draw_for_each_history():
     assert float(abs(single.peak_rotation - found.peak_rotation).max()) > 0.0
 
 
+@pytest.mark.verifies("second engine", "the reference engine", within="1e-9")
 def test_rows_that_start_turned():
     """A row with a rotation and a velocity starts on the foot that it leans on, as `simulate` does."""
     parameters = RockingParameters.of_body(BODY, "ked", g)
@@ -111,6 +113,7 @@ def test_rows_that_start_turned():
         assert abs(found["peak_rotation"][k]) == pytest.approx(one.peak_rotation, rel=1e-9)
 
 
+@pytest.mark.verifies("second engine", "the engine of pure rocking on rough ground", within="1e-6")
 def test_every_study():
     """Spectra, minima and stripes; a body that slides first has no level above which rocking is certain."""
     spectrum = rocking_spectrum(PULSE, [0.2, 0.4], [2.0, 3.0], 0.8, scale=1.5, friction=0.3)
@@ -127,6 +130,7 @@ def test_every_study():
     assert not (smooth.responses.rotation > 0.0).any()
 
 
+@pytest.mark.verifies("behaviour")
 def test_the_name_of_histories_knows_the_friction():
     """Two studies that differ in friction, bounce or its law have different names, and results."""
     sides = {
@@ -155,12 +159,14 @@ def test_the_name_of_histories_knows_the_friction():
         ({"friction": 0.3, "restitution": RandomRestitution.normal(0.8, 0.02, seed=1)}, "one coefficient"),
     ],
 )
+@pytest.mark.verifies("damage")
 def test_refusals(how, says):
     """What cannot be meant is refused in one sentence."""
     with pytest.raises(InvalidValueError, match=says):
         overturning_map(BLOCK, PULSE, ("scale", [1.0]), ("period", [0.6]), **how)
 
 
+@pytest.mark.verifies("damage")
 def test_friction_is_said_once():
     """As an axis or as a number."""
     with pytest.raises(InvalidValueError, match="leave friction= out"):
@@ -169,6 +175,7 @@ def test_friction_is_said_once():
         overturning_map(BLOCK, PULSE, ("period", [0.6]), ("scale", [1.0]), None)
 
 
+@pytest.mark.verifies("behaviour")
 def test_commands(capsys):
     """The option and the key give one map; both at once are refused."""
     words = ["map", "--width", "0.5", "--height", "1.2", "sine:amplitude=3,period=0.6", "--json"]
