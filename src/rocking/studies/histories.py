@@ -273,8 +273,9 @@ class HistoryTable(Histories):
         return Rows(values, self.motion[first:last], np.arange(first, last, dtype=np.int64))
 
     def content(self) -> dict[str, Any]:
-        """Return the hashes of the arrays."""
-        return {"motion": hash_of(self.motion)} | {name: hash_of(values) for name, values in self.values.items()}
+        """Return the hashes of the arrays, of the friction where it is told."""
+        told = {name: array for name, array in self.values.items() if name != "friction" or not np.isnan(array).all()}
+        return {"motion": hash_of(self.motion)} | {name: hash_of(values) for name, values in told.items()}
 
 
 @dataclass(frozen=True, eq=False)
