@@ -157,7 +157,7 @@ class FragilityAnswer:
         from rocking.cli.study import body_lines
 
         first, labels = self.first, dict.fromkeys(one.subject.parameters.label for one in self.results.values())
-        page.facts(body_lines(self.problem.bodies[0], self.problem.settings.gravity, self.length))
+        page.facts(body_lines(self.problem.bodies[0], self.problem.settings, self.length))
         page.facts([
             ("motions", _motions_line(self._motions_facts())),
             ("restitution", ", ".join(labels)),

@@ -1,5 +1,6 @@
 """`rocking minimum`: every acceleration at which a body begins or ceases to overturn under a motion."""
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,6 +12,7 @@ from rocking.cli.numbers import beside_g, in_unit, quantity
 from rocking.cli.page import Page, bar, deliver, sentence
 from rocking.conventions import ACCELERATION_UNITS, g, percent
 from rocking.errors import InvalidValueError
+from rocking.spec.construction import COMPLEMENTARITY
 from rocking.spec.document import MinimumTable
 
 if TYPE_CHECKING:
@@ -111,7 +113,8 @@ class MinimumAnswer:
     @property
     def label(self) -> str:
         """The restitution in words."""
-        return str(getattr(self.problem.restitution, "label", self.problem.restitution))
+        asked = self.problem.restitution
+        return COMPLEMENTARITY if asked is None else str(getattr(asked, "label", asked))
 
     def facts(self) -> dict[str, Any]:
         from rocking.cli.study import subject_facts
@@ -144,10 +147,12 @@ class MinimumAnswer:
 
         problem, transitions, unit = self.problem, self.transitions, beside_g(self.acceleration)
         lifts = transitions.uplift_acceleration
-        page.facts(body_lines(problem.bodies[0], problem.settings.gravity, self.length))
+        page.facts(body_lines(problem.bodies[0], problem.settings, self.length))
         page.line(f"motion:       {problem.motions[0].name}, scaled")
         page.line(f"restitution:  {self.label}")
-        page.line(f"lifts it:     {_g(lifts)}, {in_unit(lifts, unit, '.6g')}")
+        slides = (problem.settings.friction or math.inf) * problem.settings.gravity
+        first = "lifts it:     " if lifts < slides else "slides from:  "
+        page.line(f"{first}{_g(min(lifts, slides))}, {in_unit(min(lifts, slides), unit, '.6g')}")
         page.line()
         page.line(sentence(stretches(transitions)), "bold")
         if len(transitions):

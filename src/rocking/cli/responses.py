@@ -128,7 +128,7 @@ class RockingAnswer:
                 ground += peak
         equations = ", slender-linear equations" if response.settings.linear else ""
         return [
-            *body_lines(response.body, response.settings.gravity, self.length),
+            *body_lines(response.body, response.settings, self.length),
             ("motion", ground),
             (
                 "restitution",

@@ -16,6 +16,8 @@ from rocking.spec.document import SpectrumTable
 if TYPE_CHECKING:
     import xarray as xr
 
+    from rocking.dynamics.settings import Settings
+
 _MOST = 10_000_000
 """Histories; more are a campaign."""
 
@@ -75,7 +77,7 @@ def spectrum(
     if total > _MOST:
         raise InvalidValueError(f"spectra must take at most {_MOST} histories, got {total}; rocking campaign does more")
     with bar("histories", quiet=as_json) as progress, as_typed():
-        answer = SpectrumAnswer(problem.answer(progress, threads))
+        answer = SpectrumAnswer(problem.answer(progress, threads), problem.settings)
     deliver(answer, exports, as_json=as_json)
 
 
@@ -111,6 +113,7 @@ class SpectrumAnswer:
     """Spectra, as of `rocking_spectrum`."""
 
     dataset: "xr.Dataset"
+    settings: "Settings"
 
     def draw(self) -> Any:
         from rocking.plots.rocking_spectrum import rocking_spectrum_picture
@@ -147,9 +150,11 @@ class SpectrumAnswer:
         ]
 
     def show(self, page: Page) -> None:
+        from rocking.cli.study import contact_lines
+
         dataset, curves = self.dataset, self.curves()
         periods, sizes = dataset["period"].values, dataset["semi_diagonal"].values
-        page.line(f"restitution:  {dataset.attrs['restitution']}")
+        page.facts([("restitution", dataset.attrs["restitution"]), *contact_lines(self.settings)])
         page.line(
             f"blocks:       2 pi / p from {periods[0]:.4g} to {periods[-1]:.4g} s, R from {sizes[0]:.4g} to "
             f"{sizes[-1]:.4g} m, {periods.size} sizes"

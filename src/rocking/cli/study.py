@@ -8,6 +8,7 @@ from rocking.bodies import Body
 from rocking.cli.arguments import NO_MOTION, Arguments, hinted, parsed_sets, with_sets
 from rocking.cli.numbers import side_line
 from rocking.conventions import FEET, Foot
+from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Pulse
 from rocking.spec.document import NEEDS, OF_FILES, CampaignDocument
@@ -95,13 +96,21 @@ def family(arguments: Arguments, usual: Mapping[str, Any]) -> dict[str, Any] | N
     return {**usual, **arguments.table("motion", options)}
 
 
-def body_lines(body: Body, gravity: float, length: str = "m") -> list[tuple[str, str]]:
-    """Return what is printed of the body of a study; gravity: acceleration of gravity [m/s2]."""
+def contact_lines(settings: Settings) -> list[tuple[str, str]]:
+    """Return what is printed of the ground on which bodies may slide and hop; nothing where they rock alone."""
+    if settings.friction is None:
+        return []
+    bounce = f"; bounce {settings.bounce:g} ({settings.bounce_law})" if settings.bounce else ""
+    return [("contact", f"friction {settings.friction:g}{bounce}: it may slide, hop and fly")]
+
+
+def body_lines(body: Body, settings: Settings, length: str = "m") -> list[tuple[str, str]]:
+    """Return what is printed of the body of a study, and of the ground under it."""
     feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
-    sides = {foot: side_line(body.side(foot, gravity), length) for foot in feet}
+    sides = {foot: side_line(body.side(foot, settings.gravity), length) for foot in feet}
     shape = "; ".join(f"{'' if body.is_symmetric else f'{foot} '}{line}" for foot, line in sides.items())
     assumed = [("density", each.removeprefix("density ")) for each in body.assumed]
-    return [("body", f"{type(body).__name__}, {body.mass:.4g} kg, {shape}"), *assumed]
+    return [("body", f"{type(body).__name__}, {body.mass:.4g} kg, {shape}"), *assumed, *contact_lines(settings)]
 
 
 def subject_facts(problem: StudyProblem) -> dict[str, Any]:
@@ -109,8 +118,10 @@ def subject_facts(problem: StudyProblem) -> dict[str, Any]:
     body, motion = problem.bodies[0], problem.motions[0]
     facts = {"duration_s": motion.duration, "peak_acceleration_m_s2": motion.peak}
     kind = "pulse" if isinstance(motion, Pulse) else "record"
+    ground = ("friction", "bounce", "bounce_law") if problem.settings.friction is not None else ()
     return {
         "body": repr(body),
+        **{name: getattr(problem.settings, name) for name in ground},
         "assumed": list(body.assumed),
         "motion": {"kind": kind, "name": motion.name, **facts, "warnings": list(motion.doubts)},
     }
