@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -9,11 +10,12 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import _rings, shapes
+from rocking.bodies._known import checked_centre, known_moments
 from rocking.bodies.body import DEFAULT_DENSITY, Body, Interval, feet_of
 from rocking.bodies.moments import PlaneMoments, combined_plane, ring_moments
 from rocking.bodies.region import Region
-from rocking.conventions import FloatArray
-from rocking.errors import GeometryError
+from rocking.conventions import Assumed, FloatArray
+from rocking.errors import GeometryError, InvalidValueError
 
 
 class Section(Body):
@@ -29,14 +31,26 @@ class Section(Body):
         Depth out of the plane [m].
     ground : float
         Height of the ground [m]: the lowest vertices must lie on it.
+    mass : float, optional
+        Mass, if known, in place of densities [kg].
+    centre : (float, float), optional
+        Centre of mass (x, y), if known; by default that of the homogeneous body [m].
+    moment_of_inertia : float, optional
+        Polar moment about the centre of mass, if known; by default that of the homogeneous body [kg m2].
 
     Raises
     ------
     GeometryError
-        If regions overlap, the body does not touch the ground, a foot lies outside the base, or the centre of
-        mass is not between the feet.
+        If regions overlap, the body does not touch the ground, a foot lies outside the base, the centre of
+        mass is not between the feet or outside the outline, or no body in this outline has such a moment.
     InvalidValueError
-        If depth or ground is not a finite number.
+        If a number is not finite or outside its range, or mass and densities are both given.
+
+    Notes
+    -----
+    A body of known centre or moment has no known distribution of mass. Whatever needs its moments alone is exact;
+    the model ``ked`` refuses it, and ``horizontal-momentum`` takes the moment to be shared between width and height
+    as in the homogeneous body, which `assumed` says.
 
     Examples
     --------
@@ -47,6 +61,12 @@ class Section(Body):
     >>> section = rk.Section([rk.Region(outline, density=2400.0)])
     >>> round(rk.coefficient_of_restitution(section, "housner"), 10)
     0.7416338583
+
+    A cabinet of 300 kg whose centre of mass was found by tilting it:
+
+    >>> cabinet = rk.Section.from_rectangle(0.8, 2.0, mass=300.0, centre=(0.42, 0.7), moment_of_inertia=95.0)
+    >>> round(cabinet.side("left").slenderness_ratio, 12), round(cabinet.side("right").slenderness_ratio, 12)
+    (1.666666666667, 1.842105263158)
     """
 
     def __init__(
@@ -56,6 +76,9 @@ class Section(Body):
         *,
         depth: float = 1.0,
         ground: float = 0.0,
+        mass: float | None = None,
+        centre: tuple[float, float] | None = None,
+        moment_of_inertia: float | None = None,
     ) -> None:
         given: object = regions
         regions = tuple(regions) if isinstance(given, Sequence) else ()
@@ -76,6 +99,12 @@ class Section(Body):
         self.regions = tuple(region.moved(-self._origin_x, -self._ground) for region in regions)
         _rings.check_disjoint([(region.outline, region.holes) for region in self.regions])
         self._local_feet = self._placed(feet)
+        self._known: PlaneMoments | None = None
+        self._known_assumed: tuple[str, ...] = ()
+        if mass is not None:
+            self.regions = self._weighing(mass)
+        if centre is not None or moment_of_inertia is not None:
+            self._know(centre, moment_of_inertia)
         self._check_support()
 
     def __repr__(self) -> str:
@@ -92,8 +121,7 @@ class Section(Body):
         *,
         holes: Sequence[Any] = (),
         feet: tuple[float, float] | None = None,
-        depth: float = 1.0,
-        ground: float = 0.0,
+        **options: Any,
     ) -> "Section":
         """Return the body of one polygon.
 
@@ -107,10 +135,8 @@ class Section(Body):
             Rings cut out [m].
         feet : (float, float), optional
             Positions of the feet [m]; by default the ends of the base.
-        depth : float
-            Depth out of the plane [m].
-        ground : float
-            Height of the ground [m].
+        **options
+            ``depth``, ``ground``, ``mass``, ``centre``, ``moment_of_inertia``, as for the class.
 
         Returns
         -------
@@ -123,7 +149,7 @@ class Section(Body):
         >>> Section.from_points([(0, 0), (2, 0), (1, 3)]).centre
         (1.0, 1.0)
         """
-        return cls([Region(outline, density, holes)], feet, depth=depth, ground=ground)
+        return cls([Region(outline, density, holes)], feet, **options)
 
     @classmethod
     def from_rectangle(cls, width: float, height: float, **options: Any) -> "Section":
@@ -227,8 +253,8 @@ class Section(Body):
 
     @cached_property
     def local_moments(self) -> PlaneMoments:
-        """Mass, centre and central second moments in the local frame, exact for polygons."""
-        return combined_plane(
+        """Mass, centre and central second moments in the local frame: known, or exact for polygons."""
+        return self._known or combined_plane(
             ring_moments(ring).times(region.density * self._depth) for region in self.regions for ring in region.rings
         )
 
@@ -256,6 +282,7 @@ class Section(Body):
     def density_at(self, x: FloatArray, y: FloatArray) -> FloatArray:
         import shapely
 
+        self.check_distribution("the density field")
         local_x, local_y = np.asarray(x) - self.origin_x, np.asarray(y) - self.ground
         density = np.zeros(np.broadcast_shapes(local_x.shape, local_y.shape))
         for region in self.regions:
@@ -267,13 +294,20 @@ class Section(Body):
     def mirrored(self) -> "Section":
         """Return the section seen in a vertical mirror."""
         left, right = self._local_feet
-        return self._copy(lambda ring: ring * np.array([-1.0, 1.0]), (-right, -left))
+        section = self._copy(lambda ring: ring * np.array([-1.0, 1.0]), (-right, -left))
+        section._known = self._known and replace(self._known, x=-self._known.x)
+        return section
 
     def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "Section":
         size, density = checks.positive("size", size), checks.positive("density", density)
         checks.length("size of the scaled body", self._size * size)
         left, right = self._local_feet
-        return self._copy(lambda ring: ring * size, (left * size, right * size), density, size)
+        section = self._copy(lambda ring: ring * size, (left * size, right * size), density, size)
+        if self._known:
+            known, weight = self._known, density * size**3
+            section._known = replace(known.times(weight * size**2), x=known.x * size, y=known.y * size)
+            section._known = replace(section._known, mass=known.mass * weight)
+        return section
 
     def with_feet(self, left: float, right: float) -> "Section":
         section = self._copy(lambda ring: ring, self._placed((left, right)))
@@ -286,8 +320,62 @@ class Section(Body):
         section = object.__new__(Section)
         section.regions = tuple(region.mapped(change, density) for region in self.regions)
         section._depth, section._size = self._depth * size, self._size * size
+        section._known, section._known_assumed = self._known, self._known_assumed
         section._origin_x, section._ground, section._local_feet = self._origin_x, self._ground, feet
         return section
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """What nobody gave and was assumed, in words."""
+        return super().assumed + self._known_assumed
+
+    def check_distribution(self, what: str) -> None:
+        """Refuse `what` needs the distribution of mass, if only moments are known.
+
+        Parameters
+        ----------
+        what : str
+            What needs it, in words.
+
+        Raises
+        ------
+        InvalidValueError
+            If the centre of mass or the moment of inertia was given.
+        """
+        if self._known:
+            raise InvalidValueError(
+                f"{what} needs the distribution of mass, and of this body only mass, centre and moment of inertia are "
+                "known; describe it as regions with densities, or take what needs these alone: the models housner, "
+                "shifted-impulse, distributed-impulse, plastic-winkler, contact-bed and fixed"
+            )
+
+    def _weighing(self, mass: float) -> tuple[Region, ...]:
+        mass = checks.positive("mass", mass, "kg")
+        given = next((each for each in self.densities if not isinstance(each, Assumed)), None)
+        if given is not None:
+            raise InvalidValueError(f"give mass = {mass:g} kg or density = {given:g} kg/m3, not both: one follows")
+        area = sum(ring_moments(ring).mass for region in self.regions for ring in region.rings)
+        density = checks.density("density that follows from mass", mass / (area * self._depth))
+        return tuple(Region(region.outline, density, region.holes) for region in self.regions)
+
+    def _know(self, centre: Any, moment_of_inertia: float | None) -> None:
+        if moment_of_inertia is not None:
+            moment_of_inertia = checks.positive("moment_of_inertia", moment_of_inertia, "kg m2")
+        place = None if centre is None else checked_centre(centre) - (self._origin_x, self._ground)
+        if place is not None and place[1] <= GROUND_TOLERANCE * self._size:
+            raise GeometryError(
+                f"the centre of mass (y = {place[1] + self._ground:.6g} m) must lie above the feet "
+                f"(y = {self._ground:.6g} m); centre is (x, y), y upwards"
+            )
+        homogeneous = combined_plane(
+            ring_moments(ring).times(region.density * self._depth) for region in self.regions for ring in region.rings
+        )
+        vertices = np.concatenate([region.outline for region in self.regions])
+        self._known = known_moments(homogeneous, vertices, place, moment_of_inertia)
+        without = "" if moment_of_inertia is not None else "centre of mass known, moment of inertia assumed: "
+        words = f"{without}the radius of gyration of the homogeneous body" if without else ""
+        share = "moment of inertia shared between width and height as in the homogeneous body (horizontal-momentum)"
+        self._known_assumed = (words, share) if words else (share,)
 
     def _placed(self, feet: tuple[float, float] | None) -> Interval:
         """Return the feet in the local frame, by default the ends of the base."""

@@ -193,6 +193,7 @@ def _(body: Block, onto: Foot) -> float:
 
 @projected_moment.register
 def _(body: Section, onto: Foot) -> float:
+    body.check_distribution("model ked")
     foot = np.array([body.local_feet[onto == "right"], 0.0])
     return body.depth * sum(
         region.density * ring_integral(ring - foot) for region in body.regions for ring in region.rings
