@@ -1,57 +1,147 @@
-"""Centre of mass and moment of inertia that somebody measured or computed, checked against the outline."""
+"""Centre of mass and moment of inertia that somebody measured or computed, in place of those of the outline."""
 
+import math
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from rocking import checks
 from rocking.bodies.moments import PlaneMoments
-from rocking.conventions import FloatArray
-from rocking.errors import GeometryError
+from rocking.conventions import Assumed, FloatArray
+from rocking.errors import GeometryError, InvalidValueError
 
 _SLACK = 1e-6
-"""A centre or a moment may lie this far, relative to the body's size, beyond what its outline allows: rounding."""
+"""A moment may lie this far, relative to itself, beyond what its outline allows: rounding."""
 
 
-def known_moments(
-    homogeneous: PlaneMoments, vertices: FloatArray, centre: FloatArray | None, moment_of_inertia: float | None
-) -> PlaneMoments:
-    """Return moments with what is known in place of those of the homogeneous body.
+Place = tuple[float, float]
 
-    vertices, centre: in the local frame [m]; moment_of_inertia: polar, about the centre [kg m2]. What is not given
-    keeps the centre or the radius of gyration of the homogeneous body, and always its share of xx and yy.
-    """
-    x, y = (homogeneous.x, homogeneous.y) if centre is None else (float(centre[0]), float(centre[1]))
-    largest = homogeneous.mass * _largest_gyration(vertices, np.array([x, y]))
-    polar = homogeneous.polar if moment_of_inertia is None else moment_of_inertia
-    if polar > largest * (1.0 + _SLACK):
-        given = "" if moment_of_inertia is not None else ", that of the homogeneous body, which is assumed,"
-        raise GeometryError(
-            f"moment_of_inertia = {polar:.6g} kg m2{given} is more than the {largest:.6g} kg m2 of all mass in the "
-            "corners; it is the polar moment about the centre of mass: was it taken about a foot, or in other units?"
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """What is known of a body beside its outline and mass; what is None is not."""
+
+    centre: Place | None = None  # centre of mass in the local frame [m]
+    moment_of_inertia: float | None = None  # polar, about the centre of mass [kg m2]
+
+    @classmethod
+    def of(cls, centre: Any, moment_of_inertia: Any, origin: Place = (0.0, 0.0)) -> "Known | None":
+        """Return what was given, checked as numbers; None if nothing was. centre: in the user's frame [m]."""
+        if centre is None and moment_of_inertia is None:
+            return None
+        if moment_of_inertia is not None:
+            moment_of_inertia = checks.positive("moment_of_inertia", moment_of_inertia, "kg m2")
+        if centre is None:
+            return cls(None, moment_of_inertia)
+        try:
+            x, y = centre
+        except (TypeError, ValueError) as error:
+            raise GeometryError(f"centre must be a pair (x, y) in m, y upwards, got {centre!r:.60}") from error
+        x, y = checks.number("x of the centre", x, "m"), checks.number("y of the centre", y, "m")
+        return cls((x - origin[0], y - origin[1]), moment_of_inertia)
+
+    def given(self, origin: Place = (0.0, 0.0)) -> dict[str, Any]:
+        """Return what is known by the names of the arguments, the centre in the user's frame."""
+        centre = None if self.centre is None else (self.centre[0] + origin[0], self.centre[1] + origin[1])
+        named = {"centre": centre, "moment_of_inertia": self.moment_of_inertia}
+        return {name: value for name, value in named.items() if value is not None}
+
+    def moments(self, homogeneous: PlaneMoments, vertices: FloatArray, origin: Place = (0.0, 0.0)) -> PlaneMoments:
+        """Return the moments of the body, from those of a homogeneous one and its vertices in the local frame [m].
+
+        A moment of inertia that is not known is the share of the largest possible one that it is of the homogeneous
+        body: of a rectangle that of four quarters about the centre, each homogeneous. How much of it is of width and
+        how much of height follows in the same way.
+        """
+        x, y = self.centre or (homogeneous.x, homogeneous.y)
+        (left, low), (right, high) = vertices.min(axis=0).tolist(), vertices.max(axis=0).tolist()
+        gyration = largest_gyration(vertices, x, y) if left < x < right and low < y < high else None
+        if gyration is None:
+            dx, dy = origin
+            raise GeometryError(
+                f"the centre of mass must lie within the outline, x in ({left + dx:.6g}, {right + dx:.6g}), y in "
+                f"({low + dy:.6g}, {high + dy:.6g}) m, and within its convex hull, got ({x + dx:.6g}, {y + dy:.6g}) m; "
+                "was it measured from another origin, or in another unit?"
+            )
+        largest, polar = homogeneous.mass * gyration, self.moment_of_inertia
+        if polar is None:
+            before = largest_gyration(vertices, homogeneous.x, homogeneous.y)
+            polar = homogeneous.polar * (gyration / before if before else 1.0)
+        elif polar > largest * (1.0 + _SLACK):
+            raise GeometryError(
+                f"moment_of_inertia must be at most {largest:.6g} kg m2, as if all mass were in the corners of the "
+                f"outline, got {polar:.6g}; it is the polar moment about the centre of mass: was it taken about a "
+                "foot, or in other units?"
+            )
+        xx = homogeneous.xx * (x - left) * (right - x) / ((homogeneous.x - left) * (right - homogeneous.x))
+        yy = homogeneous.yy * (y - low) * (high - y) / ((homogeneous.y - low) * (high - homogeneous.y))
+        return PlaneMoments(homogeneous.mass, x, y, polar * xx / (xx + yy), polar * yy / (xx + yy))
+
+    def mirrored(self, twice_axis: float = 0.0) -> "Known":
+        """Return the same seen in a vertical mirror; twice_axis: twice its position [m]."""
+        return self if self.centre is None else replace(self, centre=(twice_axis - self.centre[0], self.centre[1]))
+
+    def scaled(self, size: float, density: float) -> "Known":
+        """Return the same with all lengths times size and all densities times density [-]."""
+        centre, moment = self.centre, self.moment_of_inertia
+        return Known(
+            None if centre is None else (centre[0] * size, centre[1] * size),
+            None if moment is None else moment * density * size**5,
         )
-    share = polar / homogeneous.polar
-    return PlaneMoments(homogeneous.mass, x, y, homogeneous.xx * share, homogeneous.yy * share)
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """What had to be assumed beside, in words."""
+        spread = "where a model asks how mass is spread (ked, horizontal-momentum): evenly in each quarter about the "
+        spread += "centre of mass, drawn together or put into the corners to give the moment of inertia"
+        if self.moment_of_inertia is not None:
+            return (spread,)
+        return (
+            "moment of inertia assumed: the share of the most that its outline allows that a homogeneous body has",
+            spread,
+        )
 
 
-def _largest_gyration(vertices: FloatArray, centre: FloatArray) -> float:
-    """Largest squared radius of gyration [m2] of masses within the hull of the vertices that have this centre."""
+def largest_gyration(vertices: FloatArray, x: float, y: float) -> float | None:
+    """Return the largest squared radius of gyration [m2] of masses within the hull of vertices about their centre.
+
+    None if the centre (x, y) lies outside.
+    """
+    low, high, centre = vertices.min(axis=0), vertices.max(axis=0), np.array([x, y])
+    corners = vertices[((vertices == low) | (vertices == high)).all(axis=1)]
+    if len(np.unique(corners, axis=0)) == 4:  # the hull is the box
+        return float(((centre - low) * (high - centre)).sum())
+    return _largest_of_polygon(vertices, centre)
+
+
+def _largest_of_polygon(vertices: FloatArray, centre: FloatArray) -> float | None:
     from scipy.optimize import linprog
 
     size = float(np.ptp(vertices, axis=0).max())
     arms = (vertices - centre) / size
-    sums = np.vstack([arms.T, np.ones(len(arms))])
+    squares = (arms**2).sum(axis=1)
     # the square of the arm is convex, so that the most is reached with all mass in vertices: a linear programme
-    found = linprog(-(arms**2).sum(axis=1), A_eq=sums, b_eq=[0.0, 0.0, 1.0], bounds=(0.0, None))
+    sums = np.vstack([arms.T, np.ones(len(arms))])
+    found = linprog(-squares, A_eq=sums, b_eq=[0.0, 0.0, 1.0], bounds=(0.0, None))
     if not found.success or found.fun is None:
-        raise GeometryError("the centre of mass lies outside the outline; was it measured from another origin?")
-    return -float(found.fun) * size**2
+        return None
+    # the weights of the three corners again, in arithmetic that is the same on every processor
+    chosen = np.argsort(-found.x, kind="stable")[:3]
+    a, b, c = arms[chosen].tolist()
+    weights = [p[0] * q[1] - p[1] * q[0] for p, q in ((b, c), (c, a), (a, b))]
+    if abs(total := sum(weights)) < 1e-9:  # centre and corners in one line
+        return -float(found.fun) * size**2
+    return float(sum(w * s for w, s in zip(weights, squares[chosen].tolist(), strict=True))) / total * size**2
 
 
-def checked_centre(centre: Any) -> FloatArray:
-    """Return a centre (x, y) [m] as numbers."""
-    try:
-        x, y = centre
-    except (TypeError, ValueError) as error:
-        raise GeometryError(f"centre must be a pair (x, y) in m, got {centre!r:.60}") from error
-    return np.array([checks.number("x of the centre", x, "m"), checks.number("y of the centre", y, "m")])
+def density_of(mass: float, volume: float, densities: tuple[float, ...]) -> float:
+    """Return the density [kg/m3] that makes a mass [kg] of a volume [m3]; densities: of which none may be given."""
+    mass = checks.positive("mass", mass, "kg")
+    stated = next((each for each in densities if not isinstance(each, Assumed)), None)
+    if stated is not None:
+        raise InvalidValueError(f"give mass = {mass:g} kg or density = {stated:g} kg/m3, not both: one follows")
+    density = mass / volume
+    if not math.isfinite(density):
+        raise InvalidValueError(f"mass = {mass:g} kg is too much for {volume:g} m3; wrong unit?")
+    return checks.density("density, which follows from mass and size,", density)

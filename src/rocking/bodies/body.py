@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 from rocking import checks, conventions, plausibility
+from rocking.bodies._known import Known
 from rocking.bodies.moments import PlaneMoments
 from rocking.conventions import Assumed, FloatArray, Foot
 from rocking.errors import AsymmetricBodyError, GeometryError, InvalidValueError
@@ -201,6 +202,8 @@ class Body(ABC):
     def density_at(self, x: FloatArray, y: FloatArray) -> FloatArray:
         """Return the density at points, zero outside the body: what fields and pictures sample.
 
+        Of a body whose centre of mass or moment of inertia was given it is that of its outline all the same.
+
         Parameters
         ----------
         x, y : ndarray
@@ -224,9 +227,14 @@ class Body(ABC):
         return ()
 
     @property
+    def known(self) -> Known | None:
+        """Centre of mass and moment of inertia that were given in place of those of the outline; None without them."""
+        return None
+
+    @property
     def assumed(self) -> tuple[str, ...]:
         """What nobody gave and was assumed, in words."""
-        return assumed_density(self.densities)
+        return assumed_density(self.densities) + (() if self.known is None else self.known.assumed)
 
     @property
     def doubts(self) -> tuple[str, ...]:

@@ -1,5 +1,6 @@
 """Mass, centre and second moments, in the plane and in space, and how those of parts add up."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -54,6 +55,27 @@ def combined_plane(parts: Iterable[PlaneMoments]) -> PlaneMoments:
     mass = float(m.sum())
     cx, cy = float((m * x).sum()) / mass, float((m * y).sum()) / mass
     return PlaneMoments(mass, cx, cy, float((xx + m * (x - cx) ** 2).sum()), float((yy + m * (y - cy) ** 2).sum()))
+
+
+def quarters(
+    moments: PlaneMoments, box: tuple[float, float, float, float]
+) -> tuple[list[FloatArray], FloatArray, FloatArray]:
+    """Return a distribution of mass within a box that has these moments, as `Body.assumed` says.
+
+    Returns rectangles, counter-clockwise from the centre [m]; the corners of the box [m], shape (4, 2); and masses
+    in rectangle and corner, shape (2, 4) [kg]. Rectangles of the whole quarters have a third of the moment of all mass
+    in the corners.
+    """
+    centre = np.array([moments.x, moments.y])
+    left, low, right, high = box
+    corners = np.array([[left, low], [right, low], [right, high], [left, high]])
+    arms = corners - centre
+    weights = np.abs(arms[[2, 3, 0, 1]]).prod(axis=1) / ((right - left) * (high - low))
+    spread = 3.0 * moments.polar / (moments.mass * float((weights[:, None] * arms**2).sum()))
+    outside = min(max(0.0, 0.5 * (spread - 1.0)), 1.0)
+    reach = math.sqrt(min(1.0, spread)) * arms
+    rings = [centre + np.array([[0.0, 0.0], [dx, 0.0], [dx, dy], [0.0, dy]]) for dx, dy in reach.tolist()]
+    return rings, corners, moments.mass * weights * np.array([[1.0 - outside], [outside]])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

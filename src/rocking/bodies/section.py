@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -10,12 +9,12 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import _rings, shapes
-from rocking.bodies._known import checked_centre, known_moments
+from rocking.bodies._known import Known, density_of
 from rocking.bodies.body import DEFAULT_DENSITY, Body, Interval, feet_of
 from rocking.bodies.moments import PlaneMoments, combined_plane, ring_moments
 from rocking.bodies.region import Region
-from rocking.conventions import Assumed, FloatArray
-from rocking.errors import GeometryError, InvalidValueError
+from rocking.conventions import FloatArray
+from rocking.errors import GeometryError
 
 
 class Section(Body):
@@ -34,9 +33,9 @@ class Section(Body):
     mass : float, optional
         Mass, if known, in place of densities [kg].
     centre : (float, float), optional
-        Centre of mass (x, y), if known; by default that of the homogeneous body [m].
+        Centre of mass (x, y), if known; by default that of its densities [m].
     moment_of_inertia : float, optional
-        Polar moment about the centre of mass, if known; by default that of the homogeneous body [kg m2].
+        Polar moment about the centre of mass, if known [kg m2].
 
     Raises
     ------
@@ -48,9 +47,8 @@ class Section(Body):
 
     Notes
     -----
-    A body of known centre or moment has no known distribution of mass. Whatever needs its moments alone is exact;
-    the model ``ked`` refuses it, and ``horizontal-momentum`` takes the moment to be shared between width and height
-    as in the homogeneous body, which `assumed` says.
+    A moment of inertia that is not given is the share of the most that the outline allows about the known centre of
+    mass that it is of the homogeneous body. `assumed` says so, and what the models take that ask how mass is spread.
 
     Examples
     --------
@@ -99,12 +97,11 @@ class Section(Body):
         self.regions = tuple(region.moved(-self._origin_x, -self._ground) for region in regions)
         _rings.check_disjoint([(region.outline, region.holes) for region in self.regions])
         self._local_feet = self._placed(feet)
-        self._known: PlaneMoments | None = None
-        self._known_assumed: tuple[str, ...] = ()
         if mass is not None:
-            self.regions = self._weighing(mass)
-        if centre is not None or moment_of_inertia is not None:
-            self._know(centre, moment_of_inertia)
+            area = sum(ring_moments(ring).mass for region in self.regions for ring in region.rings)
+            density = density_of(mass, area * self._depth, self.densities)
+            self.regions = tuple(Region(region.outline, density, region.holes) for region in self.regions)
+        self._known = Known.of(centre, moment_of_inertia, (self._origin_x, self._ground))
         self._check_support()
 
     def __repr__(self) -> str:
@@ -254,9 +251,17 @@ class Section(Body):
     @cached_property
     def local_moments(self) -> PlaneMoments:
         """Mass, centre and central second moments in the local frame: known, or exact for polygons."""
-        return self._known or combined_plane(
+        moments = combined_plane(
             ring_moments(ring).times(region.density * self._depth) for region in self.regions for ring in region.rings
         )
+        if self._known is None:
+            return moments
+        vertices = np.concatenate([region.outline for region in self.regions])
+        return self._known.moments(moments, vertices, (self._origin_x, self._ground))
+
+    @property
+    def known(self) -> Known | None:
+        return self._known
 
     @cached_property
     def local_contact(self) -> tuple[Interval, ...]:
@@ -282,7 +287,6 @@ class Section(Body):
     def density_at(self, x: FloatArray, y: FloatArray) -> FloatArray:
         import shapely
 
-        self.check_distribution("the density field")
         local_x, local_y = np.asarray(x) - self.origin_x, np.asarray(y) - self.ground
         density = np.zeros(np.broadcast_shapes(local_x.shape, local_y.shape))
         for region in self.regions:
@@ -295,7 +299,7 @@ class Section(Body):
         """Return the section seen in a vertical mirror."""
         left, right = self._local_feet
         section = self._copy(lambda ring: ring * np.array([-1.0, 1.0]), (-right, -left))
-        section._known = self._known and replace(self._known, x=-self._known.x)
+        section._known = self._known and self._known.mirrored()
         return section
 
     def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "Section":
@@ -303,10 +307,7 @@ class Section(Body):
         checks.length("size of the scaled body", self._size * size)
         left, right = self._local_feet
         section = self._copy(lambda ring: ring * size, (left * size, right * size), density, size)
-        if self._known:
-            known, weight = self._known, density * size**3
-            section._known = replace(known.times(weight * size**2), x=known.x * size, y=known.y * size)
-            section._known = replace(section._known, mass=known.mass * weight)
+        section._known = self._known and self._known.scaled(size, density)
         return section
 
     def with_feet(self, left: float, right: float) -> "Section":
@@ -320,62 +321,9 @@ class Section(Body):
         section = object.__new__(Section)
         section.regions = tuple(region.mapped(change, density) for region in self.regions)
         section._depth, section._size = self._depth * size, self._size * size
-        section._known, section._known_assumed = self._known, self._known_assumed
+        section._known = self._known
         section._origin_x, section._ground, section._local_feet = self._origin_x, self._ground, feet
         return section
-
-    @property
-    def assumed(self) -> tuple[str, ...]:
-        """What nobody gave and was assumed, in words."""
-        return super().assumed + self._known_assumed
-
-    def check_distribution(self, what: str) -> None:
-        """Refuse `what` needs the distribution of mass, if only moments are known.
-
-        Parameters
-        ----------
-        what : str
-            What needs it, in words.
-
-        Raises
-        ------
-        InvalidValueError
-            If the centre of mass or the moment of inertia was given.
-        """
-        if self._known:
-            raise InvalidValueError(
-                f"{what} needs the distribution of mass, and of this body only mass, centre and moment of inertia are "
-                "known; describe it as regions with densities, or take what needs these alone: the models housner, "
-                "shifted-impulse, distributed-impulse, plastic-winkler, contact-bed and fixed"
-            )
-
-    def _weighing(self, mass: float) -> tuple[Region, ...]:
-        mass = checks.positive("mass", mass, "kg")
-        given = next((each for each in self.densities if not isinstance(each, Assumed)), None)
-        if given is not None:
-            raise InvalidValueError(f"give mass = {mass:g} kg or density = {given:g} kg/m3, not both: one follows")
-        area = sum(ring_moments(ring).mass for region in self.regions for ring in region.rings)
-        density = checks.density("density that follows from mass", mass / (area * self._depth))
-        return tuple(Region(region.outline, density, region.holes) for region in self.regions)
-
-    def _know(self, centre: Any, moment_of_inertia: float | None) -> None:
-        if moment_of_inertia is not None:
-            moment_of_inertia = checks.positive("moment_of_inertia", moment_of_inertia, "kg m2")
-        place = None if centre is None else checked_centre(centre) - (self._origin_x, self._ground)
-        if place is not None and place[1] <= GROUND_TOLERANCE * self._size:
-            raise GeometryError(
-                f"the centre of mass (y = {place[1] + self._ground:.6g} m) must lie above the feet "
-                f"(y = {self._ground:.6g} m); centre is (x, y), y upwards"
-            )
-        homogeneous = combined_plane(
-            ring_moments(ring).times(region.density * self._depth) for region in self.regions for ring in region.rings
-        )
-        vertices = np.concatenate([region.outline for region in self.regions])
-        self._known = known_moments(homogeneous, vertices, place, moment_of_inertia)
-        without = "" if moment_of_inertia is not None else "centre of mass known, moment of inertia assumed: "
-        words = f"{without}the radius of gyration of the homogeneous body" if without else ""
-        share = "moment of inertia shared between width and height as in the homogeneous body (horizontal-momentum)"
-        self._known_assumed = (words, share) if words else (share,)
 
     def _placed(self, feet: tuple[float, float] | None) -> Interval:
         """Return the feet in the local frame, by default the ends of the base."""

@@ -7,6 +7,7 @@ from functools import singledispatch
 import numpy as np
 
 from rocking.bodies import Block, Body, MassPoints, Section
+from rocking.bodies.moments import quarters
 from rocking.conventions import BoolArray, FloatArray, Foot
 from rocking.errors import InvalidValueError
 from rocking.portable import each, gauss_legendre
@@ -145,7 +146,7 @@ class Ked(RestitutionModel):
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
         """Eq. 17, Mao et al. 2024, over the body's mass distribution."""
-        if isinstance(body, Block):
+        if isinstance(body, Block) and body.known is None:
             return float(self.raw_of_slenderness(np.array([body.slenderness_ratio]))[0])
         # Eq. 6; Eq. 17, Mao et al. 2024
         return float(np.sqrt(projected_moment(body, onto) / body.side(onto).moment_of_inertia))
@@ -188,12 +189,15 @@ def projected_moment(body: Body, onto: Foot) -> float:
 
 @projected_moment.register
 def _(body: Block, onto: Foot) -> float:
+    if body.known is not None:
+        return _of_quarters(body, onto)
     return Ked().raw_coefficient(body, onto) ** 2 * body.side(onto).moment_of_inertia
 
 
 @projected_moment.register
 def _(body: Section, onto: Foot) -> float:
-    body.check_distribution("model ked")
+    if body.known is not None:
+        return _of_quarters(body, onto)
     foot = np.array([body.local_feet[onto == "right"], 0.0])
     return body.depth * sum(
         region.density * ring_integral(ring - foot) for region in body.regions for ring in region.rings
@@ -202,8 +206,22 @@ def _(body: Section, onto: Foot) -> float:
 
 @projected_moment.register
 def _(body: MassPoints, onto: Foot) -> float:
-    x, y = (body.points - np.array([body.local_feet[onto == "right"], 0.0])).T
+    return _of_points(body.points - np.array([body.local_feet[onto == "right"], 0.0]), body.masses)
+
+
+def _of_points(points: FloatArray, masses: FloatArray) -> float:
+    """Return the sum over mass points, seen from the new foot [m], [kg]."""
+    x, y = points.T
     squared = x * x + y * y
     # a mass on the new foot itself has no velocity after the impact and contributes nothing
     ratio = np.divide(y**4, squared, out=np.zeros_like(y), where=squared > 0.0)  # Eq. 9
-    return float((body.masses * ratio).sum())
+    return float((masses * ratio).sum())
+
+
+def _of_quarters(body: Body, onto: Foot) -> float:
+    """Return it of a body of which moments are known: of mass spread in quarters of its box as `assumed` says."""
+    foot = np.array([body.local_feet[onto == "right"], 0.0])
+    rings, corners, (inside, outside) = quarters(body.local_moments, body.local_box)
+    areas = [abs(float(np.prod(ring[2] - ring[0]))) for ring in rings]
+    spread = sum(m / area * abs(ring_integral(ring - foot)) for m, area, ring in zip(inside, areas, rings, strict=True))
+    return float(spread) + _of_points(corners - foot, outside)

@@ -70,7 +70,6 @@ def _(body: MassPoints) -> str:
 
 @body_to_toml.register
 def _(body: Section) -> str:
-    body.check_distribution("a body file")
     remarks, x, y = _coordinates(body)
     lines = [*remarks, 'units = "m"', "", "[section]", f"feet = {_row([x[foot] for foot in body.local_feet])}"]
     lines += [f"depth = {_number(body.depth)}", f"ground = {_number(0.0 if remarks else body.ground)}"]

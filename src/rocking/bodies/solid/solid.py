@@ -120,7 +120,6 @@ class Solid:
         >>> Solid.from_section(rk.Section.from_rectangle(1.0, 4.0, density=1.0)).mass
         4.0
         """
-        section.check_distribution("a body in space")
         stand = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
         place = (section.origin_x, 0.5 * section.depth, section.ground)
         parts = [Part(Prism(r, section.depth), r.density, rotation=stand, translation=place) for r in section.regions]
