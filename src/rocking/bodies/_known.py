@@ -124,15 +124,15 @@ def _largest_of_polygon(vertices: FloatArray, centre: FloatArray) -> float | Non
     # the square of the arm is convex, so that the most is reached with all mass in vertices: a linear programme
     sums = np.vstack([arms.T, np.ones(len(arms))])
     found = linprog(-squares, A_eq=sums, b_eq=[0.0, 0.0, 1.0], bounds=(0.0, None))
-    if not found.success or found.fun is None:
+    if not found.success or found.x is None:
         return None
     # the weights of the three corners again, in arithmetic that is the same on every processor
     chosen = np.argsort(-found.x, kind="stable")[:3]
     a, b, c = arms[chosen].tolist()
-    weights = [p[0] * q[1] - p[1] * q[0] for p, q in ((b, c), (c, a), (a, b))]
-    if abs(total := sum(weights)) < 1e-9:  # centre and corners in one line
-        return -float(found.fun) * size**2
-    return float(sum(w * s for w, s in zip(weights, squares[chosen].tolist(), strict=True))) / total * size**2
+    weights = np.array([p[0] * q[1] - p[1] * q[0] for p, q in ((b, c), (c, a), (a, b))])
+    if abs(weights.sum()) < 1e-9:  # centre and corners in one line
+        return float((found.x * squares).sum()) * size**2
+    return float((weights * squares[chosen]).sum() / weights.sum()) * size**2
 
 
 def density_of(mass: float, volume: float, densities: tuple[float, ...]) -> float:

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -101,7 +101,7 @@ class Block(Body):
         return f"Block({', '.join(f'{name}={value!r}' for name, value in named.items())})"
 
     @classmethod
-    def from_angle(cls, slenderness_angle: float, semi_diagonal: float, **options: float) -> "Block":
+    def from_angle(cls, slenderness_angle: float, semi_diagonal: float, **options: Any) -> "Block":
         """Return the block with a slenderness angle and a semi-diagonal, as papers on rocking give it.
 
         Parameters
@@ -110,7 +110,7 @@ class Block(Body):
             alpha = atan(b/h), between 0 and pi/2 [rad].
         semi_diagonal : float
             R, from a foot to the centre of mass [m].
-        **options : float
+        **options
             ``depth`` [m], ``density`` [kg/m3], ``mass`` [kg] and ``moment_of_inertia`` [kg m2].
 
         Returns

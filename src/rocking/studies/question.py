@@ -207,6 +207,11 @@ def changed_body(body: Body, parameters: Mapping[str, float]) -> Body:
         return body.scaled(size=parameters["semi_diagonal"] / side.semi_diagonal)
     if not isinstance(body, Block):
         raise InvalidValueError(f"slenderness, width and height vary only for a Block, got {body!r:.60}")
+    if body.known is not None:
+        raise InvalidValueError(
+            "slenderness, width and height vary only for a homogeneous Block: leave centre and "
+            "moment_of_inertia out, or vary the semi-diagonal"
+        )
     width, height = _dimensions(body, parameters)
     return Block(width=width, height=height, depth=body.depth, density=body.density)
 

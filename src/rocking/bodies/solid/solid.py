@@ -8,10 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking import checks, plausibility
+from rocking.bodies._known import density_of
+from rocking.bodies.block import Block
 from rocking.bodies.body import assumed_density
 from rocking.bodies.moments import SolidMoments, combined
 from rocking.bodies.section import Section
 from rocking.bodies.solid._admissible import check_disjoint, check_possible
+from rocking.bodies.solid._known import ASSUMED, checked_centre, known_moments, similar
 from rocking.bodies.solid.base import Base, RoundBase, SupportPolygon, hull
 from rocking.bodies.solid.part import Part, footprint, rotation_about
 from rocking.bodies.solid.prism import Prism
@@ -37,6 +40,13 @@ class Solid:
         Height of the ground [m]: the lowest point must lie on it.
     base_tolerance : float, optional
         Corners this close to the ground stand on it [m]; by default 1e-9 of the body's size.
+    mass : float, optional
+        Mass, if known, in place of densities [kg].
+    centre : (float, float, float), optional
+        Centre of mass (x, y, z), if known; by default that of the parts [m].
+    inertia : array_like, shape (3, 3) or (3,), optional
+        Inertia about the centre of mass, axes along x, y and z, if known: the tensor, or three moments where these are
+        principal axes [kg m2].
 
     Attributes
     ----------
@@ -49,9 +59,15 @@ class Solid:
     ------
     GeometryError
         If parts overlap or have moments that no body has, the body does not stand on the ground, has no base with
-        an area, or its centre is not above the base.
+        an area, its centre is not above the base, or no mass within it has the centre or the inertia that were given.
     InvalidValueError
-        If a number is not finite.
+        If a number is not finite, or mass and densities are both given.
+
+    Notes
+    -----
+    An inertia that is not given is that of the parts, scaled along each axis as the greatest second moment that masses
+    within the box can have about the known centre; `assumed` says so. The model ``ked-3d`` needs the distribution of
+    mass, refuses a body of which only moments are known, and names those that do not.
 
     Examples
     --------
@@ -69,6 +85,9 @@ class Solid:
         base: Base | ArrayLike | None = None,
         ground: float = 0.0,
         base_tolerance: float | None = None,
+        mass: float | None = None,
+        centre: ArrayLike | None = None,
+        inertia: ArrayLike | None = None,
     ) -> None:
         self.name: str = ""
         self.repairs: tuple[str, ...] = ()
@@ -91,6 +110,15 @@ class Solid:
         self.local_parts = tuple(part.moved(*(-self.origin).tolist()) for part in listed)
         check_possible(self.local_parts)
         check_disjoint(self.local_parts)
+        if mass is not None:
+            self.local_parts = _weighing(self.local_parts, density_of(mass, self.volume, self._densities))
+        self.known: SolidMoments | None = None
+        self._assumed: tuple[str, ...] = ()
+        if centre is not None or inertia is not None:
+            place = None if centre is None else checked_centre(centre, self.origin)
+            own = combined(part.moments() for part in self.local_parts)
+            self.known = known_moments(self.local_parts, own, place, inertia)
+            self._assumed = () if inertia is not None else (ASSUMED,)
         self.local_base = self._placed_base(base, tolerance)
         self._check_support()
 
@@ -101,18 +129,19 @@ class Solid:
         return f"Solid({len(self.local_parts)} part(s), {self.mass:g} kg, on {kind})"
 
     @classmethod
-    def from_section(cls, section: Section) -> "Solid":
+    def from_section(cls, section: Section | Block) -> "Solid":
         """Return the plane body as a body in space: its polygons extruded over its depth, along y.
 
         Parameters
         ----------
-        section : Section
+        section : Section or Block
             The plane body; its y becomes z, its depth lies half before and half behind the plane y = 0.
 
         Returns
         -------
         Solid
-            A prism for each region, standing on the section's feet.
+            A prism for each region, standing on the section's feet. Of a plane body whose centre of mass or moment of
+            inertia is known, it has these, and its mass is spread evenly over the depth.
 
         Examples
         --------
@@ -120,12 +149,20 @@ class Solid:
         >>> Solid.from_section(rk.Section.from_rectangle(1.0, 4.0, density=1.0)).mass
         4.0
         """
+        section = section.to_section() if isinstance(section, Block) else section
         stand = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
         place = (section.origin_x, 0.5 * section.depth, section.ground)
         parts = [Part(Prism(r, section.depth), r.density, rotation=stand, translation=place) for r in section.regions]
         half = 0.5 * section.depth
         feet = [(x, y) for x in section.feet for y in (-half, half)]
-        return cls(parts, base=feet, ground=section.ground)
+        if section.known is None:
+            return cls(parts, base=feet, ground=section.ground)
+        moments, (x, z) = section.local_moments, section.centre
+        along, across, up = moments.xx, moments.mass * section.depth**2 / 12.0, moments.yy
+        inertia = (across + up, along + up, along + across)
+        solid = cls(parts, base=feet, ground=section.ground, centre=(x, 0.0, z), inertia=inertia)
+        solid._assumed = (*section.known.assumed, "mass spread evenly over the depth")
+        return solid
 
     @property
     def ground(self) -> float:
@@ -139,8 +176,8 @@ class Solid:
 
     @cached_property
     def local_moments(self) -> SolidMoments:
-        """Mass, centre and central second moments about `origin`."""
-        return combined(part.moments() for part in self.local_parts)
+        """Mass, centre and central second moments about `origin`: known, or of the parts."""
+        return self.known or combined(part.moments() for part in self.local_parts)
 
     @property
     def mass(self) -> float:
@@ -175,14 +212,18 @@ class Solid:
     @property
     def assumed(self) -> tuple[str, ...]:
         """What nobody gave and was assumed, in words."""
-        return assumed_density([part.density for part in self.local_parts])
+        return assumed_density(self._densities) + self._assumed
+
+    @property
+    def _densities(self) -> tuple[float, ...]:
+        return tuple(part.density for part in self.local_parts)
 
     @property
     def doubts(self) -> tuple[str, ...]:
         """What can be computed with but was hardly meant, in words."""
         centre = self.local_moments.centre
         slenderness = float(centre[2]) / self.local_base.margin(centre[:2])
-        return plausibility.of_body(float(centre[2]), slenderness, [part.density for part in self.local_parts])
+        return plausibility.of_body(float(centre[2]), slenderness, self._densities)
 
     @property
     def box(self) -> FloatArray:
@@ -190,6 +231,35 @@ class Solid:
         boxes = np.array([part.box() for part in self.local_parts])
         box: FloatArray = np.array([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)]) + self.origin
         return box
+
+    def in_plane(self, azimuth: float = 0.0) -> Section:
+        """Return the plane body that rocks in one direction, from one end of the base to the other.
+
+        Parameters
+        ----------
+        azimuth : float
+            Direction of the plane's x, from the solid's x counter-clockwise seen from above [rad].
+
+        Returns
+        -------
+        Section
+            The convex hull of the silhouette on the ends of the base in that direction, with mass, centre of mass and
+            moment of inertia of the solid; its x = 0 is the middle of the solid's box, its ground y = 0. What needs the
+            distribution of mass takes what `assumed` of the plane body says.
+
+        Examples
+        --------
+        A box of 1 x 2 x 4 m from its long side:
+
+        >>> from rocking.bodies.solid import box
+        >>> side = Solid(box(1.0, 2.0, 4.0)).in_plane(0.5 * np.pi)
+        >>> round(side.slenderness_ratio, 12), side.depth
+        (2.0, 1.0)
+        """
+        from rocking.bodies.solid._in_plane import plane_body
+
+        seen = self.turned(-checks.number("azimuth", azimuth, "rad"))
+        return plane_body(seen.local_parts, seen.local_base, seen.local_moments)
 
     def turned(self, angle: float) -> "Solid":
         """Return the body turned about the vertical through its own origin.
@@ -205,7 +275,7 @@ class Solid:
             The same body, another way round.
         """
         turn = rotation_about((0.0, 0.0, 1.0), angle)
-        return self._copy([part.turned((0.0, 0.0, 1.0), angle) for part in self.local_parts], turn[:2, :2])
+        return self._copy([part.turned((0.0, 0.0, 1.0), angle) for part in self.local_parts], turn)
 
     def mirrored(self) -> "Solid":
         """Return the body seen in the mirror x -> -x through its own origin.
@@ -215,7 +285,7 @@ class Solid:
         Solid
             The mirror image.
         """
-        return self._copy([part.mirrored() for part in self.local_parts], np.diag([-1.0, 1.0]))
+        return self._copy([part.mirrored() for part in self.local_parts], np.diag([-1.0, 1.0, 1.0]))
 
     def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "Solid":
         """Return the body with all lengths times `size` and all densities times `density`.
@@ -233,14 +303,17 @@ class Solid:
         factor = checks.positive("size", size)
         checks.length("size of the scaled body", self._size * factor)
         parts = [part.scaled(size=factor, density=density) for part in self.local_parts]
-        return self._copy(parts, factor * np.eye(2), factor)
+        return self._copy(parts, np.eye(3), factor, density)
 
-    def _copy(self, parts: list[Part], matrix: FloatArray, size: float = 1.0) -> "Solid":
+    def _copy(self, parts: list[Part], matrix: FloatArray, size: float = 1.0, density: float = 1.0) -> "Solid":
         # not checked again: a similarity keeps a valid body valid
         result = object.__new__(Solid)
         result.name, result.repairs = self.name, self.repairs
         result._ground, result._size, result.origin = self._ground, self._size * size, self.origin
-        result.local_parts, result.local_base = tuple(parts), self.local_base.changed(matrix, np.zeros(3))
+        result.local_parts = tuple(parts)
+        result.local_base = self.local_base.changed(size * matrix[:2, :2], np.zeros(3))
+        result.known = self.known and similar(self.known, matrix, size, density)
+        result._assumed = self._assumed
         return result
 
     def _placed_base(self, base: Base | ArrayLike | None, tolerance: float) -> Base:
@@ -260,6 +333,10 @@ class Solid:
                 "a body like this falls over by itself"
             )
         plausibility.warn(self.doubts)
+
+
+def _weighing(parts: Sequence[Part], density: float) -> tuple[Part, ...]:
+    return tuple(Part(p.shape, density, rotation=p.rotation, translation=p.translation) for p in parts)
 
 
 def found_base(parts: Sequence[Part], tolerance: float) -> Base:

@@ -191,7 +191,8 @@ class SpatialBody:
             origin[:2] = getattr(base, "centre", (0.0, 0.0))
         shape = next((getattr(base, n) for n in ("radius", "vertices") if getattr(base, n, None) is not None), base)
         made = cls(found["mass"], np.asarray(found["centre"]) - origin, found["inertia"], shape)
-        return made._made_of(Matter(partial(_same, body), origin)) if isinstance(body, Solid) else made
+        spread = isinstance(body, Solid) and body.known is None  # of a body of known moments only these are known
+        return made._made_of(Matter(partial(_same, body), origin)) if spread else made
 
     def _made_of(self, matter: Matter) -> "SpatialBody":
         # not an argument: a solid that does not belong to the mass and inertia would give wrong energies

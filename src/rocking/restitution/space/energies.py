@@ -108,7 +108,7 @@ def unit_energies(result: SpatialRestitution | SpatialImpact, units: Units | int
     (0.689, 0.689)
     """
     impact = result.impact if isinstance(result, SpatialRestitution) else result
-    solid, origin = impact.standing_solid
+    (solid, origin), _ = impact.standing_solid, impact.placed_solid
     pieces = divided(solid, units) if isinstance(units, int) else units
     fields = stage_velocities(impact, pieces.centre - solid.origin + origin)
     before, level, left = (0.5 * pieces.mass * np.square(field).sum(axis=1) for field in fields)
@@ -120,7 +120,7 @@ def lost_density(impact: SpatialImpact, part: Part, points: FloatArray) -> Float
 
     The body stands upright, and the points are in the user's coordinates.
     """
-    solid, origin = impact.standing_solid
+    (solid, origin), _ = impact.standing_solid, impact.placed_solid
     before, _, left = stage_velocities(impact, checks.real_array("points", points, "m") - solid.origin + origin)
     density: FloatArray = 0.5 * part.density * (np.square(before).sum(axis=1) - np.square(left).sum(axis=1))
     return density

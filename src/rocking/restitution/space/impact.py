@@ -18,9 +18,9 @@ UP = np.array([0.0, 0.0, 1.0])
 """Normal of the ground."""
 
 NO_MATTER = (
-    "this model needs the distribution of mass, got a body known by its mass, centre and inertia alone: use a Solid, "
-    "SpatialBody.of(solid), SpatialBody.box or SpatialBody.cylinder, or a model that needs no more than these, "
-    "'housner-3d' or 'horizontal-momentum-3d'"
+    "this model needs the distribution of mass, got a body known by its mass, centre and inertia alone: use a Solid of "
+    "parts with their densities, SpatialBody.of(solid), SpatialBody.box or SpatialBody.cylinder, or a model that needs "
+    "no more than these, 'housner-3d' or 'horizontal-momentum-3d'"
 )
 """What a body without a solid is told."""
 
@@ -95,6 +95,8 @@ class SpatialImpact:
     def placed_solid(self) -> tuple[Solid, Corner | Edge]:
         """The body as a distribution of mass, and the landing place in the solid's own frame."""
         solid, origin = self._placed
+        if solid.known is not None:
+            raise InvalidValueError(NO_MATTER)
         point = self.onto.point - origin
         point[2] = 0.0 if abs(point[2]) <= _UNIT * solid.size else point[2]
         return solid, Edge(point, self.onto.direction) if isinstance(self.onto, Edge) else Corner(point)
