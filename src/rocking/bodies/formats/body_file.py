@@ -42,6 +42,9 @@ LARGEST_TOML = 16 * 2**20
 class _Options(TypedDict, total=False):
     density: float
     depth: float
+    mass: float | None
+    centre: tuple[float, float] | None
+    moment_of_inertia: float | None
 
 
 def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = None) -> Body:
@@ -121,9 +124,11 @@ def _block(table: "schema.BlockTable", scale: float) -> Body:
 
 
 def _shape(document: "schema.BodyFile", scale: float) -> Section:
+    from rocking.bodies.formats import schema
+
     kind = next(each for each in _OUTLINES if getattr(document, each))  # the schema lets exactly one table through
     table: schema.ShapeTable = getattr(document, kind)
-    sizes = table.model_dump(exclude={"density", "depth", "feet"})
+    sizes = table.model_dump(exclude=set(schema.ShapeTable.model_fields))
     with blamed(kind):
         outline = _OUTLINES[kind](**{key: value * (1 if key == "sides" else scale) for key, value in sizes.items()})
         return Section.from_points(outline, feet=_pair(table.feet, scale), **_options(table, scale))
@@ -138,10 +143,17 @@ _OUTLINES: dict[str, Callable[..., FloatArray]] = {
 
 
 def _options(table: "schema.ShapeTable", scale: float) -> "_Options":
-    options: _Options = {} if table.density is None else {"density": table.density}
+    options = _known(table, scale)
+    if table.density is not None:
+        options["density"] = table.density
     if table.depth is not None:
         options["depth"] = table.depth * scale
     return options
+
+
+def _known(table: "schema.KnownTable", scale: float) -> "_Options":
+    centre = _pair(table.centre, scale)
+    return {"mass": table.mass, "centre": centre, "moment_of_inertia": table.moment_of_inertia}
 
 
 def _mass_points(table: "schema.MassPointsTable", scale: float) -> MassPoints:
@@ -164,7 +176,8 @@ def _section(table: "schema.SectionTable", units: str, folder: Path | None) -> S
         check_count(sum(len(ring) for region in regions for ring in region.rings))
     with blamed("section"):
         depth = 1.0 if table.depth is None else table.depth * scale
-        return Section(regions, _pair(table.feet, scale), depth=depth, ground=table.ground * scale)
+        known: Any = _known(table, scale)
+        return Section(regions, _pair(table.feet, scale), depth=depth, ground=table.ground * scale, **known)
 
 
 def _regions(table: "schema.RegionTable", units: str, folder: Path | None) -> list[Region]:

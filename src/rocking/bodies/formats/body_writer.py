@@ -57,7 +57,7 @@ def body_to_toml(body: Body) -> str:
 @body_to_toml.register
 def _(body: Block) -> str:
     sizes = (f"{key} = {_number(getattr(body, key))}" for key in ("width", "height", "depth", "density"))
-    return _lines('units = "m"', "", "[block]", *sizes)
+    return _lines('units = "m"', "", "[block]", *sizes, *_known(body, 0.0, 0.0))
 
 
 @body_to_toml.register
@@ -73,12 +73,25 @@ def _(body: Section) -> str:
     remarks, x, y = _coordinates(body)
     lines = [*remarks, 'units = "m"', "", "[section]", f"feet = {_row([x[foot] for foot in body.local_feet])}"]
     lines += [f"depth = {_number(body.depth)}", f"ground = {_number(0.0 if remarks else body.ground)}"]
+    lines += _known(body, 0.0 if remarks else body.origin_x, 0.0 if remarks else body.ground)
     for region in body.regions:
         outline, *holes = ([(x[a], y[b]) for a, b in ring.tolist()] for ring in region.rings)
         lines += ["", "[[section.region]]", f"density = {_number(region.density)}", f"outline = {_points(outline)}"]
         if holes:
             lines.append(f"holes = [{', '.join(_points(hole) for hole in holes)}]")
     return _lines(*lines)
+
+
+def _known(body: Block | Section, x: float, y: float) -> list[str]:
+    """Return the lines of what is known of a body, the centre seen from an origin at (-x, -y) [m]."""
+    known = body.known
+    lines = []
+    if known is not None and known.centre is not None:
+        place = (next(_preimages(c, shift), c + shift) for c, shift in zip(known.centre, (x, y), strict=True))
+        lines.append(f"centre = {_row(list(place))}")
+    if known is not None and known.moment_of_inertia is not None:
+        lines.append(f"moment_of_inertia = {_number(known.moment_of_inertia)}")
+    return lines
 
 
 def _coordinates(body: Section) -> tuple[list[str], _Places, _Places]:

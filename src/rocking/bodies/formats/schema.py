@@ -28,7 +28,19 @@ class StrictTable(BaseModel):
         return given
 
 
-class ShapeTable(StrictTable):
+class KnownTable(StrictTable):
+    """What is known of a body beside its shape."""
+
+    mass: Mass | None = Field(None, description="mass, if known, in place of densities [kg]")
+    centre: Pair | None = Field(
+        None, description="centre of mass (x, y), if known; of a block from its lower left corner [unit of the file]"
+    )
+    moment_of_inertia: Positive | None = Field(
+        None, description="polar moment about the centre of mass, if known [kg m2]"
+    )
+
+
+class ShapeTable(KnownTable):
     """What every section-like shape has beside its dimensions, in the file's unit and kg/m3."""
 
     density: Positive | None = Field(None, description="density; 2400 if neither the file nor the user says [kg/m3]")
@@ -95,7 +107,7 @@ class RegionTable(StrictTable):
         return self
 
 
-class SectionTable(StrictTable):
+class SectionTable(KnownTable):
     """Regions, feet, depth and ground."""
 
     region: Annotated[list[RegionTable], Field(min_length=1)] = Field(
@@ -266,6 +278,11 @@ class SolidTable(StrictTable):
     ground: float | None = Field(None, description="height of the ground [unit of the file]")
     base_tolerance: Positive | None = Field(
         None, description="corners this close to the ground stand on it [unit of the file]"
+    )
+    mass: Mass | None = Field(None, description="mass, if known, in place of densities [kg]")
+    centre: Triple | None = Field(None, description="centre of mass (x, y, z), if known [unit of the file]")
+    inertia: Annotated[list[float | Triple], Field(min_length=3, max_length=3)] | None = Field(
+        None, description="inertia about the centre of mass: three rows, or the three moments about x, y, z [kg m2]"
     )
 
 

@@ -102,6 +102,9 @@ def _standing(document: "schema.SolidDocument", parts: list[Part]) -> Solid:
         base=None if table.base is None else np.array(table.base) * scale,
         ground=lowest if table.ground is None else table.ground * scale,
         base_tolerance=None if table.base_tolerance is None else table.base_tolerance * scale,
+        mass=table.mass,
+        centre=None if table.centre is None else [scale * x for x in table.centre],
+        inertia=table.inertia,
     )
 
 
