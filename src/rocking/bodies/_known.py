@@ -93,12 +93,14 @@ class Known:
     @property
     def assumed(self) -> tuple[str, ...]:
         """What had to be assumed beside, in words."""
-        spread = "where a model asks how mass is spread (ked, horizontal-momentum): evenly in each quarter about the "
-        spread += "centre of mass, drawn together or put into the corners to give the moment of inertia"
+        spread = (
+            "distribution of mass assumed by ked and horizontal-momentum: even in each quarter about the centre of "
+        )
+        spread += "mass, drawn together or put into the corners as far as the moment of inertia asks"
         if self.moment_of_inertia is not None:
             return (spread,)
         return (
-            "moment of inertia assumed: the share of the most that its outline allows that a homogeneous body has",
+            "moment of inertia assumed: the share of the most its outline allows that a homogeneous body has",
             spread,
         )
 

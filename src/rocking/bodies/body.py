@@ -304,6 +304,14 @@ def feet_of(feet: Any) -> Interval:
     return checks.number("left foot", left, "m"), checks.number("right foot", right, "m")
 
 
+def assumed_rows(body: Any) -> list[tuple[str, str]]:
+    """Return what was assumed of a body, plane or in space, as label and text of lines of a table."""
+    return [
+        ("density", each.removeprefix("density ")) if each.startswith("density ") else ("assumed", each)
+        for each in body.assumed
+    ]
+
+
 def assumed_density(densities: Sequence[float]) -> tuple[str, ...]:
     """Return what was assumed about densities."""
     assumed = [value for value in densities if isinstance(value, Assumed)]

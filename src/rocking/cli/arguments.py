@@ -31,11 +31,12 @@ _AS_TYPED = (
     (re.compile(r"^threads must be"), "--threads must be"),
     (re.compile(r"(?<!--set )\b(response|motion)\.(friction|free|bounce|scale)\b"), r"--\2"),
     (re.compile(r"(?<!--set )\brestitution\.model\b"), "--restitution"),
-    (re.compile(r"\bblock\.(width|height|depth|density)\b"), r"--\1"),
+    (re.compile(r"\bblock\.(width|height|depth|density|mass|centre)\b"), r"--\1"),
 )
 _PLACE = re.compile(
     r"(body|motion(\.[xyz])?|motions(\[\d+\])?|records: .*|restitution|settings|map|map\.[xy]|fragility)"
 )
+_KNOWN = ("mass", "centre", "moment_of_inertia")
 _SIZES = ("width", "height"), ("slenderness_angle", "semi_diagonal")
 _OF_EVERY_FILE = {"format", "units", "time_step"}
 NO_MOTION = "what moves the ground? Give a record file, or a pulse such as sine:amplitude=3,period=0.8"
@@ -202,10 +203,13 @@ class Arguments:
 
     def body_table(self, file: str | None) -> Tables:
         """Return the table [body]."""
-        values = {name: self.options.get(name) for name in ("width", "height", "depth", "density")}
+        values = {name: self.options.get(name) for name in ("width", "height", "depth", "density", *_KNOWN)}
+        if values["centre"] is not None:
+            values["centre"] = _numbers("--centre", values["centre"])
         if file is not None:
             in_toml = Path(file).suffix.lower() == ".toml"
-            if self.sizes or values["depth"] is not None or (values["density"] is not None and in_toml):
+            stated = any(values[name] is not None for name in ("density", *_KNOWN))
+            if self.sizes or values["depth"] is not None or (stated and in_toml):
                 raise InvalidValueError("give a body file or dimensions, not both")
             return self.table("body", {"file": file, "units": self.length, **values}, {"file": file})
         if set(self.sizes) not in map(set, _SIZES):
@@ -259,6 +263,15 @@ class Arguments:
         stated = {*self.sets.get("motion", {}), "units"} - {"scale"}  # which is of all of them
         keys = {axis: _OF_EVERY_FILE if axis in records else set() for axis in along} | {first: stated}
         return {axis: self.motion_table(word, keys[axis]) for axis, word in along.items()}
+
+
+def _numbers(name: str, text: str) -> list[float]:
+    try:
+        return [float(word) for word in text.split(",")]
+    except ValueError as error:
+        raise InvalidValueError(
+            f"{name} must be numbers with commas between, such as 0.42,0.7, got {text!r:.60}"
+        ) from error
 
 
 def _place(word: str) -> Tables:

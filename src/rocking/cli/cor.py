@@ -55,6 +55,9 @@ def cor(
     height: options.Height = None,
     depth: options.Depth = None,
     density: options.Density = None,
+    mass: options.Mass = None,
+    centre: options.Centre = None,
+    moment_of_inertia: options.Moment = None,
     units: options.Units = None,
     onto: Annotated[str, typer.Option(help="Foot on which the body lands: right, left or both.")] = "both",
     restitution: Annotated[

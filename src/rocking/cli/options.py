@@ -20,6 +20,18 @@ Width = Annotated[float | None, typer.Option(help=r"Full width of a block \[m, o
 Height = Annotated[float | None, typer.Option(help=r"Full height of a block \[m, or --units].", rich_help_panel=SIZE)]
 Depth = Annotated[float | None, typer.Option(help=r"Depth of a block \[m, or --units].", rich_help_panel=SIZE)]
 Density = Annotated[float | None, typer.Option(help=r"Density of a block or a mesh \[kg/m3].", rich_help_panel=SIZE)]
+Mass = Annotated[float | None, typer.Option(help=r"Mass, in place of the density \[kg].", rich_help_panel=SIZE)]
+Centre = Annotated[
+    str | None,
+    typer.Option(
+        help=r"Centre of mass X,Y from the lower left corner of a block \[m, or --units].",
+        rich_help_panel=SIZE,
+    ),
+]
+Moment = Annotated[
+    float | None,
+    typer.Option("--moment-of-inertia", help=r"Polar moment about the centre of mass \[kg m2].", rich_help_panel=SIZE),
+]
 Units = Annotated[
     str | None,
     typer.Option(

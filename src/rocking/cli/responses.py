@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from rocking.bodies.body import assumed_rows
 from rocking.cli.numbers import in_unit
 from rocking.cli.page import Page, sentence
 from rocking.conventions import LENGTH_UNITS, Assumed, given_or_assumed
@@ -252,7 +253,7 @@ class ContactAnswer:
             imposed = f"r = {right:.6f}" if left == right else f"left r = {left:.6f}, right r = {right:.6f}"
         return [
             ("body", f"{type(body).__name__}, {body.mass:.4g} kg"),
-            *(("density", each.removeprefix("density ")) for each in body.assumed),
+            *assumed_rows(body),
             ("motion", _moved(self.response)),
             ("contact", f"friction {law.friction:g}, {given_or_assumed(law.friction)}; bounce {law.bounce:g}"),
             ("restitution", imposed),

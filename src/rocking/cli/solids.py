@@ -52,6 +52,8 @@ class SolidAnswer:
         """Compute the impacts; gravity: acceleration of gravity [m/s2]."""
         pull = checks.positive("gravity", gravity, "m/s2")
         chosen = [spatial_model(name) for name in models or spatial_models()]
+        if solid.known is not None and models is None:
+            chosen = [model for model in chosen if not model.needs_solid]
         return cls(solid, _edges(solid, chosen, pull), pull, length, recommendation)
 
     @property
@@ -62,8 +64,12 @@ class SolidAnswer:
 
     @property
     def notes(self) -> list[str]:
-        """What limits the use of the coefficients: one sentence each; none for a base with corners."""
-        return [ROUND_BASE] if isinstance(self.solid.base, RoundBase) else []
+        """What limits the use of the coefficients: one sentence each."""
+        shown = {name for edge in self.edges for name in edge["coefficients"]}
+        out = [name for name in spatial_models() if spatial_model(name).needs_solid and name not in shown]
+        needs = [f"left out: {', '.join(out)}, which needs the distribution of mass, and only its moments are known"]
+        unknown = needs if out and self.solid.known is not None else []
+        return [ROUND_BASE, *unknown] if isinstance(self.solid.base, RoundBase) else unknown
 
     def facts(self) -> dict[str, Any]:
         return {

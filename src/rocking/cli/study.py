@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from rocking.bodies import Body
+from rocking.bodies.body import assumed_rows
 from rocking.cli.arguments import NO_MOTION, Arguments, hinted, parsed_sets, with_sets
 from rocking.cli.numbers import side_line
 from rocking.conventions import FEET, Foot
@@ -109,7 +110,7 @@ def body_lines(body: Body, settings: Settings, length: str = "m") -> list[tuple[
     feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
     sides = {foot: side_line(body.side(foot, settings.gravity), length) for foot in feet}
     shape = "; ".join(f"{'' if body.is_symmetric else f'{foot} '}{line}" for foot, line in sides.items())
-    assumed = [("density", each.removeprefix("density ")) for each in body.assumed]
+    assumed = assumed_rows(body)
     return [("body", f"{type(body).__name__}, {body.mass:.4g} kg, {shape}"), *assumed, *contact_lines(settings)]
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rocking.bodies import Body
+from rocking.bodies.body import assumed_rows
 from rocking.conventions import FEET, Foot, g, given_or_assumed
 from rocking.dynamics.response import Response
 from rocking.evidence._coefficient_table import CALIBRATED, CoefficientRow
@@ -96,7 +97,7 @@ def _body(results: ReportResults) -> ReportTable:
     x, y = body.centre
     rows = [
         ("mass", f"{body.mass:.5g} kg"),
-        *(("density", sentence.removeprefix("density ")) for sentence in body.assumed),
+        *assumed_rows(body),
         ("centre of mass", f"x = {x:.4g} m, y = {y:.4g} m"),
         ("feet", f"x = {body.feet[0]:.4g} m and {body.feet[1]:.4g} m"),
         ("moment of inertia", f"{body.moment_of_inertia:.5g} kg m\N{SUPERSCRIPT TWO} about the centre"),

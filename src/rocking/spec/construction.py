@@ -9,6 +9,7 @@ from rocking import checks
 from rocking.bodies import Block, Body
 from rocking.bodies.formats import read_body
 from rocking.bodies.formats.body_file import body_from_tables
+from rocking.bodies.formats.reader import KNOWN
 from rocking.bodies.formats.words import suggestion
 from rocking.bodies.solid import Solid
 from rocking.checks import length_unit
@@ -153,8 +154,8 @@ def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Soli
         raise InvalidValueError(str(error)) from error
 
 
-_BESIDE_FILE = ("units", "density", "up", "fill_holes", "base_tolerance")
-_OF_ANGLE = (*_OUTSIDE, "slenderness_angle", "semi_diagonal", "depth", "density")
+_BESIDE_FILE = ("units", "density", "up", "fill_holes", "base_tolerance", *KNOWN)
+_OF_ANGLE = (*_OUTSIDE, "slenderness_angle", "semi_diagonal", "depth", "density", "mass", "moment_of_inertia")
 
 
 def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | Solid:
@@ -169,6 +170,9 @@ def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | So
     _note_outlines(tables_in(path) or {}, str(Path(table["file"]).parent), inputs)
     if options.get("base_tolerance") is not None:
         options["base_tolerance"] *= length_unit(options.get("units") or "m")
+    if isinstance(options.get("centre"), list):
+        scale = length_unit(options.get("units") or "m")
+        options["centre"] = [checks.number("centre", value, "m") * scale for value in options["centre"]]
     return read_body(path, **options)
 
 
@@ -180,7 +184,7 @@ def _from_angle(table: dict[str, Any]) -> Body:
         raise InvalidValueError(f"{missing[0]} is missing: a block has slenderness_angle, semi_diagonal and units")
     scale = length_unit(table["units"])
     sizes = {key: checks.number(key, table[key]) for key in ("semi_diagonal", "depth") if key in table}
-    options = {"density": table["density"]} if "density" in table else {}
+    options = {key: table[key] for key in ("density", "mass", "moment_of_inertia") if key in table}
     if "depth" in sizes:
         options["depth"] = sizes["depth"] * scale
     return Block.from_angle(table["slenderness_angle"], sizes["semi_diagonal"] * scale, **options)

@@ -33,7 +33,19 @@ class MeshOptions(TypedDict, total=False):
     base_tolerance: float | None
 
 
-class Options(Placement, MeshOptions, total=False):
+class KnownOptions(TypedDict, total=False):
+    """What is known beside the shape: as `Section` takes it of drawings, and `Solid` of meshes."""
+
+    mass: float | None
+    centre: Any
+    moment_of_inertia: float | None
+    inertia: Any
+
+
+KNOWN = tuple(KnownOptions.__annotations__)
+
+
+class Options(Placement, MeshOptions, KnownOptions, total=False):
     """What `read_body` takes beside unit and density."""
 
 
@@ -54,7 +66,7 @@ class Request:
     def given(self, names: Iterable[str]) -> str:
         """Return which of some options were given, in words."""
         asked: dict[str, Any] = {"density": self.density, **self.options}
-        return ", ".join(name for name in names if asked.get(name) not in (None, False))
+        return ", ".join(name for name in names if asked.get(name) is not None and asked[name] is not False)
 
 
 def read_body(
@@ -77,7 +89,8 @@ def read_body(
         point if ``ground`` is not given. Of meshes ``up``, the axis that points up ("z" if not given, but for GLB
         "y", by its specification), ``fill_holes``, whether holes of less than 1 % of the surface may be closed, and
         ``base_tolerance`` [m]: vertices this close to the lowest one stand on the ground; scans need some
-        millimetres.
+        millimetres. Of both ``mass`` [kg] and ``centre`` [m] where they are known, of drawings ``moment_of_inertia``
+        [kg m2], as for `Section`, and of meshes ``inertia`` [kg m2], as for `Solid`.
 
     Returns
     -------
@@ -213,16 +226,17 @@ def _text(request: Request, read: Callable[..., list[Region]]) -> Section:
 def _standing(regions: list[Region], request: Request) -> Section:
     lowest = min(float(region.outline[:, 1].min()) for region in regions)
     with blamed(request.path.name):
-        if given := request.given(MeshOptions.__annotations__):
+        if given := request.given((*MeshOptions.__annotations__, "inertia")):
             raise BodyFileError(f"is a drawing and takes no {given}: these are for meshes")
         placement: Any = {"ground": lowest, **request.options}
-        return Section(regions, **{key: value for key, value in placement.items() if key in Placement.__annotations__})
+        taken = {*Placement.__annotations__, *KNOWN} - {"inertia"}
+        return Section(regions, **{key: value for key, value in placement.items() if key in taken})
 
 
 def _mesh(request: Request) -> Solid:
     path, kind = request.path, request.path.suffix[1:].lower()
     options, units = request.options, request.units
-    if given := request.given(Placement.__annotations__):
+    if given := request.given((*Placement.__annotations__, "moment_of_inertia")):
         raise BodyFileError(f"{path.name}: is a mesh, which stands on its lowest point and takes no {given}")
     up, by_specification = options.get("up"), kind == "glb"
     taken = [*(["in m"] if units is None else []), *(["with y up"] if up is None else [])] if by_specification else []
@@ -235,6 +249,12 @@ def _mesh(request: Request) -> Solid:
         path, density, units=units or "m", up=up or ("y" if by_specification else "z"),
         fill_holes=options.get("fill_holes", False), base_tolerance=options.get("base_tolerance"),
     )  # fmt: skip
+    known: dict[str, Any] = {key: options.get(key) for key in ("mass", "centre", "inertia")}
+    if any(value is not None for value in known.values()):
+        name, repairs = solid.name, solid.repairs
+        with blamed(path.name):
+            solid = Solid(solid.parts, base=solid.base, ground=solid.ground, **known)
+        solid.name, solid.repairs = name, repairs
     if taken:
         solid.repairs = (f"read {' and '.join(taken)}, as the specification of GLB says", *solid.repairs)
     return solid

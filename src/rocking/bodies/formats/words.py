@@ -28,7 +28,13 @@ _MUST_BE = {
     "model_type": "must be a table",
     "literal_error": "must be one of {expected}",
 }
-_UNITS = {"density": "kg/m3", "masses": "kg", "layers": "kg/m3", "sides": "", "degrees": "degree", "axis": ""}
+_UNITS = {
+    **dict.fromkeys(("density", "layers"), "kg/m3"),
+    **dict.fromkeys(("mass", "masses"), "kg"),
+    **dict.fromkeys(("moment_of_inertia", "inertia"), "kg m2"),
+    **dict.fromkeys(("sides", "axis"), ""),
+    "degrees": "degree",
+}
 _SHOWN = reprlib.Repr()
 _SHOWN.maxstring = _SHOWN.maxother = 60
 

@@ -1,6 +1,7 @@
 """A body in space seen from the side: its silhouette as a plane body with the same moments."""
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -27,7 +28,7 @@ def plane_body(parts: tuple[Part, ...], base: Base, moments: SolidMoments) -> Se
     depth = float(np.ptp([part.box()[:, 1] for part in parts]))
     x, _, z = moments.centre.tolist()
     polar = float(moments.second[0, 0] + moments.second[2, 2])
-    known = {"mass": moments.mass, "centre": (x, z), "moment_of_inertia": polar}
+    known: dict[str, Any] = {"mass": moments.mass, "centre": (x, z), "moment_of_inertia": polar}
     return Section.from_points(outline, feet=feet, depth=depth, **known)
 
 
