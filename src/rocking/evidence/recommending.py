@@ -229,6 +229,7 @@ def _draws(made: Recommendation, posterior: Calibration) -> FloatArray:
 def _in_space(solid: Solid, motion: Any, models: Sequence[Any] | None) -> Recommendation:
     from rocking.bodies.solid import SupportPolygon
     from rocking.restitution.space import impact_in_space, spatial_model, spatial_models
+    from rocking.restitution.space.impact import NO_MATTER
 
     if motion is not None:
         raise InvalidValueError(
@@ -252,6 +253,9 @@ def _in_space(solid: Solid, motion: Any, models: Sequence[Any] | None) -> Recomm
         onto, place = base.corners[depth.index(max(depth))], "the far corner"
     rows = []
     for each in [spatial_model(name) for name in _several(spatial_models() if models is None else models)]:
+        if each.needs_solid and solid.known is not None:
+            rows.append(ModelForBody(each.name, each.title, Standing.EXCLUDED, {}, reasons=(NO_MATTER,)))
+            continue
         found = impact_in_space(solid, -edge.direction, pivot=edge, onto=onto, model=each)
         reasons = tuple(flag.value for flag in found.flags)
         standing = Standing.EXCLUDED if reasons else Standing.UNJUDGED

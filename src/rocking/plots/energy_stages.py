@@ -52,7 +52,7 @@ def energy_stages_picture(body: Body | None = None, *, onto: Foot = "right", ang
     figure, axes = new_figure(DOUBLE, 0.85 + 1.3 * shape, columns=4, sharey=True)
     x, y = _grid(body)
     # beyond the outline, which clips the picture, the field goes on: no dark seam along sloping edges
-    density = body.density_at(x, y)
+    density = known_density(body, x, y)
     inside = density > 0.0
     density = np.where(inside, density, density.max())
     fields = {stage: 0.5 * density * (v**2).sum(axis=-1) for stage, v in balance.velocities(x, y).items()}

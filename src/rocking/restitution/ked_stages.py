@@ -90,9 +90,19 @@ class EnergyBalance:
         dict of str to ndarray
             Stage to energy density, zero outside the body [J/m3].
         """
-        density = self.body.density_at(x, y)
+        density = known_density(self.body, x, y)
         fields = self.velocities(x, y)
         return {stage: 0.5 * density * (field**2).sum(axis=-1) for stage, field in fields.items()}
+
+
+def known_density(body: Body, x: FloatArray, y: FloatArray) -> FloatArray:
+    """Return `density_at`, refused where only moments of the body are known [kg/m3]."""
+    if body.known is not None:
+        raise InvalidValueError(
+            "the field of energy needs the distribution of mass, and of this body only moments are known: describe it as "
+            "regions with their densities, without centre and moment_of_inertia"
+        )
+    return body.density_at(x, y)
 
 
 def energy_balance(body: Body, *, onto: Foot = "right", angular_velocity: float = 1.0) -> EnergyBalance:
