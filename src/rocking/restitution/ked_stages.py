@@ -7,6 +7,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, Foot, opposite
+from rocking.errors import InvalidValueError
 from rocking.restitution.ked import projected_moment
 
 STAGES = ("before", "stage 1", "stage 2", "after")
@@ -99,8 +100,8 @@ def known_density(body: Body, x: FloatArray, y: FloatArray) -> FloatArray:
     """Return `density_at`, refused where only moments of the body are known [kg/m3]."""
     if body.known is not None:
         raise InvalidValueError(
-            "the field of energy needs the distribution of mass, and of this body only moments are known: describe it as "
-            "regions with their densities, without centre and moment_of_inertia"
+            "the field of energy needs the distribution of mass, and of this body only moments are known: describe it "
+            "as regions with their densities, without centre and moment_of_inertia"
         )
     return body.density_at(x, y)
 

@@ -184,7 +184,7 @@ def _from_angle(table: dict[str, Any]) -> Body:
         raise InvalidValueError(f"{missing[0]} is missing: a block has slenderness_angle, semi_diagonal and units")
     scale = length_unit(table["units"])
     sizes = {key: checks.number(key, table[key]) for key in ("semi_diagonal", "depth") if key in table}
-    options = {key: table[key] for key in ("density", "mass", "moment_of_inertia") if key in table}
+    options: dict[str, Any] = {key: table[key] for key in ("density", "mass", "moment_of_inertia") if key in table}
     if "depth" in sizes:
         options["depth"] = sizes["depth"] * scale
     return Block.from_angle(table["slenderness_angle"], sizes["semi_diagonal"] * scale, **options)
