@@ -76,7 +76,8 @@ class Known:
             )
         xx = homogeneous.xx * (x - left) * (right - x) / ((homogeneous.x - left) * (right - homogeneous.x))
         yy = homogeneous.yy * (y - low) * (high - y) / ((homogeneous.y - low) * (high - homogeneous.y))
-        return PlaneMoments(homogeneous.mass, x, y, polar * xx / (xx + yy), polar * yy / (xx + yy))
+        wide = polar * xx / (xx + yy)
+        return PlaneMoments(homogeneous.mass, x, y, wide, polar - wide)
 
     def mirrored(self, twice_axis: float = 0.0) -> "Known":
         """Return the same seen in a vertical mirror; twice_axis: twice its position [m]."""
