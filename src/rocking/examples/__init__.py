@@ -1,7 +1,8 @@
 """Examples within the package: bodies, synthetic motions by seed, a list of objects, questions and jobs.
 
-They are there to try things without own data, and in documentation. All are invented for illustration: no real object
-was measured for them, and no motion is the record of an earthquake.
+They are there to try things without own data, and in documentation. Bodies whose file names a source have the sizes
+that it states; all else is invented for illustration: no real object was measured for it, and no motion is the record
+of an earthquake.
 """
 
 from pathlib import Path

@@ -75,7 +75,8 @@ def catalogue(kind: str | None = None) -> Catalogue:
     three-components  motion  motions along x, y and z, scaled to 0.4 g, 0.35 g and 0.2 g upwards
     pulse             motion  a symmetric Ricker wavelet of 0.5 g and 1 s alone
     >>> list(catalogue("body"))
-    ['statue', 'stele', 'pier', 'cabinet', 'transformer', 'rack', 'bust', 'column']
+    ['statue', 'stele', 'pier', 'cabinet', 'transformer', 'rack', 'bust', 'column', 'showcase', 'bookshelf', 'cask',
+     'drum', 'gravestone', 'barrel']
     """
     kind = None if kind is None else checks.one_of("kind", kind, get_args(Kind))
     return Catalogue({name: each for name, each in EXAMPLES.items() if kind in {None, each.kind}})

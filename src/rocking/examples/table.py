@@ -13,7 +13,7 @@ Kind = Literal["body", "motion", "list", "question", "job"]
 
 @dataclass(frozen=True)
 class Example:
-    """One example of the package; everything in it is invented for illustration.
+    """One example of the package, invented for illustration but for bodies whose file names the source of their size.
 
     Parameters
     ----------
@@ -164,6 +164,12 @@ _ALL = (
     ),
     _body("bust", _AXES, "in space: a marble bust of typical proportions on a pedestal, 1.78 m high"),
     _body("column", "pulse.csv", "in space: three marble drums off their axis as one body on a round base, 2.7 m high"),
+    _body("showcase", "soft-soil.csv --scale 1.2", "a showcase by its size, weight and centre of mass, 1.95 m high"),
+    _body("bookshelf", "far-field.csv", "a full bookshelf across its depth, by its centre of mass, 2.02 m high"),
+    _body("cask", "x=near-fault.csv", "in space: a loaded transport cask that stands upright, 5.075 m high"),
+    _body("drum", "pulse.csv", "in space: the lowest drum of a Doric column alone, 0.95 m high"),
+    _body("gravestone", _AXES, "in space: a gravestone of granite on its base, 1.2192 m high"),
+    _body("barrel", "pulse.csv", "in space: a barrel of Bordeaux on its end, full of wine, 0.945 m high"),
     *_MOTIONS.values(),
     Example(
         "objects",

@@ -54,11 +54,12 @@ def test_every_example_is_described():
 
 @pytest.mark.parametrize("name", [n for n in ALL if ALL[n].files and ALL[n].files[0].endswith(".toml")])
 def test_a_file_says_what_it_is(name):
-    """The comment at the head of a file is not empty, and that of a body calls it invented."""
+    """The comment at the head of a file is not empty; the note of a body calls it invented or names a source."""
     text = rk.examples.path(name).read_text("utf-8")
     assert re.match(r"# \w[^\n]{20,}", text)
     if name in BODIES:
-        assert "invented" in tomllib.loads(text)["note"]
+        note = tomllib.loads(text)["note"]
+        assert "invented" in note or re.search(r"source.*: .*[a-z]+\.[a-z]+/\S+", note)
 
 
 @pytest.mark.parametrize("name", PLANE)
@@ -82,12 +83,12 @@ def test_a_body_outside_a_domain_would_be_noticed():
 @pytest.mark.parametrize("name", sorted(set(BODIES) - set(PLANE)))
 @pytest.mark.filterwarnings("ignore:.*round base")
 def test_solids_have_a_coefficient_under_every_model(name):
-    """Over every edge, or in four directions of a round base: all of them differ."""
+    """Over every edge, or in four directions of a round base: those of bodies that are not symmetric differ."""
     body = rk.examples.body(name)
     for model in spatial_models():
         found = [edge_coefficient(body, model, start=k) for k in range(4)]
-        assert all(0.0 < r < 1.0 for r in found)
-        assert len({round(r, 6) for r in found}) == 4
+        assert all(0.0 < r < 1.0 or (r == 0.0 and name == "drum") for r in found)  # so squat that it may stop
+        assert len({round(r, 6) for r in found}) == {"bust": 4, "column": 4, "gravestone": 2}.get(name, 1)
 
 
 @pytest.mark.parametrize("name", ["statue", "stele", "transformer", "pier"])
@@ -113,6 +114,8 @@ def test_titles_state_the_height(name):
     body, said = rk.examples.body(name), re.search(r"([\d.]+) m high", ALL[name].title)
     if isinstance(body, Solid):
         highest = max(part.box()[1, 2] for part in body.parts)
+    elif isinstance(body, rk.Block):
+        highest = body.height
     elif isinstance(body, rk.MassPoints):
         highest = body.points[:, 1].max()
     else:
@@ -178,12 +181,22 @@ def test_titles_state_what_is_measured(seed):
     assert highest["far-field"] < 0.8 < highest["soft-soil"]
 
 
+def test_bodies_of_a_source_have_its_mass():
+    """The cask weighs 25.6 short tons, the full barrel 45 kg and 225 l of wine, which its volume can hold."""
+    cask, barrel = rk.examples.body("cask"), rk.examples.body("barrel")
+    assert cask.mass == pytest.approx(25.6 * 907.18474, rel=2e-3)
+    assert barrel.mass == pytest.approx(45.0 + 225.0, rel=1e-12)
+    assert 0.225 < barrel.volume < 0.225 + 45.0 / 400.0  # oak weighs more than 400 kg/m3
+    assert rk.examples.body("showcase").assumed != ()
+    assert cask.known is None
+
+
 def test_what_is_not_there():
     """Names are refused with what is close, wherever they are asked; a seed that is none, too."""
     for ask in (rk.examples.body, rk.examples.path, rk.examples.write):
         with pytest.raises(InvalidValueError, match="did you mean 'statue'"):
             ask("statu")
-    with pytest.raises(InvalidValueError, match=r"body must be one of statue, .*column, got 'near-fault'"):
+    with pytest.raises(InvalidValueError, match=r"body must be one of statue, .*barrel, got 'near-fault'"):
         rk.examples.body("near-fault")
     with pytest.raises(InvalidValueError, match="motion must be one of"):
         rk.examples.motion("statue")
