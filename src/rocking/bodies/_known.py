@@ -67,7 +67,7 @@ class Known:
         largest, polar = homogeneous.mass * gyration, self.moment_of_inertia
         if polar is None:
             before = largest_gyration(vertices, homogeneous.x, homogeneous.y)
-            polar = homogeneous.polar * (gyration / before if before else 1.0)
+            polar = homogeneous.polar * (gyration / before if before else 1.0)  # Eq. 240
         elif polar > largest * (1.0 + _SLACK):
             raise GeometryError(
                 f"moment_of_inertia must be at most {largest:.6g} kg m2, as if all mass were in the corners of the "
@@ -126,7 +126,7 @@ def _largest_of_polygon(vertices: FloatArray, centre: FloatArray) -> float | Non
     squares = (arms**2).sum(axis=1)
     # the square of the arm is convex, so that the most is reached with all mass in vertices: a linear programme
     sums = np.vstack([arms.T, np.ones(len(arms))])
-    found = linprog(-squares, A_eq=sums, b_eq=[0.0, 0.0, 1.0], bounds=(0.0, None))
+    found = linprog(-squares, A_eq=sums, b_eq=[0.0, 0.0, 1.0], bounds=(0.0, None))  # Eq. 239
     if not found.success or found.x is None:
         return None
     # the weights of the three corners again, in arithmetic that is the same on every processor

@@ -72,6 +72,7 @@ def quarters(
     arms = corners - centre
     weights = np.abs(arms[[2, 3, 0, 1]]).prod(axis=1) / ((right - left) * (high - low))
     spread = 3.0 * moments.polar / (moments.mass * float((weights[:, None] * arms**2).sum()))
+    # Eq. 241
     outside = min(max(0.0, 0.5 * (spread - 1.0)), 1.0)
     reach = math.sqrt(min(1.0, spread)) * arms
     rings = [centre + np.array([[0.0, 0.0], [dx, 0.0], [dx, dy], [0.0, dy]]) for dx, dy in reach.tolist()]
