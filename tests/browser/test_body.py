@@ -39,6 +39,27 @@ def test_a_typed_block_shows_its_numbers_at_once(page: Any, shot: Callable[..., 
     shot(page, "body-block")
 
 
+def test_what_is_known_of_a_body_is_typed_beside_its_size(page: Any, shot: Callable[..., Any]) -> None:
+    """Mass and centre of mass give the closed forms of the two sides; the mass takes the place of the density."""
+    page.get_by_label("Width").fill("0.8")
+    page.get_by_label("Height").fill("2")
+    page.get_by_role("textbox", name="Mass kg").fill("300")
+    settled(page, "Mass kg", 300.0)
+    assert page.get_by_label("Density").input_value() == ""
+    page.get_by_role("textbox", name="Centre of mass x").fill("0.42")
+    expect(page.get_by_test_id("sizes").get_by_text("Give both x and y")).to_be_visible()
+    page.get_by_role("textbox", name="Centre of mass y").fill("0.7")
+    expect(page.get_by_test_id("sizes").get_by_text("Give both x and y")).to_have_count(0)
+    expect(page.get_by_text("moment of inertia assumed", exact=False).first).to_be_visible()
+    page.get_by_role("radio", name="cm", exact=True).check()
+    assert page.get_by_role("textbox", name="Centre of mass y").input_value() == "70"
+    shot(page, "body-known")
+    page.get_by_label("Density").fill("500")
+    settled(page, "Mass kg", 0.8 * 2.0 * 0.5 * 500.0)
+    page.get_by_role("textbox", name="Centre of mass y").fill("300")
+    expect(page.get_by_test_id("body-refusal")).to_contain_text("must lie within the outline")
+
+
 def test_the_unit_changes_the_numbers_typed_and_not_the_body(page: Any) -> None:
     """0.5 m becomes 50 cm and 500 mm; the body stays the same."""
     settled(page, "Semi-diagonal R m", math.hypot(0.25, 1.0))

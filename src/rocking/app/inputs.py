@@ -12,7 +12,7 @@ from pydantic import AfterValidator, ConfigDict, Field, FiniteFloat, model_valid
 from rocking.app.errors import Refused, TooLarge
 from rocking.app.work import Remembered
 from rocking.bodies import Body
-from rocking.bodies.formats.schema import BODIES, BodyFile, Positive
+from rocking.bodies.formats.schema import BODIES, BodyFile, KnownTable, Positive
 from rocking.bodies.formats.source import blamed
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.pulse import Motion
@@ -71,7 +71,7 @@ _DEEPEST = 32
 _LARGEST = 2**63
 
 
-class BodyInput(BodyFile):
+class BodyInput(BodyFile, KnownTable):
     """A unit of length, and one table that says what the body is, or width and height."""
 
     width: Positive | None = None
@@ -95,8 +95,9 @@ class BodyInput(BodyFile):
             raise refused(f"a body has exactly one of {choice}, got {' and '.join(present) or 'none'}")
         if sized and (self.width is None or self.height is None):
             raise refused(f"{'width' if self.width is None else 'height'} is missing")
-        if not sized and (self.depth is not None or self.density is not None):
-            raise refused(f"depth and density of a {present[0]} stand in its own table")
+        own = ("depth", "density", *KnownTable.model_fields)
+        if not sized and (odd := [key for key in own if getattr(self, key) is not None]):
+            raise refused(f"{' and '.join(odd)} of a {present[0]} stand in its own table")
         for k, region in enumerate(self.section.region if self.section else ()):
             for key in ("geojson", "dxf"):
                 if getattr(region, key) is not None:

@@ -169,9 +169,7 @@ _ALL = (
     _body("cask", "x=near-fault.csv", "in space: a loaded transport cask that stands upright, 5.075 m high"),
     _body("drum", "pulse.csv", "in space: the lowest drum of a Doric column alone, 0.95 m high"),
     _body("gravestone", _AXES, "in space: a gravestone of granite on its base, 1.2192 m high"),
-    _body(
-        "barrel", "near-fault.csv --scale 1.8", "in space: a full barrel of wine on its end, 0.945 m high"
-    ),
+    _body("barrel", "near-fault.csv --scale 1.8", "in space: a full barrel of wine on its end, 0.945 m high"),
     *_MOTIONS.values(),
     Example(
         "objects",

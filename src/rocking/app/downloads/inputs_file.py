@@ -146,7 +146,10 @@ def _body(body: Mapping[str, Any]) -> list[str] | None:
     table = body.get("block", body)
     if "width" not in table or "feet" in table:
         return None
-    sizes = {name: table[name] for name in ("width", "height", "depth", "density") if table.get(name) is not None}
+    names = ("width", "height", "depth", "density", "mass", "centre", "moment_of_inertia")
+    sizes = {name: table[name] for name in names if table.get(name) is not None}
+    if "centre" in sizes:
+        sizes["centre"] = ",".join(f"{value!r}" for value in sizes["centre"])
     return [*_options(sizes), "--units", str(body["units"])]
 
 

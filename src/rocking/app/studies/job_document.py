@@ -31,6 +31,7 @@ _BODY_KEYS = (
     "units", "name", "note", "width", "height", "depth", "density", "slenderness_angle", "semi_diagonal", "feet",
     "block", "trapezoid", "base", "top", "lean", "ellipse", "regular_polygon", "sides", "radius", "section", "region",
     "outline", "holes", "wkt", "ground", "mass_points", "points", "masses", "contact",
+    "mass", "centre", "moment_of_inertia",
 )  # fmt: skip
 """Keys of a body that a request may use; none of them can name a file of the server."""
 

@@ -25,9 +25,12 @@ const eachOf = (table, keys, check) => keys.every((key) => maybe(check)(table[ke
 const withoutNulls = (table) =>
   Object.fromEntries(Object.entries(table).filter(([, value]) => value !== null && value !== undefined));
 
-const LENGTHS = ["width", "height", "depth", "density", "base", "top", "lean", "sides", "radius", "ground"];
+const LENGTHS = [
+  "width", "height", "depth", "density", "base", "top", "lean", "sides", "radius", "ground", "mass",
+  "moment_of_inertia",
+];
 
-const isSized = (table) => isTable(table) && eachOf(table, LENGTHS, isNumber) && maybe(isPair)(table.feet);
+const isSized = (table) => isTable(table) && eachOf(table, LENGTHS, isNumber) && eachOf(table, ["feet", "centre"], isPair);
 
 const isRegion = (region) =>
   isTable(region) && maybe(isRing)(region.outline) && maybe(isList(isRing))(region.holes)

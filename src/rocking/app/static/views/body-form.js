@@ -81,6 +81,9 @@ const fieldsOf = (app) => {
     const now = app.inputs.get().body;
     if (key === "feet" && value && tableOfShape(now) === now) app.inputs.set("body", withFeet(now, value));
     else app.inputs.set(`${pathOfShape(now)}.${key}`, value ?? undefined);
+    // mass and density say the same: the one that was typed last is meant
+    const other = { mass: "density", density: "mass" }[key];
+    if (other && value) app.inputs.set(`${pathOfShape(app.inputs.get().body)}.${other}`, undefined);
   };
   const shape = SHAPES[shapeOf(body)] ?? { fields: [] };
   const own = shape.fields.map(
@@ -98,9 +101,14 @@ const fieldsOf = (app) => {
     label: "Density", unit: "kg/m3", optional: true, above: 0, onChange: (value) => put("density", value),
     help: "Empty: 2400\u00a0kg/m\u00b3.",
   }), false, "density"];
+  const mass = [(table) => table.mass, numberField({
+    label: "Mass", unit: "kg", optional: true, above: 0, onChange: (value) => put("mass", value),
+    help: "In place of the density.",
+  }), false, "mass"];
   const hasDensity = !isMassPoints && shapeOf(body) !== "section";
   return [
-    ...own, ...common, ...(hasDensity ? [density] : []), ...(isMassPoints ? [] : feetFields(app, units, put))
+    ...own, ...common, ...(hasDensity ? [density, mass] : []),
+    ...(isMassPoints ? [] : [...knownFields(units, put), ...feetFields(units, put)])
   ];
 };
 
@@ -123,29 +131,44 @@ const sizeField = (key, label, { whole, ...more }, put) => {
 };
 
 // Feet narrower than the outline, or two typed places; empty means: as wide as the base.
-const feetFields = (app, units, put) => {
+const feetFields = (units, put) => pairFields(
+  "feet", ["Left foot", "Right foot"], { unit: units, help: "Both empty: the edges of the base." }, ALONE, put, true
+);
+
+// What is known of the mass: each is optional, and what is left empty is assumed.
+const knownFields = (units, put) => [
+  ...pairFields("centre", ["Centre of mass x", "Centre of mass y"], {
+    unit: units, help: "Both empty: as if homogeneous.",
+  }, "Give both x and y: one alone is not used.", put),
+  [(table) => table.moment_of_inertia, numberField({
+    label: "Moment of inertia", unit: "kg m2", optional: true, above: 0,
+    onChange: (value) => put("moment_of_inertia", value), help: "About the centre of mass. Empty: assumed.",
+  }), false, "moment_of_inertia"],
+];
+
+// Two numbers that stand together or not at all.
+const pairFields = (key, labels, { help, ...more }, alone, put, isFoot = false) => {
   const pair = [null, null];
   const settled = (table) => {
-    if (table.feet) pair.splice(0, 2, ...table.feet);
+    if (table[key]) pair.splice(0, 2, ...table[key]);
     else if (pair.every((each) => each !== null)) pair.fill(null);
     return pair;
   };
   const take = (index) => (value) => {
     pair[index] = value;
     lone();
-    if (pair.every((each) => each === null)) put("feet", undefined);
-    else if (pair.every((each) => each !== null)) put("feet", [...pair]);
+    if (pair.every((each) => each === null)) put(key, undefined);
+    else if (pair.every((each) => each !== null)) put(key, [...pair]);
   };
-  const both = ["Left foot", "Right foot"].map((label, index) => numberField({
-    label, unit: units, optional: true, onChange: take(index),
-    help: index ? "Both empty: the edges of the base." : undefined,
+  const both = labels.map((label, index) => numberField({
+    label, ...more, optional: true, onChange: take(index), help: index ? help : undefined,
   }));
   const lone = () => both.forEach((field, at) => {
-    if (pair[at] === null && pair[1 - at] !== null) field.setError(ALONE);
+    if (pair[at] === null && pair[1 - at] !== null) field.setError(alone);
     else if (!field.input.value.trim()) field.setError("");
   });
   return both.map(
-    (field, index) => Object.assign([(table) => settled(table)[index], field, true], { after: lone })
+    (field, index) => Object.assign([(table) => settled(table)[index], field, isFoot], { after: lone })
   );
 };
 

@@ -44,7 +44,8 @@ export const asShape = (body, shape, facts) => {
   const from = tableOfShape(body);
   const [width, height] = spans(facts, units, from);
   const drawn = regionsOf(facts, units);
-  const common = { depth: from.depth, density: from.density ?? firstDensity(body) };
+  const density = from.mass ? undefined : from.density ?? firstDensity(body);
+  const common = { depth: from.depth, density, mass: from.mass };
   const sizes = {
     block: { width, height },
     trapezoid: { base: width, top: round(width * 0.6), height, lean: 0 },

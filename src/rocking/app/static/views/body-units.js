@@ -7,7 +7,7 @@ export const METRES = { m: 1, cm: 0.01, mm: 0.001, ft: 0.3048, in: 0.0254 };
 
 const LENGTHS = new Set([
   "width", "height", "depth", "base", "top", "lean", "radius", "feet", "ground", "outline",
-  "holes", "points", "contact",
+  "holes", "points", "contact", "centre",
 ]);
 
 /** The same body with its lengths in another unit. */
