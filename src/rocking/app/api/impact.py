@@ -119,8 +119,8 @@ def answer(inputs: ImpactRequest) -> JsonAnswer:
 
 def _facts(inputs: ImpactRequest) -> dict[str, Any]:
     body = body_from(inputs.body)
-    # a block is the same on both sides; what is the same is told once
-    onto = "right" if inputs.onto == "both" and isinstance(body, Block) else inputs.onto
+    # a homogeneous block is the same on both sides; what is the same is told once
+    onto = "right" if inputs.onto == "both" and isinstance(body, Block) and body.known is None else inputs.onto
     coefficients = ImpactAnswer.of(
         body, None, onto=onto, eta=1.0, gravity=inputs.settings.gravity or g, identities=False
     )

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from rocking import checks
-from rocking.bodies import Block, Body, Region, Section, shapes
-from rocking.bodies.body import DEFAULT_DENSITY
+from rocking.bodies import Block, Body
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
 
@@ -140,21 +139,13 @@ class InventoryObject:
         Returns
         -------
         Body
-            A `Block`, or a `Section` if the base or the centre of mass say otherwise.
+            A `Block`, or a `Section` if the base says otherwise.
         """
         size, across = self._size(direction), self._size("depth" if direction == "width" else "width")
-        density = DEFAULT_DENSITY if self.mass is None else self.mass / (size * across * self.height)
-        base, centre = self.base(direction), self.centre_of_mass_height
-        if base == size and centre is None:
-            return Block(width=size, height=self.height, depth=across, density=density)
-        feet = (0.5 * (size - base), 0.5 * (size + base))
-        if centre is None:
-            regions = [Region(shapes.rectangle(size, self.height), density)]
-        else:
-            below, above = (self.height - centre) / centre, centre / (self.height - centre)
-            upper = [(x, centre + y) for x, y in shapes.rectangle(size, self.height - centre)]
-            regions = [Region(shapes.rectangle(size, centre), density * below), Region(upper, density * above)]
-        return Section(regions, feet, depth=across)
+        base, height = self.base(direction), self.centre_of_mass_height
+        centre = None if height is None else (0.5 * size, height)
+        body = Block(width=size, height=self.height, depth=across, mass=self.mass, centre=centre)
+        return body if base == size else body.with_feet(0.5 * (size - base), 0.5 * (size + base))
 
     def _size(self, direction: Direction) -> float:
         return self.width if direction == "width" else self.depth
