@@ -161,7 +161,7 @@ class Solid:
         along, across, up = moments.xx, moments.mass * section.depth**2 / 12.0, moments.yy
         inertia = (across + up, along + up, along + across)
         solid = cls(parts, base=feet, ground=section.ground, centre=(x, 0.0, z), inertia=inertia)
-        solid._assumed = (*section.known.assumed, "mass spread evenly over the depth")
+        solid._assumed = (*section.known.assumed[:-1], "mass spread evenly over the depth")
         return solid
 
     @property
