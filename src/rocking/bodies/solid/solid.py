@@ -252,8 +252,8 @@ class Solid:
         A box of 1 x 2 x 4 m from its long side:
 
         >>> from rocking.bodies.solid import box
-        >>> side = Solid(box(1.0, 2.0, 4.0)).in_plane(0.5 * np.pi)
-        >>> round(side.slenderness_ratio, 12), side.depth
+        >>> side = Solid(box(1.0, 2.0, 4.0)).in_plane(np.pi / 2)
+        >>> round(side.slenderness_ratio, 12), round(side.depth, 12)
         (2.0, 1.0)
         """
         from rocking.bodies.solid._in_plane import plane_body
