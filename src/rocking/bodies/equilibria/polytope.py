@@ -141,6 +141,12 @@ class Polytope:
             facet = int(self.sides[edges[which], 1 - side[which]])
         raise GeometryError("the descent of the centre of mass does not end: is the hull degenerate?")
 
+    def climbed(self, vertex: int) -> int:
+        """Return the summit to which the centre climbs from a vertex, each towards the one that is then lowest."""
+        while not self.summits[vertex]:
+            vertex = int(np.argmax(self.vertices @ self.vertices[vertex]))
+        return vertex
+
 
 def polytope(points: FloatArray, centre: FloatArray, tolerance: float | None = None) -> Polytope:
     """Return the convex hull of points about a centre, coplanar facets merged.

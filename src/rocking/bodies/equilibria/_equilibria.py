@@ -1,0 +1,368 @@
+"""All equilibria of a convex body on level ground, the passes between its stable poses, and the barriers around one."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking import checks
+from rocking.bodies.equilibria.poses import (
+    Equilibrium,
+    Kind,
+    Pass,
+    Ring,
+    StablePose,
+    tilt_towards,
+    tilted,
+)
+from rocking.bodies.equilibria.polytope import Polytope, polytope
+from rocking.conventions import FloatArray, IntArray, g
+from rocking.errors import InvalidValueError
+
+Path = Literal["straight", "lowest"]
+_CLOSE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibria:
+    """In how many ways a body can stand or be balanced on level ground, and what lies between these ways.
+
+    Attributes
+    ----------
+    mass : float
+        Mass [kg].
+    centre : ndarray, shape (3,)
+        Centre of mass, in the body's coordinates [m].
+    stable : tuple of StablePose
+        Poses in which it stands by itself, the lowest centre first.
+    saddles, summits : tuple of Equilibrium
+        Balanced on an edge and on a vertex of the hull, the lowest first.
+    rings : tuple of Ring
+        Circles of equilibria of a body of revolution, which are not counted among the others.
+    notes : tuple of str
+        What the numbers leave out, and what hangs on the last digits, in words.
+
+    Examples
+    --------
+    >>> from rocking.bodies.solid import Solid, box
+    >>> found = Solid(box(1.0, 2.0, 3.0)).equilibria()
+    >>> len(found.stable), len(found.saddles), len(found.summits)
+    (6, 12, 8)
+    >>> round(found.stable[0].height, 12), round(found.stable[0].barrier, 12)
+    (0.5, 0.61803398875)
+    """
+
+    mass: float
+    centre: FloatArray
+    stable: tuple[StablePose, ...]
+    saddles: tuple[Equilibrium, ...]
+    summits: tuple[Equilibrium, ...]
+    rings: tuple[Ring, ...]
+    notes: tuple[str, ...]
+    _hull: Polytope = field(repr=False)
+    _basins: dict[int, int] = field(repr=False)  # the pose to which every stable facet leads
+    _links: tuple[tuple[int, int, int], ...] = field(repr=False)  # poses and number of each saddle, the lowest first
+
+    def height(self, down: ArrayLike) -> FloatArray:
+        """Return how high the centre of mass is with directions downward.
+
+        Parameters
+        ----------
+        down : array_like, shape (..., 3)
+            Directions in the body's frame, of any length above zero [-].
+
+        Returns
+        -------
+        ndarray, shape (...)
+            Heights over the ground [m].
+        """
+        towards = checks.real_array("down", down)
+        unit = towards / np.linalg.norm(towards, axis=-1, keepdims=True)
+        flat, corners = unit.reshape(-1, 3), self._hull.vertices.T
+        step = max(1, 4_000_000 // corners.shape[1])
+        parts = [(flat[i : i + step] @ corners).max(axis=1) for i in range(0, len(flat), step)]  # Eq. 239
+        found: FloatArray = np.concatenate(parts).reshape(unit.shape[:-1])
+        return found
+
+    def settling(self, down: ArrayLike) -> StablePose:
+        """Return the stable pose into which the body settles, let go with a direction downward.
+
+        Parameters
+        ----------
+        down : array_like, shape (3,)
+            Direction in the body's frame [-].
+
+        Returns
+        -------
+        StablePose
+            The end of the steepest descent of its centre; in motion it may overshoot.
+
+        Raises
+        ------
+        InvalidValueError
+            If the body rests on a ring there.
+        """
+        unit = checks.real_array("down", down)
+        basin = self._basin(unit / np.linalg.norm(unit))
+        if basin < 0:
+            raise InvalidValueError("the body comes to rest on a ring of poses there, in none of the isolated ones")
+        return self.stable[basin]
+
+    def neighbours(self, pose: StablePose) -> tuple[Pass, ...]:
+        """Return the passes into the poses that are one saddle away.
+
+        Parameters
+        ----------
+        pose : StablePose
+            Where the body stands.
+
+        Returns
+        -------
+        tuple of Pass
+            The lowest to each neighbour, the lowest first.
+        """
+        found: dict[int, Pass] = {}
+        for *ends, saddle in self._links:
+            if pose.number in ends:
+                end = ends[1 - ends.index(pose.number)]
+                found.setdefault(end, self._pass(pose, end, saddle))
+        return tuple(found.values())
+
+    def lowest_pass(self, start: StablePose, end: StablePose) -> Pass:
+        """Return the lowest way from one pose into another, whatever poses lie between.
+
+        Parameters
+        ----------
+        start, end : StablePose
+            Two different poses.
+
+        Returns
+        -------
+        Pass
+            Its highest saddle: no other way has a lower one.
+
+        Raises
+        ------
+        InvalidValueError
+            If both are the same pose, or a ring parts them.
+        """
+        if start.number != end.number:
+            joined = list(range(len(self.stable)))
+            for one, other, saddle in self._links:  # Eq. 243
+                if one >= 0 and joined[one] != joined[other]:
+                    joined = [joined[one] if each == joined[other] else each for each in joined]
+                    if joined[start.number] == joined[end.number]:
+                        return self._pass(start, end.number, saddle)
+        raise InvalidValueError(f"there is no pass from pose {start.number} to pose {end.number}")
+
+    def barrier(self, pose: StablePose, azimuth: ArrayLike, *, path: Path = "straight") -> FloatArray:
+        """Return how much the centre of mass must rise for the body to topple towards an azimuth.
+
+        Parameters
+        ----------
+        pose : StablePose
+            Where the body stands.
+        azimuth : array_like
+            Direction towards which it tilts, counter-clockwise from x of the body as set down [rad].
+        path : {"straight", "lowest"}
+            Tilting straight on until it settles in another pose; or by the lowest pass into that pose, whatever way.
+
+        Returns
+        -------
+        ndarray
+            Rise [m]; infinite if it never settles in another.
+
+        Raises
+        ------
+        InvalidValueError
+            If there is no such path.
+        """
+        if path not in ("straight", "lowest"):
+            raise InvalidValueError(f'path must be "straight" or "lowest", got {path!r}')
+        angles = checks.real_array("azimuth", azimuth, "rad")
+        rises = [self._over(pose, angle, path) for angle in angles.ravel().tolist()]
+        return np.array(rises).reshape(angles.shape)
+
+    def toppled(self, pose: StablePose, azimuth: float) -> StablePose | None:
+        """Return the pose into which a body topples that is tilted straight towards an azimuth.
+
+        Parameters
+        ----------
+        pose : StablePose
+            Where it stands.
+        azimuth : float
+            Direction towards which it tilts, counter-clockwise from x of the body as set down [rad].
+
+        Returns
+        -------
+        StablePose or None
+            The first other pose; None if it rolls on a ring or back.
+        """
+        end = self._straight(pose, checks.number("azimuth", azimuth, "rad"))[1]
+        return None if end < 0 or end == pose.number else self.stable[end]
+
+    def _over(self, pose: StablePose, azimuth: float, path: Path) -> float:
+        rise, end = self._straight(pose, azimuth)
+        if path == "straight" or end in (-1, pose.number):
+            return rise
+        return self.lowest_pass(pose, self.stable[end]).rise
+
+    def _straight(self, pose: StablePose, azimuth: float) -> tuple[float, int]:
+        """Return the rise of the centre on the straight way into another pose, and which."""
+        from scipy.spatial import ConvexHull
+
+        towards = tilted(pose, azimuth)
+        # seen along the axis of the tilt the body is a polygon: to the side x, downward y, clockwise
+        flat = self._hull.vertices @ np.stack([towards, pose.down], axis=1)
+        ring = flat[ConvexHull(flat).vertices[::-1]]
+        chords = np.roll(ring, -1, axis=0) - ring
+        before, after = (ring * np.roll(chords, 1, axis=0)).sum(axis=1), (ring * chords).sum(axis=1)
+        crests = ring[(before > 0.0) & (after < 0.0)]  # Eq. 244
+        valleys = chords[(after < 0.0) & (np.roll(before, -1) > 0.0)] @ np.array([[0.0, 1.0], [-1.0, 0.0]])
+        at_crest, at_valley = (np.arctan2(*each.T) % (2.0 * math.pi) for each in (crests, valleys))
+        heights = np.hypot(*crests.T)
+        for angle in np.sort(at_valley[(at_valley > _CLOSE) & (at_valley < 2.0 * math.pi - _CLOSE)]).tolist():
+            end = self._basin(math.cos(angle) * pose.down + math.sin(angle) * towards)
+            if end != pose.number:
+                return float(heights[at_crest < angle].max()) - pose.height, end
+        return math.inf, pose.number
+
+    def _basin(self, down: FloatArray) -> int:
+        lowest = int(np.argmax(self._hull.vertices @ down))
+        return self._basins[self._hull.descent(lowest, down)]
+
+    def _pass(self, pose: StablePose, end: int, saddle: int) -> Pass:
+        top = self.saddles[saddle]
+        rise = top.height - pose.height
+        tilt, azimuth = tilt_towards(pose, top.down)
+        return Pass(pose.number, end, top.height, rise, self.mass * g * rise, tilt, azimuth, top.down)
+
+
+def equilibria(points: ArrayLike, centre: ArrayLike, mass: float, *, least_barrier: float = 0.0) -> Equilibria:
+    """Return all equilibria of a body of which the surface, the centre of mass and the mass are known.
+
+    Exact on the convex hull of the points. Facets within 1e-7 of the size of one plane are one.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3)
+        Points of its surface, at least those of its convex hull [m].
+    centre : array_like, shape (3,)
+        Centre of mass, inside the hull [m].
+    mass : float
+        Mass [kg].
+    least_barrier : float
+        Stable poses from which a smaller rise of the centre leads into a lower one are not poses of their own, and
+        summits that stand out by less no summits [m].
+
+    Returns
+    -------
+    Equilibria
+        The numbers obey stable - saddles + summits = 2.
+
+    Raises
+    ------
+    GeometryError
+        If the points span no volume.
+    InvalidValueError
+        If the centre is not inside their hull, or a number is not finite.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    >>> found = equilibria(corners, corners.mean(axis=0), 1.0)
+    >>> len(found.stable), len(found.saddles), len(found.summits)
+    (4, 6, 4)
+    """
+    kilograms = checks.positive("mass", mass, "kg")
+    least = checks.within("least_barrier", least_barrier, 0.0, checks.LARGEST, unit="m")
+    surface, middle = checks.real_array("points", points, "m"), checks.real_array("centre", centre, "m")
+    if surface.ndim != 2 or surface.shape[1:] != (3,) or not np.isfinite(surface).all():
+        raise InvalidValueError(f"points must be finite and have the shape (n, 3), got {surface.shape}")
+    if middle.shape != (3,) or not np.isfinite(middle).all():
+        raise InvalidValueError(f"centre must be three finite numbers (x, y, z) [m], got {centre!r:.60}")
+    hull = polytope(surface, middle)
+    if hull.heights.min() <= 0.0:
+        raise InvalidValueError(
+            f"the centre of mass {middle.tolist()} m must lie inside the convex hull of the points: it is "
+            f"{-hull.heights.min():.3g} m outside; are both in the same frame and unit?"
+        )
+    return _found(hull, middle, kilograms, least)
+
+
+def _found(hull: Polytope, centre: FloatArray, mass: float, least: float) -> Equilibria:
+    facets = _by_height(np.flatnonzero(hull.stable), hull.heights)
+    tops = np.linalg.norm(hull.feet, axis=1)
+    edges = _by_height(np.flatnonzero(hull.saddles), tops)
+    reach = np.linalg.norm(hull.vertices, axis=1)
+    corners = _by_height(np.flatnonzero(hull.summits), -reach)[::-1]
+    ends = [[hull.rolled(int(side)) for side in hull.sides[edge]] for edge in edges]
+    leads, cut = _simplified(facets, hull.heights, edges, tops, ends, least)
+    kept_facets = [facet for facet in facets.tolist() if leads[facet] == facet]
+    kept_edges = [edge for edge in edges.tolist() if edge not in cut]
+    if least > 0.0:
+        rising = [[hull.climbed(int(end)) for end in hull.ends[edge]] for edge in kept_edges]
+        rests, cut = _simplified(corners, -reach, np.array(kept_edges[::-1]), -tops, rising[::-1], least)
+        corners = np.array([corner for corner in corners.tolist() if rests[corner] == corner])
+        kept_edges = [edge for edge in kept_edges if edge not in cut]
+    number = {facet: i for i, facet in enumerate(kept_facets)}
+    basins = {facet: number[lead] for facet, lead in leads.items()}
+    low = float(hull.heights[kept_facets[0]])
+
+    def one(kind: Kind, down: FloatArray, height: float, points: IntArray) -> Equilibrium:
+        return Equilibrium(kind, down, height, mass * g * (height - low), hull.vertices[points] + centre)  # Eq. 240
+
+    whither = dict(zip(edges.tolist(), ends, strict=True))
+    links = [(*(basins[end] for end in whither[edge]), i) for i, edge in enumerate(kept_edges)]
+    links = [link for link in links if link[0] != link[1]]
+    saddles = tuple(one("saddle", hull.feet[e] / tops[e], float(tops[e]), hull.ends[e]) for e in kept_edges)
+    exits = {pose: saddles[link[2]].height for link in reversed(links) for pose in link[:2]}
+    stable = []
+    for i, facet in enumerate(kept_facets):
+        made = one("stable", hull.normals[facet], float(hull.heights[facet]), hull.corners(facet)[::-1])
+        barrier = exits.get(i, math.inf) - made.height
+        stable.append(StablePose(made.kind, made.down, made.height, made.energy, made.points, i, centre, barrier))
+    summits = tuple(
+        one("summit", hull.vertices[v] / reach[v], float(reach[v]), np.array([v])) for v in corners.tolist()
+    )
+    return Equilibria(
+        mass, centre, tuple(stable), saddles, summits, (), _notes(hull), hull, basins, tuple(links)
+    )
+
+
+def _by_height(members: IntArray, heights: FloatArray) -> IntArray:
+    return members[np.lexsort((members, heights[members]))]
+
+
+def _simplified(
+    minima: IntArray, heights: FloatArray, edges: IntArray, tops: FloatArray, ends: Sequence[Sequence[int]], least: float
+) -> tuple[dict[int, int], set[int]]:
+    """Return which minimum each leads to where barriers below the least do not count, and the edges cancelled."""
+    joined = {each: each for each in minima.tolist()}
+    leads = dict(joined)
+    cut = set()
+
+    def found(links: dict[int, int], each: int) -> int:
+        while links[each] != each:
+            each = links[each]
+        return each
+
+    for edge, (one, other) in zip(edges.tolist(), ends, strict=True):
+        low, high = found(joined, one), found(joined, other)
+        if low == high:
+            continue
+        if heights[low] > heights[high]:
+            low, high, one = high, low, other
+        joined[high] = low
+        if tops[edge] - heights[high] < least:
+            leads[high] = one
+            cut.add(edge)
+    return {each: found(leads, each) for each in leads}, cut
+
+
+def _notes(hull: Polytope) -> tuple[str, ...]:
+    return ()
