@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking import checks
+from rocking.bodies.equilibria.polytope import FLAT, Polytope, polytope
 from rocking.bodies.equilibria.poses import (
     Equilibrium,
     Kind,
@@ -18,12 +19,12 @@ from rocking.bodies.equilibria.poses import (
     tilt_towards,
     tilted,
 )
-from rocking.bodies.equilibria.polytope import Polytope, polytope
 from rocking.conventions import FloatArray, IntArray, g
 from rocking.errors import InvalidValueError
 
 Path = Literal["straight", "lowest"]
 _CLOSE = 1e-9
+_SHALLOW = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +45,8 @@ class Equilibria:
         Circles of equilibria of a body of revolution, which are not counted among the others.
     notes : tuple of str
         What the numbers leave out, and what hangs on the last digits, in words.
+    least_barrier : float
+        Poses that a smaller rise of the centre leaves are not counted [m].
 
     Examples
     --------
@@ -62,9 +65,22 @@ class Equilibria:
     summits: tuple[Equilibrium, ...]
     rings: tuple[Ring, ...]
     notes: tuple[str, ...]
+    least_barrier: float
     _hull: Polytope = field(repr=False)
     _basins: dict[int, int] = field(repr=False)  # the pose to which every stable facet leads
-    _links: tuple[tuple[int, int, int], ...] = field(repr=False)  # poses and number of each saddle, the lowest first
+    _links: tuple[tuple[int, int, Equilibrium], ...] = field(
+        repr=False
+    )  # poses that each saddle joins, the lowest first
+
+    @property
+    def hull_vertices(self) -> FloatArray:
+        """Vertices of the convex hull in the body's coordinates, shape (n, 3) [m]."""
+        return self._hull.vertices + self.centre
+
+    @property
+    def flatness(self) -> float:
+        """How far from one plane corners may lie of what is one facet [m]."""
+        return FLAT * float(np.ptp(self._hull.vertices, axis=0).max())
 
     def height(self, down: ArrayLike) -> FloatArray:
         """Return how high the centre of mass is with directions downward.
@@ -107,7 +123,7 @@ class Equilibria:
         """
         unit = checks.real_array("down", down)
         basin = self._basin(unit / np.linalg.norm(unit))
-        if basin < 0:
+        if basin >= len(self.stable):
             raise InvalidValueError("the body comes to rest on a ring of poses there, in none of the isolated ones")
         return self.stable[basin]
 
@@ -122,7 +138,7 @@ class Equilibria:
         Returns
         -------
         tuple of Pass
-            The lowest to each neighbour, the lowest first.
+            The lowest to each neighbour, the lowest first; rings of stable poses count on after the stable poses.
         """
         found: dict[int, Pass] = {}
         for *ends, saddle in self._links:
@@ -147,16 +163,9 @@ class Equilibria:
         Raises
         ------
         InvalidValueError
-            If both are the same pose, or a ring parts them.
+            If both are the same pose.
         """
-        if start.number != end.number:
-            joined = list(range(len(self.stable)))
-            for one, other, saddle in self._links:  # Eq. 243
-                if one >= 0 and joined[one] != joined[other]:
-                    joined = [joined[one] if each == joined[other] else each for each in joined]
-                    if joined[start.number] == joined[end.number]:
-                        return self._pass(start, end.number, saddle)
-        raise InvalidValueError(f"there is no pass from pose {start.number} to pose {end.number}")
+        return self._lowest(start, end.number)
 
     def barrier(self, pose: StablePose, azimuth: ArrayLike, *, path: Path = "straight") -> FloatArray:
         """Return how much the centre of mass must rise for the body to topple towards an azimuth.
@@ -178,7 +187,7 @@ class Equilibria:
         Raises
         ------
         InvalidValueError
-            If there is no such path.
+            If `path` is another word.
         """
         if path not in ("straight", "lowest"):
             raise InvalidValueError(f'path must be "straight" or "lowest", got {path!r}')
@@ -202,13 +211,19 @@ class Equilibria:
             The first other pose; None if it rolls on a ring or back.
         """
         end = self._straight(pose, checks.number("azimuth", azimuth, "rad"))[1]
-        return None if end < 0 or end == pose.number else self.stable[end]
+        return None if end >= len(self.stable) or end == pose.number else self.stable[end]
 
     def _over(self, pose: StablePose, azimuth: float, path: Path) -> float:
         rise, end = self._straight(pose, azimuth)
-        if path == "straight" or end in (-1, pose.number):
-            return rise
-        return self.lowest_pass(pose, self.stable[end]).rise
+        return rise if path == "straight" or end == pose.number else self._lowest(pose, end).rise
+
+    def _lowest(self, pose: StablePose, end: int) -> Pass:
+        joined = np.arange(1 + max(self._basins.values()))
+        for one, other, saddle in self._links:  # Eq. 243
+            joined[joined == joined[other]] = joined[one]
+            if joined[pose.number] == joined[end] and end != pose.number:
+                return self._pass(pose, end, saddle)
+        raise InvalidValueError(f"there is no pass from pose {pose.number} to itself")
 
     def _straight(self, pose: StablePose, azimuth: float) -> tuple[float, int]:
         """Return the rise of the centre on the straight way into another pose, and which."""
@@ -234,8 +249,7 @@ class Equilibria:
         lowest = int(np.argmax(self._hull.vertices @ down))
         return self._basins[self._hull.descent(lowest, down)]
 
-    def _pass(self, pose: StablePose, end: int, saddle: int) -> Pass:
-        top = self.saddles[saddle]
+    def _pass(self, pose: StablePose, end: int, top: Equilibrium) -> Pass:
         rise = top.height - pose.height
         tilt, azimuth = tilt_towards(pose, top.down)
         return Pass(pose.number, end, top.height, rise, self.mass * g * rise, tilt, azimuth, top.down)
@@ -317,10 +331,10 @@ def _found(hull: Polytope, centre: FloatArray, mass: float, least: float) -> Equ
         return Equilibrium(kind, down, height, mass * g * (height - low), hull.vertices[points] + centre)  # Eq. 240
 
     whither = dict(zip(edges.tolist(), ends, strict=True))
-    links = [(*(basins[end] for end in whither[edge]), i) for i, edge in enumerate(kept_edges)]
-    links = [link for link in links if link[0] != link[1]]
     saddles = tuple(one("saddle", hull.feet[e] / tops[e], float(tops[e]), hull.ends[e]) for e in kept_edges)
-    exits = {pose: saddles[link[2]].height for link in reversed(links) for pose in link[:2]}
+    paired = [tuple(basins[end] for end in whither[edge]) for edge in kept_edges]
+    links = [(one, other, top) for (one, other), top in zip(paired, saddles, strict=True) if one != other]
+    exits = {pose: top.height for *pair, top in reversed(links) for pose in pair}
     stable = []
     for i, facet in enumerate(kept_facets):
         made = one("stable", hull.normals[facet], float(hull.heights[facet]), hull.corners(facet)[::-1])
@@ -329,9 +343,8 @@ def _found(hull: Polytope, centre: FloatArray, mass: float, least: float) -> Equ
     summits = tuple(
         one("summit", hull.vertices[v] / reach[v], float(reach[v]), np.array([v])) for v in corners.tolist()
     )
-    return Equilibria(
-        mass, centre, tuple(stable), saddles, summits, (), _notes(hull), hull, basins, tuple(links)
-    )
+    notes = _notes(hull, stable)
+    return Equilibria(mass, centre, tuple(stable), saddles, summits, (), notes, least, hull, basins, tuple(links))
 
 
 def _by_height(members: IntArray, heights: FloatArray) -> IntArray:
@@ -339,7 +352,12 @@ def _by_height(members: IntArray, heights: FloatArray) -> IntArray:
 
 
 def _simplified(
-    minima: IntArray, heights: FloatArray, edges: IntArray, tops: FloatArray, ends: Sequence[Sequence[int]], least: float
+    minima: IntArray,
+    heights: FloatArray,
+    edges: IntArray,
+    tops: FloatArray,
+    ends: Sequence[Sequence[int]],
+    least: float,
 ) -> tuple[dict[int, int], set[int]]:
     """Return which minimum each leads to where barriers below the least do not count, and the edges cancelled."""
     joined = {each: each for each in minima.tolist()}
@@ -364,5 +382,21 @@ def _simplified(
     return {each: found(leads, each) for each in leads}, cut
 
 
-def _notes(hull: Polytope) -> tuple[str, ...]:
-    return ()
+def _notes(hull: Polytope, stable: Sequence[StablePose]) -> tuple[str, ...]:
+    size = float(np.ptp(hull.vertices, axis=0).max())
+    at_edge = (np.abs(hull.inward) <= _CLOSE * size).any(axis=1)
+    at_end = (np.abs(hull.beyond) <= _CLOSE * size).any(axis=1)
+    held = (hull.inward > -_CLOSE * size).all(axis=1)
+    crossed = (hull.beyond[:, 0] < _CLOSE * size) & (hull.beyond[:, 1] > -_CLOSE * size)
+    notes = []
+    if count := int(((at_edge & crossed) | (at_end & held)).sum()):
+        notes.append(
+            f"the centre's foot lies on an edge or a corner of a facet in {count} places, to {_CLOSE:g} of the size: "
+            "whether these are poses hangs on the last digits"
+        )
+    if count := sum(pose.barrier < _SHALLOW * size for pose in stable):
+        notes.append(
+            f"{count} of {len(stable)} stable poses are left by a rise of less than {1e3 * _SHALLOW * size:.2g} mm: the "
+            "body is round or rough there; least_barrier= takes such poses together"
+        )
+    return tuple(notes)

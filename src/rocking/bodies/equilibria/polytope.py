@@ -223,7 +223,12 @@ def _merged(
 
 
 def _edges(
-    corners: FloatArray, triangles: IntArray, beside: IntArray, label: IntArray, normals: FloatArray, heights: FloatArray
+    corners: FloatArray,
+    triangles: IntArray,
+    beside: IntArray,
+    label: IntArray,
+    normals: FloatArray,
+    heights: FloatArray,
 ) -> Polytope:
     left = np.repeat(label, 3)
     right, start, end = beside.ravel(), np.roll(triangles, -1, 1).ravel(), np.roll(triangles, -2, 1).ravel()

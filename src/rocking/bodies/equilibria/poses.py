@@ -173,5 +173,3 @@ def tilt_towards(pose: StablePose, down: FloatArray) -> tuple[float, float]:
 def tilted(pose: StablePose, azimuth: float) -> FloatArray:
     """Return the horizontal direction of an azimuth, in the body's frame."""
     return applied(pose.rotation.T, np.array([math.cos(azimuth), math.sin(azimuth), 0.0]))
-
-

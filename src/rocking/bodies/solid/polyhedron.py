@@ -67,6 +67,10 @@ class Polyhedron(Shape):
     def footprint(self) -> Footprint:
         return Footprint(self.vertices)
 
+    def hull_points(self) -> FloatArray:
+        """Return the vertices."""
+        return self.vertices
+
     def contains(self, points: FloatArray) -> BoolArray:
         return inside(points, self.corners)
 

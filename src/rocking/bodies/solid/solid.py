@@ -1,6 +1,7 @@
 """A rigid body in space: parts of any shape and density on a base."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -11,6 +12,7 @@ from rocking import checks, plausibility
 from rocking.bodies._known import density_of
 from rocking.bodies.block import Block
 from rocking.bodies.body import assumed_density
+from rocking.bodies.equilibria import Equilibria, StablePose
 from rocking.bodies.moments import SolidMoments, combined
 from rocking.bodies.section import Section
 from rocking.bodies.solid._admissible import check_disjoint, check_possible
@@ -19,6 +21,7 @@ from rocking.bodies.solid.base import Base, RoundBase, SupportPolygon, hull
 from rocking.bodies.solid.part import Part, footprint, rotation_about
 from rocking.bodies.solid.prism import Prism
 from rocking.bodies.solid.shape import Shape
+from rocking.bodies.solid.standing import equilibria_of, set_down
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
 
@@ -304,6 +307,59 @@ class Solid:
         checks.length("size of the scaled body", self._size * factor)
         parts = [part.scaled(size=factor, density=density) for part in self.local_parts]
         return self._copy(parts, np.eye(3), factor, density)
+
+    def equilibria(self, *, least_barrier: float | None = None) -> Equilibria:
+        """Return in how many ways the body can stand or be balanced on level ground, exact on its convex hull.
+
+        Parameters
+        ----------
+        least_barrier : float, optional
+            Stable poses from which a smaller rise of the centre leads into a lower one are not poses of their own [m];
+            by default 0, and 1e-4 of the size with round faces, which are taken as those of 360 corners.
+
+        Returns
+        -------
+        Equilibria
+            Stable poses, saddles and summits, in the user's coordinates, with the passes and barriers between them.
+
+        Examples
+        --------
+        >>> from rocking.bodies.solid import cylinder
+        >>> found = Solid(cylinder(1.0, 3.0)).equilibria()
+        >>> len(found.stable), [ring.kind for ring in found.rings]
+        (2, ['stable', 'summit'])
+        """
+        moments = self.local_moments
+        placed = replace(moments, centre=self.centre)
+        return equilibria_of(self.parts, placed, self._size, least_barrier)
+
+    def settled(self, pose: StablePose | None = None) -> "Solid":
+        """Return the body set down in one of its stable poses.
+
+        Parameters
+        ----------
+        pose : StablePose, optional
+            Of its `equilibria`; by default the one into which it settles from the way up that it has.
+
+        Returns
+        -------
+        Solid
+            The body on that facet of its convex hull, on the ground z = 0, its centre of mass above (0, 0).
+
+        Examples
+        --------
+        >>> from rocking.bodies.solid import box
+        >>> solid = Solid(box(1.0, 2.0, 3.0))
+        >>> lying = solid.settled(solid.equilibria().stable[0])
+        >>> round(float(lying.centre[2]), 12)
+        0.5
+        """
+        chosen = self.equilibria().settling((0.0, 0.0, -1.0)) if pose is None else pose
+        parts, base = set_down(self.parts, chosen, self._size)
+        ground = min(float(part.box()[0, 2]) for part in parts)
+        result = Solid(parts, base=base, ground=ground)
+        result.name, result.repairs = self.name, self.repairs
+        return result
 
     def _copy(self, parts: list[Part], matrix: FloatArray, size: float = 1.0, density: float = 1.0) -> "Solid":
         # not checked again: a similarity keeps a valid body valid

@@ -1,0 +1,110 @@
+"""How parts can stand: the equilibria of their hull, the rings of a body of revolution, and the parts set down."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import cast
+
+import numpy as np
+
+from rocking.bodies.equilibria import Equilibria, Equilibrium, Ring, StablePose, equilibria
+from rocking.bodies.moments import SolidMoments
+from rocking.bodies.solid.base import SupportPolygon, hull
+from rocking.bodies.solid.part import Part, footprint
+from rocking.bodies.solid.shape import placed_points
+from rocking.bodies.solid.turned import Turned
+from rocking.conventions import FloatArray, g
+from rocking.portable import applied, dot, norm, times
+
+_ROUND = 1e-4
+"""Least barrier that counts of a body with round faces, relative to its size: more than flats of 360 corners leave."""
+_COAXIAL = 1e-9
+_CHORDS = 4000
+_CHORD = 0.02
+
+
+def equilibria_of(parts: Sequence[Part], moments: SolidMoments, size: float, least_barrier: float | None) -> Equilibria:
+    """Return the equilibria of parts that are one rigid body."""
+    surface = np.concatenate([placed_points(p.shape.hull_points(), p.rotation, p.translation) for p in parts])
+    rounded = any(isinstance(part.shape, Turned) for part in parts)
+    least = _ROUND * size * rounded if least_barrier is None else least_barrier
+    found = equilibria(surface, moments.centre, moments.mass, least_barrier=least)
+    if not rounded:
+        return found
+    found = replace(found, notes=(*found.notes, "round faces are taken as those of 360 corners"))
+    axis = _axis(parts, moments.centre, size)
+    return found if axis is None else _revolved(found, parts, axis)
+
+
+def set_down(parts: Sequence[Part], pose: StablePose, size: float) -> tuple[list[Part], SupportPolygon | None]:
+    """Return parts turned so that they stand in a pose, and its support polygon; none where they have a round base."""
+    turn, c, up = pose.rotation, pose.centre, np.array([0.0, 0.0, pose.height])
+    turned = [
+        Part(p.shape, p.density, rotation=times(turn, p.rotation), translation=applied(turn, p.translation - c) + up)
+        for p in parts
+    ]
+    on_rim = any(footprint(part, 0.0, _COAXIAL * size)[1] for part in turned)
+    return turned, None if on_rim else hull(pose.support)
+
+
+def _axis(parts: Sequence[Part], centre: FloatArray, size: float) -> FloatArray | None:
+    """Return the axis about which all parts are turned, if there is one."""
+    axis = parts[0].rotation[:, 2]
+    for part in parts:
+        if not isinstance(part.shape, Turned) or part.shape.half_axes[0] != part.shape.half_axes[1]:
+            return None
+        off = np.cross(part.translation - centre, axis)
+        if np.abs(np.cross(part.rotation[:, 2], axis)).max() > _COAXIAL or np.abs(off).max() > _COAXIAL * size:
+            return None
+    return axis
+
+
+def _revolved(found: Equilibria, parts: Sequence[Part], axis: FloatArray) -> Equilibria:
+    """Return the equilibria of a body of revolution: those off its axis stand for rings."""
+    profile = np.concatenate([_profile(part, axis, found.centre) for part in parts])
+    curved = any(piece.arc for part in parts for piece in cast(Turned, part.shape).meridians)
+    off = _CHORD if curved else _COAXIAL
+
+    def is_ring(one: Equilibrium) -> bool:
+        return norm(np.cross(axis, one.down)) > off
+
+    rings = [_ring(one, axis, profile) for one in (*found.stable, *found.summits) if is_ring(one)]
+    points = [one for one in found.stable if not is_ring(one)]
+    low = min(each.height for each in (*points, *rings))
+    order = {one.number: i for i, one in enumerate([*points, *filter(is_ring, found.stable)])}
+
+    def energy(height: float) -> float:
+        return found.mass * g * (height - low)
+
+    notes = [f"{len(rings)} circles of equilibria are told apart from the others: a body of revolution rolls on them"]
+    return replace(
+        found,
+        stable=tuple(replace(one, number=order[one.number], energy=energy(one.height)) for one in points),
+        saddles=(),
+        summits=tuple(replace(one, energy=energy(one.height)) for one in found.summits if not is_ring(one)),
+        rings=tuple(replace(ring, energy=energy(ring.height)) for ring in rings),
+        notes=(*found.notes, *notes),
+        _basins={facet: order[number] for facet, number in found._basins.items()},
+        _links=tuple((order[one], order[other], top) for one, other, top in found._links),
+    )
+
+
+def _profile(part: Part, axis: FloatArray, centre: FloatArray) -> FloatArray:
+    shape = cast(Turned, part.shape)
+    radius, height = shape.profile(_CHORDS)
+    up = dot(part.rotation[:, 2], axis)
+    return np.stack([shape.half_axes[0] * radius, dot(part.translation - centre, axis) + up * height], axis=1)
+
+
+def _ring(one: Equilibrium, axis: FloatArray, profile: FloatArray) -> Ring:
+    from scipy.optimize import minimize_scalar
+
+    sign = 1.0 if one.kind == "stable" else -1.0
+    start = math.acos(-dot(axis, one.down))
+    ends = (max(start - _CHORD, 0.0), min(start + _CHORD, math.pi))
+
+    def height(tilt: float) -> float:
+        return sign * float((profile[:, 0] * math.sin(tilt) - profile[:, 1] * math.cos(tilt)).max())  # Eq. 245
+
+    best = minimize_scalar(height, bounds=ends, method="bounded", options={"xatol": 1e-12})
+    return Ring("stable" if sign > 0.0 else "summit", float(best.x), sign * float(best.fun), 0.0)
