@@ -255,7 +255,9 @@ class Equilibria:
         return Pass(pose.number, end, top.height, rise, self.mass * g * rise, tilt, azimuth, top.down)
 
 
-def equilibria(points: ArrayLike, centre: ArrayLike, mass: float, *, least_barrier: float = 0.0) -> Equilibria:
+def equilibria(
+    points: ArrayLike, centre: ArrayLike, mass: float, *, faces: IntArray | None = None, least_barrier: float = 0.0
+) -> Equilibria:
     """Return all equilibria of a body of which the surface, the centre of mass and the mass are known.
 
     Exact on the convex hull of the points. Facets within 1e-7 of the size of one plane are one.
@@ -268,6 +270,9 @@ def equilibria(points: ArrayLike, centre: ArrayLike, mass: float, *, least_barri
         Centre of mass, inside the hull [m].
     mass : float
         Mass [kg].
+    faces : ndarray of int, shape (m, 3), optional
+        Triangles of the surface, each of three numbers of points, counter-clockwise seen from outside: a surface that
+        is convex is its own hull, and the answer comes sooner.
     least_barrier : float
         Stable poses from which a smaller rise of the centre leads into a lower one are not poses of their own, and
         summits that stand out by less no summits [m].
@@ -299,7 +304,7 @@ def equilibria(points: ArrayLike, centre: ArrayLike, mass: float, *, least_barri
         raise InvalidValueError(f"points must be finite and have the shape (n, 3), got {surface.shape}")
     if middle.shape != (3,) or not np.isfinite(middle).all():
         raise InvalidValueError(f"centre must be three finite numbers (x, y, z) [m], got {centre!r:.60}")
-    hull = polytope(surface, middle)
+    hull = polytope(surface, middle, faces)
     if hull.heights.min() <= 0.0:
         raise InvalidValueError(
             f"the centre of mass {middle.tolist()} m must lie inside the convex hull of the points: it is "

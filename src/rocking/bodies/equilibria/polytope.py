@@ -13,6 +13,10 @@ FLAT = 1e-7
 
 _DIRECTIONS = 200
 _MANY = 20_000
+_BLOCK = 2_000
+_COARSE = 1e-5
+
+Surface = tuple[FloatArray, IntArray, IntArray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,12 +98,10 @@ class Polytope:
 
     def corners(self, facet: int) -> IntArray:
         """Return the vertices of a facet, counter-clockwise seen from outside."""
-        edges, side = self.edges_of(facet)
-        after = dict(zip(self.ends[edges, side].tolist(), self.ends[edges, 1 - side].tolist(), strict=True))
-        ring = [min(after)]
-        while len(ring) < len(after):
-            ring.append(after[ring[-1]])
-        return np.array(ring)
+        corners = np.unique(self.ends[self.edges_of(facet)[0]])
+        arms = self.vertices[corners] - self.vertices[corners].mean(axis=0)
+        across = np.cross(self.normals[facet], arms[0])
+        return corners[np.argsort(np.arctan2(arms @ across, arms @ arms[0]))]
 
     def descent(self, vertex: int, down: FloatArray) -> int:
         """Return the stable facet to which the steepest descent of the centre leads, from a contact on a vertex.
@@ -148,30 +150,48 @@ class Polytope:
         return vertex
 
 
-def polytope(points: FloatArray, centre: FloatArray, tolerance: float | None = None) -> Polytope:
-    """Return the convex hull of points about a centre, coplanar facets merged.
+def polytope(points: FloatArray, centre: FloatArray, faces: IntArray | None = None) -> Polytope:
+    """Return the convex hull of points about a centre; facets within 1e-7 of the size of one plane are merged.
 
-    tolerance: how far from a facet's plane the corners of its neighbours lie that are one with it [m]; by default
-    1e-7 of the size. It is lowered until no merged facet departs from its plane by more than ten times as much.
+    faces: triangles of the surface; if it is convex it is its own hull, which is not sought.
     """
+    around = points - centre
+    surface = _convex(around, faces) if faces is not None else None
+    corners, triangles, beside = surface if surface is not None else _hull(_outer(around))
+    a, b, c = (corners[column] for column in triangles.T)
+    areas = np.cross(b - a, c - a)
+    return _merged(corners, triangles, beside, areas, FLAT * float(np.ptp(corners, axis=0).max()))
+
+
+def _hull(points: FloatArray) -> Surface:
+    """Return corners, triangles counter-clockwise seen from outside, and their neighbours across from each corner."""
     from scipy.spatial import ConvexHull, QhullError
 
     try:
-        hull = ConvexHull(_outer(points - centre))
+        hull = ConvexHull(points)
     except QhullError as error:
         raise GeometryError("the points span no volume: are they flat, or too few?") from error
-    corners, flat = hull.points, FLAT * float(np.ptp(hull.points, axis=0).max())
-    flat = flat if tolerance is None else tolerance
-    normals, triangles = hull.equations[:, :3], hull.simplices.astype(np.int64)
-    a, b, c = np.moveaxis(corners[triangles], 1, 0)
-    areas = np.cross(b - a, c - a)
-    turn = (areas * normals).sum(axis=1) < 0.0
-    triangles[turn] = triangles[turn][:, [0, 2, 1]]
-    neighbours = hull.neighbors.astype(np.int64)
-    neighbours[turn] = neighbours[turn][:, [0, 2, 1]]
-    areas[turn] *= -1.0
-    label, normals, heights = _merged(corners, triangles, neighbours, normals, areas, flat)
-    return _edges(corners, triangles, label[neighbours], label, normals, heights)
+    triangles, beside = hull.simplices.astype(np.int64), hull.neighbors.astype(np.int64)
+    a, b, c = (hull.points[column] for column in triangles.T)
+    turn = (np.cross(b - a, c - a) * hull.equations[:, :3]).sum(axis=1) < 0.0
+    triangles[turn], beside[turn] = triangles[turn][:, [0, 2, 1]], beside[turn][:, [0, 2, 1]]
+    return hull.points, triangles, beside
+
+
+def _convex(points: FloatArray, faces: IntArray) -> Surface | None:
+    """Return a surface of triangles with their neighbours, if it is closed and convex."""
+    start, end = np.roll(faces, -1, axis=1).ravel(), np.roll(faces, -2, axis=1).ravel()
+    key = np.minimum(start, end) * len(points) + np.maximum(start, end)
+    first, second = np.argsort(key, kind="stable").reshape(-1, 2).T if len(key) % 2 == 0 else (key, key)
+    once = np.diff(key[first]).all() and (key[first] == key[second]).all() and (start[first] == end[second]).all()
+    if not once or len(np.unique(faces)) != len(faces) // 2 + 2:
+        return None
+    beside = np.empty(len(key), dtype=np.int64)
+    beside[first], beside[second] = second // 3, first // 3
+    beside = beside.reshape(faces.shape)
+    a, b, c = (points[column] for column in faces.T)
+    drop, _ = _drops(points, faces, beside, np.cross(b - a, c - a))
+    return (points, faces, beside) if drop.min() > -FLAT * 1e-2 * float(np.ptp(points, axis=0).max()) else None
 
 
 def _outer(points: FloatArray) -> FloatArray:
@@ -182,71 +202,83 @@ def _outer(points: FloatArray) -> FloatArray:
 
     turn = np.arange(_DIRECTIONS) + 0.5
     z, phi = 1.0 - 2.0 * turn / _DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * turn
-    around = np.stack([np.cos(phi), np.sin(phi)]) * np.sqrt(1.0 - z * z)
-    farthest = np.unique([int(np.argmax(points @ direction)) for direction in np.array([*around, z]).T])
+    around = np.stack([np.sqrt(1.0 - z * z) * np.cos(phi), np.sqrt(1.0 - z * z) * np.sin(phi), z])
+    size = float(np.abs(points).max())
+    # in single precision: what it leaves too many does no harm
+    coarse, towards = (points / size).astype(np.float32), around.astype(np.float32)
+    blocks = range(0, len(points), _BLOCK)
+    best = [i + np.argmax(coarse[i : i + _BLOCK] @ towards, axis=0) for i in blocks]
+    farthest = np.unique(best)
     try:
-        inner = ConvexHull(points[farthest])
+        planes = ConvexHull(points[farthest] / size).equations.astype(np.float32)
     except QhullError:
         return points
-    slack = 1e-9 * float(np.ptp(points, axis=0).max())
-    outside = np.zeros(len(points), dtype=bool)
-    for plane in inner.equations:
-        outside |= points @ plane[:3] > -plane[3] - slack
-    return points[outside]
+    out = [(coarse[i : i + _BLOCK] @ planes[:, :3].T + planes[:, 3]).max(axis=1) > -_COARSE for i in blocks]
+    return points[np.concatenate(out)]
 
 
-def _merged(
-    corners: FloatArray, triangles: IntArray, neighbours: IntArray, planes: FloatArray, areas: FloatArray, flat: float
-) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Return the facet of every triangle, and the facets' normals and heights."""
+def _drops(
+    corners: FloatArray, triangles: IntArray, beside: IntArray, areas: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return how far below each triangle's plane the far corners of its neighbours lie, and the unit normals."""
+    length = np.linalg.norm(areas, axis=1, keepdims=True)
+    normals = areas / np.where(length > 0.0, length, 1.0)
+    total = triangles.sum(axis=1)
+    far = total[beside] - (total[:, None] - triangles)
+    drop = (corners[triangles[:, 0]] * normals).sum(axis=1)[:, None] - np.stack(
+        [(corners[far[:, i]] * normals).sum(axis=1) for i in range(3)], axis=1
+    )
+    return drop, normals
+
+
+def _merged(corners: FloatArray, triangles: IntArray, beside: IntArray, areas: FloatArray, flat: float) -> Polytope:
+    """Return the polytope of triangles, coplanar ones as one facet.
+
+    The tolerance is lowered until no facet departs from its plane by more than ten times as much.
+    """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    heights = (corners[triangles[:, 0]] * planes).sum(axis=1)
-    mine = np.repeat(np.arange(len(triangles)), 3)
-    theirs = neighbours.ravel()
-    # how far the farthest corner of a neighbour lies below the plane
-    drop = heights[mine] - (corners[triangles[theirs]] * planes[mine][:, None, :]).sum(axis=2).min(axis=1)
-    while True:
-        level = drop <= flat
-        graph = coo_array((level[level], (mine[level], theirs[level])), shape=(len(triangles),) * 2)
+    drop, normals = _drops(corners, triangles, beside, areas)
+    count, label = len(triangles), np.arange(len(triangles))
+    heights = (corners[triangles[:, 0]] * normals).sum(axis=1)
+    while (drop <= flat).any():
+        mine, side = np.nonzero(drop <= flat)
+        graph = coo_array((np.ones(len(mine), dtype=bool), (mine, beside[mine, side])), shape=(len(triangles),) * 2)
         count, label = connected_components(graph, directed=False)
         total = np.stack([np.bincount(label, areas[:, i], count) for i in range(3)], axis=1)
         normals = total / np.linalg.norm(total, axis=1, keepdims=True)
-        place = (corners[triangles] * normals[label][:, None, :]).sum(axis=2)
-        top, bottom = np.full(count, -np.inf), np.full(count, np.inf)
-        np.maximum.at(top, label, place.max(axis=1))
+        place = np.stack([(corners[column] * normals[label]).sum(axis=1) for column in triangles.T], axis=1)
+        heights, bottom = np.full(count, -np.inf), np.full(count, np.inf)
+        np.maximum.at(heights, label, place.max(axis=1))
         np.minimum.at(bottom, label, place.min(axis=1))
-        if flat == 0.0 or (top - bottom).max() <= 10.0 * flat:
-            return label.astype(np.int64), normals, top
+        if flat == 0.0 or (heights - bottom).max() <= 10.0 * flat:
+            break
         flat = flat / 100.0 if flat > 1e-20 else 0.0
-
-
-def _edges(
-    corners: FloatArray,
-    triangles: IntArray,
-    beside: IntArray,
-    label: IntArray,
-    normals: FloatArray,
-    heights: FloatArray,
-) -> Polytope:
-    left = np.repeat(label, 3)
-    right, start, end = beside.ravel(), np.roll(triangles, -1, 1).ravel(), np.roll(triangles, -2, 1).ravel()
+    left, right = np.repeat(label, 3), label[beside].ravel()
     once = left < right
-    left, right, start, end = left[once], right[once], start[once], end[once]
-    # pieces of one straight edge, between the same two facets, are put together
-    line = np.cross(normals[left], normals[right])
-    pair = left * len(normals) + right
-    first = np.lexsort(((corners[start] * line).sum(axis=1), pair))
-    last = np.lexsort((-(corners[end] * line).sum(axis=1), pair))
-    _, where = np.unique(pair[first], return_index=True)
-    ends = np.stack([start[first[where]], end[last[where]]], axis=1)
-    sides = np.stack([left[first[where]], right[first[where]]], axis=1)
-    used, number = np.unique(ends, return_inverse=True)
-    return Polytope(corners[used], normals, heights, number.reshape(ends.shape), sides)
+    left, right = left[once], right[once]
+    start, end = (np.roll(triangles, -i, axis=1).ravel()[once] for i in (1, 2))
+    if count < len(triangles):
+        # pieces of one straight edge, between the same two facets, are put together
+        line = np.cross(normals[left], normals[right])
+        order = np.lexsort((((corners[start] + corners[end]) * line).sum(axis=1), left * count + right))
+        left, right, start, end = left[order], right[order], start[order], end[order]
+        on = (left[1:] == left[:-1]) & (right[1:] == right[:-1]) & (start[1:] == end[:-1])
+        first, last = np.r_[True, ~on], np.r_[~on, True]
+        left, right, start, end = left[first], right[first], start[first], end[last]
+    used = np.zeros(len(corners), dtype=bool)
+    used[start] = used[end] = True
+    number = np.cumsum(used) - 1
+    ends, sides = np.stack([number[start], number[end]], axis=1), np.stack([left, right], axis=1)
+    return Polytope(corners[used], normals, heights, ends, sides)
 
 
 def _grouped(members: IntArray, count: int) -> tuple[IntArray, IntArray]:
-    flat = members.ravel()
-    order = np.argsort(flat, kind="stable")
-    return order, np.searchsorted(flat[order], np.arange(count + 1))
+    """Return the places of members in the order of their values, and where each value starts."""
+    from scipy.sparse import coo_array
+
+    places = np.arange(members.size)
+    # a sparse matrix sorts its rows by counting
+    rows = coo_array((places, (members.ravel(), places)), shape=(count, members.size)).tocsr()
+    return rows.data, rows.indptr

@@ -11,6 +11,7 @@ from rocking.bodies.equilibria import Equilibria, Equilibrium, Ring, StablePose,
 from rocking.bodies.moments import SolidMoments
 from rocking.bodies.solid.base import SupportPolygon, hull
 from rocking.bodies.solid.part import Part, footprint
+from rocking.bodies.solid.polyhedron import Polyhedron
 from rocking.bodies.solid.shape import placed_points
 from rocking.bodies.solid.turned import Turned
 from rocking.conventions import FloatArray, g
@@ -28,7 +29,8 @@ def equilibria_of(parts: Sequence[Part], moments: SolidMoments, size: float, lea
     surface = np.concatenate([placed_points(p.shape.hull_points(), p.rotation, p.translation) for p in parts])
     rounded = any(isinstance(part.shape, Turned) for part in parts)
     least = _ROUND * size * rounded if least_barrier is None else least_barrier
-    found = equilibria(surface, moments.centre, moments.mass, least_barrier=least)
+    faces = parts[0].shape.faces if len(parts) == 1 and isinstance(parts[0].shape, Polyhedron) else None
+    found = equilibria(surface, moments.centre, moments.mass, faces=faces, least_barrier=least)
     if not rounded:
         return found
     found = replace(found, notes=(*found.notes, "round faces are taken as those of 360 corners"))
