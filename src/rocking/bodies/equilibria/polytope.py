@@ -11,10 +11,9 @@ from rocking.errors import GeometryError
 FLAT = 1e-7
 """Facets whose neighbours' corners lie this close to their plane are one facet, relative to the body's size."""
 
-_DIRECTIONS = 200
+_DIRECTIONS = (30, 200)
 _MANY = 20_000
-_BLOCK = 2_000
-_COARSE = 1e-5
+_COARSE = 1e-9
 
 Surface = tuple[FloatArray, IntArray, IntArray]
 
@@ -156,11 +155,13 @@ def polytope(points: FloatArray, centre: FloatArray, faces: IntArray | None = No
     faces: triangles of the surface; if it is convex it is its own hull, which is not sought.
     """
     around = points - centre
-    surface = _convex(around, faces) if faces is not None else None
-    corners, triangles, beside = surface if surface is not None else _hull(_outer(around))
-    a, b, c = (corners[column] for column in triangles.T)
-    areas = np.cross(b - a, c - a)
-    return _merged(corners, triangles, beside, areas, FLAT * float(np.ptp(corners, axis=0).max()))
+    flat = FLAT * float(np.ptp(around, axis=0).max())
+    if faces is not None and (surface := _closed(around, faces)) is not None:
+        slopes = _slopes(*surface)
+        if float(slopes.drop.min()) > -0.01 * flat:
+            return _merged(*surface, slopes, flat)
+    surface = _hull(_outer(around))
+    return _merged(*surface, _slopes(*surface), flat)
 
 
 def _hull(points: FloatArray) -> Surface:
@@ -178,60 +179,73 @@ def _hull(points: FloatArray) -> Surface:
     return hull.points, triangles, beside
 
 
-def _convex(points: FloatArray, faces: IntArray) -> Surface | None:
-    """Return a surface of triangles with their neighbours, if it is closed and convex."""
+def _closed(points: FloatArray, faces: IntArray) -> Surface | None:
+    """Return a surface of triangles with their neighbours, if it is closed as a ball's."""
     start, end = np.roll(faces, -1, axis=1).ravel(), np.roll(faces, -2, axis=1).ravel()
+    if len(faces) % 2 or np.count_nonzero(np.bincount(start)) != len(faces) // 2 + 2:
+        return None
     key = np.minimum(start, end) * len(points) + np.maximum(start, end)
-    first, second = np.argsort(key, kind="stable").reshape(-1, 2).T if len(key) % 2 == 0 else (key, key)
-    once = np.diff(key[first]).all() and (key[first] == key[second]).all() and (start[first] == end[second]).all()
-    if not once or len(np.unique(faces)) != len(faces) // 2 + 2:
+    first, second = np.argsort(key, kind="stable").reshape(-1, 2).T
+    if not (np.diff(key[first]).all() and (key[first] == key[second]).all() and (start[first] == end[second]).all()):
         return None
     beside = np.empty(len(key), dtype=np.int64)
     beside[first], beside[second] = second // 3, first // 3
-    beside = beside.reshape(faces.shape)
-    a, b, c = (points[column] for column in faces.T)
-    drop, _ = _drops(points, faces, beside, np.cross(b - a, c - a))
-    return (points, faces, beside) if drop.min() > -FLAT * 1e-2 * float(np.ptp(points, axis=0).max()) else None
+    return points, faces, beside.reshape(faces.shape)
 
 
 def _outer(points: FloatArray) -> FloatArray:
-    """Return the points that may lie on the hull: those outside the hull of the farthest ones in many directions."""
-    if len(points) < _MANY:
-        return points
+    """Return the points that may lie on the hull: those outside the hull of the farthest ones in some directions."""
     from scipy.spatial import ConvexHull, QhullError
 
-    turn = np.arange(_DIRECTIONS) + 0.5
-    z, phi = 1.0 - 2.0 * turn / _DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * turn
-    around = np.stack([np.sqrt(1.0 - z * z) * np.cos(phi), np.sqrt(1.0 - z * z) * np.sin(phi), z])
-    size = float(np.abs(points).max())
-    # in single precision: what it leaves too many does no harm
-    coarse, towards = (points / size).astype(np.float32), around.astype(np.float32)
-    blocks = range(0, len(points), _BLOCK)
-    best = [i + np.argmax(coarse[i : i + _BLOCK] @ towards, axis=0) for i in blocks]
-    farthest = np.unique(best)
-    try:
-        planes = ConvexHull(points[farthest] / size).equations.astype(np.float32)
-    except QhullError:
-        return points
-    out = [(coarse[i : i + _BLOCK] @ planes[:, :3].T + planes[:, 3]).max(axis=1) > -_COARSE for i in blocks]
-    return points[np.concatenate(out)]
+    kept, size = points, float(np.abs(points).max())
+    for count in _DIRECTIONS:
+        if len(kept) < _MANY:
+            break
+        turn = np.arange(count) + 0.5
+        z, phi = 1.0 - 2.0 * turn / count, np.pi * (1.0 + np.sqrt(5.0)) * turn
+        around = np.stack([np.sqrt(1.0 - z * z) * np.cos(phi), np.sqrt(1.0 - z * z) * np.sin(phi), z], axis=1)
+        columns = kept.T.copy()
+        farthest = {int(np.argmax(_along(columns, direction))) for direction in around}
+        try:
+            planes = ConvexHull(kept[sorted(farthest)]).equations
+        except QhullError:
+            break
+        outside = np.zeros(len(kept), dtype=bool)
+        for plane in planes:
+            outside |= _along(columns, plane) > -plane[3] - _COARSE * size
+        if 2 * outside.sum() > len(kept):
+            break
+        kept = kept[outside]
+    return kept
 
 
-def _drops(
-    corners: FloatArray, triangles: IntArray, beside: IntArray, areas: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return how far below each triangle's plane the far corners of its neighbours lie, and the unit normals."""
+def _along(columns: FloatArray, direction: FloatArray) -> FloatArray:
+    # three products, no BLAS: a million points in columns are read once
+    return columns[0] * direction[0] + columns[1] * direction[1] + columns[2] * direction[2]
+
+
+@dataclass(frozen=True, eq=False)
+class Slopes:
+    """How triangles lie to their neighbours."""
+
+    areas: FloatArray  # twice their area vectors [m2]; shape (m, 3)
+    normals: FloatArray  # unit normals [-]; shape (m, 3)
+    heights: FloatArray  # distances of their planes from the origin [m]; shape (m,)
+    drop: FloatArray  # how far below the plane the far corner of each neighbour lies [m]; shape (m, 3)
+
+
+def _slopes(corners: FloatArray, triangles: IntArray, beside: IntArray) -> Slopes:
+    a, b, c = (corners[column] for column in triangles.T)
+    areas = np.cross(b - a, c - a)
     length = np.linalg.norm(areas, axis=1, keepdims=True)
     normals = areas / np.where(length > 0.0, length, 1.0)
-    total = triangles.sum(axis=1)
+    heights, total = (a * normals).sum(axis=1), triangles.sum(axis=1)
     far = total[beside] - (total[:, None] - triangles)
-    drop = (corners[triangles[:, 0]] * normals).sum(axis=1)[:, None] - np.stack(
-        [(corners[far[:, i]] * normals).sum(axis=1) for i in range(3)], axis=1
-    )
-    return drop, normals
+    drop = np.stack([heights - (corners[column] * normals).sum(axis=1) for column in far.T], axis=1)
+    return Slopes(areas, normals, heights, drop)
 
 
-def _merged(corners: FloatArray, triangles: IntArray, beside: IntArray, areas: FloatArray, flat: float) -> Polytope:
+def _merged(corners: FloatArray, triangles: IntArray, beside: IntArray, slopes: Slopes, flat: float) -> Polytope:
     """Return the polytope of triangles, coplanar ones as one facet.
 
     The tolerance is lowered until no facet departs from its plane by more than ten times as much.
@@ -239,14 +253,13 @@ def _merged(corners: FloatArray, triangles: IntArray, beside: IntArray, areas: F
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    drop, normals = _drops(corners, triangles, beside, areas)
+    normals, heights = slopes.normals, slopes.heights
     count, label = len(triangles), np.arange(len(triangles))
-    heights = (corners[triangles[:, 0]] * normals).sum(axis=1)
-    while (drop <= flat).any():
-        mine, side = np.nonzero(drop <= flat)
+    while (slopes.drop <= flat).any():
+        mine, side = np.nonzero(slopes.drop <= flat)
         graph = coo_array((np.ones(len(mine), dtype=bool), (mine, beside[mine, side])), shape=(len(triangles),) * 2)
         count, label = connected_components(graph, directed=False)
-        total = np.stack([np.bincount(label, areas[:, i], count) for i in range(3)], axis=1)
+        total = np.stack([np.bincount(label, slopes.areas[:, i], count) for i in range(3)], axis=1)
         normals = total / np.linalg.norm(total, axis=1, keepdims=True)
         place = np.stack([(corners[column] * normals[label]).sum(axis=1) for column in triangles.T], axis=1)
         heights, bottom = np.full(count, -np.inf), np.full(count, np.inf)
