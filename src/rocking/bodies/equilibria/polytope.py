@@ -120,9 +120,8 @@ class Polytope:
             edge, vertex = int(edges[first]), int(others[first])
             if self.beyond[edge, 0] < 0.0 < self.beyond[edge, 1]:
                 # a valley between two vertices: on along the edge, away from the direction of its foot
-                left = self.normals[self.sides[edge, 0]]
-                falls = float(self.feet[edge] @ (left - down * float(left @ down))) < 0.0
-                return self.rolled(int(self.sides[edge, 0 if falls else 1]))
+                ahead = self.normals[self.sides[edge]] @ (self.feet[edge] - down * float(down @ self.feet[edge]))
+                return self.rolled(int(self.sides[edge, int(np.argmin(ahead))]))
         raise GeometryError("the descent of the centre of mass does not end: is the hull degenerate?")
 
     def rolled(self, facet: int) -> int:

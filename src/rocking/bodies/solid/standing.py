@@ -99,14 +99,15 @@ def _profile(part: Part, axis: FloatArray, centre: FloatArray) -> FloatArray:
 
 
 def _ring(one: Equilibrium, axis: FloatArray, profile: FloatArray) -> Ring:
-    from scipy.optimize import minimize_scalar
-
     sign = 1.0 if one.kind == "stable" else -1.0
     start = math.acos(-dot(axis, one.down))
-    ends = (max(start - _CHORD, 0.0), min(start + _CHORD, math.pi))
+    low, high = max(start - _CHORD, 0.0), min(start + _CHORD, math.pi)
 
     def height(tilt: float) -> float:
         return sign * float((profile[:, 0] * math.sin(tilt) - profile[:, 1] * math.cos(tilt)).max())  # Eq. 245
 
-    best = minimize_scalar(height, bounds=ends, method="bounded", options={"xatol": 1e-12})
-    return Ring("stable" if sign > 0.0 else "summit", float(best.x), sign * float(best.fun), 0.0)
+    # by thirds: the height has a kink where it is least
+    for _ in range(80):
+        third = (high - low) / 3.0
+        low, high = (low, high - third) if height(low + third) < height(high - third) else (low + third, high)
+    return Ring("stable" if sign > 0.0 else "summit", 0.5 * (low + high), sign * height(0.5 * (low + high)), 0.0)

@@ -1,0 +1,362 @@
+"""Equilibria of convex bodies: counts, passes, barriers and base tolerances, against closed forms, floods and a scan."""
+
+import math
+import os
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+
+from rocking.bodies.equilibria import base_tolerances, equilibria
+from rocking.bodies.moments import polyhedron_moments
+from rocking.bodies.solid import Solid, box, cone, cylinder, ellipsoid, extrusion, rotation_about
+from rocking.conventions import g
+from rocking.errors import GeometryError, InvalidValueError
+
+pytestmark = pytest.mark.verifies(room="bodies")
+
+ROCK = Path(__file__).parents[3] / "shared" / "data" / "scans" / "granite_rock.obj"
+HULLS = int(os.environ.get("ROCKING_HULLS", "300"))
+"""`make hulls` asks for 10,000."""
+
+
+def counts(found):
+    return len(found.stable), len(found.saddles), len(found.summits)
+
+
+def surface(points):
+    """Triangles of a hull, counter-clockwise seen from outside."""
+    hull = ConvexHull(points)
+    faces = hull.simplices.astype(np.int64)
+    a, b, c = np.moveaxis(points[faces], 1, 0)
+    turn = (np.cross(b - a, c - a) * hull.equations[:, :3]).sum(axis=1) < 0.0
+    faces[turn] = faces[turn][:, [0, 2, 1]]
+    return faces
+
+
+def random_body(rng, most=60):
+    points = rng.normal(size=(rng.integers(4, most), 3)) * rng.uniform(0.3, 1.0, 3)
+    return equilibria(points, polyhedron_moments(points[surface(points)]).centre, 1.0)
+
+
+def spread(count):
+    """Directions all over the sphere."""
+    turn = np.arange(count) + 0.5
+    z, phi = 1.0 - 2.0 * turn / count, math.pi * (1.0 + math.sqrt(5.0)) * turn
+    return np.stack([np.sqrt(1.0 - z * z) * np.cos(phi), np.sqrt(1.0 - z * z) * np.sin(phi), z], axis=1)
+
+
+def meridians(count):
+    """Corners of a sphere between circles of latitude and meridians."""
+    theta, phi = np.meshgrid(np.arange(count + 1) * math.pi / count, np.arange(2 * count) * math.pi / count)
+    corners = [np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)]
+    return np.unique(np.stack(corners, axis=-1).reshape(-1, 3).round(12), axis=0)
+
+
+def test_euler_relation_of_random_hulls():
+    """Stable - saddles + summits = 2, whatever the hull; and at least one of each extreme."""
+    rng = np.random.default_rng(17)
+    for _ in range(HULLS):
+        stable, saddles, summits = counts(random_body(rng))
+        assert stable - saddles + summits == 2
+        assert stable >= 1
+        assert summits >= 1
+
+
+def test_euler_relation_without_a_facet_is_broken():
+    """Negative control: with the foot's place taken from another centre the sum is another one."""
+    rng, wrong = np.random.default_rng(17), 0
+    for _ in range(20):
+        hull = random_body(rng)._hull
+        moved = np.roll(hull.inward, 1, axis=0)
+        stable = np.ones(len(hull.normals), dtype=bool)
+        stable[hull.sides[moved <= 0.0]] = False
+        saddles = (moved > 0.0).all(axis=1) & (hull.beyond[:, 0] < 0.0) & (hull.beyond[:, 1] > 0.0)
+        wrong += int(stable.sum()) - int(saddles.sum()) + int(hull.summits.sum()) != 2
+    assert wrong > 10
+
+
+def test_counts_are_those_of_the_height_around():
+    """Each stable pose is a minimum of the height and each summit a maximum, and there are no others."""
+    rng = np.random.default_rng(3)
+    around = np.array([[math.cos(a), math.sin(a)] for a in np.linspace(0.0, 2.0 * math.pi, 3600, endpoint=False)])
+    for _ in range(20):
+        found = random_body(rng, 16)
+        hull = ConvexHull(found.hull_vertices - found.centre)
+        normals = hull.equations[:, :3]
+        corners = hull.points / np.linalg.norm(hull.points, axis=1, keepdims=True)
+        for directions, sign, expected in ((normals, 1.0, found.stable), (corners, -1.0, found.summits)):
+            extremes = 0
+            for down in directions:
+                side = np.linalg.svd(down[None])[2][1:]
+                near = down + 1e-5 * around @ side
+                extremes += bool((sign * (found.height(near) - found.height(down)) > 0.0).all())
+            assert extremes == len(expected)
+
+
+@pytest.mark.parametrize(
+    ("points", "expected"),
+    [
+        (box(1.0, 1.0, 1.0).vertices, (6, 12, 8)),
+        (box(1.0, 2.0, 3.0).vertices, (6, 12, 8)),
+        (np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]), (4, 6, 4)),
+        (meridians(30) * np.array([0.6, 0.35, 1.0]), (2, 2, 2)),
+        (extrusion([(math.cos(a), math.sin(a)) for a in 2.0 * math.pi * np.arange(7) / 7], 1.5).vertices, (9, 21, 14)),
+    ],
+    ids=["cube", "box", "tetrahedron", "ellipsoid", "prism"],
+)
+def test_bodies_whose_counts_are_known(points, expected):
+    """Cube and box 6, 12, 8; regular tetrahedron 4, 6, 4; ellipsoid with three axes 2, 2, 2; regular prism of 7."""
+    inside = polyhedron_moments(points[surface(points)]).centre
+    assert counts(equilibria(points, inside, 1.0)) == expected
+
+
+def test_homogeneous_tetrahedra_have_at_least_two_stable_poses():
+    """J. H. Conway's theorem."""
+    rng = np.random.default_rng(5)
+    for _ in range(100):
+        points = rng.normal(size=(4, 3)) * [1.0, 0.4, 0.2]
+        assert len(equilibria(points, points.mean(axis=0), 1.0).stable) >= 2
+
+
+def test_cube_and_box_in_closed_form():
+    """Heights, barriers, uplift accelerations, tilts of a box: half sides and half diagonals."""
+    found = Solid(box(1.0, 2.0, 3.0), ground=0.0).equilibria()
+    assert [pose.height for pose in found.stable] == pytest.approx([0.5, 0.5, 1.0, 1.0, 1.5, 1.5], abs=1e-14)
+    standing = found.settling((0.0, 0.0, -1.0))
+    assert standing.height == pytest.approx(1.5, abs=1e-14)
+    narrow, wide, corner = math.hypot(0.5, 1.5) - 1.5, math.hypot(1.0, 1.5) - 1.5, math.sqrt(3.5) - 1.5
+    assert standing.barrier == pytest.approx(narrow, abs=1e-14)
+    azimuths = np.array([0.0, 0.5 * math.pi, math.atan2(1.0, 0.5)])
+    assert found.barrier(standing, azimuths[:2]) == pytest.approx([narrow, wide], abs=1e-14)
+    assert found.barrier(standing, azimuths[2]) == pytest.approx(corner, abs=1e-12)
+    assert standing.uplift_acceleration(azimuths[:2]) == pytest.approx([g / 3.0, g / 1.5], rel=1e-14)
+    over = found.neighbours(standing)[0]
+    assert over.tilt == pytest.approx(math.atan2(0.5, 1.5), abs=1e-14)
+    assert abs(math.cos(over.azimuth)) == pytest.approx(1.0, abs=1e-14)
+    assert over.energy == pytest.approx(found.mass * g * narrow, rel=1e-12)
+
+
+def flood(found, rows):
+    """The height at which pairs of stable poses are joined, over a grid of directions that knows of no facet."""
+    theta = (np.arange(rows) + 0.5) * math.pi / rows
+    phi = np.arange(2 * rows) * math.pi / rows
+    sin = np.sin(theta)[:, None]
+    grid = np.stack([sin * np.cos(phi), sin * np.sin(phi), np.cos(theta)[:, None] + 0.0 * phi], axis=-1)
+    heights, columns = found.height(grid).ravel(), 2 * rows
+    parent = list(range(len(heights)))
+
+    def root(node):
+        while parent[node] != node:
+            parent[node] = parent[parent[node]]
+            node = parent[node]
+        return node
+
+    flat = grid.reshape(-1, 3)
+    members = {}
+    for pose in found.stable:
+        members.setdefault(int(np.argmax(flat @ pose.down)), set()).add(pose.number)
+    wet, joins = np.zeros(len(heights), dtype=bool), {}
+    for node in np.argsort(heights, kind="stable").tolist():
+        wet[node] = True
+        row, column = divmod(node, columns)
+        beside = [row * columns + (column + 1) % columns, row * columns + (column - 1) % columns]
+        beside += [node - columns if row else (column + rows) % columns]
+        beside += [node + columns if row < rows - 1 else row * columns + (column + rows) % columns]
+        for other in beside:
+            if wet[other] and (one := root(node)) != (two := root(other)):
+                here, there = members.pop(one, set()), members.pop(two, set())
+                joins |= {frozenset((a, b)): float(heights[node]) for a in here for b in there}
+                parent[one] = two
+                if here | there:
+                    members[two] = here | there
+    return joins
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_passes_against_a_flood(seed):
+    """The lowest pass of every two poses, against water rising over a grid of directions, to the grid's own error."""
+    found = random_body(np.random.default_rng(seed), 30)
+    rows = 120
+    joins = flood(found, rows)
+    reach = float(np.linalg.norm(found.hull_vertices - found.centre, axis=1).max())
+    step = math.pi / rows
+    assert joins
+    for pair, height in joins.items():
+        start, end = (found.stable[i] for i in sorted(pair))
+        exact = found.lowest_pass(start, end).height
+        assert exact - 1e-12 <= height <= exact + reach * step
+    # negative control: the pass by another saddle than the lowest is noticed
+    tops = [saddle.height for saddle in found.saddles]
+    assert max(tops) - min(tops) > reach * step
+
+
+def test_straight_barriers_against_the_height_along_the_way():
+    """Never below the lowest pass into the same pose, and the greatest height on the way there."""
+    rng = np.random.default_rng(11)
+    for _ in range(4):
+        found = random_body(rng)
+        pose = found.stable[0]
+        azimuths = rng.uniform(-math.pi, math.pi, 8)
+        straight = found.barrier(pose, azimuths)
+        lowest = found.barrier(pose, azimuths, path="lowest")
+        for azimuth, rise, low in zip(azimuths.tolist(), straight.tolist(), lowest.tolist(), strict=True):
+            if not math.isfinite(rise):
+                continue
+            assert rise >= low - 1e-12
+            turn = np.array([math.cos(azimuth), math.sin(azimuth), 0.0]) @ pose.rotation
+            angle = np.linspace(0.0, 2.0 * math.pi, 8_001)
+            way = found.height(np.cos(angle)[:, None] * pose.down + np.sin(angle)[:, None] * turn) - pose.height
+            # up to a place from which the body settles in the pose that it is said to topple into
+            crests = np.flatnonzero((way[1:-1] >= way[:-2]) & (way[1:-1] > way[2:])) + 1
+            tops = np.maximum.accumulate(way[crests])
+            assert np.abs(tops - rise).min() < 1e-5
+
+
+def test_settling_goes_downhill():
+    """From any direction, into a pose that is not higher; a pose stays where it is."""
+    rng = np.random.default_rng(8)
+    found = random_body(rng)
+    for down in spread(200):
+        assert found.settling(down).height <= float(found.height(down)) + 1e-12
+    for pose in found.stable:
+        assert found.settling(pose.down) is pose
+
+
+def test_frames_do_not_matter():
+    """Turned and moved elsewhere, the same heights, barriers and distances."""
+    rng = np.random.default_rng(2)
+    points = rng.normal(size=(40, 3))
+    turn = rotation_about(rng.normal(size=3), 1.234)
+    one = equilibria(points, np.zeros(3), 2.0)
+    two = equilibria(points @ turn.T + [5.0, -3.0, 1.0], np.array([5.0, -3.0, 1.0]), 2.0)
+    assert counts(one) == counts(two)
+    for a, b in zip(one.stable, two.stable, strict=True):
+        assert (a.height, a.barrier) == pytest.approx((b.height, b.barrier), abs=1e-13)
+        assert sorted(a.edge_distances) == pytest.approx(sorted(b.edge_distances), abs=1e-13)
+
+
+def test_bodies_of_revolution_have_rings():
+    """A cylinder lies on its side and is balanced on its rims, all the way round; a cone likewise."""
+    half, radius = 1.5, 0.5
+    found = Solid(cylinder(2.0 * radius, 2.0 * half)).equilibria()
+    assert counts(found) == (2, 0, 0)
+    assert [(ring.kind, ring.height) for ring in found.rings] == [
+        ("stable", pytest.approx(radius, abs=1e-12)),
+        ("summit", pytest.approx(math.hypot(half, radius), abs=1e-12)),
+        ("summit", pytest.approx(math.hypot(half, radius), abs=1e-12)),
+    ]
+    assert found.rings[0].tilt == pytest.approx(0.5 * math.pi, abs=1e-6)
+    assert found.stable[0].barrier == pytest.approx(math.hypot(half, radius) - half, rel=1e-3)
+    lying = Solid(cone(1.0, 1.0)).equilibria().rings[0]
+    assert lying.height == pytest.approx(0.75 * math.sin(math.atan(0.5)), abs=1e-12)
+
+
+def test_an_ellipsoid_of_three_axes_by_its_corners():
+    """Flats of the tessellation do not count; the negative control counts them."""
+    body = Solid(ellipsoid(1.0, 0.9, 0.8, cut_below=0.001))
+    assert counts(body.equilibria()) == (2, 2, 2)
+    assert len(body.equilibria(least_barrier=0.0).stable) > 2
+
+
+def test_a_body_set_down_stands_on_its_pose():
+    """The same mass and inertia, the centre at the height of the pose, the base its support polygon."""
+    body = Solid(extrusion([(0.0, 0.0), (1.0, 0.0), (0.7, 0.9)], 3.0))
+    for pose in body.equilibria().stable:
+        set_down = body.settled(pose)
+        assert set_down.mass == body.mass
+        assert set_down.centre == pytest.approx([0.0, 0.0, pose.height], abs=1e-12)
+        assert np.linalg.eigvalsh(set_down.inertia) == pytest.approx(np.linalg.eigvalsh(body.inertia), rel=1e-12)
+        assert set_down.base.margin(np.zeros(2)) == pytest.approx(float(pose.edge_distances.min()), abs=1e-12)
+        assert set_down.equilibria().settling((0.0, 0.0, -1.0)).height == pytest.approx(pose.height, abs=1e-12)
+    assert body.settled().base.vertices.shape == (3, 2)
+
+
+def test_a_base_wider_by_a_tolerance():
+    """Four feet of 1 mm under a plate: within that they count, and beyond a wider plate does."""
+    plate = box(1.0, 1.0, 0.5).vertices + [0.0, 0.0, 0.001]
+    feet = np.array([[x, y, 0.0] for x in (-0.3, 0.3) for y in (-0.2, 0.2)])
+    found = equilibria(np.concatenate([plate, feet]), [0.0, 0.0, 0.25], 100.0)
+    narrow, also, wide = base_tolerances(found, tolerances=(0.0, 0.0005, 0.0015))
+    assert (narrow.edge_distance, also.edge_distance, wide.edge_distance) == pytest.approx((0.2, 0.2, 0.5), abs=1e-12)
+    assert narrow.uplift_acceleration == pytest.approx(g * 0.2 / 0.25, rel=1e-12)
+    assert (narrow.points, wide.points) == (4, 8)
+    assert abs(math.sin(narrow.azimuth)) == pytest.approx(1.0, abs=1e-12)
+    assert wide.barrier > narrow.barrier
+    with pytest.raises(InvalidValueError, match="tolerance"):
+        base_tolerances(found, tolerances=(0.3,))
+
+
+def test_a_centre_above_an_edge_is_said():
+    """The foot on an edge hangs on the last digits; of a body where it does not nothing is said."""
+    wedge = np.array(
+        [[0.0, y, 0.0] for y in (0, 1)] + [[1.0, y, 0.0] for y in (0, 1)] + [[2.0, y, 1.0] for y in (0, 1)]
+    )
+    assert any("last digits" in note for note in equilibria(wedge, [1.0, 0.5, 0.3], 1.0).notes)
+    assert equilibria(wedge, [0.95, 0.5, 0.3], 1.0).notes == ()
+
+
+def test_what_is_no_body_is_refused():
+    corners = box(1.0, 1.0, 1.0).vertices
+    with pytest.raises(InvalidValueError, match="must lie inside the convex hull"):
+        equilibria(corners, [5.0, 0.0, 0.0], 1.0)
+    with pytest.raises(GeometryError, match="no volume"):
+        equilibria(corners[:, :] * [1.0, 1.0, 0.0], [0.0, 0.0, 0.0], 1.0)
+    with pytest.raises(InvalidValueError, match="mass"):
+        equilibria(corners, [0.0, 0.0, 0.5], 0.0)
+
+
+def test_a_convex_surface_is_its_own_hull():
+    """With its faces or without them the same; faces of a body that is not convex do not mislead."""
+    points = spread(400) * np.array([1.0, 0.6, 0.35])
+    without, within = (equilibria(points, np.zeros(3), 1.0, faces=faces) for faces in (None, surface(points)))
+    assert [p.height for p in without.stable] == pytest.approx([p.height for p in within.stable], abs=1e-14)
+    notched = extrusion([(0, 0), (2, 0), (2, 1), (1, 0.4), (0, 1)], 1.0)
+    centre = notched.moments().centre
+    one, two = (equilibria(notched.vertices, centre, 1.0, faces=faces) for faces in (None, notched.faces))
+    assert counts(one) == counts(two)
+
+
+@pytest.mark.skipif("ROCKING_HULLS" not in os.environ, reason="a million faces: make hulls")
+def test_a_million_faces_in_time():
+    """Processor time, of a surface that is convex and of a rough one."""
+    smooth = spread(500_002) * np.array([0.5, 0.35, 0.25])
+    rough = smooth * (1.0 + 0.002 * np.random.default_rng(1).normal(size=(len(smooth), 1)))
+    for points, faces in ((smooth, surface(smooth)), (rough, None)):
+        start = time.process_time()
+        equilibria(points, np.zeros(3), 1.0, faces=faces)
+        assert time.process_time() - start < 5.0
+
+
+@pytest.fixture(scope="module")
+def rock():
+    if not ROCK.exists():
+        pytest.skip("the scan is not there")
+    lines = [line.split() for line in ROCK.read_text("utf-8").splitlines()]
+    points = np.array([words[1:4] for words in lines if words[:1] == ["v"]], dtype=float)
+    faces = np.array([[int(w.split("/")[0]) - 1 for w in words[1:4]] for words in lines if words[:1] == ["f"]])
+    return equilibria(points, polyhedron_moments(points[faces]).centre, 353.8)
+
+
+def test_the_granite_rock(rock):
+    """A scan that stood on a shaking table, against numbers from independent code."""
+    assert counts(rock) == (7, 11, 6)
+    expected = [0.17133715, 0.18414344, 0.28913945, 0.28969474, 0.29372633, 0.30748508, 0.46160609]
+    assert [pose.height for pose in rock.stable] == pytest.approx(expected, abs=1e-8)
+    stood = rock.settling((-0.8059, -0.2466, 0.5383))
+    assert stood.height == pytest.approx(0.2937263265534584, abs=1e-9)
+    assert sorted(1e3 * stood.edge_distances) == pytest.approx([15.7, 23.6, 24.9], abs=0.05)
+    assert stood.barrier == min(each.rise for each in rock.neighbours(stood))
+
+
+def test_the_base_of_the_granite_rock_by_tolerance(rock):
+    """What it would stand on if points within some millimetres touched: never a narrower base."""
+    stood = rock.settling((-0.8059, -0.2466, 0.5383))
+    rows = base_tolerances(rock, stood)
+    assert [row.tolerance for row in rows] == [0.0, 0.0005, 0.001, 0.002, 0.005]
+    assert rows[0].edge_distance == pytest.approx(float(stood.edge_distances.min()), abs=1e-9)
+    assert rows[0].barrier == pytest.approx(stood.barrier, abs=1e-9)
+    assert all(a.edge_distance <= b.edge_distance + 1e-12 for a, b in zip(rows, rows[1:], strict=False))
+    assert all(a.points <= b.points for a, b in zip(rows, rows[1:], strict=False))
