@@ -375,14 +375,14 @@ def _simplified(
         return each
 
     for edge, (one, other) in zip(edges.tolist(), ends, strict=True):
-        low, high = found(joined, one), found(joined, other)
-        if low == high:
+        roots = found(joined, one), found(joined, other)
+        if roots[0] == roots[1]:
             continue
-        if heights[low] > heights[high]:
-            low, high, one = high, low, other
+        # the one with the higher minimum ends here
+        (low, lower), (high, _) = sorted(zip(roots, (one, other), strict=True), key=lambda end: heights[end[0]])
         joined[high] = low
         if tops[edge] - heights[high] < least:
-            leads[high] = one
+            leads[high] = lower
             cut.add(edge)
     return {each: found(leads, each) for each in leads}, cut
 
@@ -401,7 +401,7 @@ def _notes(hull: Polytope, stable: Sequence[StablePose]) -> tuple[str, ...]:
         )
     if count := sum(pose.barrier < _SHALLOW * size for pose in stable):
         notes.append(
-            f"{count} of {len(stable)} stable poses are left by a rise of less than {1e3 * _SHALLOW * size:.2g} mm: the "
-            "body is round or rough there; least_barrier= takes such poses together"
+            f"{count} of {len(stable)} stable poses are left by a rise of less than {1e3 * _SHALLOW * size:.2g} mm: "
+            "the body is round or rough there; least_barrier= takes such poses together"
         )
     return tuple(notes)

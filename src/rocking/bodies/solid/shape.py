@@ -42,10 +42,9 @@ class Shape(ABC):
     def footprint(self) -> Footprint:
         """Return the corners and round faces that may stand on the ground."""
 
+    @abstractmethod
     def hull_points(self) -> FloatArray:
         """Return points whose convex hull is that of the shape, (n, 3) [m]; round faces as those of 360 corners."""
-        points: FloatArray = np.concatenate([each.triangles(90).reshape(-1, 3) for each in self.surfaces()])
-        return np.unique(points, axis=0)
 
     @abstractmethod
     def contains(self, points: FloatArray) -> BoolArray:

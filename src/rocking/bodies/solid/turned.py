@@ -112,6 +112,13 @@ class Turned(Shape):
         radius, height = (np.concatenate([*(end[i] for end in ends), last[i]]) for i in range(2))
         return radius, height
 
+    def hull_points(self) -> FloatArray:
+        """Return 360 points round the axis for every corner of the profile, an arc in pieces of at least a degree."""
+        (a, b), (radius, height) = self.half_axes, self.profile(180)
+        phi = np.arange(360) * (2.0 * math.pi / 360.0)
+        x, y = (half * np.outer(radius, around) for half, around in ((a, np.cos(phi)), (b, np.sin(phi))))
+        return np.stack([x, y, np.broadcast_to(height[:, None], x.shape)], axis=-1).reshape(-1, 3)
+
     def footprint(self) -> Footprint:
         """Return the discs at the bottom and at the top, if the plan is round."""
         (a, b), discs, rims = self.half_axes, [], []
