@@ -19,8 +19,8 @@ from rocking.errors import GeometryError, InvalidValueError
 pytestmark = pytest.mark.verifies(room="bodies")
 
 ROCK = Path(__file__).parents[3] / "shared" / "data" / "scans" / "granite_rock.obj"
-HULLS = int(os.environ.get("ROCKING_HULLS", "300"))
-"""`make hulls` asks for 10,000."""
+CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
+HULLS = 10_000 if CAMPAIGN else 300
 
 
 def counts(found):
@@ -315,7 +315,8 @@ def test_a_convex_surface_is_its_own_hull():
     assert counts(one) == counts(two)
 
 
-@pytest.mark.skipif("ROCKING_HULLS" not in os.environ, reason="a million faces: make hulls")
+@pytest.mark.timed
+@pytest.mark.skipif(not CAMPAIGN, reason="a million faces: make campaign")
 def test_a_million_faces_in_time():
     """Processor time, of a surface that is convex and of a rough one."""
     smooth = spread(500_002) * np.array([0.5, 0.35, 0.25])

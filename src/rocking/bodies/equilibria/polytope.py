@@ -220,7 +220,8 @@ def _outer(points: FloatArray) -> FloatArray:
 
 def _along(columns: FloatArray, direction: FloatArray) -> FloatArray:
     # three products, no BLAS: a million points in columns are read once
-    return columns[0] * direction[0] + columns[1] * direction[1] + columns[2] * direction[2]
+    height: FloatArray = columns[0] * direction[0] + columns[1] * direction[1] + columns[2] * direction[2]
+    return height
 
 
 @dataclass(frozen=True, eq=False)
@@ -257,7 +258,8 @@ def _merged(corners: FloatArray, triangles: IntArray, beside: IntArray, slopes: 
     while (slopes.drop <= flat).any():
         mine, side = np.nonzero(slopes.drop <= flat)
         graph = coo_array((np.ones(len(mine), dtype=bool), (mine, beside[mine, side])), shape=(len(triangles),) * 2)
-        count, label = connected_components(graph, directed=False)
+        count, found = connected_components(graph, directed=False)
+        label = found.astype(np.int64)
         total = np.stack([np.bincount(label, slopes.areas[:, i], count) for i in range(3)], axis=1)
         normals = total / np.linalg.norm(total, axis=1, keepdims=True)
         place = np.stack([(corners[column] * normals[label]).sum(axis=1) for column in triangles.T], axis=1)
@@ -293,4 +295,4 @@ def _grouped(members: IntArray, count: int) -> tuple[IntArray, IntArray]:
     places = np.arange(members.size)
     # a sparse matrix sorts its rows by counting
     rows = coo_array((places, (members.ravel(), places)), shape=(count, members.size)).tocsr()
-    return rows.data, rows.indptr
+    return rows.data, rows.indptr.astype(np.int64)

@@ -72,7 +72,7 @@ def _revolved(found: Equilibria, parts: Sequence[Part], axis: FloatArray) -> Equ
 
     rings = [_ring(one, axis, profile) for one in (*found.stable, *found.summits) if is_ring(one)]
     points = [one for one in found.stable if not is_ring(one)]
-    low = min(each.height for each in (*points, *rings))
+    low = min([*(each.height for each in points), *(ring.height for ring in rings)])
     order = {one.number: i for i, one in enumerate([*points, *filter(is_ring, found.stable)])}
 
     def energy(height: float) -> float:
