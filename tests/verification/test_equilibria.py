@@ -49,6 +49,9 @@ def spread(count):
     return np.stack([np.sqrt(1.0 - z * z) * np.cos(phi), np.sqrt(1.0 - z * z) * np.sin(phi), z], axis=1)
 
 
+@pytest.mark.verifies(
+    "invariance", "the Poincare-Hopf theorem", control="test_euler_relation_without_a_facet_is_broken"
+)
 def test_euler_relation_of_random_hulls():
     """Stable - saddles + summits = 2, whatever the hull; and at least one of each extreme."""
     rng = np.random.default_rng(17)
@@ -59,6 +62,7 @@ def test_euler_relation_of_random_hulls():
         assert summits >= 1
 
 
+@pytest.mark.verifies("negative control", "feet taken from other edges")
 def test_euler_relation_without_a_facet_is_broken():
     """Negative control: with the foot's place taken from another centre the sum is another one."""
     rng, wrong = np.random.default_rng(17), 0
@@ -72,6 +76,7 @@ def test_euler_relation_without_a_facet_is_broken():
     assert wrong > 10
 
 
+@pytest.mark.verifies("computed anew", "the height all round each pose")
 def test_counts_are_those_of_the_height_around():
     """Each stable pose is a minimum of the height and each summit a maximum, and there are no others."""
     rng = np.random.default_rng(3)
@@ -90,6 +95,7 @@ def test_counts_are_those_of_the_height_around():
             assert extremes == len(expected)
 
 
+@pytest.mark.verifies("closed form", "counts of regular bodies")
 @pytest.mark.parametrize(
     ("points", "expected"),
     [
@@ -106,6 +112,7 @@ def test_bodies_whose_counts_are_known(points, expected):
     assert counts(equilibria(points, inside, 1.0)) == expected
 
 
+@pytest.mark.verifies("published", "the theorem of Conway")
 def test_homogeneous_tetrahedra_have_at_least_two_stable_poses():
     """J. H. Conway's theorem."""
     rng = np.random.default_rng(5)
@@ -114,6 +121,7 @@ def test_homogeneous_tetrahedra_have_at_least_two_stable_poses():
         assert len(equilibria(points, points.mean(axis=0), 1.0).stable) >= 2
 
 
+@pytest.mark.verifies("closed form", "half sides and half diagonals", within="1e-12")
 def test_cube_and_box_in_closed_form():
     """Heights, barriers, uplift accelerations, tilts of a box: half sides and half diagonals."""
     found = Solid(box(1.0, 2.0, 3.0), ground=0.0).equilibria()
@@ -168,6 +176,7 @@ def flood(found, rows):
     return joins
 
 
+@pytest.mark.verifies("computed anew", "water that rises over a grid of directions")
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_passes_against_a_flood(seed):
     """The lowest pass of every two poses, against water rising over a grid of directions, to the grid's own error."""
@@ -186,6 +195,7 @@ def test_passes_against_a_flood(seed):
     assert max(tops) - min(tops) > reach * step
 
 
+@pytest.mark.verifies("computed anew", "the height along the way", within="1e-5")
 def test_straight_barriers_against_the_height_along_the_way():
     """Never below the lowest pass into the same pose, and the greatest height on the way there."""
     rng = np.random.default_rng(11)
@@ -208,6 +218,7 @@ def test_straight_barriers_against_the_height_along_the_way():
             assert np.abs(tops - rise).min() < 1e-5
 
 
+@pytest.mark.verifies("invariant", "the height at the start")
 def test_settling_goes_downhill():
     """From any direction, into a pose that is not higher; a pose stays where it is."""
     rng = np.random.default_rng(8)
@@ -218,6 +229,7 @@ def test_settling_goes_downhill():
         assert found.settling(pose.down) is pose
 
 
+@pytest.mark.verifies("invariant", "the body turned and moved", within="1e-13")
 def test_frames_do_not_matter():
     """Turned and moved elsewhere, the same heights, barriers and distances."""
     rng = np.random.default_rng(2)
@@ -231,6 +243,7 @@ def test_frames_do_not_matter():
         assert sorted(a.edge_distances) == pytest.approx(sorted(b.edge_distances), abs=1e-13)
 
 
+@pytest.mark.verifies("closed form", "cylinder and cone", within="1e-12 of the rings")
 def test_bodies_of_revolution_have_rings():
     """A cylinder lies on its side and is balanced on its rims, all the way round; a cone likewise."""
     half, radius = 1.5, 0.5
@@ -247,6 +260,7 @@ def test_bodies_of_revolution_have_rings():
     assert lying.height == pytest.approx(0.75 * math.sin(math.atan(0.5)), abs=1e-12)
 
 
+@pytest.mark.verifies("closed form", "counts of an ellipsoid")
 def test_an_ellipsoid_of_three_axes():
     """2, 2, 2, of a smooth one and of its corners where flats do not count; they do in the negative control."""
     assert counts(Solid(ellipsoid(1.0, 0.7, 0.5, cut_below=0.001)).equilibria()) == (2, 2, 2)
@@ -257,6 +271,7 @@ def test_an_ellipsoid_of_three_axes():
     assert flats[0] - flats[1] + flats[2] == 2
 
 
+@pytest.mark.verifies("invariant", "mass, inertia and support polygon", within="1e-12")
 def test_a_body_set_down_stands_on_its_pose():
     """The same mass and inertia, the centre at the height of the pose, the base its support polygon."""
     body = Solid(extrusion([(0.0, 0.0), (1.0, 0.0), (0.7, 0.9)], 3.0))
@@ -270,6 +285,7 @@ def test_a_body_set_down_stands_on_its_pose():
     assert body.settled().base.vertices.shape == (3, 2)
 
 
+@pytest.mark.verifies("closed form", "a plate on four feet", within="1e-12")
 def test_a_base_wider_by_a_tolerance():
     """Four feet of 1 mm under a plate: within that they count, and beyond a wider plate does."""
     plate = box(1.0, 1.0, 0.5).vertices + np.array([0.0, 0.0, 0.001])
@@ -285,6 +301,7 @@ def test_a_base_wider_by_a_tolerance():
         base_tolerances(found, tolerances=(0.3,))
 
 
+@pytest.mark.verifies("behaviour")
 def test_a_centre_above_an_edge_is_said():
     """The foot on an edge hangs on the last digits; of a body where it does not nothing is said."""
     wedge = np.array(
@@ -294,7 +311,9 @@ def test_a_centre_above_an_edge_is_said():
     assert equilibria(wedge, [0.95, 0.5, 0.3], 1.0).notes == ()
 
 
+@pytest.mark.verifies("behaviour")
 def test_what_is_no_body_is_refused():
+    """A centre outside the hull, points of one plane, no mass."""
     corners = box(1.0, 1.0, 1.0).vertices
     with pytest.raises(InvalidValueError, match="must lie inside the convex hull"):
         equilibria(corners, [5.0, 0.0, 0.0], 1.0)
@@ -304,6 +323,7 @@ def test_what_is_no_body_is_refused():
         equilibria(corners, [0.0, 0.0, 0.5], 0.0)
 
 
+@pytest.mark.verifies("computed anew", "the hull sought")
 def test_a_convex_surface_is_its_own_hull():
     """With its faces or without them the same; faces of a body that is not convex do not mislead."""
     points = spread(400) * np.array([1.0, 0.6, 0.35])
@@ -315,6 +335,7 @@ def test_a_convex_surface_is_its_own_hull():
     assert counts(one) == counts(two)
 
 
+@pytest.mark.verifies("behaviour")
 @pytest.mark.timed
 @pytest.mark.skipif(not CAMPAIGN, reason="a million faces: make campaign")
 def test_a_million_faces_in_time():
@@ -337,6 +358,7 @@ def rock():
     return equilibria(points, polyhedron_moments(points[faces]).centre, 353.8)
 
 
+@pytest.mark.verifies("other program", "numbers from other code", within="1e-8 m")
 def test_the_granite_rock(rock):
     """A scan that stood on a shaking table, against numbers from independent code."""
     assert counts(rock) == (7, 11, 6)
@@ -348,6 +370,7 @@ def test_the_granite_rock(rock):
     assert stood.barrier == min(each.rise for each in rock.neighbours(stood))
 
 
+@pytest.mark.verifies("invariant", "the pose as scanned")
 def test_the_base_of_the_granite_rock_by_tolerance(rock):
     """What it would stand on if points within some millimetres touched: never a narrower base."""
     stood = rock.settling((-0.8059, -0.2466, 0.5383))
