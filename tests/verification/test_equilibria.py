@@ -50,7 +50,7 @@ def spread(count):
 
 
 @pytest.mark.verifies(
-    "invariance", "the Poincare-Hopf theorem", control="test_euler_relation_without_a_facet_is_broken"
+    "invariant", "the Poincare-Hopf theorem", control="test_euler_relation_without_a_facet_is_broken"
 )
 def test_euler_relation_of_random_hulls():
     """Stable - saddles + summits = 2, whatever the hull; and at least one of each extreme."""
@@ -67,7 +67,7 @@ def test_euler_relation_without_a_facet_is_broken():
     """Negative control: with the foot's place taken from another centre the sum is another one."""
     rng, wrong = np.random.default_rng(17), 0
     for _ in range(20):
-        hull = random_body(rng)._hull
+        hull = random_body(rng).hull
         moved = np.roll(hull.inward, 1, axis=0)
         stable = np.ones(len(hull.normals), dtype=bool)
         stable[hull.sides[moved <= 0.0]] = False

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from rocking.plots.cloud import cloud_picture, measures_picture
     from rocking.plots.comparison import animate_comparison
     from rocking.plots.energy_stages import energy_stages_picture
+    from rocking.plots.equilibria import equilibria_picture
     from rocking.plots.falling import falling_picture
     from rocking.plots.fragility import fragility_picture
     from rocking.plots.ground_motion import ground_motion_picture, record_set_picture
@@ -36,6 +37,7 @@ __all__ = [
     "difference_map_picture",
     "energy_picture",
     "energy_stages_picture",
+    "equilibria_picture",
     "falling_picture",
     "fragility_picture",
     "ground_motion_picture",

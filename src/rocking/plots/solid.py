@@ -38,9 +38,7 @@ def solid_picture(solid: Solid, *, azimuth: float = -60.0, elevation: float = 18
         One panel.
     """
     figure, (axes,) = new_figure(SINGLE, 4.0)
-    triangles = _surface(solid, 8)
-    _shaded(axes, triangles, None, _frame(azimuth, elevation))
-    _base(axes, solid, _frame(azimuth, elevation))
+    shaded_solid(axes, solid, azimuth, elevation)
     axes.set_title(f"{solid.mass:.4g} kg, centre {solid.centre[2] - solid.ground:.4g} m high", loc="left")
     return figure
 
@@ -116,6 +114,12 @@ def slices_picture(result: SpatialRestitution, heights: FloatArray, *, divisions
     axes[0].set_ylabel("y [m]")
     figure.colorbar(image, ax=axes, label="energy lost [J/m$^3$]", shrink=0.8)
     return figure
+
+
+def shaded_solid(axes: "Axes", solid: Solid, azimuth: float = -60.0, elevation: float = 18.0) -> None:
+    """Draw a body and its base into a panel, seen along parallel rays [degree]."""
+    _shaded(axes, _surface(solid, 8), None, _frame(azimuth, elevation))
+    _base(axes, solid, _frame(azimuth, elevation))
 
 
 def _surface(solid: Solid, divisions: int) -> FloatArray:

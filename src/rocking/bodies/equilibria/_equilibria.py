@@ -31,7 +31,7 @@ _SHALLOW = 1e-4
 class Equilibria:
     """In how many ways a body can stand or be balanced on level ground, and what lies between these ways.
 
-    Attributes
+    Parameters
     ----------
     mass : float
         Mass [kg].
@@ -47,6 +47,12 @@ class Equilibria:
         What the numbers leave out, and what hangs on the last digits, in words.
     least_barrier : float
         Poses that a smaller rise of the centre leaves are not counted [m].
+    hull : Polytope
+        Facets, edges and vertices of the convex hull about the centre of mass.
+    basins : dict of int to int
+        Number of the pose to which each stable facet of the hull leads; rings count on after the stable poses.
+    links : tuple of (int, int, Equilibrium)
+        The two poses that each saddle joins, the lowest first.
 
     Examples
     --------
@@ -66,21 +72,21 @@ class Equilibria:
     rings: tuple[Ring, ...]
     notes: tuple[str, ...]
     least_barrier: float
-    _hull: Polytope = field(repr=False)
-    _basins: dict[int, int] = field(repr=False)  # the pose to which every stable facet leads
-    _links: tuple[tuple[int, int, Equilibrium], ...] = field(
+    hull: Polytope = field(repr=False)
+    basins: dict[int, int] = field(repr=False)  # the pose to which every stable facet leads
+    links: tuple[tuple[int, int, Equilibrium], ...] = field(
         repr=False
     )  # poses that each saddle joins, the lowest first
 
     @property
     def hull_vertices(self) -> FloatArray:
         """Vertices of the convex hull in the body's coordinates, shape (n, 3) [m]."""
-        return self._hull.vertices + self.centre
+        return self.hull.vertices + self.centre
 
     @property
     def flatness(self) -> float:
         """How far from one plane corners may lie of what is one facet [m]."""
-        return FLAT * float(np.ptp(self._hull.vertices, axis=0).max())
+        return FLAT * float(np.ptp(self.hull.vertices, axis=0).max())
 
     def height(self, down: ArrayLike) -> FloatArray:
         """Return how high the centre of mass is with directions downward.
@@ -97,7 +103,7 @@ class Equilibria:
         """
         towards = checks.real_array("down", down)
         unit = towards / np.linalg.norm(towards, axis=-1, keepdims=True)
-        flat, corners = unit.reshape(-1, 3), self._hull.vertices.T
+        flat, corners = unit.reshape(-1, 3), self.hull.vertices.T
         step = max(1, 4_000_000 // corners.shape[1])
         parts = [(flat[i : i + step] @ corners).max(axis=1) for i in range(0, len(flat), step)]  # Eq. 239
         found: FloatArray = np.concatenate(parts).reshape(unit.shape[:-1])
@@ -141,7 +147,7 @@ class Equilibria:
             The lowest to each neighbour, the lowest first; rings of stable poses count on after the stable poses.
         """
         found: dict[int, Pass] = {}
-        for *ends, saddle in self._links:
+        for *ends, saddle in self.links:
             if pose.number in ends:
                 end = ends[1 - ends.index(pose.number)]
                 found.setdefault(end, self._pass(pose, end, saddle))
@@ -218,8 +224,8 @@ class Equilibria:
         return rise if path == "straight" or end == pose.number else self._lowest(pose, end).rise
 
     def _lowest(self, pose: StablePose, end: int) -> Pass:
-        joined = np.arange(1 + max(self._basins.values()))
-        for one, other, saddle in self._links:  # Eq. 243
+        joined = np.arange(1 + max(self.basins.values()))
+        for one, other, saddle in self.links:  # Eq. 243
             joined[joined == joined[other]] = joined[one]
             if joined[pose.number] == joined[end] and end != pose.number:
                 return self._pass(pose, end, saddle)
@@ -231,7 +237,7 @@ class Equilibria:
 
         towards = tilted(pose, azimuth)
         # seen along the axis of the tilt the body is a polygon: to the side x, downward y, clockwise
-        flat = self._hull.vertices @ np.stack([towards, pose.down], axis=1)
+        flat = self.hull.vertices @ np.stack([towards, pose.down], axis=1)
         ring = flat[ConvexHull(flat).vertices[::-1]]
         chords = np.roll(ring, -1, axis=0) - ring
         before, after = (ring * np.roll(chords, 1, axis=0)).sum(axis=1), (ring * chords).sum(axis=1)
@@ -246,8 +252,8 @@ class Equilibria:
         return math.inf, pose.number
 
     def _basin(self, down: FloatArray) -> int:
-        lowest = int(np.argmax(self._hull.vertices @ down))
-        return self._basins[self._hull.descent(lowest, down)]
+        lowest = int(np.argmax(self.hull.vertices @ down))
+        return self.basins[self.hull.descent(lowest, down)]
 
     def _pass(self, pose: StablePose, end: int, top: Equilibrium) -> Pass:
         rise = top.height - pose.height

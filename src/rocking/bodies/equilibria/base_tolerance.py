@@ -20,7 +20,7 @@ TOLERANCES = (0.0, 0.0005, 0.001, 0.002, 0.005)
 class BaseTolerance:
     """How a body would stand if all points of its hull up to some height touched the ground.
 
-    Attributes
+    Parameters
     ----------
     tolerance : float
         That height [m].

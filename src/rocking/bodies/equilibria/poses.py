@@ -18,7 +18,7 @@ Kind = Literal["stable", "saddle", "summit"]
 class Equilibrium:
     """A way up in which the centre of mass is straight above what the body touches.
 
-    Attributes
+    Parameters
     ----------
     kind : {"stable", "saddle", "summit"}
         On a facet of the hull, on an edge, on a vertex.
@@ -43,7 +43,7 @@ class Equilibrium:
 class StablePose(Equilibrium):
     """A facet of the hull that a body stands on by itself.
 
-    Attributes
+    Parameters
     ----------
     number : int
         Its place among the stable poses, the lowest first.
@@ -103,7 +103,7 @@ class StablePose(Equilibrium):
 class Pass:
     """The lowest way from one stable pose into another.
 
-    Attributes
+    Parameters
     ----------
     start, end : int
         Numbers of the poses.
@@ -117,6 +117,8 @@ class Pass:
         Angle between the pose at the start and the saddle [rad].
     azimuth : float
         Towards which the body tilts, in the pose at the start as set down [rad].
+    down : ndarray, shape (3,)
+        The direction that is downward on the saddle, in the body's own frame [-].
     """
 
     start: int
@@ -133,7 +135,7 @@ class Pass:
 class Ring:
     """A circle of equilibria of a body of revolution: it rolls from each into the next.
 
-    Attributes
+    Parameters
     ----------
     kind : {"stable", "summit"}
         Whether the centre is lower or higher there than at other tilts.

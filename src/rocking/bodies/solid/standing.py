@@ -86,8 +86,8 @@ def _revolved(found: Equilibria, parts: Sequence[Part], axis: FloatArray) -> Equ
         summits=tuple(replace(one, energy=energy(one.height)) for one in found.summits if not is_ring(one)),
         rings=tuple(replace(ring, energy=energy(ring.height)) for ring in rings),
         notes=(*found.notes, *notes),
-        _basins={facet: order[number] for facet, number in found._basins.items()},
-        _links=tuple((order[one], order[other], top) for one, other, top in found._links),
+        basins={facet: order[number] for facet, number in found.basins.items()},
+        links=tuple((order[one], order[other], top) for one, other, top in found.links),
     )
 
 
