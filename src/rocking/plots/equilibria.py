@@ -10,7 +10,7 @@ from rocking.bodies.equilibria.poses import tilt_towards
 from rocking.bodies.solid import Solid
 from rocking.conventions import FloatArray
 from rocking.plots.solid import shaded_solid
-from rocking.plots.style import COLORS, DASHED, DOUBLE, INK, PALE, in_journal_style, legend_below, new_figure
+from rocking.plots.style import COLORS, DASHED, DOUBLE, INK, PALE, in_journal_style, legend_below, new_figure, stroke
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -68,24 +68,23 @@ def _landscape(figure: "Figure", axes: "Axes", found: Equilibria, pose: StablePo
     axes.contour(azimuth, np.rad2deg(tilt), rise, levels=12, colors="white", linewidths=0.25, alpha=0.6)
     handles = []
     for kind, members in (("summit", found.summits), ("saddle", found.saddles), ("stable", found.stable)):
-        mark, color, label = _MARKS[kind]
+        mark, color = _MARKS[kind]
         places = np.array([tilt_towards(pose, one.down) for one in members]).reshape(-1, 2)
         edge = {} if mark == "x" else {"edgecolors": "white", "linewidths": 0.5}
-        axes.scatter(
-            places[:, 1], np.rad2deg(places[:, 0]), s=22, marker=mark, color=color, label=label, zorder=4, **edge
-        )
+        axes.scatter(places[:, 1], np.rad2deg(places[:, 0]), s=22, marker=mark, color=color, zorder=4, **edge)
         # white on white paper cannot be seen in a legend
         shown = INK if color == "white" else color
-        handles.append(axes.scatter([], [], s=22, marker=mark, color=shown, label=f"{len(members)} {label}"))
-    for ring in found.rings:
-        axes.plot([], [], linestyle=DASHED, color=INK, label=f"ring, {ring.kind}")
+        name = kind if len(members) == 1 or kind == "stable" else f"{kind}s"
+        handles.append(stroke(f"{len(members)} {name}", marker=mark, color=shown, linestyle="none"))
+    if found.rings:
+        handles.insert(0, stroke(f"{len(found.rings)} rings, not marked", linestyle="none"))
     axes.set_rlim(0.0, 180.0)
     axes.set_rgrids([60.0, 120.0], labels=["60°", "120°"], color="white")
     axes.set_thetagrids([0.0, 90.0, 180.0, 270.0], labels=["x", "y", "-x", "-y"])
     axes.grid(linewidth=0.3, color="white", alpha=0.5)
     axes.set_title("rise of the centre by tilt and azimuth [mm]", loc="left")
     figure.colorbar(image, ax=axes, shrink=0.75, pad=0.12)
-    legend_below(figure, handles[::-1], 3)
+    legend_below(figure, handles[::-1], 4)
 
 
 def _support(axes: "Axes", pose: StablePose) -> None:

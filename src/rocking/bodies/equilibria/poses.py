@@ -45,6 +45,16 @@ class StablePose(Equilibrium):
 
     Parameters
     ----------
+    kind : {"stable"}
+        As of every equilibrium.
+    down : ndarray, shape (3,)
+        The direction that is downward, in the body's own frame; a unit vector [-].
+    height : float
+        Height of the centre of mass over the ground [m].
+    energy : float
+        What it costs to raise the centre from the lowest stable pose [J].
+    points : ndarray, shape (n, 3)
+        Corners of the facet, in the body's coordinates [m].
     number : int
         Its place among the stable poses, the lowest first.
     centre : ndarray, shape (3,)
