@@ -16,12 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_MARKS = {
-    "stable": ("o", COLORS[0], "stable"),
-    "saddle": ("x", "white", "saddle"),
-    "summit": ("^", COLORS[1], "summit"),
-}
-_TILTS, _AZIMUTHS = 91, 181
+_MARKS = {"stable": ("o", COLORS[0]), "saddle": ("x", "white"), "summit": ("^", COLORS[1])}
+_TILTS, _AZIMUTHS, _FEW = 91, 181, 40
 
 
 @in_journal_style
@@ -40,7 +36,7 @@ def equilibria_picture(solid: Solid, pose: StablePose | None = None, *, found: E
     Returns
     -------
     matplotlib.figure.Figure
-        A polar map, the rise of the centre over tilt and azimuth [mm], with stable poses, saddles and summits; the
+        A polar map, the rise of the centre by tilt and azimuth [mm], with stable poses, saddles and summits; the
         base from above, with the plumb line; the body as it stands in the pose.
     """
     from matplotlib.projections.polar import PolarAxes
@@ -55,7 +51,7 @@ def equilibria_picture(solid: Solid, pose: StablePose | None = None, *, found: E
     _landscape(figure, polar, known, start)
     _support(axes[1], start)
     shaded_solid(axes[2], solid.settled(start))
-    axes[2].set_title(f"{known.mass:.4g} kg, centre {start.height:.4g} m high", loc="left")
+    axes[2].set_title(f"{known.mass:.4g} kg,\ncentre {start.height:.4g} m high", loc="left")
     return figure
 
 
@@ -65,7 +61,7 @@ def _landscape(figure: "Figure", axes: "Axes", found: Equilibria, pose: StablePo
     downward = np.stack([*lean, np.broadcast_to(-np.cos(tilt)[:, None], lean[0].shape)], axis=-1)
     rise = 1e3 * (found.height(downward @ pose.rotation) - pose.height)
     image = axes.contourf(azimuth, np.rad2deg(tilt), rise, levels=24, cmap="cividis")
-    axes.contour(azimuth, np.rad2deg(tilt), rise, levels=12, colors="white", linewidths=0.25, alpha=0.6)
+    axes.contour(azimuth, np.rad2deg(tilt), rise, levels=12, colors="white", linewidths=0.25, linestyles="solid")
     handles = []
     for kind, members in (("summit", found.summits), ("saddle", found.saddles), ("stable", found.stable)):
         mark, color = _MARKS[kind]
@@ -80,10 +76,9 @@ def _landscape(figure: "Figure", axes: "Axes", found: Equilibria, pose: StablePo
         handles.insert(0, stroke(f"{len(found.rings)} rings, not marked", linestyle="none"))
     axes.set_rlim(0.0, 180.0)
     axes.set_rgrids([60.0, 120.0], labels=["60°", "120°"], color="white")
-    axes.set_thetagrids([0.0, 90.0, 180.0, 270.0], labels=["x", "y", "-x", "-y"])
+    axes.set_thetagrids([0.0, 90.0, 180.0, 270.0], labels=["x", "y", "\N{MINUS SIGN}x", "\N{MINUS SIGN}y"])
     axes.grid(linewidth=0.3, color="white", alpha=0.5)
-    axes.set_title("rise of the centre by tilt and azimuth [mm]", loc="left")
-    figure.colorbar(image, ax=axes, shrink=0.75, pad=0.12)
+    figure.colorbar(image, ax=axes, shrink=0.75, pad=0.12, label="rise of the centre [mm]")
     legend_below(figure, handles[::-1], 4)
 
 
@@ -91,15 +86,16 @@ def _support(axes: "Axes", pose: StablePose) -> None:
     corners: FloatArray = 1e3 * pose.support
     ring = corners[[*range(len(corners)), 0]]
     axes.fill(*ring.T, facecolor=PALE, edgecolor=INK, linewidth=0.8)
-    axes.plot(*ring.T, "o", color=INK, markersize=3)
+    if len(corners) <= _FEW:
+        axes.plot(*ring.T, "o", color=INK, markersize=3)
     axes.plot([0.0], [0.0], "+", color=COLORS[1], markersize=9)
     along = np.roll(corners, -1, axis=0) - corners
     outward = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.linalg.norm(along, axis=1, keepdims=True)
     nearest = int(np.argmin(pose.edge_distances))
     foot = 1e3 * pose.edge_distances[nearest] * outward[nearest]
     axes.plot([0.0, foot[0]], [0.0, foot[1]], color=COLORS[1], linestyle=DASHED)
-    axes.set_aspect("equal")
+    axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.1)
     axes.set_xlabel("x [mm]")
     axes.set_ylabel("y [mm]")
-    axes.set_title(f"nearest edge {1e3 * pose.edge_distances[nearest]:.3g} mm off", loc="left")
+    axes.set_title(f"support polygon,\nnearest edge {1e3 * pose.edge_distances[nearest]:.3g} mm off", loc="left")
