@@ -129,8 +129,13 @@ def _body(arguments: Arguments, *, quiet: bool) -> tuple[Any, float]:
         print(f"{file.name}: {note}", file=sys.stderr if quiet else sys.stdout)
         return made
     with hinted(word, None):
-        tables = {"body": arguments.body_table(word), "settings": sets.get("settings", {})}
-        return _made(tables, CommandFiles(Path()))
+        return body_of(arguments, word)
+
+
+def body_of(arguments: Arguments, word: str | None) -> tuple[Any, float]:
+    """Return the body of a file or of sizes, and the gravity that is set [m/s2]."""
+    tables = {"body": arguments.body_table(word), "settings": arguments.sets.get("settings", {})}
+    return _made(tables, CommandFiles(Path()))
 
 
 def _made(tables: dict[str, Any], files: InputFiles) -> tuple[Any, float]:

@@ -1,7 +1,17 @@
 """In which ways a body can stand: its stable poses, saddles and summits, and what lies between them."""
 
 from rocking.bodies.equilibria._equilibria import Equilibria, equilibria
-from rocking.bodies.equilibria.base_tolerance import BaseTolerance, base_tolerances
+from rocking.bodies.equilibria.base_tolerance import TOLERANCES, BaseTolerance, base_tolerances
 from rocking.bodies.equilibria.poses import Equilibrium, Pass, Ring, StablePose
 
-__all__ = ["BaseTolerance", "Equilibria", "Equilibrium", "Pass", "Ring", "StablePose", "base_tolerances", "equilibria"]
+__all__ = [
+    "TOLERANCES",
+    "BaseTolerance",
+    "Equilibria",
+    "Equilibrium",
+    "Pass",
+    "Ring",
+    "StablePose",
+    "base_tolerances",
+    "equilibria",
+]

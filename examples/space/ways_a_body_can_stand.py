@@ -1,0 +1,58 @@
+"""In how many ways can a body stand?
+====================================
+
+In which poses does a bust stand by itself, and how far must its centre of mass rise to leave the one that it is in,
+towards every side? For conservators and engineers with objects whose base is small or not quite known.
+"""
+
+import numpy as np
+
+import rocking as rk
+from rocking.bodies.equilibria import base_tolerances
+from rocking.plots import equilibria_picture, write
+
+# %%
+# A bust on its pedestal. Stable poses are facets of its convex hull, saddles are edges, summits corners; their numbers
+# obey stable - saddles + summits = 2.
+
+bust = rk.examples.body("bust")
+found = bust.equilibria()
+print(f"{len(found.stable)} stable poses, {len(found.saddles)} saddles, {len(found.summits)} summits")
+assert len(found.stable) - len(found.saddles) + len(found.summits) == 2
+
+# %%
+# The pose that it is in, and the lowest ways out of it: rise of the centre, and the energy that this takes.
+
+standing = found.settling([0.0, 0.0, -1.0])
+for way in found.neighbours(standing):
+    print(f"into pose {way.end}: {1e3 * way.rise:.1f} mm, {way.energy:.0f} J, at {np.rad2deg(way.tilt):.1f} degrees")
+    assert way.rise >= standing.barrier
+
+# %%
+# Tilted straight on towards a side its centre rises more than by the lowest way into the pose where it then lands.
+
+azimuths = np.deg2rad(np.arange(0.0, 360.0, 45.0))
+straight = found.barrier(standing, azimuths)
+lowest = found.barrier(standing, azimuths, path="lowest")
+print("straight [mm]:", (1e3 * straight).round(1), "lowest [mm]:", (1e3 * lowest).round(1))
+print("lifts at [m/s2]:", standing.uplift_acceleration(azimuths).round(2))
+assert (straight >= lowest - 1e-12).all()
+
+# %%
+# What would change if points that are almost on the ground touched it, which is often the largest uncertainty.
+
+for row in base_tolerances(found, standing):
+    print(f"within {1e3 * row.tolerance:3.1f} mm: {row.points} points, lifts at {row.uplift_acceleration:.2f} m/s2")
+    assert row.edge_distance >= standing.edge_distances.min() - 1e-12
+
+# %%
+# The landscape of the height of the centre around this pose, the support polygon, and the bust on it.
+
+write(equilibria_picture(bust, standing, found=found), "ways_a_body_can_stand.png")
+
+# %%
+# Laid down in its lowest pose it is a body like any other, to be shaken.
+
+lying = bust.settled(found.stable[0])
+print(f"lying: centre {lying.centre[2]:.3f} m high instead of {bust.centre[2]:.3f} m")
+assert lying.centre[2] < bust.centre[2]
