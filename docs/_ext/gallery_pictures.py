@@ -58,7 +58,13 @@ SECTIONS = {
         "incremental_analysis_with_resurrection",
         "which_intensity_measure",
     ],
-    "space": ["solid_statue", "solid_from_a_file", "falling_by_direction", "round_base_by_corners"],
+    "space": [
+        "solid_statue",
+        "solid_from_a_file",
+        "ways_a_body_can_stand",
+        "falling_by_direction",
+        "round_base_by_corners",
+    ],
     "campaigns": ["campaign_that_resumes", "campaign_of_a_cloud"],
 }
 """Sections in their order, and the scripts of each in theirs."""
@@ -83,6 +89,7 @@ PARTS = {
     "refined_map_with_boundary": (1, 0, (0.5, 0.1, 1.0, 0.86)),
     "solid_statue": (1, 0, (0.0, 0.0, 0.7, 1.0)),
     "round_base_by_corners": (1, 0, (0.0, 0.0, 0.36, 1.0)),
+    "ways_a_body_can_stand": (1, 0, (0.0, 0.0, 0.36, 0.86)),
     "falling_by_direction": (1, 0, (0.0, 0.06, 0.36, 0.86)),
     "which_intensity_measure": (1, 0, (0.0, 0.1, 0.6, 1.0)),
 }

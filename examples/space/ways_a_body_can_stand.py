@@ -1,5 +1,5 @@
 """In how many ways can a body stand?
-====================================
+==================================
 
 In which poses does a bust stand by itself, and how far must its centre of mass rise to leave the one that it is in,
 towards every side? For conservators and engineers with objects whose base is small or not quite known.

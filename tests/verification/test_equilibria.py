@@ -49,9 +49,7 @@ def spread(count):
     return np.stack([np.sqrt(1.0 - z * z) * np.cos(phi), np.sqrt(1.0 - z * z) * np.sin(phi), z], axis=1)
 
 
-@pytest.mark.verifies(
-    "invariant", "the Poincare-Hopf theorem", control="test_euler_relation_without_a_facet_is_broken"
-)
+@pytest.mark.verifies("invariant", "the Poincare-Hopf theorem", control="test_euler_relation_without_a_facet_is_broken")
 def test_euler_relation_of_random_hulls():
     """Stable - saddles + summits = 2, whatever the hull; and at least one of each extreme."""
     rng = np.random.default_rng(17)

@@ -36,7 +36,7 @@ def equilibria(
     density: options.Density = None,
     units: options.Units = None,
     least_barrier: Annotated[
-        float | None, typer.Option(help="Poses that a smaller rise of the centre leaves are none of their own [m].")
+        float | None, typer.Option(help="Poses that a smaller rise of the centre leaves, in m, do not count.")
     ] = None,
     sets: options.Set = None,
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,

@@ -1,0 +1,65 @@
+"""`rocking equilibria`: the page, JSON, picture and table of a solid, and what it refuses."""
+
+import csv
+import math
+
+import pytest
+from PIL import Image
+
+COMMAND = "equilibria"
+
+PRISM = (
+    'units = "m"\nname = "prism"\n[[solid.part]]\nbox = { width = 1.0, depth = 2.0, height = 3.0 }\ndensity = 1000.0\n'
+)
+DRUM = 'units = "m"\n[[solid.part]]\ncylinder = { diameter = 1.0, height = 2.0 }\ndensity = 2400.0\n'
+G = 9.80665
+
+
+@pytest.fixture
+def file(tmp_path):
+    """Write a body file."""
+
+    def write(text):
+        path = tmp_path / "body.toml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+def test_a_box_in_closed_form(answered, file):
+    """Six poses, the one that it stands in, and the rise over its edges and towards its corners."""
+    answer = answered(file(PRISM))
+    assert (len(answer["stable"]), answer["saddles"], answer["summits"]) == (6, 12, 8)
+    standing = answer["stable"][answer["stands_in"]]
+    assert standing["height_m"] == pytest.approx(1.5, abs=1e-12)
+    narrow, wide = math.hypot(0.5, 1.5) - 1.5, math.hypot(1.0, 1.5) - 1.5
+    assert standing["barrier_m"] == pytest.approx(narrow, abs=1e-12)
+    assert answer["directions"][0]["straight_rise_m"] == pytest.approx(narrow, abs=1e-12)
+    assert answer["directions"][3]["straight_rise_m"] == pytest.approx(wide, abs=1e-12)
+    assert answer["directions"][0]["uplift_acceleration_m_s2"] == pytest.approx(G / 3.0, rel=1e-12)
+    assert answer["passes"][0]["energy_J"] == pytest.approx(6000.0 * G * narrow, rel=1e-12)
+    assert [row["nearest_edge_m"] for row in answer["base_tolerances"]] == pytest.approx([0.5] * 5, abs=1e-12)
+
+
+def test_the_page_says_it_in_words(printed, file):
+    """Of a box, and of a drum that rolls; lengths in the unit of the question."""
+    page = printed(file(PRISM))
+    assert "It can stand in 6 ways; between them lie 12 saddles and 8 summits." in page
+    page = printed(file(DRUM))
+    assert "It rolls all the way round with its axis 90 deg from the vertical, centre 0.5 m high." in page
+    assert "! round faces are taken as those of 360 corners" in page
+
+
+def test_files(run, file, tmp_path):
+    """A picture, and a table of the poses."""
+    picture, table = tmp_path / "poses.png", tmp_path / "poses.csv"
+    assert run(file(PRISM), "--out", picture, "--out", table)[0] == 0
+    with Image.open(picture) as image:
+        assert min(image.size) > 500
+    assert len(list(csv.DictReader(table.read_text("utf-8").splitlines()))) == 6
+
+
+def test_a_plane_body_is_refused(refuses, file):
+    """Equilibria are those of a body in space."""
+    refuses((file('units = "m"\n[block]\nwidth = 1.0\nheight = 4.0\n'),), "equilibria are those of a body in space")
