@@ -147,7 +147,7 @@ class EquilibriaAnswer:
             what = "rolls" if ring.kind == "stable" else "can be balanced"
             lean, height = f"{math.degrees(ring.tilt):.3g} deg", in_unit(ring.height, self.length)
             page.line(f"It {what} all the way round with its axis {lean} from the vertical, centre {height} high.")
-        rows = [
+        poses = [
             (
                 f"{pose.number}", self._long(pose.height), f"{pose.energy:.4g}",
                 self._long(float(pose.edge_distances.min())), self._long(pose.barrier),
@@ -155,10 +155,10 @@ class EquilibriaAnswer:
             for pose in found.stable
         ]  # fmt: skip
         head = (f"centre {self.length}", "energy J", f"nearest edge {self.length}", f"rise to leave {self.length}")
-        page.table(("pose", *head), rows, bold={number})
+        page.table(("pose", *head), poses, bold={number})
         page.line()
         page.line(f"It stands in pose {number}. To topple it towards a direction its centre must rise", "bold")
-        rows = [
+        sides = [
             (
                 f"{math.degrees(row['azimuth_rad']):.0f}", self._long(row["straight_rise_m"]),
                 self._long(row["lowest_rise_m"]), f"{row['uplift_acceleration_m_s2']:.3g}",
@@ -166,11 +166,11 @@ class EquilibriaAnswer:
             )
             for row in self.directions
         ]  # fmt: skip
-        page.table(("deg", f"straight {self.length}", f"lowest way {self.length}", "lifts at m/s2", "into pose"), rows)
+        page.table(("deg", f"straight {self.length}", f"lowest way {self.length}", "lifts at m/s2", "into pose"), sides)
         page.line("deg: from x towards y; lifts at: the steady acceleration of the ground that lifts it that way.")
         page.line()
         page.line("What it stands on, if points of it that are this close to the ground touch it too", "bold")
-        rows = [
+        bases = [
             (
                 f"{1e3 * row.tolerance:g}", f"{row.points}", f"{len(row.support)}", self._long(row.edge_distance),
                 f"{math.degrees(row.azimuth):.0f}", f"{row.uplift_acceleration:.3g}", self._long(row.barrier),
@@ -178,7 +178,7 @@ class EquilibriaAnswer:
             for row in self.bases
         ]  # fmt: skip
         unit = self.length
-        head = (
+        touching = (
             "within mm",
             "points",
             "corners",
@@ -187,7 +187,7 @@ class EquilibriaAnswer:
             "lifts at m/s2",
             f"rise to leave {unit}",
         )
-        page.table(head, rows)
+        page.table(head, bases)
         page.warn(found.notes)
 
     def _long(self, value: float) -> str:

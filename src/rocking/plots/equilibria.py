@@ -1,7 +1,7 @@
 """In which ways a body can stand: the landscape of the height of its centre, and the body on its support polygon."""
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from rocking.plots.style import COLORS, DASHED, DOUBLE, INK, PALE, in_journal_st
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.projections.polar import PolarAxes
 
 _MARKS = {"stable": ("o", COLORS[0]), "saddle": ("x", "white"), "summit": ("^", COLORS[1])}
 _TILTS, _AZIMUTHS, _FEW = 91, 181, 40
@@ -39,23 +40,19 @@ def equilibria_picture(solid: Solid, pose: StablePose | None = None, *, found: E
         A polar map, the rise of the centre by tilt and azimuth [mm], with stable poses, saddles and summits; the
         base from above, with the plumb line; the body as it stands in the pose.
     """
-    from matplotlib.projections.polar import PolarAxes
-
     known = solid.equilibria() if found is None else found
     start = known.settling((0.0, 0.0, -1.0)) if pose is None else pose
     figure, axes = new_figure(DOUBLE, 3.1, columns=3, width_ratios=[1.25, 0.9, 0.9])
-    place = axes[0].get_subplotspec()
+    place: Any = axes[0].get_subplotspec()
     axes[0].remove()
-    polar = figure.add_subplot(place, projection="polar")
-    assert isinstance(polar, PolarAxes)
-    _landscape(figure, polar, known, start)
+    _landscape(figure, cast("PolarAxes", figure.add_subplot(place, projection="polar")), known, start)
     _support(axes[1], start)
     shaded_solid(axes[2], solid.settled(start))
     axes[2].set_title(f"{known.mass:.4g} kg,\ncentre {start.height:.4g} m high", loc="left")
     return figure
 
 
-def _landscape(figure: "Figure", axes: "Axes", found: Equilibria, pose: StablePose) -> None:
+def _landscape(figure: "Figure", axes: "PolarAxes", found: Equilibria, pose: StablePose) -> None:
     tilt, azimuth = np.linspace(0.0, math.pi, _TILTS), np.linspace(0.0, 2.0 * math.pi, _AZIMUTHS)
     lean = np.sin(tilt)[:, None] * np.stack([np.cos(azimuth), np.sin(azimuth)])[:, None, :]
     downward = np.stack([*lean, np.broadcast_to(-np.cos(tilt)[:, None], lean[0].shape)], axis=-1)
@@ -66,7 +63,7 @@ def _landscape(figure: "Figure", axes: "Axes", found: Equilibria, pose: StablePo
     for kind, members in (("summit", found.summits), ("saddle", found.saddles), ("stable", found.stable)):
         mark, color = _MARKS[kind]
         places = np.array([tilt_towards(pose, one.down) for one in members]).reshape(-1, 2)
-        edge = {} if mark == "x" else {"edgecolors": "white", "linewidths": 0.5}
+        edge: dict[str, Any] = {} if mark == "x" else {"edgecolors": "white", "linewidths": 0.5}
         axes.scatter(places[:, 1], np.rad2deg(places[:, 0]), s=22, marker=mark, color=color, zorder=4, **edge)
         # white on white paper cannot be seen in a legend
         shown = INK if color == "white" else color
