@@ -225,6 +225,8 @@ def test_settling_goes_downhill():
         assert found.settling(down).height <= float(found.height(down)) + 1e-12
     for pose in found.stable:
         assert found.settling(pose.down) is pose
+    for top in (*found.saddles, *found.summits):
+        assert found.settling(top.down).height < top.height
 
 
 @pytest.mark.verifies("invariant", "the body turned and moved", within="1e-13")

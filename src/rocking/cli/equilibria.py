@@ -177,17 +177,8 @@ class EquilibriaAnswer:
             )
             for row in self.bases
         ]  # fmt: skip
-        unit = self.length
-        touching = (
-            "within mm",
-            "points",
-            "corners",
-            f"nearest edge {unit}",
-            "deg",
-            "lifts at m/s2",
-            f"rise to leave {unit}",
-        )
-        page.table(head, bases)
+        near, leave = f"nearest edge {self.length}", f"rise to leave {self.length}"
+        page.table(("within mm", "points", "corners", near, "deg", "lifts at m/s2", leave), bases)
         page.warn(found.notes)
 
     def _long(self, value: float) -> str:

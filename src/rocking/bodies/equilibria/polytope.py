@@ -1,5 +1,6 @@
 """The convex hull of a body as a polyhedron about its centre of mass: facets, edges, vertices, coplanar ones merged."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,6 +15,8 @@ FLAT = 1e-7
 _DIRECTIONS = (30, 200)
 _MANY = 20_000
 _COARSE = 1e-9
+
+_ENDLESS = "the descent of the centre of mass does not end: is the hull degenerate?"
 
 Surface = tuple[FloatArray, IntArray, IntArray]
 
@@ -107,7 +110,28 @@ class Polytope:
 
         vertex: the lowest one where `down` (unit vector, in the body's frame) is downward.
         """
-        for _ in range(4 * len(self.ends) + 8):
+        return self.rolled(self._swung(vertex, down))
+
+    def rolled(self, facet: int) -> int:
+        """Return the stable facet to which the steepest descent leads from a facet: itself, if it is stable."""
+        for _ in range(len(self.normals)):
+            if self.stable[facet]:
+                return facet
+            edges, side = self.edges_of(facet)
+            outside = self.inward[edges, side] <= 0.0
+            facing = np.flatnonzero(outside & (self.beyond[edges, 0] <= 0.0) & (self.beyond[edges, 1] >= 0.0))
+            if len(facing):
+                facet = int(self.sides[edges[facing[0]], 1 - side[facing[0]]])
+                continue
+            corners = np.unique(self.ends[edges])
+            foot = self.heights[facet] * self.normals[facet]
+            nearest = np.argmin(((self.vertices[corners] - foot) ** 2).sum(axis=1))
+            facet = self._swung(int(corners[nearest]), self.normals[facet])
+        raise GeometryError(_ENDLESS)
+
+    def _swung(self, vertex: int, down: FloatArray) -> int:
+        """Return the facet that the steepest descent reaches first."""
+        for _ in range(len(self.ends)):
             lever = down * float(down @ self.vertices[vertex]) - self.vertices[vertex]
             edges, end = self.edges_at(vertex)
             others = self.ends[edges, 1 - end]
@@ -115,31 +139,16 @@ class Polytope:
             rate = chords @ lever
             gap = np.where(rate > 0.0, np.maximum(-(chords @ down), 0.0) / np.where(rate > 0.0, rate, 1.0), np.inf)
             first = int(np.argmin(gap))  # Eq. 242
+            if not math.isfinite(gap[first]):  # on a summit it falls any way
+                return int(self.sides[edges[first], 0])
             turned = down + float(gap[first]) * lever
             down = turned / np.linalg.norm(turned)
             edge, vertex = int(edges[first]), int(others[first])
             if self.beyond[edge, 0] < 0.0 < self.beyond[edge, 1]:
                 # a valley between two vertices: on along the edge, away from the direction of its foot
                 ahead = self.normals[self.sides[edge]] @ (self.feet[edge] - down * float(down @ self.feet[edge]))
-                return self.rolled(int(self.sides[edge, int(np.argmin(ahead))]))
-        raise GeometryError("the descent of the centre of mass does not end: is the hull degenerate?")
-
-    def rolled(self, facet: int) -> int:
-        """Return the stable facet to which the steepest descent leads from a facet: itself, if it is stable."""
-        for _ in range(len(self.normals) + 1):
-            if self.stable[facet]:
-                return facet
-            edges, side = self.edges_of(facet)
-            outside = self.inward[edges, side] <= 0.0
-            facing = outside & (self.beyond[edges, 0] <= 0.0) & (self.beyond[edges, 1] >= 0.0)
-            if not facing.any():
-                corners = np.unique(self.ends[edges])
-                foot = self.heights[facet] * self.normals[facet]
-                nearest = np.argmin(((self.vertices[corners] - foot) ** 2).sum(axis=1))
-                return self.descent(int(corners[nearest]), self.normals[facet])
-            which = int(np.argmax(facing))
-            facet = int(self.sides[edges[which], 1 - side[which]])
-        raise GeometryError("the descent of the centre of mass does not end: is the hull degenerate?")
+                return int(self.sides[edge, int(np.argmin(ahead))])
+        raise GeometryError(_ENDLESS)
 
     def climbed(self, vertex: int) -> int:
         """Return the summit to which the centre climbs from a vertex, each towards the one that is then lowest."""
