@@ -24,7 +24,7 @@ from rocking.errors import InvalidValueError
 
 Path = Literal["straight", "lowest"]
 _CLOSE = 1e-9
-_SHALLOW = 1e-4
+_SHALLOW = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
