@@ -327,7 +327,7 @@ class Solid:
         >>> from rocking.bodies.solid import cylinder
         >>> found = Solid(cylinder(1.0, 3.0)).equilibria()
         >>> len(found.stable), [ring.kind for ring in found.rings]
-        (2, ['stable', 'summit'])
+        (2, ['stable', 'summit', 'summit'])
         """
         moments = self.local_moments
         placed = replace(moments, centre=self.centre)
