@@ -1,4 +1,4 @@
-"""The picture of equilibria: a mark for each, at its tilt and azimuth, and the support polygon with its nearest edge."""
+"""The picture of equilibria: a mark for each, where it is, and the support polygon with its nearest edge."""
 
 import math
 
