@@ -359,3 +359,16 @@ def test_in_plane():
     assert back.side("left").half_width == pytest.approx(0.38, rel=1e-12)
     with pytest.raises(InvalidValueError, match="azimuth"):
         crate.in_plane("north")
+
+
+def test_known_moments_go_with_the_body_into_another_pose():
+    """Set down on another face, a known centre and inertia turn with the body: about any axis of the body the same."""
+    solid = Solid([box(1.0, 2.0, 3.0)], centre=(0.1, -0.2, 1.3), inertia=np.diag([9.0, 8.0, 5.0]) * 100.0)
+    for pose in solid.equilibria().stable:
+        lying = solid.settled(pose)
+        assert lying.centre == pytest.approx([0.0, 0.0, pose.height], abs=1e-12)
+        turned = pose.rotation.T @ lying.local_moments.inertia @ pose.rotation
+        assert turned == pytest.approx(np.diag([900.0, 800.0, 500.0]), abs=1e-9)
+    assert solid.equilibria().stable[0].height != pytest.approx(
+        Solid([box(1.0, 2.0, 3.0)]).equilibria().stable[0].height
+    )

@@ -190,7 +190,10 @@ REFUSED = {
     "gravity": (["a.stl", "--units", "mm", "--set", "settings.gravity=0"], "settings.gravity must be a number > 0"),
     "picture": (["a.stl", "--units", "mm", "--out", "a.bmp"], ".png, .svg or .pdf"),
     "folder": (["a.stl", "--units", "mm", "--out", "none/a.csv"], "no folder"),
-    "plane": (["--width", "1", "--height", "2", "--set", "body.up=z"], "unknown key 'up'; allowed: mass, centre, moment_of_inertia, density"),
+    "plane": (
+        ["--width", "1", "--height", "2", "--set", "body.up=z"],
+        "unknown key 'up'; allowed: mass, centre, moment_of_inertia, density",
+    ),
     "options": (["body.toml", "--set", "body.up=z"], "states up itself"),
     "bad toml": (["bad.toml"], "bad.toml: solid.part[0].box.width must be a number > 0 [m], got -1.0"),
 }

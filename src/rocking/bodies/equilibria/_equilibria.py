@@ -105,7 +105,7 @@ class Equilibria:
         unit = towards / np.linalg.norm(towards, axis=-1, keepdims=True)
         flat, corners = unit.reshape(-1, 3), self.hull.vertices.T
         step = max(1, 4_000_000 // corners.shape[1])
-        parts = [(flat[i : i + step] @ corners).max(axis=1) for i in range(0, len(flat), step)]  # Eq. 239
+        parts = [(flat[i : i + step] @ corners).max(axis=1) for i in range(0, len(flat), step)]  # Eq. 242
         found: FloatArray = np.concatenate(parts).reshape(unit.shape[:-1])
         return found
 
@@ -225,7 +225,7 @@ class Equilibria:
 
     def _lowest(self, pose: StablePose, end: int) -> Pass:
         joined = np.arange(1 + max(self.basins.values()))
-        for one, other, saddle in self.links:  # Eq. 243
+        for one, other, saddle in self.links:  # Eq. 246
             joined[joined == joined[other]] = joined[one]
             if joined[pose.number] == joined[end] and end != pose.number:
                 return self._pass(pose, end, saddle)
@@ -241,7 +241,7 @@ class Equilibria:
         ring = flat[ConvexHull(flat).vertices[::-1]]
         chords = np.roll(ring, -1, axis=0) - ring
         before, after = (ring * np.roll(chords, 1, axis=0)).sum(axis=1), (ring * chords).sum(axis=1)
-        crests = ring[(before > 0.0) & (after < 0.0)]  # Eq. 244
+        crests = ring[(before > 0.0) & (after < 0.0)]  # Eq. 247
         valleys = chords[(after < 0.0) & (np.roll(before, -1) > 0.0)] @ np.array([[0.0, 1.0], [-1.0, 0.0]])
         at_crest, at_valley = (np.arctan2(*each.T) % (2.0 * math.pi) for each in (crests, valleys))
         heights = np.hypot(*crests.T)
@@ -339,7 +339,7 @@ def _found(hull: Polytope, centre: FloatArray, mass: float, least: float) -> Equ
     low = float(hull.heights[kept_facets[0]])
 
     def one(kind: Kind, down: FloatArray, height: float, points: IntArray) -> Equilibrium:
-        return Equilibrium(kind, down, height, mass * g * (height - low), hull.vertices[points] + centre)  # Eq. 240
+        return Equilibrium(kind, down, height, mass * g * (height - low), hull.vertices[points] + centre)  # Eq. 243
 
     whither = dict(zip(edges.tolist(), ends, strict=True))
     saddles = tuple(one("saddle", hull.feet[e] / tops[e], float(tops[e]), hull.ends[e]) for e in kept_edges)

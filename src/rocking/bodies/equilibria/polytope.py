@@ -44,7 +44,7 @@ class Polytope:
         """How far the centre's foot on the left and on the right facet lies inside each edge [m]; shape (e, 2)."""
         start, sign = self.vertices[self.ends[:, 0]], np.array([-1.0, 1.0])
         across = np.cross(self.normals[self.sides], self.along[:, None, :])
-        distance: FloatArray = sign * (start[:, None, :] * across).sum(axis=2)  # Eq. 241
+        distance: FloatArray = sign * (start[:, None, :] * across).sum(axis=2)  # Eq. 244
         return distance
 
     @cached_property
@@ -138,7 +138,7 @@ class Polytope:
             chords = self.vertices[others] - self.vertices[vertex]
             rate = chords @ lever
             gap = np.where(rate > 0.0, np.maximum(-(chords @ down), 0.0) / np.where(rate > 0.0, rate, 1.0), np.inf)
-            first = int(np.argmin(gap))  # Eq. 242
+            first = int(np.argmin(gap))  # Eq. 245
             if not math.isfinite(gap[first]):  # on a summit it falls any way
                 return int(self.sides[edges[first], 0])
             turned = down + float(gap[first]) * lever

@@ -105,7 +105,7 @@ class StablePose(Equilibrium):
         outward = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.linalg.norm(along, axis=1, keepdims=True)
         slope = np.cos(angle)[..., None] * outward[:, 0] + np.sin(angle)[..., None] * outward[:, 1]
         reach = np.where(slope > 0.0, far / np.where(slope > 0.0, slope, 1.0), np.inf).min(axis=-1)
-        lifted: FloatArray = g * reach / self.height  # Eq. 246
+        lifted: FloatArray = g * reach / self.height  # Eq. 249
         return lifted
 
 

@@ -24,6 +24,7 @@ from rocking.bodies.solid.shape import Shape
 from rocking.bodies.solid.standing import equilibria_of, set_down
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
+from rocking.portable import times
 
 BASE_TOLERANCE = 1e-9
 """Corners this close to the ground, relative to the body's size, stand on it by default."""
@@ -357,8 +358,12 @@ class Solid:
         chosen = self.equilibria().settling((0.0, 0.0, -1.0)) if pose is None else pose
         parts, base = set_down(self.parts, chosen, self._size)
         ground = min(float(part.box()[0, 2]) for part in parts)
-        result = Solid(parts, base=base, ground=ground)
-        result.name, result.repairs = self.name, self.repairs
+        turn, known = chosen.rotation, dict[str, Any]()
+        if self.known is not None:
+            inertia = times(times(turn, self.known.inertia), turn.T)
+            known = {"centre": (0.0, 0.0, chosen.height), "inertia": inertia}
+        result = Solid(parts, base=base, ground=ground, **known)
+        result.name, result.repairs, result._assumed = self.name, self.repairs, self._assumed
         return result
 
     def _copy(self, parts: list[Part], matrix: FloatArray, size: float = 1.0, density: float = 1.0) -> "Solid":

@@ -104,7 +104,7 @@ def _ring(one: Equilibrium, axis: FloatArray, profile: FloatArray) -> Ring:
     low, high = max(start - _CHORD, 0.0), min(start + _CHORD, math.pi)
 
     def height(tilt: float) -> float:
-        return sign * float((profile[:, 0] * math.sin(tilt) - profile[:, 1] * math.cos(tilt)).max())  # Eq. 245
+        return sign * float((profile[:, 0] * math.sin(tilt) - profile[:, 1] * math.cos(tilt)).max())  # Eq. 248
 
     # by thirds: the height has a kink where it is least
     for _ in range(80):
