@@ -14,7 +14,7 @@ from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
-from rocking.outcome import Outcome
+from rocking.outcome import Outcome, Status
 from rocking.studies import Product, minimum_overturning_acceleration, overturning_map, rocking_spectrum
 from rocking.studies.fragility import multiple_stripe_analysis
 from rocking.studies.histories import results_of
@@ -169,10 +169,32 @@ def test_refusals(how, says):
 @pytest.mark.verifies("damage")
 def test_friction_is_said_once():
     """As an axis or as a number."""
-    with pytest.raises(InvalidValueError, match="leave friction= out"):
+    with pytest.raises(InvalidValueError, match="leave friction out"):
         overturning_map(BLOCK, PULSE, ("friction", [0.3]), ("scale", [1.0]), friction=0.3)
     with pytest.raises(InvalidValueError, match="restitution"):
         overturning_map(BLOCK, PULSE, ("period", [0.6]), ("scale", [1.0]), None)
+
+
+@pytest.mark.verifies("damage")
+def test_poisoned_rows():
+    """A row with NaN or infinity in one number is refused by itself; its neighbours keep their bits."""
+    parameters = RockingParameters.of_body(BODY, "ked", g)
+    sides = {name: float(values[0]) for name, values in sides_of([parameters]).items()}
+    names = [*(name for name in sides if name[0] in "apq"), "scale", "rotation", "velocity"]
+    values = {name: np.full(60, sides.get(name, 0.0)) for name in [*sides, "rotation", "velocity"]}
+    values |= {"scale": np.linspace(0.5, 2.0, 60), "friction": np.full(60, 0.4)}
+    batch = Batch([PULSE.segments()], settings=Settings(friction=0.3))
+    clean, _ = batch.run(60, Rows.of(60, **values).part)
+    ill = np.arange(1, 60, 3)
+    for k, row in enumerate(ill):
+        values[[*names, "friction"][k % (len(names) + 1)]][row] = (np.inf, -np.inf)[k % 2]
+    values["alpha_left"][3], ill = np.nan, np.append(ill, 3)
+    found, _ = batch.run(60, Rows.of(60, **values).part)
+    fine = np.setdiff1d(np.arange(60), ill)
+    assert (found["status"][ill] == Status.INVALID.code).all()
+    assert (found["outcome"][ill] == Outcome.FAILED.code).all()
+    for name in ("peak_rotation", "impacts", "outcome"):
+        assert found[name][fine].tolist() == clean[name][fine].tolist()
 
 
 @pytest.mark.verifies("behaviour")

@@ -10,7 +10,7 @@ from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.spec.construction import body_of, motions_of, restitutions_of
 from rocking.spec.reading import InputFiles, located
-from rocking.studies.axis import Axis, axis_of
+from rocking.studies.axis import Axis, axis_of, friction_beside
 from rocking.studies.motion_sets import MotionList, MotionSet
 
 if TYPE_CHECKING:
@@ -35,7 +35,9 @@ class StudyProblem:
         """Return what tables describe; files: those that they may name, or the folder of them."""
         inputs = files if isinstance(files, InputFiles) else InputFiles(files)
         with located("settings"):
-            settings = Settings(**document.settings.stated())
+            stated = document.settings.stated()
+            axes = axes_of(document.map) if document.map is not None else ()
+            settings = Settings(**(stated | friction_beside(axes, stated.get("friction"))))
         bodies = []
         for k, table in enumerate(document.body or []):
             with located("body" if len(document.body or []) == 1 else f"body[{k}]"):

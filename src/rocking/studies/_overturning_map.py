@@ -153,7 +153,5 @@ def map_arrays(  # noqa: PLR0913
             "refined_x": points.x, "refined_y": points.y, "refined_mode": points.modes,
             "refined_peak_ratio": points.peak_ratio,
         }  # fmt: skip
-    stated = {**plane.question.attributes(work), "contact": contact_words(results["lost_contact"])}
-    if "friction" in {plane.x.name, plane.y.name}:
-        del stated["setting_friction"]
+    stated = {**plane.attributes(work), "contact": contact_words(results["lost_contact"])}
     return MapArrays((plane.x, plane.y), variables, stated)

@@ -13,7 +13,7 @@ from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Motion
-from rocking.studies.axis import Axis, axis_of
+from rocking.studies.axis import Axis, axis_of, friction_beside
 from rocking.studies.question import Case, Question
 
 
@@ -39,13 +39,16 @@ class Plane:
         """Return a plane from what a user gives; options: gravity [m/s2], threads, engine and fields of `Settings`."""
         threads, engine = options.pop("threads", None), options.pop("engine", "auto")
         axes = axis_of(x), axis_of(y)
-        for axis in axes:
-            if axis.name == "friction":
-                if options.get("friction") is not None:
-                    raise InvalidValueError("friction is an axis: leave friction= out")
-                options["friction"] = float(axis.values[-1])
+        options |= friction_beside(axes, options.get("friction"))
         settings = settings_of(options.pop("gravity"), options)
         return cls(Question(body, motion, restitution, settings, threads, engine), *axes)
+
+    def attributes(self, work: dict[str, int]) -> dict[str, Any]:
+        """Return what was computed from what and how, as plain values."""
+        stated = self.question.attributes(work)
+        if "friction" in {self.x.name, self.y.name}:
+            del stated["setting_friction"]
+        return stated
 
     def case(self, x: FloatArray, y: FloatArray) -> Case:
         """Return the variations at some points: bodies first, then restitution, time, amplitude and velocity."""

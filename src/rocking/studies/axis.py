@@ -180,6 +180,21 @@ def _check_law(axis: Axis, question: Question) -> None:
         )
 
 
+def _check_friction(_: Axis, question: Question) -> None:
+    if question.settings.friction is None:
+        raise InvalidValueError("friction is an axis of bodies that may slide: their settings need a friction")
+
+
+def friction_beside(axes: Sequence[Axis], stated: float | None) -> dict[str, float]:
+    """Return the friction that settings need beside an axis of friction; stated: what they have of their own [-]."""
+    values = next((axis.values for axis in axes if axis.name == "friction"), None)
+    if values is None:
+        return {}
+    if stated is not None:
+        raise InvalidValueError("friction is an axis: leave friction out of the settings")
+    return {"friction": float(values[-1])}
+
+
 def _check_period(_: Axis, question: Question) -> None:
     main_period(question.motion)
 
@@ -236,7 +251,7 @@ _ALL = (
     ),
     Axis(
         "friction", "1", "coefficient of friction between body and ground", "friction", RESTITUTION,
-        lambda case, values: {"sides": {**case.sides, "friction": values}}, high=1e6,
+        lambda case, values: {"sides": {**case.sides, "friction": values}}, _check_friction, high=1e6,
     ),
 )  # fmt: skip
 

@@ -208,6 +208,10 @@ def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict
     same accuracy.
     """
     cell: dict[str, Any] = {"stored": stored(study, place), "inputs": None, "answer": None, "difference_rad": None}
+    if study.job.problem.settings.friction is not None:
+        return cell | {
+            "note": "with friction the page has the study's numbers alone; ask `rocking simulate --friction`"
+        }
     try:
         variation = Variation.of(study, place)
         if isinstance(variation.restitution, float) and not np.isfinite(variation.restitution):

@@ -86,21 +86,22 @@ def ends_of(length: Any, step: Any, pulse: Any, slow: Any) -> FloatArray:
 def _side(values: dict[str, FloatArray], foot: str, settings: Settings) -> dict[str, FloatArray]:
     """Return what alpha, p and q say of a side: R, h, b [m], and I_C / m [m2]."""
     alpha, p, q = (values[f"{name}_{foot}"] for name in ("alpha", "p", "q"))
-    with np.errstate(all="ignore"):
+    with np.errstate(all="ignore"):  # a row that is no body is refused by itself
         size = settings.gravity * q / p**2  # Eq. 26
         inertia = size**2 * (1.0 / q - 1.0)  # Eq. 27
-    return {"size": size, "height": size * np.cos(alpha), "half_width": size * np.sin(alpha), "inertia": inertia}
+        return {"size": size, "height": size * np.cos(alpha), "half_width": size * np.sin(alpha), "inertia": inertia}
 
 
 def _start(table: dict[str, Any], rotation: FloatArray, velocity: FloatArray) -> np.ndarray:
     """Put bodies on the foot that they lean on, which does not slide; returns which feet touch, as bits."""
     foot = np.where(rotation + np.where(rotation == 0.0, velocity, 0.0) < 0.0, -1.0, 1.0)
     lever = np.where(foot > 0.0, table["right"], -table["left"])
-    sine, cosine, height = np.sin(rotation), np.cos(rotation), table["height"]
-    arm = (lever * cosine - height * sine, -lever * sine - height * cosine)  # Eq. 58
-    rise = lever * sine - 2.0 * height * np.sin(0.5 * rotation) ** 2  # Eq. 59
-    table |= {
-        "x": lever - arm[0], "rise": rise, "rotation": rotation,
-        "u": -arm[1] * velocity, "w": arm[0] * velocity, "spin": velocity,
-    }  # fmt: skip
+    with np.errstate(all="ignore"):
+        sine, cosine, height = np.sin(rotation), np.cos(rotation), table["height"]
+        arm = (lever * cosine - height * sine, -lever * sine - height * cosine)  # Eq. 58
+        rise = lever * sine - 2.0 * height * np.sin(0.5 * rotation) ** 2  # Eq. 59
+        table |= {
+            "x": lever - arm[0], "rise": rise, "rotation": rotation,
+            "u": -arm[1] * velocity, "w": arm[0] * velocity, "spin": velocity,
+        }  # fmt: skip
     return np.where(rotation == 0.0, 3, np.where(foot > 0.0, 2, 1))

@@ -49,7 +49,17 @@ def _check_again(cell, records):
 
 def test_every_axis_has_a_range_here():
     """A new axis must be tried here, too."""
-    assert set(RANGES) == set(axes())
+    assert set(RANGES) | {"friction"} == set(axes())
+
+
+def test_with_friction_the_study_speaks(computed, map_job):
+    """The numbers of the study, and where a response with friction is computed, as an axis and as a setting."""
+    by_axis = {"map": {"x": {"axis": "friction", "values": [0.1, 0.4]}, "y": _map("pga", "width")["map"]["x"]}}
+    for how in (by_axis, _map("width", "pga") | {"settings": {"friction": 0.3}}):
+        study = computed(map_job(**how))
+        answered = [cell for _, cell in _cells(study)]
+        assert all("rocking simulate --friction" in cell["note"] for cell in answered)
+        assert len({cell["stored"]["outcome"] for cell in answered}) > 1
 
 
 @pytest.mark.parametrize("name", RANGES)

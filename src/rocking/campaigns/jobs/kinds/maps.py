@@ -54,7 +54,7 @@ def map_study(problem: StudyProblem) -> Study:
         histories = MapHistories.of(planes)
     several = {"restitution": len(planes)} if len(planes) > 1 else {}
     # as of `overturning_map`; the provenance says which engine computes, a dimension which restitutions
-    attributes = {k: v for k, v in questions[0].attributes({}).items() if k not in {"software", "engine", *several}}
+    attributes = {k: v for k, v in planes[0].attributes({}).items() if k not in {"software", "engine", *several}}
     coordinates = {axis.name: along(axis.name, axis.values, axis.unit, axis.words) for axis in (y, x)}
     if several:
         coordinates["restitution"] = labels_along("restitution", problem.restitutions, "restitution")
