@@ -1,0 +1,75 @@
+"""The doors to manifold3d: surfaces there and back, unions, fewer faces, sections by level planes."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rocking.bodies.moments import polyhedron_moments
+from rocking.bodies.solid._changes import Changes
+from rocking.conventions import FloatArray, IntArray
+from rocking.errors import GeometryError
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+MOST_FACES = 200_000
+"""Surfaces of more faces are simplified where nobody says how finely [-]."""
+
+FINEST = 1e-4
+"""By how much of the size they are then allowed to move [-]."""
+
+_MOST_DISTANCES = 200_000_000
+
+
+def manifold(points: FloatArray, faces: IntArray) -> "Manifold":
+    """Return a closed, oriented surface as manifold3d holds it."""
+    from manifold3d import Error, Manifold, Mesh64
+
+    found = Manifold(Mesh64(np.ascontiguousarray(points), np.ascontiguousarray(faces, dtype=np.uint64)))
+    if found.status() != Error.NoError:
+        raise GeometryError(f"the surface does not bound a volume (manifold3d: {found.status().name})")
+    return found
+
+
+def surface(of: "Manifold") -> tuple[FloatArray, IntArray]:
+    """Return vertices [m] and faces."""
+    mesh = of.to_mesh64()
+    return np.array(mesh.vert_properties[:, :3]), np.asarray(mesh.tri_verts).astype(np.int64)
+
+
+def decimated(
+    points: FloatArray, faces: IntArray, tolerance: float | None, changes: Changes
+) -> tuple[FloatArray, IntArray]:
+    """Return the surface with fewer faces, nowhere moved by more than the tolerance [m], its convex hull neither."""
+    if tolerance is None and len(faces) <= MOST_FACES:
+        return points, faces
+    size = float(np.ptp(points, axis=0).max())
+    bound = FINEST * size if tolerance is None else tolerance
+    whole = manifold(points, faces)
+    for share in (1.0, 0.5, 0.25, 0.1):
+        fewer_points, fewer = surface(whole.simplify(share * bound))
+        moved = _hull_distance(points, fewer_points)
+        if moved <= bound:
+            break
+    before, after = polyhedron_moments(points[faces]), polyhedron_moments(fewer_points[fewer])
+    shift = float(np.linalg.norm(after.centre - before.centre))
+    changes.say(
+        f"simplified from {len(faces)} to {len(fewer)} faces, moved by less than {1000.0 * bound:.3g} mm (its hull by "
+        f"{1000.0 * moved:.2g}, its centre by {1000.0 * shift:.2g} mm)",
+        abs(after.mass - before.mass),
+        after.centre,
+    )
+    return fewer_points, fewer
+
+
+def _hull_distance(points: FloatArray, fewer: FloatArray) -> float:
+    """How far the hull of points reaches out of the hull of fewer of them, on as many as can be compared [m]."""
+    from scipy.spatial import ConvexHull
+
+    corners = points[ConvexHull(points).vertices]
+    planes = np.unique(ConvexHull(fewer).equations.round(12), axis=0)
+    step = 1 + len(corners) * len(planes) // _MOST_DISTANCES
+    most = 0.0
+    for some in np.array_split(corners[::step], 1 + len(corners) * len(planes) // step // 20_000_000):
+        most = max(most, float((some @ planes[:, :3].T + planes[:, 3]).max()))
+    return most
