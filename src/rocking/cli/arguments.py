@@ -25,9 +25,9 @@ Tables = dict[str, Any]
 _AS_TYPED = (
     (re.compile(r"\bunits="), "--units"),
     (re.compile(r"\b(format|time_step)="), r"--set motion.\1="),
-    (re.compile(r"\bfill_holes=True"), "--set body.fill_holes=true"),
-    (re.compile(r"\bbase_tolerance="), "--set body.base_tolerance="),
-    (re.compile(r"\b(up|base_tolerance) must be"), r"body.\1 must be"),
+    (re.compile(r'\b(repair|surface)="(\w+)"'), r"--set body.\1=\2"),
+    (re.compile(r"\b(base_tolerance|up)="), r"--set body.\1="),
+    (re.compile(r"\b(up|repair|surface|base_tolerance) must be"), r"body.\1 must be"),
     (re.compile(r"^threads must be"), "--threads must be"),
     (re.compile(r"(?<!--set )\b(response|motion)\.(friction|free|bounce|scale)\b"), r"--\2"),
     (re.compile(r"(?<!--set )\brestitution\.model\b"), "--restitution"),

@@ -1,6 +1,7 @@
 """Surface meshes through trimesh: STL, OBJ, PLY and GLB, repaired where that is safe, refused where it is not."""
 
 import io
+import math
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -12,28 +13,32 @@ from numpy.typing import ArrayLike
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.formats.source import MOST_VERTICES, blamed, checked_file
+from rocking.bodies.solid._changes import Repair, in_words
 from rocking.bodies.solid._repair import Repaired, repaired
-from rocking.bodies.solid._self_crossing import in_words
+from rocking.bodies.solid._resting import settled, stands, turn_onto
+from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.polyhedron import Polyhedron
-from rocking.bodies.solid.solid import Solid
+from rocking.bodies.solid.solid import BASE_TOLERANCE, Solid
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import BodyFileError, InvalidValueError, MissingExtraError, how_to_install
+from rocking.portable import norm, times
 
 MESH_FORMATS = ("stl", "obj", "ply", "glb")
 """Formats that are read, by the end of the file's name."""
 
-_UP: dict[str, FloatArray] = {"z": np.eye(3), "y": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])}
+_UP = {"z": (0.0, 0.0, 1.0), "y": (0.0, 1.0, 0.0)}
 _LOWEST, _HIGHEST = 1e-3, 300.0
 _SINGLE = 2.0**-24
+_LEAN = 5.0
 
 
 def mesh_from_file(
     path: str | Path,
     *,
     units: str,
-    up: str = "z",
+    up: str | ArrayLike = "z",
     weld_tolerance: float | None = None,
-    fill_holes: bool = False,
+    repair: Repair = "safe",
 ) -> Repaired:
     """Return the volume inside a surface mesh: welded, oriented, closed, centred; z up, with a sentence for each doubt.
 
@@ -42,8 +47,7 @@ def mesh_from_file(
     """
     path = Path(path)
     scale = checks.length_unit(units)
-    if up not in _UP:
-        raise InvalidValueError(f'up must be "z" or "y", got {up!r}')
+    turn = _turn(up)
     with blamed(path.name):
         kind = path.suffix[1:].lower()
         if kind not in MESH_FORMATS:
@@ -54,13 +58,22 @@ def mesh_from_file(
             raise BodyFileError(f"cannot be opened ({error.strerror})") from error
         vertices, faces = _loaded(content, kind)
         done = repaired(
-            vertices * scale @ _UP[up].T, faces, weld_tolerance=weld_tolerance, fill_holes=fill_holes,
-            place=lambda where: in_words(where @ _UP[up] / scale, units),
+            times(vertices * scale, turn.T), faces, weld_tolerance=weld_tolerance, repair=repair,
+            place=lambda where: in_words(where @ turn / scale, units),
         )  # fmt: skip
         doubts = [*_size_doubts(done.shape, units), *_precision_doubts(vertices, kind)]
         if kind == "glb" and units != "m":
             doubts.append(f"GLB files are in m by their specification; read in {units} as asked")
         return replace(done, repairs=(*done.repairs, *doubts))
+
+
+def _turn(up: str | ArrayLike) -> FloatArray:
+    """Return the least rotation after which a direction of the file is up."""
+    direction = np.asarray(_UP.get(up, ()) if isinstance(up, str) else up)
+    known = direction.shape == (3,) and direction.dtype.kind in "iuf" and np.isfinite(direction).all()
+    if not known or not direction.any():
+        raise InvalidValueError(f'up must be "z", "y", or a direction (x, y, z) in the file, got {up!r:.60}')
+    return turn_onto(direction / norm(direction.astype(np.float64)), np.array([0.0, 0.0, 1.0]))
 
 
 def solid_from_mesh(
@@ -72,18 +85,35 @@ def solid_from_mesh(
     base_tolerance: float | None = None,
     **options: Any,
 ) -> Solid:
-    """Return the body that a surface mesh describes, standing on its lowest point, with what was repaired.
+    """Return the body that a surface mesh describes, standing, with what was repaired.
 
-    base: points (x, y) that it stands on [m]; base_tolerance: vertices this close to the lowest one stand on the
-    ground [m]; scans need some millimetres.
+    It stands as it is in the file if its centre lies above the points that touch the ground; otherwise it is let down
+    from there until it rests. base: points (x, y) that it stands on as it is in the file [m]; base_tolerance: vertices
+    this close to the lowest one touch the ground [m].
     """
     path = Path(path)
     mesh = mesh_from_file(path, units=units, **options)
     with blamed(path.name):
-        part = mesh.part(density)
+        part, said = mesh.part(density), mesh.repairs
+        tolerance = base_tolerance or BASE_TOLERANCE * float(np.ptp(part.box(), axis=0).max())
+        points, centre = mesh.shape.vertices, mesh.shape.moments().centre
+        if base is None and not stands(points, centre, checks.positive("base_tolerance", tolerance, "m")):
+            turn = settled(mesh.shape.hull.points[mesh.shape.hull.vertices], centre)
+            part = Part(mesh.shape, density, rotation=turn, translation=mesh.middle)
+            said = (*said, _settled_words(turn, float(part.moments().centre[2] - part.box()[0, 2])))
         solid = Solid(part, base=base, ground=float(part.box()[0, 2]), base_tolerance=base_tolerance)
-    solid.name, solid.repairs = path.name, mesh.repairs
+    solid.name, solid.repairs = path.name, said
     return solid
+
+
+def _settled_words(turn: FloatArray, height: float) -> str:
+    angle = math.degrees(math.acos(min(1.0, float(turn[2, 2]))))
+    if angle < _LEAN:
+        return f"turned by {angle:.2g} degrees onto the points that it rests on, its centre {height:.4g} m high"
+    return (
+        f"does not stand as the file has it: let down from there, it rests turned by {angle:.3g} degrees, its centre "
+        f"{height:.4g} m high; up= says which of its sides is up"
+    )
 
 
 def _loaded(content: bytes, kind: str) -> tuple[FloatArray, IntArray]:

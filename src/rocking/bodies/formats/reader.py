@@ -7,6 +7,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypedDict, TypeVar, Unpack
 
+from numpy.typing import ArrayLike
+
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY, Body
 from rocking.bodies.formats.body_file import LARGEST_TOML, body_from_toml, parsed_toml
@@ -18,6 +20,7 @@ from rocking.bodies.formats.source import Placement, blamed, read_text, readable
 from rocking.bodies.formats.wkt import regions_from_wkt
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
+from rocking.bodies.solid._changes import Repair
 from rocking.bodies.solid.solid import Solid
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import BodyFileError, RockingError
@@ -28,8 +31,8 @@ T = TypeVar("T")
 class MeshOptions(TypedDict, total=False):
     """How a mesh is read and stands."""
 
-    up: str | None
-    fill_holes: bool
+    up: str | ArrayLike | None
+    repair: Repair
     base_tolerance: float | None
 
 
@@ -86,11 +89,14 @@ def read_body(
         Density of what has none of its own, TOML apart [kg/m3]; plain concrete if not given.
     **options
         Of drawings ``feet`` [m], ``depth`` [m] and ``ground`` [m], as for `Section`; a drawing stands on its lowest
-        point if ``ground`` is not given. Of meshes ``up``, the axis that points up ("z" if not given, but for GLB
-        "y", by its specification), ``fill_holes``, whether holes of less than 1 % of the surface may be closed, and
-        ``base_tolerance`` [m]: vertices this close to the lowest one stand on the ground; scans need some
-        millimetres. Of both ``mass`` [kg] and ``centre`` [m] where they are known, of drawings ``moment_of_inertia``
-        [kg m2], as for `Section`, and of meshes ``inertia`` [kg m2], as for `Solid`.
+        point if ``ground`` is not given. Of meshes ``up``, the axis that points up, "z", "y" or a direction (x, y, z)
+        in the file ("z" if not given, but for GLB "y", by its specification); ``repair``, what may be mended:
+        "none", "safe" (if not given: what changes at most 1 % of the volume and moves the centre by at most 0.5 % of
+        the size, open bottoms and small holes closed, folds smoothed, dust left out) or "all"; and
+        ``base_tolerance`` [m]: vertices this close to the lowest one touch the ground. A mesh that does not stand as
+        it is in the file is let down from there until it rests. Of both ``mass`` [kg] and ``centre`` [m] where they are
+        known, of drawings ``moment_of_inertia`` [kg m2], as for `Section`, and of meshes ``inertia`` [kg m2], as for
+        `Solid`.
 
     Returns
     -------
@@ -246,8 +252,8 @@ def _mesh(request: Request) -> Solid:
             f"{path.name}: {kind.upper()} files do not state their unit; give units=, one of {', '.join(LENGTH_UNITS)}"
         )
     solid = solid_from_mesh(
-        path, density, units=units or "m", up=up or ("y" if by_specification else "z"),
-        fill_holes=options.get("fill_holes", False), base_tolerance=options.get("base_tolerance"),
+        path, density, units=units or "m", up=up if up is not None else ("y" if by_specification else "z"),
+        repair=options.get("repair") or "safe", base_tolerance=options.get("base_tolerance"),
     )  # fmt: skip
     known: dict[str, Any] = {key: options.get(key) for key in ("mass", "centre", "inertia")}
     if any(value is not None for value in known.values()):

@@ -228,9 +228,9 @@ class MeshTable(StrictTable):
 
     file: str = Field(description="STL, OBJ, PLY or GLB beside the body file")
     units: UnitName | None = Field(None, description="its unit, where it differs from that of the file")
-    up: Literal["z", "y"] = Field("z", description="which axis of the mesh points upwards")
+    up: Literal["z", "y"] | Triple = Field("z", description="which axis or direction of the mesh points upwards")
     weld_tolerance: Positive | None = Field(None, description="corners this close are one [unit of the file]")
-    fill_holes: bool = Field(False, description="close holes, and say so")
+    repair: Literal["none", "safe", "all"] = Field("safe", description="what may be mended, and is said")
 
 
 class TurnTable(StrictTable):

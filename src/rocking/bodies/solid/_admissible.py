@@ -89,12 +89,12 @@ def _impossible(found: SolidMoments, box: FloatArray) -> str:
 def _out_of_hull(part: Part) -> str:
     if type(part.shape) is not Polyhedron:
         return ""
-    from scipy.spatial import ConvexHull, QhullError
+    from scipy.spatial import QhullError
 
     vertices, centre = part.shape.vertices, part.shape.moments().centre
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     try:
-        planes = ConvexHull(vertices - middle).equations
+        planes = part.shape.hull.equations
     except QhullError:  # too flat for a hull: the box has spoken
         return ""
     beyond = float((planes[:, :3] @ (centre - middle) + planes[:, 3]).max())

@@ -13,7 +13,7 @@ from rocking.errors import GeometryError, InvalidValueError
 Repair = Literal["none", "safe", "all"]
 
 REPAIRS: tuple[Repair, ...] = ("none", "safe", "all")
-"""Nothing but merging equal vertices; what stays within the bounds below; whatever it takes."""
+"""Merging equal vertices alone; what stays within the bounds below; whatever it takes."""
 
 MOST_VOLUME = 0.01
 """What safe repairs together may change of the volume [-]."""
@@ -22,8 +22,8 @@ MOST_SHIFT = 0.005
 """How far safe repairs together may move the centre of mass, over the size of the body [-]."""
 
 HELP = (
-    'repair="all" takes it as it is then, and surface="wrap" stretches a skin over its vertices instead; better mend it '
-    "in the program that made it"
+    'repair="all" mends it all the same, surface="wrap" stretches a skin over its points instead, and best is to mend '
+    "it in the program that made it"
 )
 
 
@@ -37,42 +37,50 @@ class Changes:
     """Repairs of a surface, as they are made."""
 
     allowed: Repair = "safe"
-    place: Callable[[FloatArray], str] = in_words  # a place [m] in the user's words
-    made: list[tuple[str, float, FloatArray]] = field(default_factory=list)  # sentence, volume [m3], where [m]
+    place: Callable[[FloatArray], str] = in_words  # a place from the middle of the box [m], in the user's words
+    made: list[tuple[str, float, FloatArray | None]] = field(default_factory=list)  # sentence, volume [m3], where [m]
 
     def __post_init__(self) -> None:
         if self.allowed not in REPAIRS:
             raise InvalidValueError(f'repair must be "none", "safe" or "all", got {self.allowed!r:.60}')
 
     def say(self, sentence: str, volume: float = 0.0, where: FloatArray | None = None) -> None:
-        """Note a repair; volume: what it can have changed [m3], about a place [m]."""
+        """Note a repair; volume: what it can have changed [m3], about a place [m], or anywhere."""
         if self.allowed == "none":
             raise GeometryError(f'it needs a repair, which repair="none" refuses: {sentence}')
         self.note(sentence, volume, where)
 
     def note(self, sentence: str, volume: float = 0.0, where: FloatArray | None = None) -> None:
         """Note what repair="none" allows too."""
-        self.made.append((sentence, volume, np.zeros(3) if where is None else where))
+        self.made.append((sentence, volume, where))
+
+    def bounds(self, whole: SolidMoments, size: float) -> list[tuple[float, float]]:
+        """Return what each repair may have changed of the volume [-] and how far it may have moved the centre [m].
+
+        whole: volume and centre of the result; size: its largest side [m], half of which is how far from the centre a
+        change is taken to be that has no place.
+        """
+        found = []
+        for _, volume, where in self.made:
+            arm = 0.5 * size if where is None else float(np.linalg.norm(where - whole.centre))
+            found.append((volume / whole.mass, volume / whole.mass * arm))
+        return found
 
     def sentences(self, whole: SolidMoments, size: float) -> tuple[str, ...]:
-        """Return what was done, each with its bound; refuse more than safe repairs may change.
-
-        whole: volume and centre of the result; size: its largest side [m].
-        """
-        shares = [volume / whole.mass for _, volume, _ in self.made]
-        shifts = [
-            share * float(np.linalg.norm(where - whole.centre))
-            for share, (_, _, where) in zip(shares, self.made, strict=True)
-        ]
+        """Return what was done, each with its bound; refuse more than safe repairs may change."""
+        bounds = self.bounds(whole, size)
         listed = [
-            f"{words}; at most {percent(share)} of the volume, {1000.0 * shift:.2g} mm of the centre" if share else words
-            for (words, _, _), share, shift in zip(self.made, shares, shifts, strict=True)
+            f"{words}; that is at most {percent(share)} of the volume and {1000.0 * shift:.2g} mm of the centre"
+            if share
+            else words
+            for (words, _, _), (share, shift) in zip(self.made, bounds, strict=True)
         ]
-        if self.allowed != "all" and (sum(shares) > MOST_VOLUME or sum(shifts) > MOST_SHIFT * size):
+        share, shift = sum(pair[0] for pair in bounds), sum(pair[1] for pair in bounds)
+        if self.allowed != "all" and (share > MOST_VOLUME or shift > MOST_SHIFT * size):
             raise GeometryError(
-                f"its repairs may change {percent(sum(shares))} of the volume and move the centre by "
-                f"{1000.0 * sum(shifts):.2g} mm, more than the {percent(MOST_VOLUME)} and {percent(MOST_SHIFT)} of the "
-                f"size that are safe: {'; '.join(words for words, share in zip(listed, shares, strict=True) if share)}; "
-                f"{HELP}"
+                f"its repairs may change {percent(share)} of the volume and move the centre by {1000.0 * shift:.2g} mm, "
+                f"more than the {percent(MOST_VOLUME)} and {percent(MOST_SHIFT)} of the size "
+                f"({1000.0 * MOST_SHIFT * size:.2g} mm) that are safe: "
+                f"{'; '.join(words for words, pair in zip(listed, bounds, strict=True) if pair[0])}; {HELP}"
             )
         return tuple(listed)

@@ -48,7 +48,7 @@ def closed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Float
     if not loops:
         return points, faces
     if changes.allowed == "none":
-        raise GeometryError(f'{_listed(loops, points, changes)}; repair="safe" closes an open bottom and small ones')
+        raise GeometryError(f'{_listed(loops, points, changes)}; repair="safe" closes an open bottom and small holes')
     bottom = _bottom(points, loops)
     added, slits, patches, bound, where = [faces], 0, [], 0.0, np.zeros(3)
     for number, ring in enumerate(loops):

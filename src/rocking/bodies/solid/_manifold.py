@@ -37,27 +37,25 @@ def surface(of: "Manifold") -> tuple[FloatArray, IntArray]:
     return np.array(mesh.vert_properties[:, :3]), np.asarray(mesh.tri_verts).astype(np.int64)
 
 
-def decimated(
-    points: FloatArray, faces: IntArray, tolerance: float | None, changes: Changes
-) -> tuple[FloatArray, IntArray]:
-    """Return the surface with fewer faces, nowhere moved by more than the tolerance [m], its convex hull neither."""
-    if tolerance is None and len(faces) <= MOST_FACES:
+def decimated(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[FloatArray, IntArray]:
+    """Return a surface of many faces with fewer, its convex hull nowhere moved by more than 1e-4 of the size."""
+    if len(faces) <= MOST_FACES or changes.allowed == "none":
         return points, faces
-    size = float(np.ptp(points, axis=0).max())
-    bound = FINEST * size if tolerance is None else tolerance
+    bound = FINEST * float(np.ptp(points, axis=0).max())
     whole = manifold(points, faces)
     for share in (1.0, 0.5, 0.25, 0.1):
         fewer_points, fewer = surface(whole.simplify(share * bound))
         moved = _hull_distance(points, fewer_points)
         if moved <= bound:
             break
+    else:
+        return points, faces
     before, after = polyhedron_moments(points[faces]), polyhedron_moments(fewer_points[fewer])
     shift = float(np.linalg.norm(after.centre - before.centre))
     changes.say(
-        f"simplified from {len(faces)} to {len(fewer)} faces, moved by less than {1000.0 * bound:.3g} mm (its hull by "
-        f"{1000.0 * moved:.2g}, its centre by {1000.0 * shift:.2g} mm)",
+        f"simplified from {len(faces)} to {len(fewer)} faces, which moves the hull by {1000.0 * moved:.2g} mm and the "
+        f"centre by {1000.0 * shift:.2g} mm",
         abs(after.mass - before.mass),
-        after.centre,
     )
     return fewer_points, fewer
 

@@ -23,6 +23,7 @@ class Piercing:
 
     pairs: int  # pairs of faces that do
     place: FloatArray  # middle of the longest line in which two of them cross [m]; shape (3,)
+    faces: IntArray  # those that do
     complete: bool  # whether every pair could be tried
 
 
@@ -40,22 +41,24 @@ def pierced(triangles: FloatArray) -> Piercing:
     broad = length > _THINNEST * size * longest
     kept, normals = triangles[broad], doubled[broad] / length[broad, None]
     best, place, count, tried = 0.0, np.zeros(3), 0, 0
+    crossed = np.zeros(len(kept), dtype=bool)
     pairs = meeting_boxes(kept.min(axis=1), kept.max(axis=1)) if len(kept) > 1 else ()
     for one, two in pairs:
         tried += len(one)
         if tried > MOST_PAIRS:
             break
-        lengths, places = _lines(kept, normals, one, two, DEPTH * size)
+        one, two, lengths, places = _lines(kept, normals, one, two, DEPTH * size)
         count += int((lengths > 0.0).sum())
+        crossed[one[lengths > 0.0]] = crossed[two[lengths > 0.0]] = True
         if len(lengths) and lengths.max() > best:
             best, place = float(lengths.max()), places[int(np.argmax(lengths))]
-    return Piercing(count, place, tried <= MOST_PAIRS)
+    return Piercing(count, place, np.flatnonzero(broad)[crossed], tried <= MOST_PAIRS)
 
 
 def _lines(
     triangles: FloatArray, normals: FloatArray, one: IntArray, two: IntArray, slack: float
-) -> tuple[FloatArray, FloatArray]:
-    """Lengths and middles of the lines in which pairs cross; zero where they cross by less than `slack`."""
+) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
+    """Pairs that may cross, lengths and middles of the lines in which they do, by more than `slack` or zero."""
     first, keep = _heights(triangles[one], triangles[two, 0], normals[two], slack)
     one, two, first = one[keep], two[keep], first[keep]
     second, keep = _heights(triangles[two], triangles[one, 0], normals[one], slack)
@@ -66,7 +69,7 @@ def _lines(
     other_start, other_end, _ = _within(triangles[two], second, along)
     begin, finish = np.maximum(start, other_start), np.minimum(end, other_end)
     place = ends + along * (0.5 * (begin + finish) - start)[:, None]
-    return np.where(finish - begin > slack, finish - begin, 0.0), place
+    return one, two, np.where(finish - begin > slack, finish - begin, 0.0), place
 
 
 def _heights(corners: FloatArray, point: FloatArray, normal: FloatArray, slack: float) -> tuple[FloatArray, BoolArray]:

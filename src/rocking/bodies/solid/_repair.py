@@ -1,7 +1,7 @@
-"""From the triangles of a file to a closed surface: weld, clean, orient, close, and say what was done.
+"""From the triangles of a file to a closed surface: weld, clean, orient, close, mend, and say what was done.
 
-The order matters. A surface that is not welded has no neighbours, so that turning faces or filling holes on it does
-harm; nothing is integrated before the surface is closed.
+The order matters. A surface that is not welded has no neighbours, so that turning faces or closing holes on it does
+harm; nothing is integrated before the surface is closed, and shells are told apart before they are united.
 """
 
 from collections.abc import Callable
@@ -11,12 +11,14 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
-from rocking.bodies.solid._self_crossing import check_crossings, in_words
+from rocking.bodies.solid._changes import Changes, Repair, in_words
+from rocking.bodies.solid._closing import closed
+from rocking.bodies.solid._manifold import decimated
+from rocking.bodies.solid._mending import uncrossed, without_dust, without_fins
 from rocking.bodies.solid._shells import connected, oriented_shells, turned_consistently
 from rocking.bodies.solid.part import Part
-from rocking.bodies.solid.polyhedron import Polyhedron, directed_edges, open_edges
-from rocking.bodies.solid.surfaces import area_vectors
-from rocking.conventions import FloatArray, IntArray, percent
+from rocking.bodies.solid.polyhedron import Polyhedron, alone, numbered, open_edges
+from rocking.conventions import FloatArray, IntArray
 from rocking.errors import GeometryError
 
 WELD = 1e-6
@@ -41,7 +43,7 @@ def repaired(
     faces: IntArray,
     *,
     weld_tolerance: float | None = None,
-    fill_holes: bool = False,
+    repair: Repair = "safe",
     place: Callable[[FloatArray], str] = in_words,
 ) -> Repaired:
     """Return the closed surface that triangles describe, with a sentence for every change."""
@@ -49,28 +51,26 @@ def repaired(
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     points = vertices - middle
     size = checks.length("largest dimension of the mesh", float(np.ptp(points, axis=0).max()))
-    repairs: list[str] = []
-    points, faces = _welded(points, faces, weld_tolerance, size, repairs)
-    faces = _cleaned(faces, repairs)
-    faces = turned_consistently(faces, repairs)
-    loops = boundary_loops(faces, points)
-    if loops and not fill_holes:
-        raise GeometryError(holes_sentence(loops, points + middle))
-    points, faces = filled(points, faces, loops, repairs)
-    faces = turned_consistently(faces, repairs) if loops else faces
+    changes = Changes(repair, lambda where: place(where + middle))
+    points, faces = _welded(points, faces, weld_tolerance, size, changes)
+    faces = _cleaned(faces, changes)
+    faces = without_fins(points, without_dust(points, faces, changes), changes)
+    faces = turned_consistently(faces, changes)
+    points, faces = closed(points, faces, changes)
+    faces = turned_consistently(faces, changes)
     if count := len(open_edges(faces)):
         raise GeometryError(
             f"no side of the surface is the outside: {count} edges cannot be matched however the faces are turned; "
-            "do more than two faces meet along them, or is the surface one-sided?"
+            'do more than two faces meet along them, or is the surface one-sided? surface="wrap" stretches a skin over '
+            "its points instead"
         )
-    faces = oriented_shells(points, faces, repairs)
+    points, faces = oriented_shells(points, faces, changes)
+    points, faces = decimated(points, faces, changes)
+    points, faces = uncrossed(points, faces, changes)
     used, numbers = np.unique(faces, return_inverse=True)
-    points, faces = points[used], numbers.reshape(faces.shape)
-    if not check_crossings(points[faces], lambda where: place(where + middle)):
-        repairs.append("too many faces lie side by side to try whether all of them keep clear of each other")
-    shape = Polyhedron(points, faces, simple=True)
+    shape = Polyhedron(points[used], numbers.reshape(faces.shape), simple=True)
     _check_hull(shape)
-    return Repaired(shape, middle, tuple(repairs))
+    return Repaired(shape, middle, changes.sentences(shape.moments(), size))
 
 
 def _triangles(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
@@ -96,14 +96,14 @@ def _triangles(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntAr
 
 
 def _welded(
-    points: FloatArray, faces: IntArray, tolerance: float | None, size: float, repairs: list[str]
+    points: FloatArray, faces: IntArray, tolerance: float | None, size: float, changes: Changes
 ) -> tuple[FloatArray, IntArray]:
     from scipy.spatial import cKDTree
 
-    same, inverse = np.unique(points, axis=0, return_inverse=True)
-    merged, joined = len(points) - len(same), inverse.ravel()[faces]
+    same, inverse = _same(points)
+    merged, joined = len(points) - len(same), inverse[faces]
     reach = checks.within("weld_tolerance", tolerance, 0.0, 0.01 * size, unit="m") if tolerance is not None else 0.0
-    if tolerance is None and len(_boundary(joined)):
+    if tolerance is None and len(alone(joined)):
         reach = WELD * size
     if reach > 0.0:
         near = connected(len(same), *cKDTree(same).query_pairs(reach, output_type="ndarray").T)
@@ -113,29 +113,39 @@ def _welded(
         same, joined = same[first], near[joined]
     if merged:
         how = f"within {reach:.3g} m of each other" if reach > 0.0 else "in the same place"
-        repairs.append(f"merged {merged} of {len(points)} vertices that lay {how}")
+        changes.note(f"merged {merged} of {len(points)} vertices that lay {how}")
     return same, joined
 
 
-def _boundary(faces: IntArray) -> IntArray:
-    """Return the directed edges that one face has for itself."""
-    edges = directed_edges(faces)
-    _, inverse, counts = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
-    alone: IntArray = edges[counts[inverse.ravel()] == 1]
-    return alone
+def _same(points: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Return the different points, and which of them each is."""
+    # a number for each: 64 bits mixed of three coordinates; the comparison finds the rare two that share one
+    bits = np.ascontiguousarray(points + 0.0).view(np.uint64)
+    mixed = bits[:, 0] * np.uint64(0x9E3779B97F4A7C15) + bits[:, 1] * np.uint64(0xC2B2AE3D27D4EB4F)
+    mixed = (mixed ^ (mixed >> np.uint64(29))) + bits[:, 2] * np.uint64(0x165667B19E3779F9)
+    _, first, inverse = np.unique(mixed, return_index=True, return_inverse=True)
+    if not (points[first][inverse] == points).all():
+        same, inverse = np.unique(points, axis=0, return_inverse=True)
+        return same, inverse.ravel()
+    order = np.argsort(first)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    return points[first[order]], rank[inverse]
 
 
-def _cleaned(faces: IntArray, repairs: list[str]) -> IntArray:
+def _cleaned(faces: IntArray, changes: Changes) -> IntArray:
     a, b, c = faces.T
     whole = (a != b) & (b != c) & (c != a)
     if not whole.all():
-        repairs.append(f"removed {int((~whole).sum())} faces that had shrunk to an edge or a point")
+        changes.say(f"removed {int((~whole).sum())} faces that had shrunk to an edge or a point")
     faces = faces[whole]
-    _, first, inverse = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_inverse=True)
+    low, middle, high = np.sort(faces, axis=1).T
+    edge = numbered(np.stack([low, middle], axis=1))
+    _, first, inverse = np.unique(numbered(np.stack([edge, high], axis=1)), return_index=True, return_inverse=True)
     if len(first) == len(faces):
         return faces
     # the same corners twice: faces of one sense are one face, faces of opposite sense have nothing between them
-    net = np.bincount(inverse.ravel(), weights=_parity(faces), minlength=len(first))
+    net = np.bincount(inverse, weights=_parity(faces), minlength=len(first))
     sense = _parity(faces[first])
     keep = net != 0.0
     result: IntArray = np.where((net * sense < 0.0)[:, None], faces[first][:, ::-1], faces[first])[keep]
@@ -143,7 +153,7 @@ def _cleaned(faces: IntArray, repairs: list[str]) -> IntArray:
         raise GeometryError(
             "the faces lie on top of each other and nothing is left between them: the surface is a sheet"
         )
-    repairs.append(f"removed {len(faces) - len(result)} faces that lay on top of others")
+    changes.say(f"removed {len(faces) - len(result)} faces that lay on top of others")
     return result
 
 
@@ -153,88 +163,9 @@ def _parity(faces: IntArray) -> FloatArray:
 
 
 def _check_hull(shape: Polyhedron) -> None:
-    from scipy.spatial import ConvexHull
-
-    whole = float(ConvexHull(shape.vertices).volume)
+    whole = float(shape.hull.volume)
     volume = shape.moments().mass
     if volume > whole * (1.0 + 1e-9):
         raise GeometryError(
             f"the surface encloses {volume:.6g} m3, more than its hull ({whole:.6g} m3): it passes through itself"
         )
-
-
-SMALL = 0.01
-"""Holes are filled up to this share of the surface, all together [-]."""
-
-_LISTED = 3
-
-
-def boundary_loops(faces: IntArray, points: FloatArray) -> list[IntArray]:
-    """Return the rings of edges that have a face on one side only."""
-    open_ = _boundary(faces)[:, ::-1]
-    following = dict(open_.tolist())
-    if len(following) < len(open_):
-        where = points[open_[:, 0]].mean(axis=0)
-        raise GeometryError(
-            f"the surface has {len(open_)} open edges that meet in more than pairs, around "
-            f"({where[0]:.3g}, {where[1]:.3g}, {where[2]:.3g}) m from the middle of the mesh; "
-            "repair it in the program that made it"
-        )
-    loops = []
-    while following:
-        start, vertex = next(iter(following.items()))
-        ring = [start]
-        del following[start]
-        while vertex != start:
-            if vertex not in following:
-                raise GeometryError("the open edges of the surface form no rings; are faces turned against each other?")
-            ring.append(vertex)
-            vertex = following.pop(vertex)
-        loops.append(np.array(ring))
-    return loops
-
-
-def holes_sentence(loops: list[IntArray], points: FloatArray) -> str:
-    """Return what a user must know about the holes of a surface."""
-    order = sorted(loops, key=lambda ring: -_width(points[ring]))
-    listed = "; ".join(
-        f"{_width(points[ring]):.3g} m wide ({len(ring)} edges) at "
-        f"({', '.join(f'{x:.3g}' for x in points[ring].mean(axis=0))}) m"
-        for ring in order[:_LISTED]
-    )
-    more = f" and {len(loops) - _LISTED} smaller" if len(loops) > _LISTED else ""
-    return (
-        f"the surface is not closed, it has {len(loops)} hole(s): {listed}{more}; close them in the program that made "
-        "it, or pass fill_holes=True if together they are below 1 % of the surface"
-    )
-
-
-def filled(
-    points: FloatArray, faces: IntArray, loops: list[IntArray], repairs: list[str]
-) -> tuple[FloatArray, IntArray]:
-    """Return the surface with a fan of triangles over each hole."""
-    if not loops:
-        return points, faces
-    whole = _area(points[faces])
-    extra_points, extra_faces = [], []
-    for number, ring in enumerate(loops):
-        extra_points.append(points[ring].mean(axis=0))
-        middle = np.full(len(ring), len(points) + number)
-        extra_faces.append(np.stack([ring, np.roll(ring, -1), middle], axis=1))
-    points, fans = np.concatenate([points, extra_points]), np.concatenate(extra_faces)
-    share = _area(points[fans]) / whole
-    if share > SMALL:
-        raise GeometryError(
-            f"{len(loops)} hole(s) are {percent(share)} of the surface; only up to 1 % is filled, as a larger "
-            "patch would invent part of the body: close them in the program that made the mesh"
-        )
-    repairs.append(f"filled {len(loops)} hole(s), together {percent(share)} of the surface, each with a fan")
-    return points, np.concatenate([faces, fans])
-
-
-def _area(triangles: FloatArray) -> float:
-    return float(np.linalg.norm(area_vectors(triangles), axis=1).sum())
-
-
-def _width(ring: FloatArray) -> float:
-    return float(np.linalg.norm(np.ptp(ring, axis=0)))

@@ -4,7 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from rocking.bodies.solid._piercing import DEPTH, pierced
+from rocking.bodies.solid._changes import in_words
+from rocking.bodies.solid._piercing import DEPTH, Piercing, pierced
 from rocking.bodies.solid.surfaces import area_vectors
 from rocking.conventions import BoolArray, FloatArray
 from rocking.errors import GeometryError
@@ -67,12 +68,9 @@ _REPAIR = (
 )
 
 
-def in_words(place: FloatArray, unit: str = "m") -> str:
-    """Return a place in words."""
-    return f"({', '.join(f'{round(x, 9) + 0.0:.4g}' for x in place.tolist())}) {unit}"
-
-
-def check_crossings(triangles: FloatArray, place_words: Callable[[FloatArray], str] = in_words) -> bool:
+def check_crossings(
+    triangles: FloatArray, place_words: Callable[[FloatArray], str] = in_words, found: Piercing | None = None
+) -> bool:
     """Refuse a surface that passes through itself.
 
     Every pair of faces is tried, to a millionth of the size. Beside 500 faces, chosen by their area, the surface must
@@ -80,7 +78,8 @@ def check_crossings(triangles: FloatArray, place_words: Callable[[FloatArray], s
     corners and edges of the mesh only. Not seen are such lobes where they take less than about a hundredth of the
     surface, folds within one plane, which enclose nothing, and crossings shallower than a millionth of the size.
 
-    triangles: corners of the faces of a closed, oriented surface [m]; place_words: a place [m] in the user's words.
+    triangles: corners of the faces of a closed, oriented surface [m]; place_words: a place [m] in the user's words;
+    found: where faces cross, if that is known.
     Returns whether every pair of faces could be tried; False on surfaces of which tens of millions lie side by side.
 
     >>> from rocking.bodies.solid import box
@@ -89,7 +88,7 @@ def check_crossings(triangles: FloatArray, place_words: Callable[[FloatArray], s
     """
     middle = 0.5 * (triangles.min(axis=(0, 1)) + triangles.max(axis=(0, 1)))
     centred = triangles - middle
-    found = pierced(centred)
+    found = pierced(centred) if found is None else found
     if found.pairs:
         raise GeometryError(
             f"the surface passes through itself, most plainly near {place_words(middle + found.place)}; "

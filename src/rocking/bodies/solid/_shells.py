@@ -3,8 +3,11 @@
 import numpy as np
 
 from rocking.bodies.moments import polyhedron_moments
+from rocking.bodies.solid._changes import HELP, Changes
+from rocking.bodies.solid._manifold import manifold, surface
 from rocking.bodies.solid._self_crossing import inside
-from rocking.bodies.solid.polyhedron import directed_edges
+from rocking.bodies.solid.polyhedron import directed_edges, edge_numbers
+from rocking.bodies.solid.surfaces import area_vectors
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import GeometryError
 
@@ -13,54 +16,116 @@ MOST_SHELLS = 200
 
 _PROBES, _GRID = 40, 12
 
+_TWICE = 2e-3
+"""Two shells this close, over the size, may be one surface scanned twice [-]."""
 
-def turned_consistently(faces: IntArray, repairs: list[str]) -> IntArray:
+
+def turned_consistently(faces: IntArray, changes: Changes) -> IntArray:
     """Return the faces turned so that neighbours across an edge agree.
 
     In each connected piece the smaller number of faces is turned.
     """
-    first, second, disagree = _neighbours(faces)
+    first, second, disagree = neighbours(faces)
     labels = connected(len(faces), first, second)
     flip = _parities(len(faces), first, second, disagree)
     minority = np.bincount(labels, weights=flip) > 0.5 * np.bincount(labels)
     turn = flip != minority[labels]
     if turn.any():
-        repairs.append(
+        changes.say(
             f"turned round {int(turn.sum())} of {len(faces)} faces that looked the other way than their neighbours"
         )
     return np.where(turn[:, None], faces[:, ::-1], faces)
 
 
-def oriented_shells(points: FloatArray, faces: IntArray, repairs: list[str]) -> IntArray:
-    """Return the faces with outer shells looking outward and shells inside others looking inward."""
-    labels = connected(len(faces), *_neighbours(faces)[:2])
+def oriented_shells(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[FloatArray, IntArray]:
+    """Return the surface with outer shells looking outward and shells inside others looking inward.
+
+    Shells that overlap are united; of two that lie closely one within the other and look the same way, which is what a
+    surface scanned twice looks like, the inner one goes.
+    """
+    labels = connected(len(faces), *neighbours(faces)[:2])
     count = int(labels.max()) + 1
     if count > MOST_SHELLS:
         raise GeometryError(
             f"the surface is in {count} pieces; up to {MOST_SHELLS} are read: remove the dust of the scan"
         )
-    shells = [faces[labels == i] for i in range(count)]
-    depth = _depths(points, shells)
-    volumes = [polyhedron_moments(points[shell]).mass for shell in shells]
-    wrong = [(volume < 0.0) == (level % 2 == 0) and volume != 0.0 for volume, level in zip(volumes, depth, strict=True)]
+    order = np.argsort(labels, kind="stable")
+    shells = np.split(faces[order], np.cumsum(np.bincount(labels))[:-1])
+    if count > 1:
+        within, crossing = _nested(points, shells)
+        if crossing:
+            return _united(points, shells, within, crossing, changes)
+        shells, within = _once(points, shells, within, changes)
+    else:
+        within = np.zeros((1, 1), dtype=bool)
+    depth = within.sum(axis=1)
+    volumes = np.array([polyhedron_moments(points[shell]).mass for shell in shells])
+    wrong = ((volumes < 0.0) == (depth % 2 == 0)) & (volumes != 0.0)
     turned = sum(len(shell) for shell, bad in zip(shells, wrong, strict=True) if bad)
     if turned:
-        repairs.append(f"turned {sum(wrong)} shell(s), {turned} faces, inside out")
-    cavities = sum(level % 2 for level in depth)
-    if count > 1:
-        repairs.append(
-            f"the surface has {count} separate shells, {cavities} of them cavities inside others; the rest add up"
+        changes.say(f"turned {wrong.sum()} shell(s), {turned} faces, inside out")
+    if len(shells) > 1:
+        changes.note(
+            f"the surface has {len(shells)} separate shells, {(depth % 2).sum()} of them cavities inside others; the "
+            "rest add up"
         )
-    return np.where(np.array(wrong)[labels][:, None], faces[:, ::-1], faces)
+    return points, np.concatenate([s[:, ::-1] if bad else s for s, bad in zip(shells, wrong, strict=True)])
 
 
-def _neighbours(faces: IntArray) -> tuple[IntArray, IntArray, BoolArray]:
+def _once(
+    points: FloatArray, shells: list[IntArray], within: BoolArray, changes: Changes
+) -> tuple[list[IntArray], BoolArray]:
+    """Shells without those that another one, closely about them, repeats."""
+    volumes = np.array([polyhedron_moments(points[shell]).mass for shell in shells])
+    areas = np.array([np.linalg.norm(area_vectors(points[shell]), axis=1).sum() for shell in shells])
+    gaps = (np.abs(volumes) - np.abs(volumes)[:, None]) / areas  # from inner i to outer j
+    size = float(np.ptp(points, axis=0).max())
+    twice = within & (volumes * volumes[:, None] > 0.0) & (gaps < _TWICE * size)
+    for i, j in np.argwhere(twice).tolist():
+        changes.say(
+            f"left out a shell {1000.0 * gaps[i, j]:.2g} mm within another, as of a surface scanned twice",
+            abs(abs(volumes[j]) - abs(volumes[i])),
+        )
+    keep = ~twice.any(axis=1)
+    return [shell for shell, kept in zip(shells, keep, strict=True) if kept], within[keep][:, keep]
+
+
+def _united(
+    points: FloatArray, shells: list[IntArray], within: BoolArray, crossing: list[tuple[int, int]], changes: Changes
+) -> tuple[FloatArray, IntArray]:
+    """Surface with what overlaps united, then oriented."""
+    from manifold3d import Manifold, OpType
+
+    involved = np.unique(crossing)
+    if (within[involved].sum(axis=1) % 2).any():
+        i, j = crossing[0]
+        raise GeometryError(f"shells {i} and {j} of the surface pass through each other within another one; {HELP}")
+    bodies = [_outward(points, shells[i]) for i in involved]
+    whole = Manifold.batch_boolean([manifold(points, shell) for shell in bodies], OpType.Add)
+    volumes = [polyhedron_moments(points[shell]).mass for shell in bodies]
+    # of a surface scanned twice either may be right, or what both hold, or what one of them does
+    doubt = len(bodies) * float(whole.volume()) - sum(volumes)
+    overlap = sum(volumes) - float(whole.volume())
+    changes.say(
+        f"united {len(bodies)} shells that pass through each other and share {overlap:.3g} m3",
+        doubt if doubt < 0.1 * overlap else 0.0,
+    )
+    new, joined = surface(whole)
+    rest = [shell for i, shell in enumerate(shells) if i not in involved]
+    return oriented_shells(np.concatenate([points, new]), np.concatenate([*rest, joined + len(points)]), changes)
+
+
+def _outward(points: FloatArray, shell: IntArray) -> IntArray:
+    return shell if polyhedron_moments(points[shell]).mass > 0.0 else shell[:, ::-1]
+
+
+def neighbours(faces: IntArray) -> tuple[IntArray, IntArray, BoolArray]:
     """Pairs of faces across edges that exactly two share, and whether they run along it the same way."""
     edges = directed_edges(faces)
     owner = np.tile(np.arange(len(faces)), 3)
     forward = edges[:, 0] < edges[:, 1]
-    _, inverse, counts = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
-    order = np.argsort(inverse.ravel(), kind="stable")
+    numbers = edge_numbers(faces)
+    counts, order = np.bincount(numbers), np.argsort(numbers, kind="stable")
     starts = (np.cumsum(counts) - counts)[counts == 2]
     one, two = order[starts], order[starts + 1]
     return owner[one], owner[two], forward[one] == forward[two]
@@ -93,22 +158,22 @@ def _parities(count: int, first: IntArray, second: IntArray, disagree: BoolArray
     return differs
 
 
-def _depths(points: FloatArray, shells: list[IntArray]) -> list[int]:
-    """How many other shells each lies inside."""
-    depth = []
+def _nested(points: FloatArray, shells: list[IntArray]) -> tuple[BoolArray, list[tuple[int, int]]]:
+    """Whether each shell lies inside each other one, and the pairs that pass through each other."""
+    within, crossing = np.zeros((len(shells), len(shells)), dtype=bool), []
+    boxes = np.array([[points[shell].min(axis=(0, 1)), points[shell].max(axis=(0, 1))] for shell in shells])
     for i, shell in enumerate(shells):
         numbers = np.unique(shell)
         probes = points[numbers[:: max(1, len(numbers) // _PROBES)]]
-        within = 0
         for j, other in enumerate(shells):
-            if i == j or len(np.intersect1d(numbers, other)):
+            apart = (boxes[i, 0] > boxes[j, 1]).any() or (boxes[j, 0] > boxes[i, 1]).any()
+            if i == j or apart or len(np.intersect1d(numbers, other)):
                 continue
             found = inside(probes, points[other]) | inside(probes, points[other][:, ::-1])
             if (found.any() and not found.all()) or (not found.any() and _share_room(points[shell], points[other])):
-                raise GeometryError(f"shells {i} and {j} of the surface pass through each other")
-            within += int(found.all())
-        depth.append(within)
-    return depth
+                crossing.append((i, j))
+            within[i, j] = found.all()
+    return within, crossing
 
 
 def _share_room(one: FloatArray, two: FloatArray) -> bool:

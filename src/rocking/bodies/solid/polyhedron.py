@@ -1,6 +1,7 @@
 """A closed surface of triangles, and what encloses a volume with it."""
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -49,6 +50,17 @@ class Polyhedron(Shape):
         """Corners of every triangle, shape (m, 3, 3) [m]."""
         corners: FloatArray = self.vertices[self.faces]
         return corners
+
+    @cached_property
+    def hull(self) -> Any:
+        """Convex hull, as scipy has it."""
+        from scipy.spatial import ConvexHull
+
+        return ConvexHull(self.vertices - self._middle)
+
+    @property
+    def _middle(self) -> FloatArray:
+        return 0.5 * (self.vertices.min(axis=0) + self.vertices.max(axis=0))
 
     @cached_property
     def _moments(self) -> SolidMoments:
@@ -111,6 +123,26 @@ def directed_edges(faces: IntArray) -> IntArray:
     """Return the edges of faces in the sense that each runs along them: all first ones, all second, all third."""
     edges: IntArray = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     return edges
+
+
+def numbered(pairs: IntArray) -> IntArray:
+    """Return a number for each pair of whole numbers, the same for the same pair, from 0."""
+    base = int(pairs.max(initial=0)) + 1
+    keys = pairs[:, 0] * base + pairs[:, 1]
+    numbers: IntArray = np.unique(keys, return_inverse=True)[1]
+    return numbers
+
+
+def edge_numbers(faces: IntArray) -> IntArray:
+    """Return a number for each of `directed_edges`, the same whichever way it is run along."""
+    return numbered(np.sort(directed_edges(faces), axis=1))
+
+
+def alone(faces: IntArray) -> IntArray:
+    """Return the directed edges that one face has for itself."""
+    numbers = edge_numbers(faces)
+    only: IntArray = directed_edges(faces)[np.bincount(numbers)[numbers] == 1]
+    return only
 
 
 def open_edges(faces: IntArray) -> IntArray:

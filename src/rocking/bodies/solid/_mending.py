@@ -1,0 +1,98 @@
+"""What scanners leave on a surface: dust beside it, fins on it, and noise that folds it through itself."""
+
+import numpy as np
+
+from rocking.bodies.solid._changes import HELP, Changes
+from rocking.bodies.solid._piercing import pierced
+from rocking.bodies.solid._self_crossing import check_crossings
+from rocking.bodies.solid._shells import connected, neighbours
+from rocking.bodies.solid.polyhedron import directed_edges, edge_numbers
+from rocking.bodies.solid.surfaces import area_vectors
+from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.errors import GeometryError
+
+DUST, SPECK = 1e-3, 1e-6
+"""Boxes of pieces left out over the largest one's: open pieces, closed ones [-]."""
+
+FIN = 0.05
+"""Fins are up to so much of the surface [-]."""
+
+_ROUNDS, _RELAX = 12, 0.5
+
+
+def without_dust(points: FloatArray, faces: IntArray, changes: Changes) -> IntArray:
+    """Return the faces without those of small loose pieces."""
+    labels = connected(len(points), faces[:, [0, 1]].ravel(), faces[:, [1, 2]].ravel())[faces[:, 0]]
+    _, labels = np.unique(labels, return_inverse=True)
+    count = int(labels.max()) + 1
+    if count == 1:
+        return faces
+    starts = np.flatnonzero(np.diff(np.append(-1, np.sort(labels))))
+    corners = points[faces[np.argsort(labels, kind="stable")]]
+    low = np.minimum.reduceat(corners.min(axis=1), starts)
+    high = np.maximum.reduceat(corners.max(axis=1), starts)
+    room = (high - low).prod(axis=1)
+    numbers = edge_numbers(faces)
+    is_open = np.zeros(count, dtype=bool)
+    is_open[np.tile(labels, 3)[np.bincount(numbers)[numbers] == 1]] = True
+    dust = room < np.where(is_open, DUST, SPECK) * room.max()
+    if dust.any():
+        whole = float(room[dust].sum())
+        where = (0.5 * (low + high) * room[:, None])[dust].sum(axis=0) / whole if whole else None
+        changes.say(f"left out {dust.sum()} small loose piece(s), {dust[labels].sum()} faces", whole, where)
+    return faces[~dust[labels]]
+
+
+def without_fins(points: FloatArray, faces: IntArray, changes: Changes) -> IntArray:
+    """Return the faces without sheets that stand out from edges of the rest and end in the open."""
+    numbers = edge_numbers(faces)
+    counts = np.bincount(numbers)[numbers]
+    if (counts <= 2).all():
+        return faces
+    labels = connected(len(faces), *neighbours(faces)[:2])
+    areas = np.bincount(labels, weights=np.linalg.norm(area_vectors(points[faces]), axis=1))
+    owners = np.tile(labels, 3)
+    fin = np.zeros(len(areas), dtype=bool)
+    fin[np.intersect1d(owners[counts == 1], owners[counts > 2])] = True
+    fin &= areas < FIN * areas.sum()
+    if fin.any():
+        changes.say(f"left out {fin[labels].sum()} faces that stood out from the surface like fins")
+    return faces[~fin[labels]]
+
+
+def uncrossed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[FloatArray, IntArray]:
+    """Return the surface without places where it passes through itself, smoothed there a little more each round."""
+    found = pierced(points[faces])
+    first, before, near = found.pairs, points, np.zeros(len(points), dtype=bool)
+    for _ in range(_ROUNDS if changes.allowed != "none" else 0):
+        if not found.pairs:
+            break
+        near[faces[found.faces]] = True
+        near[faces[near[faces].any(axis=1)]] = True
+        points = _smoothed(points, faces, near)
+        found = pierced(points[faces])
+    if found.pairs:
+        raise GeometryError(
+            f"the surface passes through itself, most plainly near {changes.place(found.place)}; {first} pair(s) of "
+            f"faces cross, and smoothing does not part them: what it encloses is not defined; {HELP}"
+        )
+    if first:
+        moved = np.linalg.norm(points - before, axis=1)
+        swept = np.linalg.norm(area_vectors(before[faces]), axis=1) * moved[faces].mean(axis=1)
+        changes.say(
+            f"smoothed {near.sum()} vertices where {first} pair(s) of faces crossed, by up to {1000.0 * moved.max():.2g} mm",
+            float(swept.sum()),
+            (before[faces].mean(axis=1) * swept[:, None]).sum(axis=0) / swept.sum(),
+        )
+    if not check_crossings(points[faces], changes.place, found):
+        changes.note("too many faces lie side by side to try whether all of them keep clear of each other")
+    return points, faces
+
+
+def _smoothed(points: FloatArray, faces: IntArray, which: BoolArray) -> FloatArray:
+    """Points, some of them moved half way to the mean of their neighbours."""
+    edges = directed_edges(faces[which[faces].any(axis=1)])
+    count = np.bincount(edges[:, 0], minlength=len(points))
+    sums = [np.bincount(edges[:, 0], weights=points[edges[:, 1], i], minlength=len(points)) for i in range(3)]
+    mean = np.stack(sums, axis=1) / np.maximum(count, 1)[:, None]
+    return np.where(which[:, None], points + _RELAX * (mean - points), points)
