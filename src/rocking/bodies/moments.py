@@ -143,7 +143,7 @@ def polyhedron_moments(triangles: FloatArray) -> SolidMoments:
     >>> round(6.0 * polyhedron_moments(corners[faces]).mass, 12)
     1.0
     """
-    middle = 0.5 * (triangles.min(axis=(0, 1)) + triangles.max(axis=(0, 1)))
+    middle = np.array([0.5 * (triangles[..., i].min() + triangles[..., i].max()) for i in range(3)])
     a, b, c = np.moveaxis(triangles - middle, 1, 0)
     volumes = (a * np.cross(b, c)).sum(axis=1) / 6.0
     volume = float(volumes.sum())

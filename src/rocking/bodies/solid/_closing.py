@@ -108,8 +108,7 @@ def _levelled(points: FloatArray, ring: IntArray, changes: Changes) -> tuple[Flo
     plan = np.abs(area_vectors(lowered[patch])[:, 2])
     volume = float((plan * (rim[patch][..., 2].mean(axis=1) - low)).sum())
     changes.say(
-        f"closed the open bottom, {_width(rim):.3g} m wide ({len(ring)} edges, {plan.sum():.4g} m2), by a level face at "
-        f"its lowest point and solid within; {volume:.3g} m3 lie between rim and face",
+        f"closed the open bottom, {_width(rim):.3g} m wide ({len(ring)} edges), by a level face at its lowest point",
         volume,
         lowered.mean(axis=0),
     )

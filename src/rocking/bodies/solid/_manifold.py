@@ -13,12 +13,15 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
 MOST_FACES = 200_000
-"""Surfaces of more faces are simplified where nobody says how finely [-]."""
+"""Surfaces of more faces are simplified [-]."""
 
 FINEST = 1e-4
-"""By how much of the size they are then allowed to move [-]."""
+"""By how much of the size their hull may move then [-]."""
 
-_MOST_DISTANCES = 200_000_000
+WORTH = 0.7
+"""It is done if no more than so much of the faces stays [-]."""
+
+_MOST_DISTANCES = 20_000_000
 
 
 def manifold(points: FloatArray, faces: IntArray) -> "Manifold":
@@ -45,7 +48,9 @@ def decimated(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Fl
     whole = manifold(points, faces)
     for share in (1.0, 0.5, 0.25, 0.1):
         fewer_points, fewer = surface(whole.simplify(share * bound))
-        moved = _hull_distance(points, fewer_points)
+        if len(fewer) > WORTH * len(faces):
+            return points, faces
+        moved = _hull_distance(points, fewer_points, bound)
         if moved <= bound:
             break
     else:
@@ -53,21 +58,23 @@ def decimated(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Fl
     before, after = polyhedron_moments(points[faces]), polyhedron_moments(fewer_points[fewer])
     shift = float(np.linalg.norm(after.centre - before.centre))
     changes.say(
-        f"simplified from {len(faces)} to {len(fewer)} faces, which moves the hull by {1000.0 * moved:.2g} mm and the "
+        f"simplified from {len(faces)} to {len(fewer)} faces, which moves the hull by at most {1000.0 * moved:.2g} mm and the "
         f"centre by {1000.0 * shift:.2g} mm",
         abs(after.mass - before.mass),
     )
     return fewer_points, fewer
 
 
-def _hull_distance(points: FloatArray, fewer: FloatArray) -> float:
-    """How far the hull of points reaches out of the hull of fewer of them, on as many as can be compared [m]."""
-    from scipy.spatial import ConvexHull
+def _hull_distance(points: FloatArray, fewer: FloatArray, enough: float) -> float:
+    """How far the hull of points reaches out of that of others at most, if it is more than enough [m]."""
+    from scipy.spatial import ConvexHull, cKDTree
 
     corners = points[ConvexHull(points).vertices]
-    planes = np.unique(ConvexHull(fewer).equations.round(12), axis=0)
-    step = 1 + len(corners) * len(planes) // _MOST_DISTANCES
-    most = 0.0
-    for some in np.array_split(corners[::step], 1 + len(corners) * len(planes) // step // 20_000_000):
-        most = max(most, float((some @ planes[:, :3].T + planes[:, 3]).max()))
+    near = cKDTree(fewer).query(corners)[0]
+    far = corners[near > enough]
+    most = float(near[near <= enough].max(initial=0.0))
+    if len(far):
+        planes = np.unique(ConvexHull(fewer).equations.round(12), axis=0)
+        for some in np.array_split(far, 1 + len(far) * len(planes) // _MOST_DISTANCES):
+            most = max(most, float((some @ planes[:, :3].T + planes[:, 3]).max()))
     return most

@@ -39,7 +39,7 @@ def without_dust(points: FloatArray, faces: IntArray, changes: Changes) -> IntAr
     if dust.any():
         whole = float(room[dust].sum())
         where = (0.5 * (low + high) * room[:, None])[dust].sum(axis=0) / whole if whole else None
-        changes.say(f"left out {dust.sum()} small loose piece(s), {dust[labels].sum()} faces", whole, where)
+        changes.say(f"left out {dust.sum()} loose piece(s) that hold next to nothing, {dust[labels].sum()} faces", whole, where)
     return faces[~dust[labels]]
 
 
@@ -67,8 +67,9 @@ def uncrossed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Fl
     for _ in range(_ROUNDS if changes.allowed != "none" else 0):
         if not found.pairs:
             break
-        near[faces[found.faces]] = True
-        near[faces[near[faces].any(axis=1)]] = True
+        core = np.zeros(len(points), dtype=bool)
+        core[faces[found.faces]] = True
+        near[faces[core[faces].any(axis=1)]] = True
         points = _smoothed(points, faces, near)
         found = pierced(points[faces])
     if found.pairs:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking.bodies.solid.surfaces import area_vectors
+from rocking.bodies.solid.surfaces import area_vectors, boxes
 from rocking.conventions import BoolArray, FloatArray, IntArray
 
 DEPTH = 1e-6
@@ -34,15 +34,17 @@ def pierced(triangles: FloatArray) -> Piercing:
     planes that lie in them overlap (T. Moeller, "A fast triangle-triangle intersection test", 1997), all by more than
     1e-6 of the size. Triangles in one plane do not cross, nor do those that are thinner than 1e-7 of the size.
     """
-    size = float(np.ptp(triangles, axis=(0, 1)).max())
+    low, high = boxes(triangles)
+    size = float(max(high[:, i].max() - low[:, i].min() for i in range(3)))
     doubled = area_vectors(triangles) * 2.0
     length = np.linalg.norm(doubled, axis=1)
-    longest = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
+    sides = [np.linalg.norm(triangles[:, i] - triangles[:, i - 1], axis=1) for i in range(3)]
+    longest = np.maximum(np.maximum(sides[0], sides[1]), sides[2])
     broad = length > _THINNEST * size * longest
     kept, normals = triangles[broad], doubled[broad] / length[broad, None]
     best, place, count, tried = 0.0, np.zeros(3), 0, 0
     crossed = np.zeros(len(kept), dtype=bool)
-    pairs = meeting_boxes(kept.min(axis=1), kept.max(axis=1)) if len(kept) > 1 else ()
+    pairs = meeting_boxes(low[broad], high[broad]) if len(kept) > 1 else ()
     for one, two in pairs:
         tried += len(one)
         if tried > MOST_PAIRS:
@@ -75,7 +77,8 @@ def _lines(
 def _heights(corners: FloatArray, point: FloatArray, normal: FloatArray, slack: float) -> tuple[FloatArray, BoolArray]:
     """Heights of corners over a plane, and of which triangles they lie on both sides of it."""
     heights = np.einsum("kci,ki->kc", corners - point[:, None], normal)
-    return heights, (heights.max(axis=1) > slack) & (heights.min(axis=1) < -slack)
+    above, below = heights > slack, heights < -slack
+    return heights, (above[:, 0] | above[:, 1] | above[:, 2]) & (below[:, 0] | below[:, 1] | below[:, 2])
 
 
 def _within(corners: FloatArray, heights: FloatArray, along: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -113,7 +116,6 @@ def meeting_boxes(low: FloatArray, high: FloatArray) -> Iterator[tuple[IntArray,
         right = np.concatenate([2 * two, 2 * two + 1, 2 * two, 2 * two + 1])
         one, two = left[left <= right], right[left <= right]
         bottom, top = layers[depth + 1]
-        # an axis at a time: that is what is quick
         keep = np.ones(len(one), dtype=bool)
         for low_, high_ in zip(bottom.T, top.T, strict=True):
             keep &= (low_[one] <= high_[two]) & (low_[two] <= high_[one])
@@ -129,7 +131,8 @@ def _halved(middles: FloatArray) -> IntArray:
     for depth in range(full.bit_length() - 1):
         groups = order.reshape(1 << depth, -1)
         places = padded[groups]
-        axis = np.argmax(np.ptp(places, axis=1), axis=1)
+        # an axis at a time: that is what is quick
+        axis = np.argmax([np.ptp(places[..., i], axis=1) for i in range(3)], axis=0)
         along = np.take_along_axis(places, axis[:, None, None], axis=2)[..., 0]
         order = np.take_along_axis(groups, np.argsort(along, axis=1, kind="stable"), axis=1).ravel()
     return order

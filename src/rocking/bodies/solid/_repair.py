@@ -56,8 +56,9 @@ def repaired(
     faces = _cleaned(faces, changes)
     faces = without_fins(points, without_dust(points, faces, changes), changes)
     faces = turned_consistently(faces, changes)
+    count = len(faces)
     points, faces = closed(points, faces, changes)
-    faces = turned_consistently(faces, changes)
+    faces = turned_consistently(faces, changes) if len(faces) > count else faces
     if count := len(open_edges(faces)):
         raise GeometryError(
             f"no side of the surface is the outside: {count} edges cannot be matched however the faces are turned; "

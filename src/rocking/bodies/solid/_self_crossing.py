@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking.bodies.solid._changes import in_words
 from rocking.bodies.solid._piercing import DEPTH, Piercing, pierced
-from rocking.bodies.solid.surfaces import area_vectors
+from rocking.bodies.solid.surfaces import area_vectors, boxes
 from rocking.conventions import BoolArray, FloatArray
 from rocking.errors import GeometryError
 
@@ -29,17 +29,22 @@ def winding(points: FloatArray, triangles: FloatArray) -> FloatArray:
     if not len(points):
         return result
     # an irrational nudge keeps plumb lines off edges and vertices of regular meshes
-    size = float(np.ptp(triangles, axis=(0, 1)).max())
-    nudged = points + size * 1e-10 * np.array([np.sqrt(2.0), np.sqrt(3.0), 0.0])
-    low, high = triangles[..., :2].min(axis=1), triangles[..., :2].max(axis=1)
-    start, width = low.min(axis=0), np.maximum(np.ptp(triangles[..., :2], axis=(0, 1)) / _TILES, 1e-300)
+    low, high = boxes(triangles)
+    start = np.array([low[:, i].min() for i in range(3)])
+    extent = np.array([high[:, i].max() for i in range(3)]) - start
+    nudged = points + float(extent.max()) * 1e-10 * np.array([np.sqrt(2.0), np.sqrt(3.0), 0.0])
+    start, width = start[:2], np.maximum(extent[:2] / _TILES, 1e-300)
     tile = np.floor((nudged[:, :2] - start) / width).astype(np.int64)
     order = np.lexsort(tile.T)
     cuts = np.flatnonzero(np.any(np.diff(tile[order], axis=0), axis=1)) + 1
+    column, strip = None, np.zeros(0, dtype=np.int64)
     for members in np.split(order, cuts):
         corner = start + tile[members[0]] * width
-        near = ((low <= corner + width) & (high >= corner)).all(axis=1)
-        step = max(1, _MOST_PAIRS // max(1, int(near.sum())))
+        if tile[members[0], 1] != column:
+            column = tile[members[0], 1]
+            strip = np.flatnonzero((low[:, 1] <= corner[1] + width[1]) & (high[:, 1] >= corner[1]))
+        near = strip[(low[strip, 0] <= corner[0] + width[0]) & (high[strip, 0] >= corner[0])]
+        step = max(1, _MOST_PAIRS // max(1, len(near)))
         for some in np.split(members, range(step, len(members), step)):
             result[some] = _plumbed(nudged[some], triangles[near])
     return result
@@ -86,7 +91,8 @@ def check_crossings(
     >>> check_crossings(box(1.0, 1.0, 4.0).corners)
     True
     """
-    middle = 0.5 * (triangles.min(axis=(0, 1)) + triangles.max(axis=(0, 1)))
+    low, high = boxes(triangles)
+    middle = 0.5 * np.array([low[:, i].min() + high[:, i].max() for i in range(3)])
     centred = triangles - middle
     found = pierced(centred) if found is None else found
     if found.pairs:
@@ -115,11 +121,12 @@ def _beside(triangles: FloatArray) -> FloatArray:
     generator = np.random.default_rng(0)
     vectors = area_vectors(triangles)
     areas = np.linalg.norm(vectors, axis=1)
-    usable = np.flatnonzero(areas > 1e-12 * np.ptp(triangles, axis=(0, 1)).max() ** 2)
+    size = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
+    usable = np.flatnonzero(areas > 1e-12 * size**2)
     count = min(PROBED, len(usable))
     chosen = generator.choice(usable, count, replace=False, p=areas[usable] / areas[usable].sum())
     shares = generator.dirichlet((4.0, 4.0, 4.0), count)
     on = np.einsum("kc,kci->ki", shares, triangles[chosen])
     # farther than what counts as touching
-    off = vectors[chosen] / areas[chosen, None] * (3.0 * DEPTH * float(np.ptp(triangles, axis=(0, 1)).max()))
+    off = vectors[chosen] / areas[chosen, None] * (3.0 * DEPTH * size)
     return np.concatenate([on - off, on + off])

@@ -67,7 +67,7 @@ def oriented_shells(points: FloatArray, faces: IntArray, changes: Changes) -> tu
     if len(shells) > 1:
         changes.note(
             f"the surface has {len(shells)} separate shells, {(depth % 2).sum()} of them cavities inside others; the "
-            "rest add up"
+            "rest add up: cut out what is not of the body, as the table that it stood on"
         )
     return points, np.concatenate([s[:, ::-1] if bad else s for s, bad in zip(shells, wrong, strict=True)])
 

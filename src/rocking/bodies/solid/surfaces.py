@@ -84,6 +84,13 @@ def area_vectors(triangles: FloatArray) -> FloatArray:
     return vectors
 
 
+def boxes(triangles: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return lowest and highest coordinates of each triangle."""
+    # a corner at a time, which is several times quicker than along the axis
+    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+
+
 @dataclass(frozen=True, eq=False)
 class TriangleSurface(Surface):
     """Flat triangles."""
