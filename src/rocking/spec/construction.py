@@ -154,7 +154,7 @@ def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Soli
         raise InvalidValueError(str(error)) from error
 
 
-_BESIDE_FILE = ("units", "density", "up", "repair", "base_tolerance", *KNOWN)
+_BESIDE_FILE = ("units", "density", "up", "repair", "surface", "base_tolerance", *KNOWN)
 _OF_ANGLE = (*_OUTSIDE, "slenderness_angle", "semi_diagonal", "depth", "density", "mass", "moment_of_inertia")
 
 

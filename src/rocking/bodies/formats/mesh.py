@@ -16,17 +16,22 @@ from rocking.bodies.formats.source import MOST_VERTICES, blamed, checked_file
 from rocking.bodies.solid._changes import Repair, in_words
 from rocking.bodies.solid._repair import Repaired, repaired
 from rocking.bodies.solid._resting import settled, stands, turn_onto
+from rocking.bodies.solid._skin import Surface
 from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.polyhedron import Polyhedron
 from rocking.bodies.solid.solid import BASE_TOLERANCE, Solid
-from rocking.conventions import FloatArray, IntArray
+from rocking.checks import length_unit
+from rocking.conventions import LENGTH_UNITS, FloatArray, IntArray
 from rocking.errors import BodyFileError, InvalidValueError, MissingExtraError, how_to_install
 from rocking.portable import norm, times
 
-MESH_FORMATS = ("stl", "obj", "ply", "glb")
+MESH_FORMATS = ("stl", "obj", "ply", "glb", "xyz")
 """Formats that are read, by the end of the file's name."""
 
 _UP = {"z": (0.0, 0.0, 1.0), "y": (0.0, 1.0, 0.0)}
+FEWEST_POINTS = 50
+"""Fewer points without faces are no cloud [-]."""
+
 _LOWEST, _HIGHEST = 1e-3, 300.0
 _SINGLE = 2.0**-24
 _LEAN = 5.0
@@ -39,6 +44,7 @@ def mesh_from_file(
     up: str | ArrayLike = "z",
     weld_tolerance: float | None = None,
     repair: Repair = "safe",
+    surface: Surface = "faces",
 ) -> Repaired:
     """Return the volume inside a surface mesh: welded, oriented, closed, centred; z up, with a sentence for each doubt.
 
@@ -46,7 +52,7 @@ def mesh_from_file(
     those within 1e-6 of its size.
     """
     path = Path(path)
-    scale = checks.length_unit(units)
+    scale = length_unit(units)
     turn = _turn(up)
     with blamed(path.name):
         kind = path.suffix[1:].lower()
@@ -58,7 +64,7 @@ def mesh_from_file(
             raise BodyFileError(f"cannot be opened ({error.strerror})") from error
         vertices, faces = _loaded(content, kind)
         done = repaired(
-            times(vertices * scale, turn.T), faces, weld_tolerance=weld_tolerance, repair=repair,
+            times(vertices * scale, turn.T), faces, weld_tolerance=weld_tolerance, repair=repair, surface=surface,
             place=lambda where: in_words(where @ turn / scale, units),
         )  # fmt: skip
         doubts = [*_size_doubts(done.shape, units), *_precision_doubts(vertices, kind)]
@@ -125,16 +131,18 @@ def _loaded(content: bytes, kind: str) -> tuple[FloatArray, IntArray]:
     try:
         # from memory and without a resolver: no other file is opened, whatever this one names
         scene = trimesh.load_scene(io.BytesIO(content), file_type=kind, process=False)
-        mesh = scene.to_mesh() if scene.geometry else None
-        vertices = np.array(mesh.vertices, dtype=np.float64) if mesh is not None else np.zeros((0, 3))
-        faces = np.array(mesh.faces, dtype=np.int64) if mesh is not None else np.zeros((0, 3), dtype=np.int64)
+        pieces = scene.dump()
+        vertices = np.concatenate([np.zeros((0, 3)), *(piece.vertices for piece in pieces)])
+        starts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
+        numbers = [np.asarray(getattr(piece, "faces", ())).reshape(-1, 3) for piece in pieces]
+        faces = np.concatenate([np.zeros((0, 3), dtype=np.int64), *map(np.add, numbers, starts[:-1])]).astype(np.int64)
     except Exception as error:  # trimesh lets whatever a damaged file provokes pass
         raise BodyFileError(f"is no readable {kind.upper()} mesh ({type(error).__name__})") from error
-    if not len(faces):
-        raise BodyFileError("holds no triangles")
+    if not len(faces) and len(vertices) < FEWEST_POINTS:
+        raise BodyFileError(f"holds no triangles, and {len(vertices)} points are too few for a cloud")
     if len(vertices) > 3 * MOST_VERTICES:
         raise BodyFileError(f"has {len(vertices)} vertices; a mesh may have up to {3 * MOST_VERTICES}")
-    if faces.min() < 0 or faces.max() >= len(vertices):
+    if len(faces) and (faces.min() < 0 or faces.max() >= len(vertices)):
         raise BodyFileError("has faces that name vertices it does not hold")
     return vertices, faces
 
@@ -170,10 +178,13 @@ def _check_stl(content: bytes) -> None:
 def _size_doubts(shape: Polyhedron, units: str) -> list[str]:
     box = np.ptp(shape.vertices, axis=0)
     words = " x ".join(f"{side:.4g}" for side in box)
-    if not _LOWEST <= float(box.max()) <= _HIGHEST:
-        raise BodyFileError(f"describes a body of {words} m, read in {units}; is that the file's unit?")
-    if not 0.02 <= float(box.max()) <= 30.0:
-        return [f"the body measures {words} m, read in {units}: please check the unit"]
+    size = float(box.max())
+    likely = [unit for unit in LENGTH_UNITS if 0.1 <= size * length_unit(unit) / length_unit(units) <= 10.0]
+    hint = " or ".join(f'units="{unit}"' for unit in likely)
+    if not _LOWEST <= size <= _HIGHEST:
+        raise BodyFileError(f"describes a body of {words} m, read in {units}; did you mean {hint or 'another unit'}?")
+    if not 0.02 <= size <= 30.0:
+        return [f"the body measures {words} m, read in {units}: please check the unit, {hint or 'or the file'}"]
     return []
 
 

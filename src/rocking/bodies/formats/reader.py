@@ -21,6 +21,7 @@ from rocking.bodies.formats.wkt import regions_from_wkt
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
 from rocking.bodies.solid._changes import Repair
+from rocking.bodies.solid._skin import Surface
 from rocking.bodies.solid.solid import Solid
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import BodyFileError, RockingError
@@ -33,6 +34,7 @@ class MeshOptions(TypedDict, total=False):
 
     up: str | ArrayLike | None
     repair: Repair
+    surface: Surface
     base_tolerance: float | None
 
 
@@ -92,7 +94,8 @@ def read_body(
         point if ``ground`` is not given. Of meshes ``up``, the axis that points up, "z", "y" or a direction (x, y, z)
         in the file ("z" if not given, but for GLB "y", by its specification); ``repair``, what may be mended:
         "none", "safe" (if not given: what changes at most 1 % of the volume and moves the centre by at most 0.5 % of
-        the size, open bottoms and small holes closed, folds smoothed, dust left out) or "all"; and
+        the size, open bottoms and small holes closed, folds smoothed, dust left out) or "all"; ``surface``, "faces", or
+        a skin over its points alone, "wrap" (if not given: of files that hold points alone), or their "hull"; and
         ``base_tolerance`` [m]: vertices this close to the lowest one touch the ground. A mesh that does not stand as
         it is in the file is let down from there until it rests. Of both ``mass`` [kg] and ``centre`` [m] where they are
         known, of drawings ``moment_of_inertia`` [kg m2], as for `Section`, and of meshes ``inertia`` [kg m2], as for
@@ -253,7 +256,8 @@ def _mesh(request: Request) -> Solid:
         )
     solid = solid_from_mesh(
         path, density, units=units or "m", up=up if up is not None else ("y" if by_specification else "z"),
-        repair=options.get("repair") or "safe", base_tolerance=options.get("base_tolerance"),
+        repair=options.get("repair") or "safe", surface=options.get("surface") or "faces",
+        base_tolerance=options.get("base_tolerance"),
     )  # fmt: skip
     known: dict[str, Any] = {key: options.get(key) for key in ("mass", "centre", "inertia")}
     if any(value is not None for value in known.values()):

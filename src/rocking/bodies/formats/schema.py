@@ -231,6 +231,9 @@ class MeshTable(StrictTable):
     up: Literal["z", "y"] | Triple = Field("z", description="which axis or direction of the mesh points upwards")
     weld_tolerance: Positive | None = Field(None, description="corners this close are one [unit of the file]")
     repair: Literal["none", "safe", "all"] = Field("safe", description="what may be mended, and is said")
+    surface: Literal["faces", "wrap", "hull"] = Field(
+        "faces", description="its faces, or a skin over its points, or their hull"
+    )
 
 
 class TurnTable(StrictTable):

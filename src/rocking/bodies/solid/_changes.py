@@ -22,7 +22,7 @@ MOST_SHIFT = 0.005
 """How far safe repairs together may move the centre of mass, over the size of the body [-]."""
 
 HELP = (
-    'repair="all" mends it all the same, surface="wrap" stretches a skin over its points instead, and best is to mend '
+    'repair="all" takes it all the same, surface="wrap" or surface="hull" a skin over its points instead; best is to mend '
     "it in the program that made it"
 )
 

@@ -16,6 +16,7 @@ from rocking.bodies.solid._closing import closed
 from rocking.bodies.solid._manifold import decimated
 from rocking.bodies.solid._mending import uncrossed, without_dust, without_fins
 from rocking.bodies.solid._shells import connected, oriented_shells, turned_consistently
+from rocking.bodies.solid._skin import Surface, skin
 from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.polyhedron import Polyhedron, alone, numbered, open_edges
 from rocking.conventions import FloatArray, IntArray
@@ -44,14 +45,31 @@ def repaired(
     *,
     weld_tolerance: float | None = None,
     repair: Repair = "safe",
+    surface: Surface = "faces",
     place: Callable[[FloatArray], str] = in_words,
 ) -> Repaired:
-    """Return the closed surface that triangles describe, with a sentence for every change."""
+    """Return the closed surface that triangles describe, or points alone, with a sentence for every change."""
     vertices, faces = _triangles(vertices, faces)
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     points = vertices - middle
     size = checks.length("largest dimension of the mesh", float(np.ptp(points, axis=0).max()))
     changes = Changes(repair, lambda where: place(where + middle))
+    if surface == "faces" and len(faces):
+        points, faces = _closed_surface(points, faces, weld_tolerance, size, changes)
+    else:
+        points, faces = skin(points, "wrap" if surface == "faces" else surface, changes)
+    points, faces = oriented_shells(points, faces, changes)
+    points, faces = decimated(points, faces, changes)
+    points, faces = uncrossed(points, faces, changes)
+    used, numbers = np.unique(faces, return_inverse=True)
+    shape = Polyhedron(points[used], numbers.reshape(faces.shape), simple=True)
+    _check_hull(shape)
+    return Repaired(shape, middle, changes.sentences(shape.moments(), size))
+
+
+def _closed_surface(
+    points: FloatArray, faces: IntArray, weld_tolerance: float | None, size: float, changes: Changes
+) -> tuple[FloatArray, IntArray]:
     points, faces = _welded(points, faces, weld_tolerance, size, changes)
     faces = _cleaned(faces, changes)
     faces = without_fins(points, without_dust(points, faces, changes), changes)
@@ -65,20 +83,14 @@ def repaired(
             'do more than two faces meet along them, or is the surface one-sided? surface="wrap" stretches a skin over '
             "its points instead"
         )
-    points, faces = oriented_shells(points, faces, changes)
-    points, faces = decimated(points, faces, changes)
-    points, faces = uncrossed(points, faces, changes)
-    used, numbers = np.unique(faces, return_inverse=True)
-    shape = Polyhedron(points[used], numbers.reshape(faces.shape), simple=True)
-    _check_hull(shape)
-    return Repaired(shape, middle, changes.sentences(shape.moments(), size))
+    return points, faces
 
 
 def _triangles(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
     points, numbers = checks.real_array("vertices", vertices, "m"), np.asarray(faces)
     if points.ndim != 2 or points.shape[1:] != (3,):
         raise GeometryError(f"vertices must be points (x, y, z) in m, got an array of shape {points.shape}")
-    if numbers.ndim != 2 or numbers.shape[1:] != (3,) or numbers.dtype.kind not in "iu" or not len(numbers):
+    if numbers.ndim != 2 or numbers.shape[1:] != (3,) or numbers.dtype.kind not in "iu":
         raise GeometryError(
             f"faces must be triangles, each of three vertex numbers, got {numbers.dtype} of shape {numbers.shape}"
         )
@@ -88,7 +100,7 @@ def _triangles(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntAr
         raise GeometryError(f"vertex {bad} must be finite, got {tuple(points[bad].tolist())}; is the file damaged?")
     if len(points) < 4:
         raise GeometryError(f"a closed surface has at least 4 vertices, got {len(points)}")
-    if numbers.min() < 0 or numbers.max() >= len(points):
+    if len(numbers) and (numbers.min() < 0 or numbers.max() >= len(points)):
         raise GeometryError(
             f"faces must name vertices 0 to {len(points) - 1}, got {numbers.min()} to {numbers.max()}; "
             "do the numbers start at 1, or belong to another list of vertices?"

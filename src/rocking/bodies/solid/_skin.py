@@ -1,0 +1,156 @@
+"""A closed surface over points alone: their convex hull, or a skin that follows hollows down to the width of a ball."""
+
+from typing import Literal
+
+import numpy as np
+
+from rocking.bodies.solid._changes import Changes
+from rocking.bodies.solid._shells import connected
+from rocking.bodies.solid.surfaces import area_vectors
+from rocking.conventions import BoolArray, FloatArray, IntArray, percent
+from rocking.errors import GeometryError, InvalidValueError
+
+Surface = Literal["faces", "wrap", "hull"]
+
+SURFACES: tuple[Surface, ...] = ("faces", "wrap", "hull")
+"""The faces of a mesh; a skin over its points; the convex hull of its points."""
+
+MOST_POINTS = 30_000
+"""Denser clouds are thinned, their convex hull apart [-]."""
+
+_STABLE, _GROWTH, _COVERED, _BOTTOM, _FACING = 0.01, 1.5, 0.95, 0.02, 0.7
+_JIGGLE, _CRUMB = 1e-7, 1e-2
+_OPPOSITE = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
+
+
+def skin(points: FloatArray, surface: Surface, changes: Changes) -> tuple[FloatArray, IntArray]:
+    """Return a closed, oriented surface over points."""
+    if surface not in SURFACES:
+        raise InvalidValueError(f'surface must be "faces", "wrap" or "hull", got {surface!r:.60}')
+    hull = _hull(points)
+    if surface == "hull":
+        changes.note(f"took the convex hull of its {len(points)} points, hollows filled")
+        return points, hull
+    kept = _thinned(points, np.unique(hull))
+    all_ = points
+    points = points[kept]
+    faces, volume, radius = _wrapped(points)
+    half = np.union1d(np.arange(0, len(kept), 2), np.searchsorted(kept, np.unique(hull)))
+    coarse = abs(volume - _wrapped(points[half])[1])
+    depth, area = _depth(points, faces)
+    thinned = f" of {len(all_)}" if len(kept) < len(all_) else ""
+    changes.note(
+        f"stretched a skin over {len(kept)}{thinned} points, which balls of {2000.0 * radius:.3g} mm cannot pass; the "
+        f"points lie {1000.0 * depth:.2g} mm beneath it on average, and over every second of them it would hold "
+        f"{percent(coarse / volume)} more or less",
+        coarse + area * depth,
+    )
+    return points, faces
+
+
+def _depth(points: FloatArray, faces: IntArray) -> tuple[float, float]:
+    """Mean depth of points beneath a skin over them, along the normals of its nearest corners, and its area."""
+    from scipy.spatial import cKDTree
+
+    vectors = area_vectors(points[faces])
+    normals = np.stack([np.bincount(faces.ravel(), np.repeat(v, 3), len(points)) for v in vectors.T], axis=1)
+    corners = np.flatnonzero(normals.any(axis=1))
+    nearest = corners[cKDTree(points[corners]).query(points)[1]]
+    unit = normals[nearest] / np.linalg.norm(normals[nearest], axis=1)[:, None]
+    depth = np.maximum(((points[nearest] - points) * unit).sum(axis=1), 0.0)
+    return float(depth.mean()), float(np.linalg.norm(vectors, axis=1).sum())
+
+
+def _hull(points: FloatArray) -> IntArray:
+    """Faces of the convex hull, outward."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        found = ConvexHull(points)
+    except QhullError as error:
+        raise GeometryError("the points lie in one plane, on one line or in one place: no body is among them") from error
+    faces = found.simplices.astype(np.int64)
+    a, b, c = np.moveaxis(points[faces], 1, 0)
+    inward = (np.cross(b - a, c - a) * found.equations[:, :3]).sum(axis=1) < 0.0
+    return np.where(inward[:, None], faces[:, ::-1], faces)
+
+
+def _thinned(points: FloatArray, keep: IntArray) -> IntArray:
+    """Numbers of one point a cell of a grid, and of all that must stay."""
+    kept, cell = np.unique(points, axis=0, return_index=True)[1], 1e-3 * float(np.ptp(points, axis=0).max())
+    while len(kept) > MOST_POINTS:
+        kept = np.unique(np.floor(points / cell), axis=0, return_index=True)[1]
+        cell *= 1.2
+    return np.union1d(kept, keep)
+
+
+def _wrapped(points: FloatArray) -> tuple[IntArray, float, float]:
+    """Faces, volume and radius of the ball of a skin: what is left of the hull when balls have come in from outside.
+
+    The tetrahedra between the points (Delaunay) are entered through faces that a ball passes, whose own circle is wider
+    than it (N. Amenta, M. Bern, "Surface reconstruction by Voronoi filtering", 1999, for why that follows a surface).
+    The ball is the smallest with which the skin holds all but a few points and a half wider one changes the volume by
+    less than 1 %. What looks down near the lowest point is no way in: scans are open there.
+    """
+    from scipy.spatial import Delaunay, cKDTree
+
+    size = float(np.ptp(points, axis=0).max())
+    # off one plane and one sphere, so that no cell is flat and every face has an outside
+    points = points + _JIGGLE * size * np.random.default_rng(0).uniform(-1.0, 1.0, points.shape)
+    cells = Delaunay(points)
+    corners, across = cells.simplices.astype(np.int64), cells.neighbors.astype(np.int64)
+    sides = corners[:, _OPPOSITE]  # four faces of each
+    gate = _circle(points[sides])
+    low, height = points[:, 2].min(), np.ptp(points[:, 2])
+    normal = np.cross(*np.moveaxis(points[sides[..., 1:]] - points[sides[..., :1]], 2, 0))
+    is_level = np.abs(normal[..., 2]) > _FACING * np.linalg.norm(normal, axis=2)
+    gate[(across < 0) & is_level & (points[sides][..., 2].max(axis=2) < low + _BOTTOM * height)] = 0.0
+    first = points[corners[:, 0]]
+    volumes = np.abs(np.linalg.det(points[corners[:, 1:]] - first[:, None])) / 6.0
+    spacing = float(np.quantile(cKDTree(points).query(points, 2)[0][:, 1], 0.95))
+    radius = spacing
+    before = _inside(across, gate, radius)
+    while radius < size:
+        wider = _inside(across, gate, _GROWTH * radius)
+        covered = len(np.unique(corners[before])) >= _COVERED * len(points)
+        if covered and volumes[before].sum() >= (1.0 - _STABLE) * volumes[wider].sum():
+            break
+        radius, before = _GROWTH * radius, wider
+    before = _without_crumbs(before, across, volumes)
+    return _boundary(points, corners, sides, across, before), float(volumes[before].sum()), radius
+
+
+def _circle(triangles: FloatArray) -> FloatArray:
+    """Radii of the circles through corners of triangles."""
+    a, b, c = np.moveaxis(triangles, -2, 0)
+    product = np.linalg.norm(b - a, axis=-1) * np.linalg.norm(c - b, axis=-1) * np.linalg.norm(a - c, axis=-1)
+    twice = np.linalg.norm(np.cross(b - a, c - a), axis=-1)
+    return np.divide(product, 2.0 * twice, out=np.full(product.shape, np.inf), where=twice > 0.0)
+
+
+def _inside(across: IntArray, gate: FloatArray, radius: float) -> BoolArray:
+    """Which cells a ball from outside does not reach."""
+    cell, side = np.nonzero(gate > radius)
+    to = across[cell, side]
+    labels = connected(len(across) + 1, cell, np.where(to < 0, len(across), to))
+    inside: BoolArray = labels[:-1] != labels[-1]
+    return inside
+
+
+def _without_crumbs(inside: BoolArray, across: IntArray, volumes: FloatArray) -> BoolArray:
+    """Cells inside without small groups that no face joins to the rest."""
+    cell, side = np.nonzero(inside[:, None] & (across >= 0) & inside[across])
+    labels = connected(len(across), cell, across[cell, side])
+    room = np.bincount(labels, weights=np.where(inside, volumes, 0.0))
+    kept: BoolArray = inside & (room > _CRUMB * room.max())[labels]
+    return kept
+
+
+def _boundary(points: FloatArray, corners: IntArray, sides: IntArray, across: IntArray, inside: BoolArray) -> IntArray:
+    """Faces between the cells inside and the rest, outward."""
+    other = np.where(across < 0, False, inside[across])
+    cell, side = np.nonzero(inside[:, None] & ~other)
+    faces = sides[cell, side]
+    a, b, c = np.moveaxis(points[faces], 1, 0)
+    inward = (np.cross(b - a, c - a) * (points[corners[cell, side]] - a)).sum(axis=1) > 0.0
+    return np.where(inward[:, None], faces[:, ::-1], faces)
