@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 Tables = dict[str, Any]
 
 _AS_TYPED = (
+    (re.compile(r'\bunits="(\w+)"'), r"--units \1"),
     (re.compile(r"\bunits="), "--units"),
     (re.compile(r"\b(format|time_step)="), r"--set motion.\1="),
     (re.compile(r'\b(repair|surface)="(\w+)"'), r"--set body.\1=\2"),

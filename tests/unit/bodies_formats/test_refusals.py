@@ -266,7 +266,7 @@ def test_dxf_extra_missing(tmp_path, monkeypatch):
 def test_schema_agrees_with_the_package():
     """The schema's units are the package's, and every format has a reader."""
     assert schema.UnitName.__args__ == tuple(LENGTH_UNITS)
-    assert set(FORMATS) == {".toml", ".wkt", ".geojson", ".json", ".dxf", ".stl", ".obj", ".ply", ".glb"}
+    assert set(FORMATS) == {".toml", ".wkt", ".geojson", ".json", ".dxf", ".stl", ".obj", ".ply", ".glb", ".xyz"}
     assert "not interpreted" in geojson.__doc__
 
 

@@ -134,10 +134,12 @@ def test_glb_is_read_as_its_specification_says(mesh):
     assert lying.repairs == ()
 
 
-def test_holes_are_refused_or_filled(mesh):
-    """A missing face is told with its place; a hole of less than 1 % is filled if asked for, and told."""
+def test_holes_are_refused_or_closed(mesh):
+    """A missing face of an eighth of the surface is refused with its place; a small hole is closed, and told."""
     with pytest.raises(GeometryError, match=r"a\.obj: the surface is not closed, it has 1 hole"):
-        read_body(mesh("a.obj", keep=slice(1, None)), units="m")
+        read_body(mesh("a.obj", keep=slice(1, None)), units="m", repair="none")
+    with pytest.raises(GeometryError, match=r'a\.obj: its repairs may change .* repair="all" takes it'):
+        read_body(mesh("a.obj", keep=slice(-1)), units="m")
     # a prism whose top has a corner cut off: one triangle of 0.02 m2 of 18 m2 is missing
     x = 0.5
     square = [(-x, -x), (x, -x), (x, x), (-x, x)]
@@ -147,11 +149,9 @@ def test_holes_are_refused_or_filled(mesh):
     faces = np.array([(ring[0], ring[i], ring[i + 1]) for ring in rings for i in range(1, len(ring) - 1)])
     prism = Polyhedron(points, faces)
     path = mesh("small.ply", keep=slice(0, -1), prism=prism)
-    with pytest.raises(GeometryError, match="fill_holes=True"):
-        read_body(path, units="m")
-    found = read_body(path, units="m", density=1000.0, fill_holes=True)
+    found = read_body(path, units="m", density=1000.0)
     assert found.mass == pytest.approx(4000.0, rel=1e-9)
-    assert any(sentence.startswith("filled 1 hole") for sentence in found.repairs)
+    assert any(sentence.startswith("closed 1 hole") for sentence in found.repairs)
 
 
 def test_which_reader_is_to_be_asked(tmp_path):
@@ -225,8 +225,8 @@ def test_a_toml_file_says_everything_itself(tmp_path):
     """Options for meshes are refused beside a TOML file, a unit that contradicts it too."""
     path = tmp_path / "a.toml"
     path.write_text(f'units = "m"\n{PLINTH}', encoding="utf-8")
-    with pytest.raises(BodyFileError, match="states density, up, fill_holes itself"):
-        read_body(path, density=1.0, up="z", fill_holes=True)
+    with pytest.raises(BodyFileError, match="states density, up, repair itself"):
+        read_body(path, density=1.0, up="z", repair="all")
     with pytest.raises(BodyFileError, match='states units = "m", but units = "cm" was asked for'):
         read_body(path, units="cm")
     assert read_body(path, units="m").mass == pytest.approx(16.0)
@@ -236,7 +236,7 @@ def test_what_is_no_file(tmp_path):
     """No path, another ending, options of another kind of file, a density that is none, a solid that is not wanted."""
     with pytest.raises(BodyFileError, match="given by its path"):
         read_body(3)
-    with pytest.raises(BodyFileError, match=r"must end in \.toml, \.wkt, .*\.dxf, \.stl, \.obj, \.ply, \.glb"):
+    with pytest.raises(BodyFileError, match=r"must end in \.toml, \.wkt, .*\.dxf, \.stl, \.obj, \.ply, \.glb, \.xyz"):
         read_body("a.exe")
     for name, option, words in (("a.wkt", {"up": "z"}, "takes no up"), ("a.stl", {"depth": 1.0}, "takes no depth")):
         (tmp_path / name).write_text("POLYGON ((0 0, 1 0, 1 1, 0 0))")

@@ -172,9 +172,9 @@ REFUSED = {
     "no unit": (["a.stl"], "a.stl: STL files do not state their unit; give --units, one of m, cm, mm, ft, in"),
     "unit": (["a.stl", "--units", "km"], "--units must be one of m, cm"),
     "wrong unit": (["a.stl", "--units", "m", "--density", "1"], "is that the file's unit?"),
-    "axis": (["a.stl", "--units", "mm", "--set", "body.up=x"], 'body.up must be "z" or "y"'),
-    "hole": (["hole.obj", "--units", "m"], "pass --set body.fill_holes=true if together they are below 1 %"),
-    "large hole": (["hole.obj", "--units", "m", "--set", "body.fill_holes=true"], "only up to 1 % is filled"),
+    "axis": (["a.stl", "--units", "mm", "--set", "body.up=x"], 'body.up must be "z", "y", or a direction'),
+    "hole": (["hole.obj", "--units", "m", "--set", "body.repair=none"], "--set body.repair=safe closes"),
+    "large hole": (["wide.obj", "--units", "m"], "that are safe: closed 1 hole(s)"),
     "empty": (["empty.ply", "--units", "m"], "empty.ply: "),
     "no file": (["none.stl", "--units", "m"], "none.stl: there is no such file"),
     "density nan": (["a.stl", "--units", "mm", "--density", "nan"], "density must be finite"),
@@ -204,6 +204,7 @@ def test_bad_input_gives_one_sentence_and_exit_code_2(refuses, words, sentence, 
     """Bad input: one sentence on standard error, exit code 2, no number on standard output."""
     mesh("a.stl", scale=1000.0)
     mesh("hole.obj", keep=slice(1, None))
+    mesh("wide.obj", keep=slice(0, -1))
     file("", "empty.ply")
     file(PRISM)
     file(PRISM.replace("width = 1.0", "width = -1.0"), "bad.toml")

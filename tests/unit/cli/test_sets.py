@@ -75,7 +75,7 @@ REFUSED = {
     f"fragility {SIZE} {FAMILY} --set motion.scale=2": "synthetic takes no scale; allowed beside it",
     # shapes
     f"cor {SIZE} --set body.slenderness_angle=0.2": "got --width --height --set body.slenderness_angle",
-    f"cor {SIZE} --set body.fill_holes=true": "unknown key 'fill_holes'",
+    f"cor {SIZE} --set body.repair=all": "unknown key 'repair'",
     "cor prism.toml --set body.width=2": "give a body file or dimensions, not both",
     # what only a campaign computes
     f"map {SIZE} {PULSE} --refine 1 --set map.boundary=mode": "map.boundary is for files of rocking campaign",

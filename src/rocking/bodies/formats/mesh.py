@@ -63,6 +63,7 @@ def mesh_from_file(
         except OSError as error:
             raise BodyFileError(f"cannot be opened ({error.strerror})") from error
         vertices, faces = _loaded(content, kind)
+        surface = "wrap" if surface == "faces" and not len(faces) else surface
         done = repaired(
             times(vertices * scale, turn.T), faces, weld_tolerance=weld_tolerance, repair=repair, surface=surface,
             place=lambda where: in_words(where @ turn / scale, units),
@@ -182,9 +183,11 @@ def _size_doubts(shape: Polyhedron, units: str) -> list[str]:
     likely = [unit for unit in LENGTH_UNITS if 0.1 <= size * length_unit(unit) / length_unit(units) <= 10.0]
     hint = " or ".join(f'units="{unit}"' for unit in likely)
     if not _LOWEST <= size <= _HIGHEST:
-        raise BodyFileError(f"describes a body of {words} m, read in {units}; did you mean {hint or 'another unit'}?")
+        raise BodyFileError(
+            f"describes a body of {words} m, read in {units}; is that the file's unit? {hint or 'Another'} is likelier"
+        )
     if not 0.02 <= size <= 30.0:
-        return [f"the body measures {words} m, read in {units}: please check the unit, {hint or 'or the file'}"]
+        return [f"the body measures {words} m, read in {units}: please check the unit; {hint or 'another'} is likelier"]
     return []
 
 

@@ -134,7 +134,9 @@ def _mesh(table: "schema.MeshTable", units: str, folder: Path | None, density: f
     path = beside(folder, table.file)
     own = table.units or units
     reach = None if table.weld_tolerance is None else table.weld_tolerance * length_unit(own)
-    mesh = mesh_from_file(path, units=own, up=table.up, weld_tolerance=reach, repair=table.repair, surface=table.surface)
+    mesh = mesh_from_file(
+        path, units=own, up=table.up, weld_tolerance=reach, repair=table.repair, surface=table.surface
+    )
     repairs += [f"{path.name}: {words}" for words in mesh.repairs]
     return mesh.part(density)
 

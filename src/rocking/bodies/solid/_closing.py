@@ -5,13 +5,13 @@ import numpy as np
 from rocking.bodies.solid._changes import HELP, Changes
 from rocking.bodies.solid.polyhedron import alone
 from rocking.bodies.solid.surfaces import area_vectors
-from rocking.conventions import FloatArray, IntArray
+from rocking.conventions import FloatArray, IntArray, percent
 from rocking.errors import GeometryError
 
 LOW = 0.1
 """A rim is that of the bottom if all of it lies so low, over the height of the body [-]."""
 
-_LEVEL, _LISTED, _SLIT = 0.7, 3, 1e-6
+_LEVEL, _LISTED, _SLIT, _LOOSE = 0.7, 3, 1e-6, 0.5
 
 
 def boundary_loops(faces: IntArray) -> list[IntArray]:
@@ -38,7 +38,9 @@ def boundary_loops(faces: IntArray) -> list[IntArray]:
                 del position[gone]
             del path[at + 1 :]
         if len(path) > 1:
-            raise GeometryError(f"the open edges of the surface form no rings, as more than two faces meet there; {HELP}")
+            raise GeometryError(
+                f"the open edges of the surface form no rings, as more than two faces meet there; {HELP}"
+            )
     return loops
 
 
@@ -49,6 +51,11 @@ def closed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Float
         return points, faces
     if changes.allowed == "none":
         raise GeometryError(f'{_listed(loops, points, changes)}; repair="safe" closes an open bottom and small holes')
+    if (share := sum(map(len, loops)) / (3 * len(faces))) > _LOOSE:
+        raise GeometryError(
+            f"{_listed(loops, points, changes)}; {percent(share)} of its edges are open: its faces hardly hang together; "
+            f"{HELP}"
+        )
     bottom = _bottom(points, loops)
     added, slits, patches, bound, where = [faces], 0, [], 0.0, np.zeros(3)
     for number, ring in enumerate(loops):

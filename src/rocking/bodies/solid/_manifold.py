@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking.bodies.moments import polyhedron_moments
-from rocking.bodies.solid._changes import Changes
+from rocking.bodies.solid._changes import HELP, Changes
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import GeometryError
 
@@ -30,7 +30,7 @@ def manifold(points: FloatArray, faces: IntArray) -> "Manifold":
 
     found = Manifold(Mesh64(np.ascontiguousarray(points), np.ascontiguousarray(faces, dtype=np.uint64)))
     if found.status() != Error.NoError:
-        raise GeometryError(f"the surface does not bound a volume (manifold3d: {found.status().name})")
+        raise GeometryError(f"the surface does not bound a volume (manifold3d: {found.status().name}); {HELP}")
     return found
 
 
@@ -45,7 +45,10 @@ def decimated(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Fl
     if len(faces) <= MOST_FACES or changes.allowed == "none":
         return points, faces
     bound = FINEST * float(np.ptp(points, axis=0).max())
-    whole = manifold(points, faces)
+    try:
+        whole = manifold(points, faces)
+    except GeometryError:  # faces that only touch: nothing is lost but speed
+        return points, faces
     for share in (1.0, 0.5, 0.25, 0.1):
         fewer_points, fewer = surface(whole.simplify(share * bound))
         if len(fewer) > WORTH * len(faces):

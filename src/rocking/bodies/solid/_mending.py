@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from rocking.bodies.solid._changes import HELP, Changes
+from rocking.bodies.moments import polyhedron_moments
+from rocking.bodies.solid._changes import MOST_VOLUME, Changes
 from rocking.bodies.solid._piercing import pierced
 from rocking.bodies.solid._self_crossing import check_crossings
 from rocking.bodies.solid._shells import connected, neighbours
@@ -17,7 +18,7 @@ DUST, SPECK = 1e-3, 1e-6
 FIN = 0.05
 """Fins are up to so much of the surface [-]."""
 
-_ROUNDS, _RELAX = 12, 0.5
+_ROUNDS, _RELAX, _MOST_SWEPT = 12, 0.5, 0.5
 
 
 def without_dust(points: FloatArray, faces: IntArray, changes: Changes) -> IntArray:
@@ -39,7 +40,9 @@ def without_dust(points: FloatArray, faces: IntArray, changes: Changes) -> IntAr
     if dust.any():
         whole = float(room[dust].sum())
         where = (0.5 * (low + high) * room[:, None])[dust].sum(axis=0) / whole if whole else None
-        changes.say(f"left out {dust.sum()} loose piece(s) that hold next to nothing, {dust[labels].sum()} faces", whole, where)
+        changes.say(
+            f"left out {dust.sum()} loose piece(s) that hold next to nothing, {dust[labels].sum()} faces", whole, where
+        )
     return faces[~dust[labels]]
 
 
@@ -63,7 +66,7 @@ def without_fins(points: FloatArray, faces: IntArray, changes: Changes) -> IntAr
 def uncrossed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[FloatArray, IntArray]:
     """Return the surface without places where it passes through itself, smoothed there a little more each round."""
     found = pierced(points[faces])
-    first, before, near = found.pairs, points, np.zeros(len(points), dtype=bool)
+    first, before, near = found, points, np.zeros(len(points), dtype=bool)
     for _ in range(_ROUNDS if changes.allowed != "none" else 0):
         if not found.pairs:
             break
@@ -72,16 +75,20 @@ def uncrossed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Fl
         near[faces[core[faces].any(axis=1)]] = True
         points = _smoothed(points, faces, near)
         found = pierced(points[faces])
-    if found.pairs:
+    moved = np.linalg.norm(points - before, axis=1)
+    swept = np.linalg.norm(area_vectors(before[faces]), axis=1) * moved[faces].mean(axis=1)
+    most = MOST_VOLUME if changes.allowed == "safe" else _MOST_SWEPT
+    if found.pairs or swept.sum() > most * abs(polyhedron_moments(before[faces]).mass):
         raise GeometryError(
-            f"the surface passes through itself, most plainly near {changes.place(found.place)}; {first} pair(s) of "
-            f"faces cross, and smoothing does not part them: what it encloses is not defined; {HELP}"
+            f"the surface passes through itself, most plainly near {changes.place(first.place)}; {first.pairs} pair(s) "
+            "of faces cross, more than smoothing parts: what it encloses is not defined; "
+            'surface="wrap" or surface="hull" takes a skin over its points instead; best is to repair it in the program '
+            "that made it, for instance by a boolean union"
         )
-    if first:
-        moved = np.linalg.norm(points - before, axis=1)
-        swept = np.linalg.norm(area_vectors(before[faces]), axis=1) * moved[faces].mean(axis=1)
+    if first.pairs:
         changes.say(
-            f"smoothed {near.sum()} vertices where {first} pair(s) of faces crossed, by up to {1000.0 * moved.max():.2g} mm",
+            f"smoothed {near.sum()} vertices where {first.pairs} pair(s) of faces crossed, by up to "
+            f"{1000.0 * moved.max():.2g} mm",
             float(swept.sum()),
             (before[faces].mean(axis=1) * swept[:, None]).sum(axis=0) / swept.sum(),
         )

@@ -49,15 +49,15 @@ def repaired(
     place: Callable[[FloatArray], str] = in_words,
 ) -> Repaired:
     """Return the closed surface that triangles describe, or points alone, with a sentence for every change."""
-    vertices, faces = _triangles(vertices, faces)
+    vertices, faces = _triangles(vertices, faces, surface != "faces")
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     points = vertices - middle
     size = checks.length("largest dimension of the mesh", float(np.ptp(points, axis=0).max()))
     changes = Changes(repair, lambda where: place(where + middle))
-    if surface == "faces" and len(faces):
+    if surface == "faces":
         points, faces = _closed_surface(points, faces, weld_tolerance, size, changes)
     else:
-        points, faces = skin(points, "wrap" if surface == "faces" else surface, changes)
+        points, faces = skin(points, surface, changes)
     points, faces = oriented_shells(points, faces, changes)
     points, faces = decimated(points, faces, changes)
     points, faces = uncrossed(points, faces, changes)
@@ -86,11 +86,11 @@ def _closed_surface(
     return points, faces
 
 
-def _triangles(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
+def _triangles(vertices: FloatArray, faces: IntArray, cloud: bool) -> tuple[FloatArray, IntArray]:
     points, numbers = checks.real_array("vertices", vertices, "m"), np.asarray(faces)
     if points.ndim != 2 or points.shape[1:] != (3,):
         raise GeometryError(f"vertices must be points (x, y, z) in m, got an array of shape {points.shape}")
-    if numbers.ndim != 2 or numbers.shape[1:] != (3,) or numbers.dtype.kind not in "iu":
+    if numbers.ndim != 2 or numbers.shape[1:] != (3,) or numbers.dtype.kind not in "iu" or not (len(numbers) or cloud):
         raise GeometryError(
             f"faces must be triangles, each of three vertex numbers, got {numbers.dtype} of shape {numbers.shape}"
         )

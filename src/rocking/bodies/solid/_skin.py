@@ -68,7 +68,9 @@ def _hull(points: FloatArray) -> IntArray:
     try:
         found = ConvexHull(points)
     except QhullError as error:
-        raise GeometryError("the points lie in one plane, on one line or in one place: no body is among them") from error
+        raise GeometryError(
+            "the points lie in one plane, on one line or in one place: no body is among them"
+        ) from error
     faces = found.simplices.astype(np.int64)
     a, b, c = np.moveaxis(points[faces], 1, 0)
     inward = (np.cross(b - a, c - a) * found.equations[:, :3]).sum(axis=1) < 0.0

@@ -126,18 +126,19 @@ def test_a_closed_surface_is_left_as_it_is():
 
 
 def test_small_hole():
-    """A hole of a thousandth of a sphere is filled on request, said, and costs no more than that of the volume."""
+    """A hole of a thousandth of a sphere is closed, said with its bound, and refused where no repair is wanted."""
     vertices, faces = sphere()
     whole = repaired(vertices, faces).shape.moments().mass
     keep = np.ones(len(faces), dtype=bool)
     keep[7] = False
-    with pytest.raises(GeometryError, match="fill_holes=True"):
-        repaired(vertices, faces[keep])
-    done = repaired(*triangle_soup(vertices, faces[keep]), fill_holes=True)
-    assert done.repairs[-1].startswith("filled 1 hole(s), together 0.074 %")
+    with pytest.raises(GeometryError, match=r'1 hole\(s\): .*repair="safe" closes'):
+        repaired(vertices, faces[keep], repair="none")
+    done = repaired(*triangle_soup(vertices, faces[keep]))
+    assert done.repairs[-1].startswith("closed 1 hole(s): 0.202 m wide (3 edges)")
+    assert "% of the volume" in done.repairs[-1]
     assert done.shape.moments().mass == pytest.approx(
         whole, rel=1e-12, abs=0.0
-    )  # a fan over a flat triangle is the triangle
+    )  # a patch over a flat triangle is the triangle
 
 
 def test_duplicates_and_degenerates():
@@ -155,24 +156,24 @@ FOLDED = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
 
 
 @pytest.mark.parametrize(
-    ("vertices", "faces", "fill", "words"),
+    ("vertices", "faces", "repair", "words"),
     [
-        (V, F[:-1], False, r"1 hole\(s\): 4\.12 m wide \(3 edges\)"),
-        (V, F[:-1], True, r"are 12\.\d % of the surface; only up to 1 %"),
-        (V * [1.0, 1.0, 0.0], F, False, "nothing is left between"),
-        (FOLDED, np.array([[0, 1, 2], [0, 2, 3], [1, 0, 3], [1, 3, 2]]), False, "no volume"),
-        (np.where(np.arange(24).reshape(8, 3) == 16, math.nan, V), F, False, "vertex 5 must be finite"),
+        (V, F[:-1], "none", r"1 hole\(s\): 4\.12 m wide \(3 edges\)"),
+        (V, F[:-1], "safe", r"more than the 1 % .* that are safe: closed 1 hole"),
+        (V * [1.0, 1.0, 0.0], F, "safe", "nothing is left between"),
+        (FOLDED, np.array([[0, 1, 2], [0, 2, 3], [1, 0, 3], [1, 3, 2]]), "safe", "no volume"),
+        (np.where(np.arange(24).reshape(8, 3) == 16, math.nan, V), F, "all", "vertex 5 must be finite"),
     ],
     ids=["missing face", "large hole", "sheet", "folded sheet", "nan"],
 )
-def test_what_is_no_surface(vertices, faces, fill, words):
-    """A hole is described, one of 12 % is not filled on request; sheets enclose nothing; no number is named."""
+def test_what_is_no_surface(vertices, faces, repair, words):
+    """A hole is described, one of 12 % of the surface is not safe; sheets enclose nothing; no number is named."""
     with pytest.raises(GeometryError, match=words):
-        repaired(vertices, faces, fill_holes=fill)
+        repaired(vertices, faces, repair=repair)
 
 
 def test_shells():
-    """Prisms that share an edge add up, one inside another is a cavity, crossing ones are refused."""
+    """Prisms that share an edge add up, one inside another is a cavity, crossing ones are united."""
     other = np.concatenate([F, F + 8])
     beside = repaired(np.concatenate([V, V + np.array([1.0, 1.0, 0.0])]), other)
     assert beside.shape.moments().mass == pytest.approx(8.0, rel=1e-13, abs=0.0)
@@ -180,9 +181,12 @@ def test_shells():
     hollow = repaired(np.concatenate([V, V * 0.5 + [0.0, 0.0, 1.0]]), other)
     assert hollow.shape.moments().mass == pytest.approx(3.5, rel=1e-13, abs=0.0)
     assert "1 of them cavities" in hollow.repairs[-1]
-    for shift in ([0.5, 0.5, 0.0], [0.5, 0.5, 1.0], [0.3, 0.0, 2.0]):
-        with pytest.raises(GeometryError, match="pass through each other"):
-            repaired(np.concatenate([V, V + shift]), other)
+    for shift, shared in (([0.5, 0.5, 0.0], 1.0), ([0.5, 0.5, 1.0], 0.75), ([0.3, 0.0, 2.0], 1.4)):
+        both = repaired(np.concatenate([V, V + shift]), other)
+        assert both.shape.moments().mass == pytest.approx(8.0 - shared, rel=1e-9, abs=0.0)
+        assert f"pass through each other and share {shared:.3g} m3" in both.repairs[0]
+    with pytest.raises(GeometryError, match='repair="none" refuses: united 2 shells'):
+        repaired(np.concatenate([V, V + [0.5, 0.5, 1.0]]), other, repair="none")
 
 
 @pytest.mark.parametrize("outward", [True, False], ids=["outward", "inward"])
@@ -199,7 +203,7 @@ def test_shells_inside_shells(outward):
 
 
 def test_one_sided_surface():
-    """A Moebius band has an open edge; neither it nor what a fan makes of it becomes a body."""
+    """A Moebius band has an open edge; neither it nor what a patch makes of it becomes a body."""
     count = 12
     turn = 2.0 * math.pi * np.arange(count) / count
     rim = np.stack([np.cos(turn), np.sin(turn), 0.0 * turn], axis=1)
@@ -212,9 +216,9 @@ def test_one_sided_surface():
         if j == 0:
             j, m = m, j
         faces += [(i, j, k), (j, m, k)]
-    for fill in (False, True):
+    for repair in ("none", "safe", "all"):
         with pytest.raises(GeometryError):
-            repaired(vertices, np.array(faces), fill_holes=fill)
+            repaired(vertices, np.array(faces), repair=repair)
 
 
 def test_dust():
@@ -274,20 +278,21 @@ def test_other_files(tmp_path):
     with pytest.raises(BodyFileError, match="there is no such file"):
         mesh_from_file(tmp_path / "a.stl", units="m")
     (tmp_path / "a.step").write_text("x")
-    with pytest.raises(BodyFileError, match="stl, obj, ply, glb"):
+    with pytest.raises(BodyFileError, match="stl, obj, ply, glb, xyz"):
         mesh_from_file(tmp_path / "a.step", units="m")
     (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n")
-    with pytest.raises(BodyFileError, match="no triangles"):
+    with pytest.raises(BodyFileError, match="holds no triangles, and . points are too few for a cloud"):
         mesh_from_file(tmp_path / "a.obj", units="m")
 
 
 def test_scans_stand_on_a_tolerance(tmp_path):
-    """A base that is uneven by millimetres stands on one corner by default, on all of them within a tolerance."""
+    """A base that is uneven by millimetres is let down onto three corners, or stands on all within a tolerance."""
     vertices = V.copy()
     vertices[[1, 2, 3], 2] += [0.001, 0.0015, 0.002]
     path = saved(tmp_path, vertices, F, "a.obj")
-    with pytest.raises(GeometryError, match="raise base_tolerance"):
-        solid_from_mesh(path, units="m")
+    rests = solid_from_mesh(path, units="m")
+    assert len(rests.base.vertices) == 3
+    assert rests.repairs[-1].startswith("turned by 0.")
     assert len(solid_from_mesh(path, units="m", base_tolerance=0.003).base.vertices) == 4
 
 
