@@ -19,7 +19,9 @@ def statue(rings=40, around=48):
     y = -0.03 * share[:, None] + radius * np.sin(angle)
     z = np.broadcast_to(HEIGHT * share[:, None], x.shape)
     side = np.stack([x, y, z], axis=-1)
-    vertices = np.concatenate([side.reshape(-1, 3), [side[-1].mean(axis=0) + [0.0, 0.0, 0.02]], [side[0].mean(axis=0)]])
+    ends = np.array([side[-1].mean(axis=0), side[0].mean(axis=0)])
+    ends[0, 2] += 0.02
+    vertices = np.concatenate([side.reshape(-1, 3), ends])
     a = np.arange(around * (rings - 1)).reshape(rings - 1, around)
     b = np.roll(a, -1, axis=1)
     first = np.stack([a, b, b + around], axis=-1).reshape(-1, 3)
@@ -51,6 +53,6 @@ def cubes(count, side, generator):
     corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
     faces = np.array([(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4), (2, 6, 3), (3, 6, 7), (0, 4, 2),
                       (2, 4, 6), (1, 3, 5), (3, 7, 5)])  # fmt: skip
-    places = generator.uniform(-0.3, 0.3, (count, 3)) + [0.6, 0.0, 0.4]
+    places = generator.uniform(-0.3, 0.3, (count, 3)) + np.array([0.6, 0.0, 0.4])
     vertices = (places[:, None] + side * corners).reshape(-1, 3)
     return vertices, np.concatenate([faces + 8 * i for i in range(count)])

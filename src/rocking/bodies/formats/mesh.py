@@ -132,7 +132,7 @@ def _loaded(content: bytes, kind: str) -> tuple[FloatArray, IntArray]:
     try:
         # from memory and without a resolver: no other file is opened, whatever this one names
         scene = trimesh.load_scene(io.BytesIO(content), file_type=kind, process=False)
-        pieces = scene.dump()
+        pieces: list[Any] = scene.dump()
         vertices = np.concatenate([np.zeros((0, 3)), *(piece.vertices for piece in pieces)])
         starts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
         numbers = [np.asarray(getattr(piece, "faces", ())).reshape(-1, 3) for piece in pieces]
@@ -182,12 +182,11 @@ def _size_doubts(shape: Polyhedron, units: str) -> list[str]:
     size = float(box.max())
     likely = [unit for unit in LENGTH_UNITS if 0.1 <= size * length_unit(unit) / length_unit(units) <= 10.0]
     hint = " or ".join(f'units="{unit}"' for unit in likely)
+    likelier = f"{hint or 'another'} is likelier"
     if not _LOWEST <= size <= _HIGHEST:
-        raise BodyFileError(
-            f"describes a body of {words} m, read in {units}; is that the file's unit? {hint or 'Another'} is likelier"
-        )
+        raise BodyFileError(f"describes a body of {words} m, read in {units}; is that the file's unit? {likelier}")
     if not 0.02 <= size <= 30.0:
-        return [f"the body measures {words} m, read in {units}: please check the unit; {hint or 'another'} is likelier"]
+        return [f"the body measures {words} m, read in {units}: please check the unit; {likelier}"]
     return []
 
 

@@ -22,8 +22,8 @@ MOST_SHIFT = 0.005
 """How far safe repairs together may move the centre of mass, over the size of the body [-]."""
 
 HELP = (
-    'repair="all" takes it all the same, surface="wrap" or surface="hull" a skin over its points instead; best is to mend '
-    "it in the program that made it"
+    'repair="all" takes it all the same, surface="wrap" or surface="hull" a skin over its points instead; best is to '
+    "mend it in the program that made it"
 )
 
 
@@ -78,8 +78,8 @@ class Changes:
         share, shift = sum(pair[0] for pair in bounds), sum(pair[1] for pair in bounds)
         if self.allowed != "all" and (share > MOST_VOLUME or shift > MOST_SHIFT * size):
             raise GeometryError(
-                f"its repairs may change {percent(share)} of the volume and move the centre by {1000.0 * shift:.2g} mm, "
-                f"more than the {percent(MOST_VOLUME)} and {percent(MOST_SHIFT)} of the size "
+                f"its repairs may change {percent(share)} of the volume and move the centre by "
+                f"{1000.0 * shift:.2g} mm, more than the {percent(MOST_VOLUME)} and {percent(MOST_SHIFT)} of the size "
                 f"({1000.0 * MOST_SHIFT * size:.2g} mm) that are safe: "
                 f"{'; '.join(words for words, pair in zip(listed, bounds, strict=True) if pair[0])}; {HELP}"
             )

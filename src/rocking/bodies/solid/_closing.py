@@ -53,8 +53,8 @@ def closed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Float
         raise GeometryError(f'{_listed(loops, points, changes)}; repair="safe" closes an open bottom and small holes')
     if (share := sum(map(len, loops)) / (3 * len(faces))) > _LOOSE:
         raise GeometryError(
-            f"{_listed(loops, points, changes)}; {percent(share)} of its edges are open: its faces hardly hang together; "
-            f"{HELP}"
+            f"{_listed(loops, points, changes)}; {percent(share)} of its edges are open: its faces hardly hang "
+            f"together; {HELP}"
         )
     bottom = _bottom(points, loops)
     added, slits, patches, bound, where = [faces], 0, [], 0.0, np.zeros(3)
@@ -80,7 +80,7 @@ def closed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Float
 
 
 def _listed(loops: list[IntArray], points: FloatArray, changes: Changes) -> str:
-    """What a user must know about the holes of a surface."""
+    """Say what a user must know about the holes of a surface."""
     order = sorted(loops, key=lambda ring: -_width(points[ring]))
     words = "; ".join(
         f"{_width(points[ring]):.3g} m wide ({len(ring)} edges) at {changes.place(points[ring].mean(axis=0))}"
@@ -91,7 +91,7 @@ def _listed(loops: list[IntArray], points: FloatArray, changes: Changes) -> str:
 
 
 def _bottom(points: FloatArray, loops: list[IntArray]) -> int | None:
-    """Number of the widest ring all of which lies low and about level."""
+    """Return the number of the widest ring all of which lies low and about level."""
     low, high = points[:, 2].min(), points[:, 2].max()
     plans = []
     for ring in loops:

@@ -61,8 +61,8 @@ def decimated(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Fl
     before, after = polyhedron_moments(points[faces]), polyhedron_moments(fewer_points[fewer])
     shift = float(np.linalg.norm(after.centre - before.centre))
     changes.say(
-        f"simplified from {len(faces)} to {len(fewer)} faces, which moves the hull by at most {1000.0 * moved:.2g} mm and the "
-        f"centre by {1000.0 * shift:.2g} mm",
+        f"simplified from {len(faces)} to {len(fewer)} faces, which moves the hull by at most {1000.0 * moved:.2g} mm "
+        f"and the centre by {1000.0 * shift:.2g} mm",
         abs(after.mass - before.mass),
     )
     return fewer_points, fewer
@@ -73,7 +73,7 @@ def _hull_distance(points: FloatArray, fewer: FloatArray, enough: float) -> floa
     from scipy.spatial import ConvexHull, cKDTree
 
     corners = points[ConvexHull(points).vertices]
-    near = cKDTree(fewer).query(corners)[0]
+    near = np.asarray(cKDTree(fewer).query(corners)[0])
     far = corners[near > enough]
     most = float(near[near <= enough].max(initial=0.0))
     if len(far):

@@ -43,7 +43,8 @@ def without_dust(points: FloatArray, faces: IntArray, changes: Changes) -> IntAr
         changes.say(
             f"left out {dust.sum()} loose piece(s) that hold next to nothing, {dust[labels].sum()} faces", whole, where
         )
-    return faces[~dust[labels]]
+    kept: IntArray = faces[~dust[labels]]
+    return kept
 
 
 def without_fins(points: FloatArray, faces: IntArray, changes: Changes) -> IntArray:
@@ -60,7 +61,8 @@ def without_fins(points: FloatArray, faces: IntArray, changes: Changes) -> IntAr
     fin &= areas < FIN * areas.sum()
     if fin.any():
         changes.say(f"left out {fin[labels].sum()} faces that stood out from the surface like fins")
-    return faces[~fin[labels]]
+    kept: IntArray = faces[~fin[labels]]
+    return kept
 
 
 def uncrossed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[FloatArray, IntArray]:
@@ -81,9 +83,9 @@ def uncrossed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Fl
     if found.pairs or swept.sum() > most * abs(polyhedron_moments(before[faces]).mass):
         raise GeometryError(
             f"the surface passes through itself, most plainly near {changes.place(first.place)}; {first.pairs} pair(s) "
-            "of faces cross, more than smoothing parts: what it encloses is not defined; "
-            'surface="wrap" or surface="hull" takes a skin over its points instead; best is to repair it in the program '
-            "that made it, for instance by a boolean union"
+            'of faces cross, more than smoothing parts: what it encloses is not defined; surface="wrap" or '
+            'surface="hull" takes a skin over its points instead; best is to repair it in the program that made it, '
+            "for instance by a boolean union"
         )
     if first.pairs:
         changes.say(

@@ -45,11 +45,11 @@ def pierced(triangles: FloatArray) -> Piercing:
     best, place, count, tried = 0.0, np.zeros(3), 0, 0
     crossed = np.zeros(len(kept), dtype=bool)
     pairs = meeting_boxes(low[broad], high[broad]) if len(kept) > 1 else ()
-    for one, two in pairs:
-        tried += len(one)
+    for first, second in pairs:
+        tried += len(first)
         if tried > MOST_PAIRS:
             break
-        one, two, lengths, places = _lines(kept, normals, one, two, DEPTH * size)
+        one, two, lengths, places = _lines(kept, normals, first, second, DEPTH * size)
         count += int((lengths > 0.0).sum())
         crossed[one[lengths > 0.0]] = crossed[two[lengths > 0.0]] = True
         if len(lengths) and lengths.max() > best:

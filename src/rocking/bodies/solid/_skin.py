@@ -109,8 +109,8 @@ def _wrapped(points: FloatArray) -> tuple[IntArray, float, float]:
     gate[(across < 0) & is_level & (points[sides][..., 2].max(axis=2) < low + _BOTTOM * height)] = 0.0
     first = points[corners[:, 0]]
     volumes = np.abs(np.linalg.det(points[corners[:, 1:]] - first[:, None])) / 6.0
-    spacing = float(np.quantile(cKDTree(points).query(points, 2)[0][:, 1], 0.95))
-    radius = spacing
+    beside = np.asarray(cKDTree(points).query(points, 2)[0])[:, 1]
+    radius = float(np.quantile(beside, 0.95))
     before = _inside(across, gate, radius)
     while radius < size:
         wider = _inside(across, gate, _GROWTH * radius)
@@ -127,7 +127,8 @@ def _circle(triangles: FloatArray) -> FloatArray:
     a, b, c = np.moveaxis(triangles, -2, 0)
     product = np.linalg.norm(b - a, axis=-1) * np.linalg.norm(c - b, axis=-1) * np.linalg.norm(a - c, axis=-1)
     twice = np.linalg.norm(np.cross(b - a, c - a), axis=-1)
-    return np.divide(product, 2.0 * twice, out=np.full(product.shape, np.inf), where=twice > 0.0)
+    radii: FloatArray = np.divide(product, 2.0 * twice, out=np.full(product.shape, np.inf), where=twice > 0.0)
+    return radii
 
 
 def _inside(across: IntArray, gate: FloatArray, radius: float) -> BoolArray:

@@ -60,7 +60,8 @@ class Polyhedron(Shape):
 
     @property
     def _middle(self) -> FloatArray:
-        return 0.5 * (self.vertices.min(axis=0) + self.vertices.max(axis=0))
+        middle: FloatArray = 0.5 * (self.vertices.min(axis=0) + self.vertices.max(axis=0))
+        return middle
 
     @cached_property
     def _moments(self) -> SolidMoments:

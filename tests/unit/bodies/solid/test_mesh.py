@@ -186,7 +186,7 @@ def test_shells():
         assert both.shape.moments().mass == pytest.approx(8.0 - shared, rel=1e-9, abs=0.0)
         assert f"pass through each other and share {shared:.3g} m3" in both.repairs[0]
     with pytest.raises(GeometryError, match='repair="none" refuses: united 2 shells'):
-        repaired(np.concatenate([V, V + [0.5, 0.5, 1.0]]), other, repair="none")
+        repaired(np.concatenate([V, V + np.array([0.5, 0.5, 1.0])]), other, repair="none")
 
 
 @pytest.mark.parametrize("outward", [True, False], ids=["outward", "inward"])
@@ -281,7 +281,7 @@ def test_other_files(tmp_path):
     with pytest.raises(BodyFileError, match="stl, obj, ply, glb, xyz"):
         mesh_from_file(tmp_path / "a.step", units="m")
     (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n")
-    with pytest.raises(BodyFileError, match="holds no triangles, and . points are too few for a cloud"):
+    with pytest.raises(BodyFileError, match=r"holds no triangles, and . points are too few for a cloud"):
         mesh_from_file(tmp_path / "a.obj", units="m")
 
 

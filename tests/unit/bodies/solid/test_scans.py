@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.bodies.solid import box
+from rocking.bodies.solid import _manifold, box
 from rocking.bodies.solid._changes import MOST_SHIFT, MOST_VOLUME
-from rocking.bodies.solid._manifold import MOST_FACES
 from rocking.bodies.solid._repair import repaired
 from rocking.bodies.solid._resting import settled, turn_onto
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, RockingError
@@ -52,9 +51,10 @@ def ragged(amount):
 
 
 def folded():
-    """A vertex dragged through the other side of the body."""
+    """Two neighbours of one ring that changed places and stand out: their faces cross."""
     vertices = V.copy()
-    vertices[20 * AROUND + 7, :2] *= -1.3
+    i = 20 * AROUND + 7
+    vertices[[i, i + 1]] = vertices[[i + 1, i]] * [1.02, 1.02, 1.0]
     return vertices, F
 
 
@@ -76,7 +76,9 @@ def flipped():
 
 def speckled():
     generator = np.random.default_rng(3)
-    loose = generator.uniform(-0.3, 0.3, (60, 1, 3)) + [0.0, 0.0, 0.4] + generator.normal(0.0, 2e-3, (60, 3, 3))
+    loose = (
+        generator.uniform(-0.3, 0.3, (60, 1, 3)) + np.array([0.0, 0.0, 0.4]) + generator.normal(0.0, 2e-3, (60, 3, 3))
+    )
     return joined((V, F), bad_scans.cubes(250, 1e-3, generator), (loose.reshape(-1, 3), np.arange(180).reshape(-1, 3)))
 
 
@@ -194,25 +196,26 @@ def test_clouds_in_text(tmp_path):
 def test_a_unit_is_doubted(tmp_path):
     """A body of 45 m comes in and is doubted aloud, with the unit that is likelier."""
     found = read(tmp_path / "scan.obj", 50.0 * V, F)
-    assert any('check the unit; units="cm" is likelier' in words for words in found.repairs)
+    assert any('check the unit; units="cm" or ' in words for words in found.repairs)
 
 
-def test_fewer_faces():
+def test_fewer_faces(monkeypatch):
     """A smooth scan of many faces gets fewer; hull and centre move by no more than is said."""
-    vertices, sides, bottom = bad_scans.statue(330, 320)
+    vertices, sides, bottom = bad_scans.statue(160, 160)
     faces = np.concatenate([sides, bottom])
-    assert len(faces) > MOST_FACES
+    assert len(repaired(vertices, faces).shape.faces) == len(faces)
+    monkeypatch.setattr(_manifold, "MOST_FACES", 20_000)
     done = repaired(vertices, faces)
     words = next(sentence for sentence in done.repairs if sentence.startswith("simplified"))
     hull, shift = (float(x) / 1000.0 for x in re.findall(r"by (?:at most )?([\d.e-]+) mm", words)[:2])
     assert len(done.shape.faces) < 0.7 * len(faces)
     volume, centre = bad_scans.volume_and_centre(vertices, faces)
     found = done.shape.moments()
-    assert found.mass == pytest.approx(volume, rel=stated(done.repairs)[0])
-    assert np.linalg.norm(found.centre + done.middle - centre) <= 1.01 * shift
+    assert found.mass == pytest.approx(volume, rel=1.05 * stated(done.repairs)[0])  # said in two digits
+    assert np.linalg.norm(found.centre + done.middle - centre) <= 1.05 * shift
     outer = done.shape.hull
     beyond = (vertices - 0.5 * (vertices.min(axis=0) + vertices.max(axis=0)))[::7] @ outer.equations[:, :3].T
-    assert (beyond + outer.equations[:, 3]).max() <= 1.01 * hull
+    assert (beyond + outer.equations[:, 3]).max() <= 1.05 * hull
 
 
 ROCK = Path(__file__).parents[4] / "../shared/data/scans/granite_rock.obj"
@@ -236,7 +239,7 @@ def test_let_down(tmp_path):
     column = box(0.5, 0.4, 1.0)
     askew = column.vertices @ turn_onto(np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.6, 0.8])).T
     found = read(tmp_path / "askew.obj", askew, column.faces)
-    # the ray at 36.9 degrees leaves the base, half a metre below, at .375 m, beyond half its depth: it falls on its side
+    # the ray at 36.9 degrees leaves the base's plane, half a metre below, .375 m aside, beyond half the depth: it falls
     assert found.centre[2] - found.ground == pytest.approx(0.2, rel=1e-7)
     assert any(words.startswith("does not stand as the file has it") for words in found.repairs)
     little = column.vertices @ turn_onto(np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.05, 1.0]) / np.hypot(0.05, 1.0)).T
