@@ -1,4 +1,4 @@
-"""Surface meshes through trimesh: STL, OBJ, PLY and GLB, repaired where that is safe, refused where it is not."""
+"""Surface meshes and clouds through trimesh: mended where that is safe, refused where it is not."""
 
 import io
 import math

@@ -71,7 +71,7 @@ class Request:
     def given(self, names: Iterable[str]) -> str:
         """Return which of some options were given, in words."""
         asked: dict[str, Any] = {"density": self.density, **self.options}
-        return ", ".join(name for name in names if asked.get(name) is not None and asked[name] is not False)
+        return ", ".join(name for name in names if asked.get(name) is not None)
 
 
 def read_body(
@@ -83,7 +83,7 @@ def read_body(
     ----------
     path : str or Path
         Of plane bodies a TOML body file, WKT (.wkt), GeoJSON (.geojson, .json) or DXF drawing (.dxf); of solids TOML
-        with a table [solid], or a surface mesh (.stl, .obj, .ply, .glb).
+        with a table [solid], a surface mesh (.stl, .obj, .ply, .glb), or a cloud of points (.ply, .xyz).
     units : {"m", "cm", "mm", "ft", "in"}, optional
         Unit of the coordinates: needed for WKT, GeoJSON, STL, OBJ and PLY, and for a drawing that does not state its
         unit; GLB is in m by its specification. A unit that contradicts the file is refused.

@@ -226,7 +226,7 @@ class RevolutionTable(StrictTable):
 class MeshTable(StrictTable):
     """A surface mesh in a file beside the body file."""
 
-    file: str = Field(description="STL, OBJ, PLY or GLB beside the body file")
+    file: str = Field(description="STL, OBJ, PLY, GLB or XYZ beside the body file")
     units: UnitName | None = Field(None, description="its unit, where it differs from that of the file")
     up: Literal["z", "y"] | Triple = Field("z", description="which axis or direction of the mesh points upwards")
     weld_tolerance: Positive | None = Field(None, description="corners this close are one [unit of the file]")
