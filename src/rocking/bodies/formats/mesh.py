@@ -141,8 +141,8 @@ def _loaded(content: bytes, kind: str) -> tuple[FloatArray, IntArray]:
         raise BodyFileError(f"is no readable {kind.upper()} mesh ({type(error).__name__})") from error
     if not len(faces) and len(vertices) < FEWEST_POINTS:
         raise BodyFileError(f"holds no triangles, and {len(vertices)} points are too few for a cloud")
-    if len(vertices) > 3 * MOST_VERTICES:
-        raise BodyFileError(f"has {len(vertices)} vertices; a mesh may have up to {3 * MOST_VERTICES}")
+    if len(vertices) > 10 * MOST_VERTICES:
+        raise BodyFileError(f"has {len(vertices)} vertices; a mesh may have up to {10 * MOST_VERTICES}")
     if len(faces) and (faces.min() < 0 or faces.max() >= len(vertices)):
         raise BodyFileError("has faces that name vertices it does not hold")
     return vertices, faces
