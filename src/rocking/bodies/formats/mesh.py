@@ -45,6 +45,7 @@ def mesh_from_file(
     weld_tolerance: float | None = None,
     repair: Repair = "safe",
     surface: Surface = "faces",
+    wall: float | None = None,
 ) -> Repaired:
     """Return the volume inside a surface mesh: welded, oriented, closed, centred; z up, with a sentence for each doubt.
 
@@ -65,7 +66,8 @@ def mesh_from_file(
         vertices, faces = _loaded(content, kind)
         surface = "wrap" if surface == "faces" and not len(faces) else surface
         done = repaired(
-            times(vertices * scale, turn.T), faces, weld_tolerance=weld_tolerance, repair=repair, surface=surface,
+            times(vertices * scale, turn.T), faces,
+            weld_tolerance=weld_tolerance, repair=repair, surface=surface, wall=wall,
             place=lambda where: in_words(where @ turn / scale, units),
         )  # fmt: skip
         doubts = [*_size_doubts(done.shape, units), *_precision_doubts(vertices, kind)]

@@ -35,6 +35,7 @@ class MeshOptions(TypedDict, total=False):
     up: str | ArrayLike | None
     repair: Repair
     surface: Surface
+    wall: float | None
     base_tolerance: float | None
 
 
@@ -95,11 +96,11 @@ def read_body(
         in the file ("z" if not given, but for GLB "y", by its specification); ``repair``, what may be mended:
         "none", "safe" (if not given: what changes at most 1 % of the volume and moves the centre by at most 0.5 % of
         the size, open bottoms and small holes closed, folds smoothed, dust left out) or "all"; ``surface``, "faces", or
-        a skin over its points alone, "wrap" (if not given: of files that hold points alone), or their "hull"; and
-        ``base_tolerance`` [m]: vertices this close to the lowest one touch the ground. A mesh that does not stand as
-        it is in the file is let down from there until it rests. Of both ``mass`` [kg] and ``centre`` [m] where they are
-        known, of drawings ``moment_of_inertia`` [kg m2], as for `Section`, and of meshes ``inertia`` [kg m2], as for
-        `Solid`.
+        a skin over its points alone, "wrap" (if not given: of files that hold points alone), or their "hull";
+        ``wall``, how thick it is where it is hollow [m]; and ``base_tolerance`` [m]: vertices this close to the lowest
+        one touch the ground. A mesh that does not stand as it is in the file is let down from there until it rests. Of
+        both ``mass`` [kg] and ``centre`` [m] where they are known, of drawings ``moment_of_inertia`` [kg m2], as for
+        `Section`, and of meshes ``inertia`` [kg m2], as for `Solid`.
 
     Returns
     -------
@@ -256,7 +257,7 @@ def _mesh(request: Request) -> Solid:
         )
     solid = solid_from_mesh(
         path, density, units=units or "m", up=up if up is not None else ("y" if by_specification else "z"),
-        repair=options.get("repair") or "safe", surface=options.get("surface") or "faces",
+        repair=options.get("repair") or "safe", surface=options.get("surface") or "faces", wall=options.get("wall"),
         base_tolerance=options.get("base_tolerance"),
     )  # fmt: skip
     known: dict[str, Any] = {key: options.get(key) for key in ("mass", "centre", "inertia")}

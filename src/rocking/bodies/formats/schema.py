@@ -234,6 +234,7 @@ class MeshTable(StrictTable):
     surface: Literal["faces", "wrap", "hull"] = Field(
         "faces", description="its faces, or a skin over its points, or their hull"
     )
+    wall: Positive | None = Field(None, description="how thick it is, where it is hollow [unit of the file]")
 
 
 class TurnTable(StrictTable):

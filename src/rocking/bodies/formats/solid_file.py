@@ -133,9 +133,9 @@ def _moved(part: Part, place: list[float]) -> Part:
 def _mesh(table: "schema.MeshTable", units: str, folder: Path | None, density: float, repairs: list[str]) -> Part:
     path = beside(folder, table.file)
     own = table.units or units
-    reach = None if table.weld_tolerance is None else table.weld_tolerance * length_unit(own)
+    reach, wall = (None if x is None else x * length_unit(own) for x in (table.weld_tolerance, table.wall))
     mesh = mesh_from_file(
-        path, units=own, up=table.up, weld_tolerance=reach, repair=table.repair, surface=table.surface
+        path, units=own, up=table.up, weld_tolerance=reach, repair=table.repair, surface=table.surface, wall=wall
     )
     repairs += [f"{path.name}: {words}" for words in mesh.repairs]
     return mesh.part(density)

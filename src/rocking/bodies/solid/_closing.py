@@ -113,7 +113,7 @@ def _levelled(points: FloatArray, ring: IntArray, changes: Changes) -> tuple[Flo
     skirt = skirt[(skirt != np.roll(skirt, 1, axis=1)).all(axis=1)]
     patch = _patch(lowered, _normal(lowered))
     plan = np.abs(area_vectors(lowered[patch])[:, 2])
-    volume = float((plan * (rim[patch][..., 2].mean(axis=1) - low)).sum())
+    volume = 0.0 if is_low.all() else float((plan * (rim[patch][..., 2].mean(axis=1) - low)).sum())
     changes.say(
         f"closed the open bottom, {_width(rim):.3g} m wide ({len(ring)} edges), by a level face at its lowest point",
         volume,

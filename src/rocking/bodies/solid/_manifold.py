@@ -1,4 +1,4 @@
-"""The doors to manifold3d: surfaces there and back, unions, fewer faces, sections by level planes."""
+"""The doors to manifold3d: surfaces there and back, fewer faces, hollows."""
 
 from typing import TYPE_CHECKING
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking.bodies.moments import polyhedron_moments
 from rocking.bodies.solid._changes import HELP, Changes
-from rocking.conventions import FloatArray, IntArray
+from rocking.conventions import FloatArray, IntArray, percent
 from rocking.errors import GeometryError
 
 if TYPE_CHECKING:
@@ -81,3 +81,36 @@ def _hull_distance(points: FloatArray, fewer: FloatArray, enough: float) -> floa
         for some in np.array_split(far, 1 + len(far) * len(planes) // _MOST_DISTANCES):
             most = max(most, float((some @ planes[:, :3].T + planes[:, 3]).max()))
     return most
+
+
+_ROUND, _MOST_HOLLOWED, _COARSE = 12, 2000, (0.02, 0.05, 0.1, 0.2)
+
+
+def hollowed(points: FloatArray, faces: IntArray, wall: float, changes: Changes) -> tuple[FloatArray, IntArray]:
+    """Return the surface with another one within, a wall [m] inside it: parts thinner than two walls stay solid.
+
+    The hollow is where the middle of a ball as large as the wall is thick finds room (the Minkowski difference). The ball
+    is a polyhedron, and the surface is simplified first, by up to a fifth of the wall; the ball's radius makes up for
+    both on average.
+    """
+    from manifold3d import Manifold
+
+    whole = manifold(points, faces)
+    for share in _COARSE:
+        coarse = whole.simplify(share * wall)
+        if coarse.num_tri() <= _MOST_HOLLOWED:
+            break
+    ball = Manifold.sphere(1.0, _ROUND)
+    directions = np.random.default_rng(0).normal(size=(2000, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    mean = float((directions @ surface(ball)[0].T).max(axis=1).mean())
+    sunk = (float(whole.volume()) - float(coarse.volume())) / float(whole.surface_area())
+    cavity = coarse.minkowski_difference(ball.scale([(wall - sunk) / mean] * 3))
+    inner, inward = surface(cavity)
+    if not len(inward):
+        raise GeometryError(f"a wall of {wall:.4g} m leaves nothing hollow; is that its thickness in m?")
+    void = percent(float(cavity.volume()) / float(whole.volume()))
+    changes.note(
+        f"hollow within walls of {1000.0 * wall:.3g} mm, its bottom too: {void} of it is void, to about 3 % of the rest"
+    )
+    return np.concatenate([points, inner]), np.concatenate([faces, inward[:, ::-1] + len(points)])

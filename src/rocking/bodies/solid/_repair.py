@@ -13,7 +13,7 @@ from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.solid._changes import Changes, Repair, in_words
 from rocking.bodies.solid._closing import closed
-from rocking.bodies.solid._manifold import decimated
+from rocking.bodies.solid._manifold import decimated, hollowed
 from rocking.bodies.solid._mending import uncrossed, without_dust, without_fins
 from rocking.bodies.solid._shells import connected, oriented_shells, turned_consistently
 from rocking.bodies.solid._skin import Surface, skin
@@ -46,6 +46,7 @@ def repaired(
     weld_tolerance: float | None = None,
     repair: Repair = "safe",
     surface: Surface = "faces",
+    wall: float | None = None,
     place: Callable[[FloatArray], str] = in_words,
 ) -> Repaired:
     """Return the closed surface that triangles describe, or points alone, with a sentence for every change."""
@@ -61,6 +62,8 @@ def repaired(
     points, faces = oriented_shells(points, faces, changes)
     points, faces = decimated(points, faces, changes)
     points, faces = uncrossed(points, faces, changes)
+    if wall is not None:
+        points, faces = hollowed(points, faces, checks.within("wall", wall, 0.0, 0.5 * size, unit="m"), changes)
     used, numbers = np.unique(faces, return_inverse=True)
     shape = Polyhedron(points[used], numbers.reshape(faces.shape), simple=True)
     _check_hull(shape)
