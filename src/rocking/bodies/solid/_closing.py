@@ -9,9 +9,9 @@ from rocking.conventions import FloatArray, IntArray, percent
 from rocking.errors import GeometryError
 
 LOW = 0.1
-"""A rim is that of the bottom if all of it lies so low, over the height of the body [-]."""
+"""A rim is that of a bottom if half of it lies so low, over the height of the body [-]."""
 
-_LEVEL, _LISTED, _SLIT, _LOOSE = 0.7, 3, 1e-6, 0.5
+_LEVEL, _NOTCH, _LISTED, _SLIT, _LOOSE = 0.7, 0.01, 3, 1e-6, 0.5
 
 
 def boundary_loops(faces: IntArray) -> list[IntArray]:
@@ -56,10 +56,9 @@ def closed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Float
             f"{_listed(loops, points, changes)}; {percent(share)} of its edges are open: its faces hardly hang "
             f"together; {HELP}"
         )
-    bottom = _bottom(points, loops)
     added, slits, patches, bound, where = [faces], 0, [], 0.0, np.zeros(3)
-    for number, ring in enumerate(loops):
-        if number == bottom:
+    for ring in loops:
+        if _is_bottom(points, ring):
             points, level = _levelled(points, ring, changes)
             added.append(level)
             continue
@@ -90,20 +89,27 @@ def _listed(loops: list[IntArray], points: FloatArray, changes: Changes) -> str:
     return f"the surface is not closed, it has {len(loops)} hole(s): {words}{more}"
 
 
-def _bottom(points: FloatArray, loops: list[IntArray]) -> int | None:
-    """Return the number of the widest ring all of which lies low and about level."""
-    low, high = points[:, 2].min(), points[:, 2].max()
-    plans = []
-    for ring in loops:
-        normal, top = _normal(points[ring]), points[ring][:, 2].max()
-        is_level = abs(normal[2]) >= _LEVEL * np.linalg.norm(normal) and top - low <= LOW * (high - low)
-        plans.append(abs(float(normal[2])) if is_level else 0.0)
-    widest = int(np.argmax(plans))
-    return widest if plans[widest] > 0.0 else None
+def _is_bottom(points: FloatArray, ring: IntArray) -> bool:
+    """Whether a ring is about level, and half of it lies low."""
+    low, high, normal = points[:, 2].min(), points[:, 2].max(), _normal(points[ring])
+    is_level = abs(normal[2]) >= _LEVEL * np.linalg.norm(normal)
+    return bool(is_level and np.median(points[ring, 2]) - low <= LOW * (high - low))
+
+
+def _notched(points: FloatArray, ring: IntArray) -> tuple[IntArray, IntArray]:
+    """Return a rim without the tops of its notches, and the faces that fill them."""
+    height, most = points[:, 2], np.median(points[ring, 2]) + _NOTCH * np.ptp(points[:, 2])
+    rest, ears = ring.tolist(), []
+    while len(rest) > 3 and height[top := max(rest, key=height.item)] > most:
+        at = rest.index(top)
+        ears.append((rest[at - 1], top, rest[(at + 1) % len(rest)]))
+        del rest[at]
+    return np.array(rest), np.array(ears, dtype=np.int64).reshape(-1, 3)
 
 
 def _levelled(points: FloatArray, ring: IntArray, changes: Changes) -> tuple[FloatArray, IntArray]:
     """Return points with those of a rim let down to the lowest one, and the faces down there and beneath."""
+    ring, ears = _notched(points, ring)
     low, rim = float(points[:, 2].min()), points[ring]
     lowered = rim * [1.0, 1.0, 0.0] + [0.0, 0.0, low]
     is_low = rim[:, 2] - low <= 1e-9 * float(np.ptp(points, axis=0).max())
@@ -119,7 +125,7 @@ def _levelled(points: FloatArray, ring: IntArray, changes: Changes) -> tuple[Flo
         volume,
         lowered.mean(axis=0),
     )
-    return np.concatenate([points, lowered[~is_low]]), np.concatenate([skirt, below[patch]])
+    return np.concatenate([points, lowered[~is_low]]), np.concatenate([ears, skirt, below[patch]])
 
 
 def _normal(ring: FloatArray) -> FloatArray:

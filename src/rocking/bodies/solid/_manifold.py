@@ -89,9 +89,8 @@ _ROUND, _MOST_HOLLOWED, _COARSE = 12, 2000, (0.02, 0.05, 0.1, 0.2)
 def hollowed(points: FloatArray, faces: IntArray, wall: float, changes: Changes) -> tuple[FloatArray, IntArray]:
     """Return the surface with another one within, a wall [m] inside it: parts thinner than two walls stay solid.
 
-    The hollow is where the middle of a ball as large as the wall is thick finds room (the Minkowski difference). The ball
-    is a polyhedron, and the surface is simplified first, by up to a fifth of the wall; the ball's radius makes up for
-    both on average.
+    The hollow is where a ball whose radius is the wall finds room for its middle (the Minkowski difference). The ball
+    is a polyhedron, and the surface is simplified first, by up to a fifth of the wall; the radius makes up for both.
     """
     from manifold3d import Manifold
 
@@ -110,7 +109,5 @@ def hollowed(points: FloatArray, faces: IntArray, wall: float, changes: Changes)
     if not len(inward):
         raise GeometryError(f"a wall of {wall:.4g} m leaves nothing hollow; is that its thickness in m?")
     void = percent(float(cavity.volume()) / float(whole.volume()))
-    changes.note(
-        f"hollow within walls of {1000.0 * wall:.3g} mm, its bottom too: {void} of it is void, to about 3 % of the rest"
-    )
+    changes.note(f"hollow, {void} of it, within walls of {1000.0 * wall:.3g} mm, its bottom too, right to about 3 %")
     return np.concatenate([points, inner]), np.concatenate([faces, inward[:, ::-1] + len(points)])

@@ -64,10 +64,9 @@ def repaired(
     points, faces = uncrossed(points, faces, changes)
     if wall is not None:
         points, faces = hollowed(points, faces, checks.within("wall", wall, 0.0, 0.5 * size, unit="m"), changes)
-    used, numbers = np.unique(faces, return_inverse=True)
-    shape = Polyhedron(points[used], numbers.reshape(faces.shape), simple=True)
+    shape = Polyhedron(*_used(points, faces), simple=True)
     _check_hull(shape)
-    return Repaired(shape, middle, changes.sentences(shape.moments(), size))
+    return Repaired(shape, middle, changes.sentences(shape.moments(), float(np.ptp(shape.vertices, axis=0).max())))
 
 
 def _closed_surface(
@@ -76,7 +75,7 @@ def _closed_surface(
     points, faces = _welded(points, faces, weld_tolerance, size, changes)
     faces = _cleaned(faces, changes)
     faces = without_fins(points, without_dust(points, faces, changes), changes)
-    faces = turned_consistently(faces, changes)
+    points, faces = _used(points, turned_consistently(faces, changes))
     count = len(faces)
     points, faces = closed(points, faces, changes)
     faces = turned_consistently(faces, changes) if len(faces) > count else faces
@@ -87,6 +86,11 @@ def _closed_surface(
             "its points instead"
         )
     return points, faces
+
+
+def _used(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
+    used, numbers = np.unique(faces, return_inverse=True)
+    return points[used], numbers.reshape(faces.shape)
 
 
 def _triangles(vertices: FloatArray, faces: IntArray, cloud: bool) -> tuple[FloatArray, IntArray]:
