@@ -18,7 +18,7 @@ SURFACES: tuple[Surface, ...] = ("faces", "wrap", "hull")
 MOST_POINTS = 30_000
 """Denser clouds are thinned, their convex hull apart [-]."""
 
-_STABLE, _GROWTH, _COVERED, _BOTTOM, _FACING = 0.01, 1.5, 0.95, 0.02, 0.7
+_STABLE, _GROWTH, _COVERED, _BOTTOM, _EMPTY, _SECTORS = 0.01, 1.5, 0.95, 0.02, 0.2, 24
 _JIGGLE, _CRUMB = 1e-7, 1e-2
 _OPPOSITE = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
 
@@ -27,22 +27,22 @@ def skin(points: FloatArray, surface: Surface, changes: Changes) -> tuple[FloatA
     """Return a closed, oriented surface over points."""
     if surface not in SURFACES:
         raise InvalidValueError(f'surface must be "faces", "wrap" or "hull", got {surface!r:.60}')
+    points = points if surface == "hull" else _with_bottom(points, changes)
     hull = _hull(points)
     if surface == "hull":
         changes.note(f"took the convex hull of its {len(points)} points, hollows filled")
         return points, hull
     kept = _thinned(points, np.unique(hull))
-    all_ = points
-    points = points[kept]
-    faces, volume, radius = _wrapped(points)
+    count, points = len(points), points[kept]
+    faces, volume, wider, radius = _wrapped(points)
     half = np.union1d(np.arange(0, len(kept), 2), np.searchsorted(kept, np.unique(hull)))
-    coarse = abs(volume - _wrapped(points[half])[1])
+    coarse = 2.0 * abs(volume - _wrapped(points[half])[1]) + wider - volume
     depth, area = _depth(points, faces)
-    thinned = f" of {len(all_)}" if len(kept) < len(all_) else ""
+    thinned = f" of {count}" if len(kept) < count else ""
     changes.note(
         f"stretched a skin over {len(kept)}{thinned} points, which balls of {2000.0 * radius:.3g} mm cannot pass; the "
-        f"points lie {1000.0 * depth:.2g} mm beneath it on average, and over every second of them it would hold "
-        f"{percent(coarse / volume)} more or less",
+        f"points lie {1000.0 * depth:.2g} mm beneath it on average, and a wider ball and twice as many points "
+        f"may change its volume by {percent(coarse / volume)}",
         coarse + area * depth,
     )
     return points, faces
@@ -59,6 +59,45 @@ def _depth(points: FloatArray, faces: IntArray) -> tuple[float, float]:
     unit = normals[nearest] / np.linalg.norm(normals[nearest], axis=1)[:, None]
     depth = np.maximum(((points[nearest] - points) * unit).sum(axis=1), 0.0)
     return float(depth.mean()), float(np.linalg.norm(vectors, axis=1).sum())
+
+
+def _with_bottom(points: FloatArray, changes: Changes) -> FloatArray:
+    """Points, with a level grid of them at the lowest one where they lie round an empty bottom."""
+    from scipy.spatial import Delaunay, QhullError, cKDTree
+
+    low, height = points[:, 2].min(), np.ptp(points[:, 2])
+    rim = points[points[:, 2] < low + _BOTTOM * height]
+    plan, step = rim[:, :2], 1.5 * _spacing(points)
+    try:
+        within = Delaunay(plan)
+    except (QhullError, ValueError):  # they stand on a line or a point
+        return points
+    sides = [np.arange(start, end, step) for start, end in zip(plan.min(axis=0), plan.max(axis=0), strict=True)]
+    grid = np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 2)
+    grid = grid[within.find_simplex(grid) >= 0]
+    empty = np.asarray(cKDTree(plan).query(grid)[0]) > 2.0 * step if len(grid) else np.zeros(1)
+    if empty.mean() < _EMPTY:
+        return points
+    floor = np.concatenate([plan, grid])
+    arms = plan - plan.mean(axis=0)
+    sector = ((np.arctan2(arms[:, 1], arms[:, 0]) / (2.0 * np.pi) + 0.5) * _SECTORS).astype(np.int64) % _SECTORS
+    lowest = np.full(_SECTORS, np.inf)
+    np.minimum.at(lowest, sector, rim[:, 2] - low)
+    depth = float(lowest[np.isfinite(lowest)].mean())
+    changes.say(
+        f"closed the open bottom, {float(np.linalg.norm(np.ptp(plan, axis=0))):.3g} m wide, by a level face at its "
+        "lowest point",
+        depth * len(grid) * step**2,
+        np.append(plan.mean(axis=0), low),
+    )
+    return np.unique(np.concatenate([points, np.column_stack([floor, np.full(len(floor), low)])]), axis=0)
+
+
+def _spacing(points: FloatArray) -> float:
+    """Distance to the next point that 95 in a hundred keep."""
+    from scipy.spatial import cKDTree
+
+    return float(np.quantile(np.asarray(cKDTree(points).query(points, 2)[0])[:, 1], 0.95))
 
 
 def _hull(points: FloatArray) -> IntArray:
@@ -86,15 +125,17 @@ def _thinned(points: FloatArray, keep: IntArray) -> IntArray:
     return np.union1d(kept, keep)
 
 
-def _wrapped(points: FloatArray) -> tuple[IntArray, float, float]:
-    """Faces, volume and radius of the ball of a skin: what is left of the hull when balls have come in from outside.
+def _wrapped(points: FloatArray) -> tuple[IntArray, float, float, float]:
+    """Faces and volume of a skin, the volume with a wider ball, and the ball's radius.
+
+    The skin is what is left of the hull when balls have come in from outside.
 
     The tetrahedra between the points (Delaunay) are entered through faces that a ball passes, whose own circle is wider
     than it (N. Amenta, M. Bern, "Surface reconstruction by Voronoi filtering", 1999, for why that follows a surface).
     The ball is the smallest with which the skin holds all but a few points and a half wider one changes the volume by
-    less than 1 %. What looks down near the lowest point is no way in: scans are open there.
+    less than 1 %.
     """
-    from scipy.spatial import Delaunay, cKDTree
+    from scipy.spatial import Delaunay
 
     size = float(np.ptp(points, axis=0).max())
     # off one plane and one sphere, so that no cell is flat and every face has an outside
@@ -103,15 +144,10 @@ def _wrapped(points: FloatArray) -> tuple[IntArray, float, float]:
     corners, across = cells.simplices.astype(np.int64), cells.neighbors.astype(np.int64)
     sides = corners[:, _OPPOSITE]  # four faces of each
     gate = _circle(points[sides])
-    low, height = points[:, 2].min(), np.ptp(points[:, 2])
-    normal = np.cross(*np.moveaxis(points[sides[..., 1:]] - points[sides[..., :1]], 2, 0))
-    is_level = np.abs(normal[..., 2]) > _FACING * np.linalg.norm(normal, axis=2)
-    gate[(across < 0) & is_level & (points[sides][..., 2].max(axis=2) < low + _BOTTOM * height)] = 0.0
     first = points[corners[:, 0]]
     volumes = np.abs(np.linalg.det(points[corners[:, 1:]] - first[:, None])) / 6.0
-    beside = np.asarray(cKDTree(points).query(points, 2)[0])[:, 1]
-    radius = float(np.quantile(beside, 0.95))
-    before = _inside(across, gate, radius)
+    radius = _spacing(points)
+    wider = before = _inside(across, gate, radius)
     while radius < size:
         wider = _inside(across, gate, _GROWTH * radius)
         covered = len(np.unique(corners[before])) >= _COVERED * len(points)
@@ -119,7 +155,8 @@ def _wrapped(points: FloatArray) -> tuple[IntArray, float, float]:
             break
         radius, before = _GROWTH * radius, wider
     before = _without_crumbs(before, across, volumes)
-    return _boundary(points, corners, sides, across, before), float(volumes[before].sum()), radius
+    held = float(volumes[before].sum())
+    return _boundary(points, corners, sides, across, before), held, float(volumes[wider].sum()), radius
 
 
 def _circle(triangles: FloatArray) -> FloatArray:

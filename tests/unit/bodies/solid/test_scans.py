@@ -102,8 +102,9 @@ MENDED = {
     "dust": (speckled(), "loose piece(s)"),
     "fin": (finned(), "fins"),
     "on its table": (joined((V, F), (TABLE, np.array([[0, 1, 2], [0, 2, 3]]))), "loose piece"),
-    "cloud": ((bad_scans.scattered(V, F, 8000), NONE), "skin over"),
-    "cloud with noise": ((bad_scans.scattered(V, F, 8000) + 2e-4 * RANDOM.normal(size=(8000, 3)), NONE), "skin over"),
+    "cloud": ((bad_scans.scattered(V, F, 6000), NONE), "skin over"),
+    "cloud without a bottom": ((bad_scans.scattered(V, SIDES, 6000), NONE), "closed the open bottom"),
+    "cloud with noise": ((bad_scans.scattered(V, F, 6000) + 2e-4 * RANDOM.normal(size=(6000, 3)), NONE), "skin over"),
 }
 
 
@@ -184,7 +185,7 @@ def test_every_format(kind, tmp_path):
 def test_clouds_in_text(tmp_path):
     """Lines of x y z are a cloud; three points are none; points of one plane hold no body."""
     path = tmp_path / "cloud.xyz"
-    np.savetxt(path, bad_scans.scattered(V, F, 8000), fmt="%.6f")
+    np.savetxt(path, bad_scans.scattered(V, F, 4000), fmt="%.6f")
     assert rk.read_body(path, units="m").volume == pytest.approx(VOLUME, rel=MOST_VOLUME)
     np.savetxt(path, V[:3], fmt="%.6f")
     with pytest.raises(BodyFileError, match="too few for a cloud"):
@@ -202,7 +203,7 @@ def test_a_unit_is_doubted(tmp_path):
 
 def test_fewer_faces(monkeypatch):
     """A smooth scan of many faces gets fewer; hull and centre move by no more than is said."""
-    vertices, sides, bottom = bad_scans.statue(160, 160)
+    vertices, sides, bottom = bad_scans.statue(120, 120)
     faces = np.concatenate([sides, bottom])
     assert len(repaired(vertices, faces).shape.faces) == len(faces)
     monkeypatch.setattr(_manifold, "MOST_FACES", 20_000)
