@@ -131,7 +131,7 @@ def _wrapped(points: FloatArray) -> tuple[IntArray, float, float, float]:
     The skin is what is left of the hull when balls have come in from outside.
 
     The tetrahedra between the points (Delaunay) are entered through faces that a ball passes, whose own circle is wider
-    than it (N. Amenta, M. Bern, "Surface reconstruction by Voronoi filtering", 1999, for why that follows a surface).
+    than it (J.-D. Boissonnat, "Geometric structures for three-dimensional shape representation", 1984).
     The ball is the smallest with which the skin holds all but a few points and a half wider one changes the volume by
     less than 1 %.
     """
