@@ -168,17 +168,12 @@ def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | So
         raise InvalidValueError(f"names the file {table['file']!r:.60}, but a body cannot name files here")
     path = inputs.file(table["file"])
     _note_outlines(tables_in(path) or {}, str(Path(table["file"]).parent), inputs)
-<<<<<<< HEAD
-    if options.get("base_tolerance") is not None:
-        options["base_tolerance"] *= length_unit(options.get("units") or "m")
-    if isinstance(options.get("centre"), list):
-        scale = length_unit(options.get("units") or "m")
-        options["centre"] = [checks.number("centre", value, "m") * scale for value in options["centre"]]
-=======
+    length = length_unit(options.get("units") or "m")
     for key in ("base_tolerance", "wall"):
         if options.get(key) is not None:
-            options[key] *= length_unit(options.get("units") or "m")
->>>>>>> 8e0cb22 (Hollow meshes: wall= by manifold3d's Minkowski difference, its coarseness made up for)
+            options[key] *= length
+    if isinstance(options.get("centre"), list):
+        options["centre"] = [checks.number("centre", value, "m") * length for value in options["centre"]]
     return read_body(path, **options)
 
 

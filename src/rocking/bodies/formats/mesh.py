@@ -19,11 +19,12 @@ from rocking.bodies.solid._resting import settled, stands, turn_onto
 from rocking.bodies.solid._skin import Surface
 from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.polyhedron import Polyhedron
+from rocking.bodies.solid.shape import vector
 from rocking.bodies.solid.solid import BASE_TOLERANCE, Solid
 from rocking.checks import length_unit
 from rocking.conventions import LENGTH_UNITS, FloatArray, IntArray
 from rocking.errors import BodyFileError, InvalidValueError, MissingExtraError, how_to_install
-from rocking.portable import norm, times
+from rocking.portable import applied, norm, times
 
 MESH_FORMATS = ("stl", "obj", "ply", "glb", "xyz")
 """Formats that are read, by the end of the file's name."""
@@ -92,25 +93,38 @@ def solid_from_mesh(
     units: str,
     base: ArrayLike | None = None,
     base_tolerance: float | None = None,
+    mass: float | None = None,
+    centre: ArrayLike | None = None,
+    inertia: ArrayLike | None = None,
     **options: Any,
 ) -> Solid:
     """Return the body that a surface mesh describes, standing, with what was repaired.
 
     It stands as it is in the file if its centre lies above the points that touch the ground; otherwise it is let down
     from there until it rests. base: points (x, y) that it stands on as it is in the file [m]; base_tolerance: vertices
-    this close to the lowest one touch the ground [m].
+    this close to the lowest one touch the ground [m]; mass [kg], centre [m] and inertia [kg m2], where they are known,
+    as the mesh is before it is let down.
     """
     path = Path(path)
     mesh = mesh_from_file(path, units=units, **options)
     with blamed(path.name):
         part, said = mesh.part(density), mesh.repairs
         tolerance = base_tolerance or BASE_TOLERANCE * float(np.ptp(part.box(), axis=0).max())
-        points, centre = mesh.shape.vertices, mesh.shape.moments().centre
-        if base is None and not stands(points, centre, checks.positive("base_tolerance", tolerance, "m")):
-            turn = settled(mesh.shape.hull.points[mesh.shape.hull.vertices], centre)
+        points, place = mesh.shape.vertices, mesh.shape.moments().centre
+        if centre is not None:
+            place = vector("centre", centre) - mesh.middle
+        if base is None and not stands(points, place, checks.positive("base_tolerance", tolerance, "m")):
+            turn = settled(mesh.shape.hull.points[mesh.shape.hull.vertices], place)
             part = Part(mesh.shape, density, rotation=turn, translation=mesh.middle)
-            said = (*said, _settled_words(turn, float(part.moments().centre[2] - part.box()[0, 2])))
-        solid = Solid(part, base=base, ground=float(part.box()[0, 2]), base_tolerance=base_tolerance)
+            place = applied(turn, place)
+            if inertia is not None:
+                tensor = checks.real_array("inertia", inertia, "kg m2")
+                inertia = times(times(turn, np.diag(tensor) if tensor.shape == (3,) else tensor), turn.T)
+            said = (*said, _settled_words(turn, float((place + mesh.middle)[2] - part.box()[0, 2])))
+        solid = Solid(
+            part, base=base, ground=float(part.box()[0, 2]), base_tolerance=base_tolerance,
+            mass=mass, centre=None if centre is None else place + mesh.middle, inertia=inertia,
+        )  # fmt: skip
     solid.name, solid.repairs = path.name, said
     return solid
 

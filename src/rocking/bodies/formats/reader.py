@@ -258,14 +258,9 @@ def _mesh(request: Request) -> Solid:
     solid = solid_from_mesh(
         path, density, units=units or "m", up=up if up is not None else ("y" if by_specification else "z"),
         repair=options.get("repair") or "safe", surface=options.get("surface") or "faces", wall=options.get("wall"),
-        base_tolerance=options.get("base_tolerance"),
+        base_tolerance=options.get("base_tolerance"), mass=options.get("mass"), centre=options.get("centre"),
+        inertia=options.get("inertia"),
     )  # fmt: skip
-    known: dict[str, Any] = {key: options.get(key) for key in ("mass", "centre", "inertia")}
-    if any(value is not None for value in known.values()):
-        name, repairs = solid.name, solid.repairs
-        with blamed(path.name):
-            solid = Solid(solid.parts, base=solid.base, ground=solid.ground, **known)
-        solid.name, solid.repairs = name, repairs
     if taken:
         solid.repairs = (f"read {' and '.join(taken)}, as the specification of GLB says", *solid.repairs)
     return solid

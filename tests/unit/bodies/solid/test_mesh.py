@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rocking.bodies.formats.mesh import mesh_from_file, solid_from_mesh
-from rocking.bodies.solid import Polyhedron, box
+from rocking.bodies.solid import Polyhedron, box, rotation_about
 from rocking.bodies.solid._repair import WELD, repaired
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError
 
@@ -294,6 +294,23 @@ def test_scans_stand_on_a_tolerance(tmp_path):
     assert len(rests.base.vertices) == 3
     assert rests.repairs[-1].startswith("turned by 0.")
     assert len(solid_from_mesh(path, units="m", base_tolerance=0.003).base.vertices) == 4
+
+
+def test_what_is_known_is_let_down_with_the_mesh(tmp_path):
+    """A known centre beyond the base lays the prism on its side; it is told as the file stands, inertia likewise."""
+    path = saved(tmp_path, V, F, "a.obj")
+    assert solid_from_mesh(path, units="m", centre=(0.4, 0.1, 2.5)).centre == pytest.approx([0.4, 0.1, 2.5])
+    leaning = rotation_about([0.0, 1.0, 0.0], 0.5)
+    path = saved(tmp_path, V @ leaning.T, F, "b.obj")
+    local, moments = np.array([0.2, 0.1, 2.5]), np.diag([4500.0, 4200.0, 700.0])
+    known = {"centre": leaning @ local, "inertia": leaning @ moments @ leaning.T, "mass": 3000.0}
+    lying = solid_from_mesh(path, units="m", **known)  # OBJ has eight digits
+    assert (lying.mass, lying.centre[2] - lying.ground) == pytest.approx((3000.0, 0.5 - 0.2), rel=1e-7)
+    assert np.sort(np.linalg.eigvalsh(lying.inertia)) == pytest.approx([700.0, 4200.0, 4500.0], rel=1e-7)
+    assert lying.inertia[2, 2] == pytest.approx(4500.0, rel=1e-7)
+    assert "let down from there" in lying.repairs[-1]
+    upright = solid_from_mesh(path, units="m")
+    assert upright.centre[2] - upright.ground != pytest.approx(0.3, rel=1e-2)
 
 
 def test_a_tetrahedron_loses_its_doubled_face_alone():
