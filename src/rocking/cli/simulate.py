@@ -64,7 +64,6 @@ def simulate(
     scale: options.Scale = 1.0,
     friction: Annotated[float | None, options.key(ResponseTable, "friction")] = None,
     bounce: Annotated[float | None, options.key(ResponseTable, "bounce")] = None,
-    bounce_law: Annotated[str | None, options.key(ResponseTable, "bounce_law")] = None,
     width: options.Width = None,
     height: options.Height = None,
     depth: options.Depth = None,
@@ -101,7 +100,7 @@ def simulate(
 
 def _problem(arguments: Arguments) -> "ResponseProblem":
     body, motions = arguments.body_and_motions()
-    names = ("free", "friction", "bounce", "bounce_law")
+    names = ("free", "friction", "bounce")
     response = arguments.table("response", {name: arguments.options[name] for name in names})
     free = "free" in response
     if free and motions:
