@@ -251,11 +251,12 @@ class ContactAnswer:
         if law.restitution is not None:
             left, right = law.restitution
             imposed = f"r = {right:.6f}" if left == right else f"left r = {left:.6f}, right r = {right:.6f}"
+        of_law = "" if law.bounce_law == "newton" else f" ({law.bounce_law})"
         return [
             ("body", f"{type(body).__name__}, {body.mass:.4g} kg"),
             *assumed_rows(body),
             ("motion", _moved(self.response)),
-            ("contact", f"friction {law.friction:g}, {given_or_assumed(law.friction)}; bounce {law.bounce:g}"),
+            ("contact", f"friction {law.friction:g}, {given_or_assumed(law.friction)}; bounce {law.bounce:g}{of_law}"),
             ("restitution", imposed),
         ]
 
