@@ -11,8 +11,10 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from rocking.bodies.equilibria import base_tolerances, equilibria
+from rocking.bodies.equilibria.poses import set_down
 from rocking.bodies.moments import polyhedron_moments
-from rocking.bodies.solid import Solid, box, cone, cylinder, ellipsoid, extrusion, rotation_about
+from rocking.bodies.solid import Part, Solid, box, cone, cylinder, ellipsoid, extrusion, rotation_about
+from rocking.bodies.solid.base import hull as hull_of
 from rocking.conventions import g
 from rocking.errors import GeometryError, InvalidValueError
 
@@ -210,10 +212,90 @@ def test_straight_barriers_against_the_height_along_the_way():
             turn = np.array([math.cos(azimuth), math.sin(azimuth), 0.0]) @ pose.rotation
             angle = np.linspace(0.0, 2.0 * math.pi, 8_001)
             way = found.height(np.cos(angle)[:, None] * pose.down + np.sin(angle)[:, None] * turn) - pose.height
-            # up to a place from which the body settles in the pose that it is said to topple into
-            crests = np.flatnonzero((way[1:-1] >= way[:-2]) & (way[1:-1] > way[2:])) + 1
-            tops = np.maximum.accumulate(way[crests])
-            assert np.abs(tops - rise).min() < 1e-5
+            # up to the first valley from which the body settles in another pose
+            valleys = np.flatnonzero((way[1:-1] <= way[:-2]) & (way[1:-1] < way[2:])) + 1
+            ends = [found.settling(math.cos(angle[v]) * pose.down + math.sin(angle[v]) * turn) for v in valleys]
+            first = next(v for v, end in zip(valleys.tolist(), ends, strict=True) if end is not pose)
+            assert abs(way[:first].max() - rise) < 1e-5
+            assert found.toppled(pose, azimuth) is ends[valleys.tolist().index(first)]
+
+
+@pytest.mark.verifies("closed form", "the centre over an edge by a hair", within="1e-9")
+def test_the_pose_that_a_body_stands_in_counts():
+    """However shallow, beside round parts too: the nearest edge and the rise by hand; a pole stands on its end."""
+    leaning = Solid(
+        [box(0.48, 0.40, 1.1), Part(ellipsoid(0.1, 0.1, 0.2), translation=(0.0, 0.0, 1.1))],
+        centre=(0.23, 0.03, 0.67),
+        mass=100.0,
+    )
+    found = leaning.equilibria()
+    pose = found.settling((0.0, 0.0, -1.0))
+    assert pose.height == pytest.approx(0.67, rel=1e-9)
+    assert pose.uplift_acceleration(0.0) == pytest.approx(g * 0.01 / 0.67, rel=1e-9)
+    assert pose.barrier == pytest.approx(math.hypot(0.67, 0.01) - 0.67, rel=1e-6)
+    pole = Solid(cylinder(0.05, 3.0))
+    assert pole.settled().centre[2] == pytest.approx(1.5, rel=1e-9)
+    # the negative control: without the pose that it stands in the body would lie down
+    lying = equilibria(found.hull_vertices, found.centre, found.mass, least_barrier=found.least_barrier)
+    assert lying.settling((0.0, 0.0, -1.0)).height < 0.3
+
+
+@pytest.mark.verifies("invariant", "the points within each tolerance, and the base that a solid finds for itself")
+def test_base_tolerances_count_points_inside_the_hull():
+    """A bottom that bulges between three feet: points near the ground are those of the surface, not of its hull."""
+    turns = np.linspace(0.0, 2.0 * math.pi, 25)[:-1]
+    rim = np.stack([0.3 * np.cos(turns), 0.25 * np.sin(turns), np.full(24, 0.0012)], axis=1)
+    feet = np.array([[0.2, 0.0, 0.0], [-0.1, 0.17, 0.0], [-0.1, -0.17, 0.0]])
+    top = rim * [0.8, 0.9, 1.0] + [0.02, 0.01, 1.0]
+    low = rim * [0.98, 0.98, 0.8]
+    corners = np.concatenate([rim, feet, top])
+    for tolerance, points in ((0.0, feet), (0.001, np.concatenate([feet, low])), (0.002, np.concatenate([feet, rim]))):
+        whole = equilibria(np.concatenate([corners, low]), (0.01, 0.0, 0.5), 100.0)
+        (row,) = base_tolerances(whole, tolerances=[tolerance])
+        assert row.points >= len(points)
+        polygon = hull_of(points[:, :2])
+        assert row.edge_distance == pytest.approx(polygon.margin(np.array([0.01, 0.0])), rel=1e-6)
+
+
+@pytest.mark.verifies("behaviour")
+def test_a_base_of_its_own_is_said():
+    """A body on feet inside of its facet: the numbers are those of the facet, and the notes say so."""
+    on_feet = Solid([box(1.0, 1.0, 2.0)], base=[(-0.2, -0.2), (0.2, -0.2), (0.2, 0.2), (-0.2, 0.2)])
+    assert any("base of its own" in note for note in on_feet.equilibria().notes)
+    assert not any("base of its own" in note for note in Solid([box(1.0, 1.0, 2.0)]).equilibria().notes)
+
+
+@pytest.mark.verifies("invariant", "the transpose times the rotation", within="1e-12")
+def test_upside_down_is_a_rotation_too():
+    """Near the turn by 180 degrees nothing is lost to a difference of nearly equal numbers."""
+    for tilt in (0.0, 1e-12, 6e-8, 1e-6, 1e-4, 0.1, 2.0, math.pi):
+        for azimuth in (0.0, 0.7, 2.0):
+            level, up = math.sin(tilt), math.cos(tilt)
+            turn = set_down(np.array([level * math.cos(azimuth), level * math.sin(azimuth), up]))
+            assert np.abs(turn @ turn.T - np.eye(3)).max() < 1e-12
+            assert np.linalg.det(turn) == pytest.approx(1.0, rel=1e-12)
+
+
+@pytest.mark.verifies("damage")
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        (lambda f, p: f.settling((0.0, 0.0, 0.0)), "down must be"),
+        (lambda f, p: f.settling((math.nan, 0.0, -1.0)), "down must be"),
+        (lambda f, p: f.settling((0.0, -1.0)), "down must be"),
+        (lambda f, p: f.height((0.0, 0.0, 0.0)), "down must be"),
+        (lambda f, p: p.uplift_acceleration(math.nan), "azimuth must be"),
+        (lambda f, p: f.barrier(p, math.nan), "azimuth must be"),
+        (lambda f, p: f.barrier(0, 0.0), "pose must be one of the stable poses"),
+        (lambda f, p: f.neighbours(Solid(box(1.4, 2.0, 5.0)).equilibria().stable[0]), "pose must be one"),
+        (lambda f, p: Solid(box(1.0, 2.0, 3.0)).settled(0), "pose must be one"),
+    ],
+)
+def test_what_is_no_direction_and_no_pose_is_refused(call, says):
+    """One sentence, no number."""
+    found = Solid(box(1.0, 2.0, 3.0)).equilibria()
+    with pytest.raises(InvalidValueError, match=says):
+        call(found, found.stable[0])
 
 
 @pytest.mark.verifies("invariant", "the height at the start")

@@ -95,9 +95,10 @@ class Known:
     def assumed(self) -> tuple[str, ...]:
         """What had to be assumed beside, in words."""
         spread = (
-            "distribution of mass assumed by ked and horizontal-momentum: even in each quarter about the centre of "
+            "distribution of mass assumed by ked and horizontal-momentum, whatever the outline: even in each quarter "
+            "of the bounding box about the centre of mass, drawn together or put into its corners as far as the moment "
+            "of inertia asks"
         )
-        spread += "mass, drawn together or put into the corners as far as the moment of inertia asks"
         if self.moment_of_inertia is not None:
             return (spread,)
         return (

@@ -3,11 +3,12 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking.bodies import Section, Solid
+from rocking.bodies import Block, Section, Solid
 from rocking.bodies.equilibria import TOLERANCES, BaseTolerance, Equilibria, StablePose, base_tolerances
 from rocking.cli import options
 from rocking.cli.arguments import Arguments, hinted
@@ -47,11 +48,12 @@ def equilibria(
     arguments = Arguments(context, "body")
     with hinted(body, None):
         subject, _ = body_of(arguments, body)
-    if isinstance(subject, Section):
+    if isinstance(subject, (Block, Section)):
         subject = Solid.from_section(subject)
+        subject.name = Path(body or "").name
     if not isinstance(subject, Solid):
         raise InvalidValueError(
-            "equilibria are those of a body in space: give a mesh, or a file with [[solid.part]] tables"
+            "equilibria are those of a body in space: give a mesh, a file with [[solid.part]], or a block or a section"
         )
     found = subject.equilibria(least_barrier=least_barrier)
     deliver(EquilibriaAnswer(subject, found, arguments.length or "m"), exports, as_json=as_json)
@@ -142,6 +144,8 @@ class EquilibriaAnswer:
         ways = "one way" if len(found.stable) == 1 else f"{len(found.stable)} ways"
         page.line(
             f"It can stand in {ways}; between them lie {len(found.saddles)} saddles and {len(found.summits)} summits."
+            if found.saddles
+            else f"It can stand in {ways}."
         )
         for ring in found.rings:
             what = "rolls" if ring.kind == "stable" else "can be balanced"

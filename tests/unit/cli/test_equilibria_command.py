@@ -60,6 +60,16 @@ def test_files(run, file, tmp_path):
     assert len(list(csv.DictReader(table.read_text("utf-8").splitlines()))) == 6
 
 
-def test_a_plane_body_is_refused(refuses, file):
+def test_a_block_is_extruded(run, file):
+    """Over its depth, under the name of its file; points of mass have no surface."""
+    code, out, _ = run(file('units = "m"\n[block]\nwidth = 1.0\nheight = 4.0\ndepth = 2.0\n'), "--json")
+    assert code == 0
+    told = json.loads(out)
+    assert (len(told["stable"]), told["saddles"], told["summits"]) == (6, 12, 8)
+    assert [pose["height_m"] for pose in told["stable"]] == pytest.approx([0.5, 0.5, 1.0, 1.0, 2.0, 2.0])
+
+
+def test_points_of_mass_are_refused(refuses, file):
     """Equilibria are those of a body in space."""
-    refuses((file('units = "m"\n[block]\nwidth = 1.0\nheight = 4.0\n'),), "equilibria are those of a body in space")
+    points = "[mass_points]\npoints = [[0.1, 0.4], [0.5, 1.7]]\nmasses = [30, 55]\nfeet = [0, 0.6]\n"
+    refuses((file(f'units = "m"\n{points}'),), "equilibria are those of a body in space")

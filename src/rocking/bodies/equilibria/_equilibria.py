@@ -16,15 +16,19 @@ from rocking.bodies.equilibria.poses import (
     Pass,
     Ring,
     StablePose,
+    azimuths,
     tilt_towards,
     tilted,
 )
 from rocking.conventions import FloatArray, IntArray, g
 from rocking.errors import InvalidValueError
+from rocking.portable import norm
 
 Path = Literal["straight", "lowest"]
 _CLOSE = 1e-9
 _SHALLOW = 1e-3
+_SAME = 1e-6
+_MANY = 100
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +77,7 @@ class Equilibria:
     notes: tuple[str, ...]
     least_barrier: float
     hull: Polytope = field(repr=False)
+    surface: FloatArray = field(repr=False)  # points of the surface, from the centre, shape (n, 3) [m]
     basins: dict[int, int] = field(repr=False)  # the pose to which every stable facet leads
     links: tuple[tuple[int, int, Equilibrium], ...] = field(
         repr=False
@@ -101,8 +106,7 @@ class Equilibria:
         ndarray, shape (...)
             Heights over the ground [m].
         """
-        towards = checks.real_array("down", down)
-        unit = towards / np.linalg.norm(towards, axis=-1, keepdims=True)
+        unit = _directions(down)
         flat, corners = unit.reshape(-1, 3), self.hull.vertices.T
         step = max(1, 4_000_000 // corners.shape[1])
         parts = [(flat[i : i + step] @ corners).max(axis=1) for i in range(0, len(flat), step)]  # Eq. 242
@@ -127,8 +131,10 @@ class Equilibria:
         InvalidValueError
             If the body rests on a ring there.
         """
-        unit = checks.real_array("down", down)
-        basin = self._basin(unit / np.linalg.norm(unit))
+        unit = _directions(down)
+        if unit.shape != (3,):
+            raise InvalidValueError(f"down must be one direction of three numbers, got the shape {unit.shape}")
+        basin = self._basin(unit)
         if basin >= len(self.stable):
             raise InvalidValueError("the body comes to rest on a ring of poses there, in none of the isolated ones")
         return self.stable[basin]
@@ -146,6 +152,7 @@ class Equilibria:
         tuple of Pass
             The lowest to each neighbour, the lowest first; rings of stable poses count on after the stable poses.
         """
+        self._check(pose)
         found: dict[int, Pass] = {}
         for *ends, saddle in self.links:
             if pose.number in ends:
@@ -171,6 +178,8 @@ class Equilibria:
         InvalidValueError
             If both are the same pose.
         """
+        self._check(start)
+        self._check(end)
         return self._lowest(start, end.number)
 
     def barrier(self, pose: StablePose, azimuth: ArrayLike, *, path: Path = "straight") -> FloatArray:
@@ -197,7 +206,8 @@ class Equilibria:
         """
         if path not in ("straight", "lowest"):
             raise InvalidValueError(f'path must be "straight" or "lowest", got {path!r}')
-        angles = checks.real_array("azimuth", azimuth, "rad")
+        angles = azimuths(azimuth)
+        self._check(pose)
         rises = [self._over(pose, angle, path) for angle in angles.ravel().tolist()]
         return np.array(rises).reshape(angles.shape)
 
@@ -216,8 +226,17 @@ class Equilibria:
         StablePose or None
             The first other pose; None if it rolls on a ring or back.
         """
+        self._check(pose)
         end = self._straight(pose, checks.number("azimuth", azimuth, "rad"))[1]
         return None if end >= len(self.stable) or end == pose.number else self.stable[end]
+
+    def _check(self, pose: StablePose) -> None:
+        known: object = pose
+        if isinstance(known, StablePose) and known.number < len(self.stable):
+            own = self.stable[known.number]
+            if norm(own.down - known.down) < _SAME and math.isclose(own.height, known.height, rel_tol=1e-6):
+                return
+        raise InvalidValueError(f"pose must be one of the stable poses of these equilibria, got {pose!r:.60}")
 
     def _over(self, pose: StablePose, azimuth: float, path: Path) -> float:
         rise, end = self._straight(pose, azimuth)
@@ -262,7 +281,13 @@ class Equilibria:
 
 
 def equilibria(
-    points: ArrayLike, centre: ArrayLike, mass: float, *, faces: IntArray | None = None, least_barrier: float = 0.0
+    points: ArrayLike,
+    centre: ArrayLike,
+    mass: float,
+    *,
+    faces: IntArray | None = None,
+    least_barrier: float = 0.0,
+    standing: ArrayLike | None = None,
 ) -> Equilibria:
     """Return all equilibria of a body of which the surface, the centre of mass and the mass are known.
 
@@ -281,7 +306,10 @@ def equilibria(
         is convex is its own hull, and the answer comes sooner.
     least_barrier : float
         Stable poses from which a smaller rise of the centre leads into a lower one are not poses of their own, and
-        summits that stand out by less no summits [m].
+        summits that stand out by less no summits [m]. Facets of more than 100 corners, which are flats of round
+        bodies, are left as they are.
+    standing : array_like, shape (3,), optional
+        Direction that is downward now: the facet there stays a pose, however little it takes to leave it [-].
 
     Returns
     -------
@@ -316,22 +344,28 @@ def equilibria(
             f"the centre of mass {middle.tolist()} m must lie inside the convex hull of the points: it is "
             f"{-hull.heights.min():.3g} m outside; are both in the same frame and unit?"
         )
-    return _found(hull, middle, kilograms, least)
+    down = None if standing is None else _directions(standing)
+    return _found(hull, middle, kilograms, least, surface - middle, down)
 
 
-def _found(hull: Polytope, centre: FloatArray, mass: float, least: float) -> Equilibria:
+def _found(
+    hull: Polytope, centre: FloatArray, mass: float, least: float, surface: FloatArray, down: FloatArray | None
+) -> Equilibria:
     facets = _by_height(np.flatnonzero(hull.stable), hull.heights)
     tops = np.linalg.norm(hull.feet, axis=1)
     edges = _by_height(np.flatnonzero(hull.saddles), tops)
     reach = np.linalg.norm(hull.vertices, axis=1)
     corners = _by_height(np.flatnonzero(hull.summits), -reach)[::-1]
     ends = [[hull.rolled(int(side)) for side in hull.sides[edge]] for edge in edges]
-    leads, cut = _simplified(facets, hull.heights, edges, tops, ends, least)
+    always = {each for each in facets.tolist() if least > 0.0 and len(hull.corners(each)) > _MANY}
+    if down is not None:
+        always |= {each for each in facets.tolist() if norm(np.cross(hull.normals[each], down)) < _SAME}
+    leads, cut = _simplified(facets, hull.heights, edges, tops, ends, least, always=always)
     kept_facets = [facet for facet in facets.tolist() if leads[facet] == facet]
     kept_edges = [edge for edge in edges.tolist() if edge not in cut]
     if least > 0.0:
         rising = [[hull.climbed(int(end)) for end in hull.ends[edge]] for edge in kept_edges]
-        rests, cut = _simplified(corners, -reach, np.array(kept_edges[::-1]), -tops, rising[::-1], least)
+        rests, cut = _simplified(corners, -reach, np.array(kept_edges[::-1]), -tops, rising[::-1], least, always=set())
         corners = np.array([corner for corner in corners.tolist() if rests[corner] == corner])
         kept_edges = [edge for edge in kept_edges if edge not in cut]
     number = {facet: i for i, facet in enumerate(kept_facets)}
@@ -354,8 +388,18 @@ def _found(hull: Polytope, centre: FloatArray, mass: float, least: float) -> Equ
     summits = tuple(
         one("summit", hull.vertices[v] / reach[v], float(reach[v]), np.array([v])) for v in corners.tolist()
     )
-    notes = _notes(hull, stable)
-    return Equilibria(mass, centre, tuple(stable), saddles, summits, (), notes, least, hull, basins, tuple(links))
+    notes = _notes(hull, stable, len(facets) - len(stable), least)
+    poses, ways = tuple(stable), tuple(links)
+    return Equilibria(mass, centre, poses, saddles, summits, (), notes, least, hull, surface, basins, ways)
+
+
+def _directions(values: ArrayLike) -> FloatArray:
+    """Return directions of unit length, after a check."""
+    towards = checks.real_array("down", values)
+    if towards.shape[-1:] != (3,) or not np.isfinite(towards).all() or not towards.any(axis=-1).all():
+        raise InvalidValueError(f"down must be three finite numbers (x, y, z), not all zero, got {values!r:.60}")
+    unit: FloatArray = towards / np.linalg.norm(towards, axis=-1, keepdims=True)
+    return unit
 
 
 def _by_height(members: IntArray, heights: FloatArray) -> IntArray:
@@ -369,8 +413,13 @@ def _simplified(
     tops: FloatArray,
     ends: Sequence[Sequence[int]],
     least: float,
+    *,
+    always: set[int],
 ) -> tuple[dict[int, int], set[int]]:
-    """Return which minimum each leads to where barriers below the least do not count, and the edges cancelled."""
+    """Return which minimum each leads to where barriers below the least do not count, and the edges cancelled.
+
+    always: minima that count whatever their barrier.
+    """
     joined = {each: each for each in minima.tolist()}
     leads = dict(joined)
     cut = set()
@@ -387,13 +436,13 @@ def _simplified(
         # the one with the higher minimum ends here
         (low, lower), (high, _) = sorted(zip(roots, (one, other), strict=True), key=lambda end: heights[end[0]])
         joined[high] = low
-        if tops[edge] - heights[high] < least:
+        if tops[edge] - heights[high] < least and high not in always:
             leads[high] = lower
             cut.add(edge)
     return {each: found(leads, each) for each in leads}, cut
 
 
-def _notes(hull: Polytope, stable: Sequence[StablePose]) -> tuple[str, ...]:
+def _notes(hull: Polytope, stable: Sequence[StablePose], left_out: int, least: float) -> tuple[str, ...]:
     size = float(np.ptp(hull.vertices, axis=0).max())
     at_edge = (np.abs(hull.inward) <= _CLOSE * size).any(axis=1)
     at_end = (np.abs(hull.beyond) <= _CLOSE * size).any(axis=1)
@@ -409,5 +458,9 @@ def _notes(hull: Polytope, stable: Sequence[StablePose]) -> tuple[str, ...]:
         notes.append(
             f"{count} of {len(stable)} stable poses are left by a rise of less than {1e3 * _SHALLOW * size:.2g} mm: "
             "the body is round or rough there; least_barrier= takes such poses together"
+        )
+    if left_out:
+        notes.append(
+            f"{left_out} shallow poses do not count, out of which the centre must rise less than {1e3 * least:.2g} mm"
         )
     return tuple(notes)

@@ -53,7 +53,7 @@ class BaseTolerance:
 def base_tolerances(
     found: Equilibria, pose: StablePose | None = None, tolerances: Sequence[float] = TOLERANCES
 ) -> tuple[BaseTolerance, ...]:
-    """Return what would change if the points of the hull that are close to the ground touched it.
+    """Return what would change if the points of the surface that are close to the ground touched it.
 
     How a real body touches the ground is often the largest uncertainty about it. The points within each tolerance are
     taken down onto the ground, and the hull, its support polygon and its passes are computed anew.
@@ -88,20 +88,22 @@ def base_tolerances(
     [4, 5]
     """
     start = found.settling((0.0, 0.0, -1.0)) if pose is None else pose
-    return tuple(_row(found, start, tolerance) for tolerance in tolerances)
+    heights = np.atleast_1d(checks.real_array("tolerances", tolerances, "m")).tolist()
+    return tuple(_row(found, start, tolerance) for tolerance in heights)
 
 
 def _row(found: Equilibria, pose: StablePose, tolerance: float) -> BaseTolerance:
     most = checks.within("tolerance", tolerance, 0.0, pose.height, unit="m", open_high=True)
-    turned = times(found.hull_vertices - found.centre, pose.rotation.T)
-    near = turned[:, 2] + pose.height <= max(most, found.flatness)
-    turned[near, 2] = -pose.height
+    corners, surface = (times(each, pose.rotation.T) for each in (found.hull.vertices, found.surface))
+    touching = surface[surface[:, 2] + pose.height <= max(most, found.flatness)]
+    turned = np.concatenate([corners, touching])
+    turned[turned[:, 2] + pose.height <= max(most, found.flatness), 2] = -pose.height
     down = np.array([0.0, 0.0, -1.0])
-    flat = equilibria(turned, np.zeros(3), found.mass, least_barrier=found.least_barrier).settling(down)
+    flat = equilibria(turned, np.zeros(3), found.mass, least_barrier=found.least_barrier, standing=down).settling(down)
     nearest = int(np.argmin(flat.edge_distances))
     chord = np.roll(flat.support, -1, axis=0)[nearest] - flat.support[nearest]
     distance = float(flat.edge_distances[nearest])
     return BaseTolerance(
-        most, int(near.sum()), flat.support, distance, math.atan2(-float(chord[0]), float(chord[1])),
+        most, len(touching), flat.support, distance, math.atan2(-float(chord[0]), float(chord[1])),
         g * distance / flat.height, flat.barrier, found.mass * g * flat.barrier,
     )  # fmt: skip

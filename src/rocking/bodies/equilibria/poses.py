@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from rocking import checks
 from rocking.conventions import FloatArray, g
+from rocking.errors import InvalidValueError
 from rocking.portable import applied, times
 
 Kind = Literal["stable", "saddle", "summit"]
@@ -99,7 +100,7 @@ class StablePose(Equilibrium):
         ndarray
             Acceleration, against the azimuth [m/s2].
         """
-        angle = checks.real_array("azimuth", azimuth, "rad")
+        angle = azimuths(azimuth)
         here, far = self.support, self.edge_distances
         along = np.roll(here, -1, axis=0) - here
         outward = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.linalg.norm(along, axis=1, keepdims=True)
@@ -166,14 +167,23 @@ class Ring:
 def set_down(down: FloatArray) -> FloatArray:
     """Return the shortest rotation that turns a unit vector downward, to -z."""
     x, y, z = down.tolist()
-    if z > 1.0 - 1e-15:
+    level = x * x + y * y
+    if z > 0.0 and not level > 0.0:
         return np.diag([1.0, -1.0, -1.0])
-    # of the cosine -z and the axis down x (-z) = (-y, x, 0)
-    share = 1.0 / (1.0 - z)
+    # of the cosine -z and the axis down x (-z) = (-y, x, 0); 1 / (1 - z) without a difference of nearly equal numbers
+    share = (1.0 + z) / level if z > 0.0 else 1.0 / (1.0 - z)
     turn: FloatArray = np.array(
         [[1.0 - x * x * share, -x * y * share, x], [-x * y * share, 1.0 - y * y * share, y], [-x, -y, -z]]
     )
     return turn
+
+
+def azimuths(values: ArrayLike) -> FloatArray:
+    """Return azimuths, after a check [rad]."""
+    angles = checks.real_array("azimuth", values, "rad")
+    if not np.isfinite(angles).all():
+        raise InvalidValueError(f"azimuth must be finite numbers [rad], got {values!r:.60}")
+    return angles
 
 
 def tilt_towards(pose: StablePose, down: FloatArray) -> tuple[float, float]:

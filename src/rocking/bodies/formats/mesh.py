@@ -12,15 +12,16 @@ from numpy.typing import ArrayLike
 
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
+from rocking.bodies.equilibria.poses import set_down
 from rocking.bodies.formats.source import MOST_VERTICES, blamed, checked_file
 from rocking.bodies.solid._changes import Repair, in_words
 from rocking.bodies.solid._repair import Repaired, repaired
-from rocking.bodies.solid._resting import settled, stands, turn_onto
+from rocking.bodies.solid._resting import settled, stands
 from rocking.bodies.solid._skin import Surface
 from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.polyhedron import Polyhedron
 from rocking.bodies.solid.shape import vector
-from rocking.bodies.solid.solid import BASE_TOLERANCE, Solid
+from rocking.bodies.solid.solid import Solid
 from rocking.checks import length_unit
 from rocking.conventions import LENGTH_UNITS, FloatArray, IntArray
 from rocking.errors import BodyFileError, InvalidValueError, MissingExtraError, how_to_install
@@ -36,6 +37,7 @@ FEWEST_POINTS = 50
 _LOWEST, _HIGHEST = 1e-3, 300.0
 _SINGLE = 2.0**-24
 _LEAN = 5.0
+_BASE_TOLERANCE = 1e-6  # over the size: corners of a mesh in single precision lie that far from one plane
 
 
 def mesh_from_file(
@@ -83,7 +85,7 @@ def _turn(up: str | ArrayLike) -> FloatArray:
     known = direction.shape == (3,) and direction.dtype.kind in "iuf" and np.isfinite(direction).all()
     if not known or not direction.any():
         raise InvalidValueError(f'up must be "z", "y", or a direction (x, y, z) in the file, got {up!r:.60}')
-    return turn_onto(direction / norm(direction.astype(np.float64)), np.array([0.0, 0.0, 1.0]))
+    return set_down(-direction / norm(direction.astype(np.float64)))
 
 
 def solid_from_mesh(
@@ -109,7 +111,7 @@ def solid_from_mesh(
     mesh = mesh_from_file(path, units=units, **options)
     with blamed(path.name):
         part, said = mesh.part(density), mesh.repairs
-        tolerance = base_tolerance or BASE_TOLERANCE * float(np.ptp(part.box(), axis=0).max())
+        tolerance = base_tolerance or _BASE_TOLERANCE * float(np.ptp(part.box(), axis=0).max())
         points, place = mesh.shape.vertices, mesh.shape.moments().centre
         if centre is not None:
             place = vector("centre", centre) - mesh.middle
@@ -122,7 +124,7 @@ def solid_from_mesh(
                 inertia = times(times(turn, np.diag(tensor) if tensor.shape == (3,) else tensor), turn.T)
             said = (*said, _settled_words(turn, float((place + mesh.middle)[2] - part.box()[0, 2])))
         solid = Solid(
-            part, base=base, ground=float(part.box()[0, 2]), base_tolerance=base_tolerance,
+            part, base=base, ground=float(part.box()[0, 2]), base_tolerance=tolerance,
             mass=mass, centre=None if centre is None else place + mesh.middle, inertia=inertia,
         )  # fmt: skip
     solid.name, solid.repairs = path.name, said

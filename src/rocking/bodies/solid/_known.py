@@ -40,7 +40,9 @@ def known_moments(parts: Sequence[Part], own: SolidMoments, centre: FloatArray |
         found = SolidMoments(own.mass, place, own.second * np.outer(share, share))
     else:
         found = SolidMoments(own.mass, place, _second(inertia))
-    _check_reach(parts, found, low, high - low)
+    share = _reached(parts, found, low, high - low, given=inertia is not None)
+    if share < 1.0 and inertia is None:  # what is assumed is no more than the body can have
+        return SolidMoments(own.mass, place, found.second * share)
     return found
 
 
@@ -67,12 +69,13 @@ def _second(inertia: Any) -> FloatArray:
     return second
 
 
-def _check_reach(parts: Sequence[Part], found: SolidMoments, lowest: FloatArray, size: FloatArray) -> None:
-    """Refuse a centre outside the convex hull, and second moments that no mass within it can have.
+def _reached(parts: Sequence[Part], found: SolidMoments, lowest: FloatArray, size: FloatArray, *, given: bool) -> float:
+    """Return which share of the second moments masses within the hull can have; refuse a centre outside of it.
 
     In every direction they are at most ``m (c - low) (high - c)`` (R. Bhatia, C. Davis, "A better bound on the
-    variance", 2000); 64 directions are tried.
+    variance", 2000); 64 directions are tried. given: refuse less than all of them.
     """
+    share = 1.0
     for direction in _directions():
         frame = _frame(direction)
         ends = np.array(
@@ -86,12 +89,14 @@ def _check_reach(parts: Sequence[Part], found: SolidMoments, lowest: FloatArray,
         if not low < at < high:
             raise _misplaced(found.centre - lowest, size)
         spread, most = float(direction @ found.second @ direction), found.mass * (at - low) * (high - at)
-        if spread > most * (1.0 + _SLACK):
+        if given and spread > most * (1.0 + _SLACK):
             raise GeometryError(
                 f"inertia is more than any mass within the body can have: along {_at(direction)} the second "
                 f"moment must be at most {most:.6g} kg m2, got {spread:.6g}; it is about the centre of mass: was it "
                 "taken about another point, or in other units?"
             )
+        share = min(share, most / spread if spread > 0.0 else 1.0)
+    return share
 
 
 def _directions() -> list[FloatArray]:

@@ -2,21 +2,13 @@
 
 import numpy as np
 
+from rocking.bodies.equilibria.poses import set_down
 from rocking.bodies.solid.base import hull
-from rocking.bodies.solid.part import rotation_about
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
 
 _DOWN = np.array([0.0, 0.0, -1.0])
 _AHEAD = 1e-9
-
-
-def turn_onto(direction: FloatArray, target: FloatArray) -> FloatArray:
-    """Return the least rotation that takes one unit vector to another."""
-    axis, share = np.cross(direction, target), float(np.clip(direction @ target, -1.0, 1.0))
-    if np.linalg.norm(axis) < 1e-15:
-        return np.eye(3) if share > 0.0 else rotation_about(np.eye(3)[np.argmin(np.abs(target))], np.pi)
-    return rotation_about(axis, float(np.arctan2(np.linalg.norm(axis), share)))
 
 
 def stands(points: FloatArray, centre: FloatArray, tolerance: float) -> bool:
@@ -44,5 +36,5 @@ def settled(points: FloatArray, centre: FloatArray) -> FloatArray:
         through = np.divide(distances, ahead, out=np.full(len(ahead), np.inf), where=ahead > _AHEAD)
         facet = int(np.argmin(through))
         if not distances[facet] < lowest * (1.0 - 1e-12):
-            return turn_onto(down, _DOWN)
+            return set_down(down)
         down, lowest = normals[facet], float(distances[facet])

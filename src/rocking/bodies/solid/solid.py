@@ -23,10 +23,15 @@ from rocking.bodies.solid.prism import Prism
 from rocking.bodies.solid.shape import Shape
 from rocking.bodies.solid.standing import equilibria_of, set_down
 from rocking.conventions import FloatArray
-from rocking.errors import GeometryError
+from rocking.errors import GeometryError, InvalidValueError
 from rocking.portable import times
 
 BASE_TOLERANCE = 1e-9
+_UPRIGHT, _WHOLE = 1e-12, 0.999
+_OWN_BASE = (
+    "the body stands on a base of its own, smaller than the facet of its hull: what lifts it and how far its centre "
+    "must rise are those of the whole facet here, more than its own base asks"
+)
 """Corners this close to the ground, relative to the body's size, stand on it by default."""
 
 
@@ -239,6 +244,9 @@ class Solid:
     def in_plane(self, azimuth: float = 0.0) -> Section:
         """Return the plane body that rocks in one direction, from one end of the base to the other.
 
+        Of a base that is not square to the direction these ends are its corners: the solid itself lifts earlier,
+        over an edge, as `equilibria` says.
+
         Parameters
         ----------
         azimuth : float
@@ -332,7 +340,12 @@ class Solid:
         """
         moments = self.local_moments
         placed = replace(moments, centre=self.centre)
-        return equilibria_of(self.parts, placed, self._size, least_barrier)
+        found = equilibria_of(self.parts, placed, self._size, least_barrier)
+        stands = next((pose for pose in found.stable if pose.down[2] < _UPRIGHT - 1.0), None)
+        base = self.base
+        if stands and isinstance(base, SupportPolygon) and _area(base.vertices) < _WHOLE * _area(stands.support):
+            return replace(found, notes=(*found.notes, _OWN_BASE))
+        return found
 
     def settled(self, pose: StablePose | None = None) -> "Solid":
         """Return the body set down in one of its stable poses.
@@ -355,6 +368,9 @@ class Solid:
         >>> round(float(lying.centre[2]), 12)
         0.5
         """
+        given: object = pose
+        if given is not None and not isinstance(given, StablePose):
+            raise InvalidValueError(f"pose must be one of the stable poses of `equilibria`, got {given!r:.60}")
         chosen = self.equilibria().settling((0.0, 0.0, -1.0)) if pose is None else pose
         parts, base = set_down(self.parts, chosen, self._size)
         ground = min(float(part.box()[0, 2]) for part in parts)
@@ -427,3 +443,8 @@ def _listed(parts: Any) -> list[Part]:
     if not listed or not all(isinstance(part, (Part, Shape)) for part in listed):
         raise GeometryError("a Solid needs at least one Part(shape, density) or shape")
     return [part if isinstance(part, Part) else Part(part) for part in listed]
+
+
+def _area(polygon: FloatArray) -> float:
+    x, y = polygon.T
+    return 0.5 * abs(float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum()))

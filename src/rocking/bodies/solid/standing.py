@@ -26,11 +26,20 @@ _CHORD = 0.02
 
 def equilibria_of(parts: Sequence[Part], moments: SolidMoments, size: float, least_barrier: float | None) -> Equilibria:
     """Return the equilibria of parts that are one rigid body."""
-    surface = np.concatenate([placed_points(p.shape.hull_points(), p.rotation, p.translation) for p in parts])
+    corners = np.concatenate([placed_points(p.shape.hull_points(), p.rotation, p.translation) for p in parts])
     rounded = any(isinstance(part.shape, Turned) for part in parts)
     least = _ROUND * size * rounded if least_barrier is None else least_barrier
     faces = parts[0].shape.faces if len(parts) == 1 and isinstance(parts[0].shape, Polyhedron) else None
-    found = equilibria(surface, moments.centre, moments.mass, faces=faces, least_barrier=least)
+    found = equilibria(
+        corners, moments.centre, moments.mass, faces=faces, least_barrier=least, standing=(0.0, 0.0, -1.0)
+    )
+    whole = [
+        placed_points(p.shape.vertices, p.rotation, p.translation)
+        for p in parts
+        if isinstance(p.shape, Polyhedron) and len(p.shape.vertices) > len(p.shape.hull_points())
+    ]
+    if whole:  # points inside the hull may be near the ground
+        found = replace(found, surface=np.concatenate([found.surface, *(each - found.centre for each in whole)]))
     if not rounded:
         return found
     found = replace(found, notes=(*found.notes, "round faces are taken as those of 360 corners"))

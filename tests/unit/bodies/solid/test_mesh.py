@@ -296,6 +296,17 @@ def test_scans_stand_on_a_tolerance(tmp_path):
     assert len(solid_from_mesh(path, units="m", base_tolerance=0.003).base.vertices) == 4
 
 
+def test_a_mesh_in_single_precision_stands_on_its_whole_face(tmp_path):
+    """Corners of a turned box, rounded as in binary STL: four of them are its base, not three."""
+    turn = rotation_about([0.3, -0.5, 0.8], 1.1)
+    sides = box(0.5, 0.7, 1.1)
+    down = turn @ np.array([0.0, 0.0, 1.0])
+    path = saved(tmp_path, (sides.vertices @ turn.T).astype(np.float32).astype(np.float64), sides.faces, "a.obj")
+    solid = solid_from_mesh(path, units="m", up=down)
+    assert len(solid.base.vertices) == 4
+    assert solid.base.margin(solid.centre[:2]) == pytest.approx(0.25, rel=1e-5)
+
+
 def test_what_is_known_is_let_down_with_the_mesh(tmp_path):
     """A known centre beyond the base lays the prism on its side; it is told as the file stands, inertia likewise."""
     path = saved(tmp_path, V, F, "a.obj")

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.bodies.equilibria.poses import set_down
 from rocking.bodies.solid import _manifold, box
 from rocking.bodies.solid._changes import MOST_SHIFT, MOST_VOLUME
 from rocking.bodies.solid._repair import repaired
-from rocking.bodies.solid._resting import settled, turn_onto
+from rocking.bodies.solid._resting import settled
 from rocking.cli import main
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, RockingError
 
@@ -239,12 +240,12 @@ def test_the_rock():
 def test_let_down(tmp_path):
     """Held askew a box comes down onto the face below its centre; upright it is left alone; its place is told."""
     column = box(0.5, 0.4, 1.0)
-    askew = column.vertices @ turn_onto(np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.6, 0.8])).T
+    askew = column.vertices @ set_down(np.array([0.0, -0.6, -0.8]))
     found = read(tmp_path / "askew.obj", askew, column.faces)
     # the ray at 36.9 degrees leaves the base's plane, half a metre below, .375 m aside, beyond half the depth: it falls
     assert found.centre[2] - found.ground == pytest.approx(0.2, rel=1e-7)
     assert any(words.startswith("does not stand as the file has it") for words in found.repairs)
-    little = column.vertices @ turn_onto(np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.05, 1.0]) / np.hypot(0.05, 1.0)).T
+    little = column.vertices @ set_down(-np.array([0.0, 0.05, 1.0]) / np.hypot(0.05, 1.0))
     found = read(tmp_path / "little.obj", little, column.faces)
     assert found.centre[2] - found.ground == pytest.approx(0.5, rel=1e-7)
     assert "turned by 2.9 degrees" in found.repairs[-1]
