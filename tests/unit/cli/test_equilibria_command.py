@@ -1,6 +1,7 @@
 """`rocking equilibria`: the page, JSON, picture and table of a solid, and what it refuses."""
 
 import csv
+import json
 import math
 
 import pytest
