@@ -176,11 +176,26 @@ def test_friction_is_said_once():
 
 
 @pytest.mark.verifies("damage")
+def test_a_coefficient_that_creates_energy_is_no_result():
+    """Beyond the bound of an uneven body a cell fails, with friction as without; none imposed is another answer."""
+    axes = ("restitution", [0.5, 0.95, 1.0]), ("scale", [1.2])
+    inertia = [BODY.side(foot).moment_of_inertia for foot in ("left", "right")]
+    most = np.sqrt(min(inertia) / max(inertia))
+    for how in ({}, {"friction": 1e3}):
+        found = overturning_map(BODY, PULSE, *axes, **how)
+        within = found["restitution"].values <= most
+        assert ((found["mode"].values[0] == -3) == ~within).all()
+        assert set(within.tolist()) == {True, False}
+    plastic = overturning_map(BODY, PULSE, ("period", [0.6]), ("scale", [1.2]), None, friction=1e3)
+    assert int(plastic["mode"][0, 0]) != -3
+
+
+@pytest.mark.verifies("damage")
 def test_poisoned_rows():
     """A row with NaN or infinity in one number is refused by itself; its neighbours keep their bits."""
     parameters = RockingParameters.of_body(BODY, "ked", g)
     sides = {name: float(values[0]) for name, values in sides_of([parameters]).items()}
-    names = [*(name for name in sides if name[0] in "apq"), "scale", "rotation", "velocity"]
+    names = [*(name for name in sides if name[0] in "apqr"), "scale", "rotation", "velocity"]
     values = {name: np.full(60, sides.get(name, 0.0)) for name in [*sides, "rotation", "velocity"]}
     values |= {"scale": np.linspace(0.5, 2.0, 60), "friction": np.full(60, 0.4)}
     batch = Batch([PULSE.segments()], settings=Settings(friction=0.3))

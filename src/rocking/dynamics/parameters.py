@@ -1,6 +1,5 @@
 """A body as the equations of motion see it: angle, frequency parameter and coefficient on either side."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -17,6 +16,9 @@ from rocking.restitution.implied import energy_bound
 
 COMPLEMENTARITY = "complementarity alone"
 """What restitution=None is called, with friction."""
+
+UNIMPOSED = -1.0
+"""A coefficient that stands for none: impacts are plastic by complementarity, or as `bounce` says [-]."""
 
 # rounding in I_O and r together
 _ROUNDING = 1e-9
@@ -166,7 +168,7 @@ class RockingParameters:
         Returns
         -------
         RockingParameters
-            The body as the equations see it; coefficients are NaN where none is imposed.
+            The body as the equations see it; coefficients are `UNIMPOSED` where none is imposed.
 
         Raises
         ------
@@ -179,7 +181,7 @@ class RockingParameters:
         base = getattr(restitution, "times", 1.0) if isinstance(restitution, ImpactLaw) else restitution
         coefficients: Mapping[str, float]
         if base is None and friction is not None:
-            coefficients, label = dict.fromkeys(FEET, math.nan), COMPLEMENTARITY
+            coefficients, label = dict.fromkeys(FEET, UNIMPOSED), COMPLEMENTARITY
         else:
             coefficients, label = coefficients_of(base, body)
         made: dict[Foot, RockingSide] = {}
@@ -240,7 +242,7 @@ def _share(law: ImpactLaw, onto: Foot, r: float, most: float) -> float:
     """Part of a distribution within the energy bound of a side; what cannot be cut there is refused beyond it."""
     drawn = _truncated(law)
     largest = r * (drawn.quantile(1.0, onto) if drawn else law.largest)
-    if largest <= most * (1.0 + _ROUNDING) or math.isnan(r):
+    if largest <= most * (1.0 + _ROUNDING):
         return 1.0
     if drawn:
         share = drawn.share_within(most / r, onto)

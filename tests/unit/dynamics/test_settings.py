@@ -78,7 +78,9 @@ def test_options_of_a_call() -> None:
     made = settings_of(9.81, {"linear": True, "order": 6})
     assert (made.gravity, made.linear, made.order) == (9.81, True, 6)
     assert Settings().gravity == 9.80665
-    with pytest.raises(InvalidValueError, match=r"no option named 'tol'; there are gravity, linear, longest_step"):
+    with pytest.raises(
+        InvalidValueError, match=r"no option named 'tol'; there are bounce, bounce_law, friction, gravity, linear"
+    ):
         settings_of(9.81, {"tol": 1e-9})
 
 

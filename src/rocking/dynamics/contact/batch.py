@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from rocking.conventions import FloatArray
+from rocking.conventions import FEET, FloatArray
 from rocking.dynamics.contact.fast_engine import NUMBERS, library_of, run_compiled
+from rocking.dynamics.parameters import UNIMPOSED
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
@@ -34,21 +35,23 @@ class RowsWithContact:
     def run(self, values: dict[str, FloatArray], motion: np.ndarray, threads: int) -> dict[str, np.ndarray]:
         """Return the results of some rows by the names that studies know; NaN for what this mechanics has not.
 
-        values: the keys of `ROWS`; a coefficient r that is NaN is not imposed, a friction that is NaN is that of the
-        settings.
+        values: the keys of `ROWS`; a coefficient r that is `UNIMPOSED` is not imposed, a friction that is NaN is that
+        of the settings; rows of another r below zero, or not finite, are refused by themselves.
         """
         right, left = _side(values, "right", self.settings), _side(values, "left", self.settings)
         same = np.isclose(right["height"], left["height"], rtol=1e-6) & np.isclose(
             right["inertia"], left["inertia"], rtol=1e-6
         )
+        coefficients = np.array([values[f"r_{foot}"] for foot in FEET])
+        known = np.all(((coefficients >= 0.0) & (coefficients <= 100.0)) | (coefficients == UNIMPOSED), axis=0)
         size = np.maximum(right["size"], left["size"])
         usual = np.float64(self.settings.friction or np.nan)
         friction = np.where(np.isnan(values["friction"]), usual, values["friction"])
         table: dict[str, Any] = {
-            "inertia": np.where(same, right["inertia"], np.nan), "height": right["height"],
+            "inertia": np.where(same & known, right["inertia"], np.nan), "height": right["height"],
             "left": left["half_width"], "right": right["half_width"],
             "friction": friction, "bounce": self.settings.bounce,
-            "imposed_left": values["r_left"], "imposed_right": values["r_right"],
+            "imposed_left": _imposed(values["r_left"]), "imposed_right": _imposed(values["r_right"]),
             "scale": values["scale"], "end": self._ends(motion, size),
         } | dict.fromkeys(NUMBERS[10:], 0.0)  # fmt: skip
         touching = np.full(motion.size, 3)
@@ -90,6 +93,11 @@ def _side(values: dict[str, FloatArray], foot: str, settings: Settings) -> dict[
         size = settings.gravity * q / p**2  # Eq. 26
         inertia = size**2 * (1.0 / q - 1.0)  # Eq. 27
         return {"size": size, "height": size * np.cos(alpha), "half_width": size * np.sin(alpha), "inertia": inertia}
+
+
+def _imposed(coefficient: FloatArray) -> FloatArray:
+    """Return coefficients as the compiled engine takes them, NaN where none is imposed."""
+    return np.where(coefficient == UNIMPOSED, np.nan, coefficient)
 
 
 def _start(table: dict[str, Any], rotation: FloatArray, velocity: FloatArray) -> np.ndarray:

@@ -105,6 +105,8 @@ class Batch:
             last = min(first + PIECE, count)
             out = {name: values[first:last] for name, values in results.items()}
             piece = rows(first, last)
+            if not np.isnan(piece.values["friction"]).all():
+                raise InvalidValueError("rows with a friction are of bodies that slide: their settings need one too")
             if library is None:
                 for k, (motion, stream) in enumerate(zip(piece.motion.tolist(), piece.stream.tolist(), strict=True)):
                     row = {name: float(values[k]) for name, values in piece.values.items()}

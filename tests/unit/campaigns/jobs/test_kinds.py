@@ -92,6 +92,26 @@ def test_map_with_friction(finished, tmp_path, text):
     assert not (wanted["mode"] == sines()["mode"]).all()
 
 
+def test_map_over_friction(finished, tmp_path, text):
+    """Friction as an axis, refined or not: every bit of the call."""
+    head = text("overturning-map", 13).partition("[map]")[0]
+    axes = (
+        '[map]\nx = { axis = "friction", values = [0.1, 0.2, 0.3, 0.6] }\n'
+        'y = { axis = "scale", from = 1.0, to = 4.0, count = 6 }\n'
+    )
+    values = ("friction", [0.1, 0.2, 0.3, 0.6]), ("scale", np.linspace(1.0, 4.0, 6))
+    wanted = overturning_map(BLOCK, rk.pulses.sine(3.0, 0.6), *values)
+    found = opened(finished("overturning-map", 13, head + axes), tmp_path)
+    same(found, wanted, [*wanted.data_vars])
+    assert len({tuple(row) for row in wanted["mode"].values.T.tolist()}) > 1, "the friction matters"
+    refined = finished("overturning-map", 13, head + axes.replace("[map]\n", "[map]\nrefine = 1\n"))
+    fine = overturning_map(BLOCK, rk.pulses.sine(3.0, 0.6), *values, refine=1)
+    assert (
+        xr.load_dataset(export(refined, tmp_path / "fine.nc", "refined"), engine="h5netcdf").sizes["point"]
+        == (fine.sizes["point"])
+    )
+
+
 def test_map_of_bodies_and_restitutions(finished, tmp_path, text):
     """Axes that change the body, with two models: each is the map of its own call."""
     words = text("overturning-map", 13).replace("frequency_ratio", "semi_diagonal").replace("amplitude_ratio", "scale")

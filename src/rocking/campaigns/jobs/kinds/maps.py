@@ -137,7 +137,8 @@ class MapHistories(Histories):
 
     def _values(self, numbers: np.ndarray) -> tuple[dict[str, FloatArray], FloatArray]:
         """Return what the engine takes of histories, and how their motion is stretched."""
-        names = [*sides_of([None]), "scale"]
+        plane = self.planes[0]
+        names = [*sides_of([None]), "scale", *(["friction"] if "friction" in {plane.x.name, plane.y.name} else [])]
         values, stretch = {name: np.full(numbers.size, np.nan) for name in names}, np.ones(numbers.size)
         values["scale"][:] = 1.0
         for k, plane in enumerate(self.planes):
