@@ -113,6 +113,25 @@ def test_rows_that_start_turned():
         assert abs(found["peak_rotation"][k]) == pytest.approx(one.peak_rotation, rel=1e-9)
 
 
+@pytest.mark.verifies("second engine", "the reference engine, and a map", within="1e-9")
+def test_one_word_and_one_range_at_every_door():
+    """The word of files and options is Python's too, and a smooth ground is one: nothing holds the body back."""
+    for how in ({}, {"restitution": "complementarity"}):
+        one = rk.simulate(BODY, PULSE, **({"restitution": None} | how), scale=2.0, friction=0.4)
+        many = rk.simulate_many(BODY, PULSE, **({"restitution": None} | how), scale=[2.0], friction=[0.4])
+        drawn = overturning_map(
+            BODY, PULSE, ("scale", [2.0]), ("friction", [0.0, 0.4]), **({"restitution": None} | how)
+        )
+        peaks = [one.peak_rotation, abs(many.peak_rotation.item()), abs(float(drawn.peak_rotation[1, 0]))]
+        assert peaks == pytest.approx([peaks[0]] * 3, rel=1e-9)
+        assert int(drawn.outcome[0, 0]) == rk.simulate(BODY, PULSE, None, scale=2.0, friction=0.0).outcome.code
+    with pytest.raises(InvalidValueError, match="needs friction"):
+        rk.simulate(BODY, PULSE, None)
+    hops = noise_motion(5, 400, 0.01, 0.5, vertical=14.0)
+    flat = multiple_stripe_analysis(BLOCK, MotionList([hops] * 2), [0.5], friction=5.0)
+    assert not flat.responses.rocked.any() or (flat.responses.rotation[flat.responses.rocked] > 0.0).all()
+
+
 @pytest.mark.verifies("second engine", "the engine of pure rocking on rough ground", within="1e-6")
 def test_every_study():
     """Spectra, minima and stripes; a body that slides first has no level above which rocking is certain."""
@@ -149,7 +168,8 @@ def test_the_name_of_histories_knows_the_friction():
 @pytest.mark.parametrize(
     ("how", "says"),
     [
-        ({"friction": -0.3}, "friction must be > 0"),
+        ({"friction": -0.3}, "friction must be in"),
+        ({"friction": 2e6}, "friction must be in"),
         ({"friction": 0.3, "bounce": 1.0}, "bounce must be"),
         ({"friction": 0.3, "bounce_law": "hertz"}, "bounce_law must be one of"),
         ({"bounce": 0.3}, "bounce and bounce_law go with friction"),

@@ -279,7 +279,8 @@ class MapAnswer:
         from rocking.conventions import percent
 
         problem, arrays = self.problem, self.arrays
-        page.facts(body_lines(problem.bodies[0], problem.settings, self.length))
+        varied = "friction" in {axis.name for axis in self.axes}
+        page.facts(body_lines(problem.bodies[0], problem.settings, self.length, varied=varied))
         page.line(f"motion:       {problem.motions[0].name}")
         page.line(f"restitution:  {arrays.attributes['restitution']};  engine: {arrays.attributes['engine']}")
         for name, axis in zip(("x", "y"), self.axes, strict=True):

@@ -97,21 +97,29 @@ def family(arguments: Arguments, usual: Mapping[str, Any]) -> dict[str, Any] | N
     return {**usual, **arguments.table("motion", options)}
 
 
-def contact_lines(settings: Settings) -> list[tuple[str, str]]:
-    """Return what is printed of the ground on which bodies may slide and hop; nothing where they rock alone."""
+def contact_lines(settings: Settings, *, varied: bool = False) -> list[tuple[str, str]]:
+    """Return what is printed of the ground on which bodies may slide and hop; nothing where they rock alone.
+
+    varied: whether the friction is an axis.
+    """
     if settings.friction is None:
         return []
     bounce = f"; bounce {settings.bounce:g} ({settings.bounce_law})" if settings.bounce else ""
-    return [("contact", f"friction {settings.friction:g}{bounce}: it may slide, hop and fly")]
+    friction = "varied" if varied else f"{settings.friction:g}"
+    return [("contact", f"friction {friction}{bounce}: it may slide, hop and fly")]
 
 
-def body_lines(body: Body, settings: Settings, length: str = "m") -> list[tuple[str, str]]:
+def body_lines(body: Body, settings: Settings, length: str = "m", *, varied: bool = False) -> list[tuple[str, str]]:
     """Return what is printed of the body of a study, and of the ground under it."""
     feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
     sides = {foot: side_line(body.side(foot, settings.gravity), length) for foot in feet}
     shape = "; ".join(f"{'' if body.is_symmetric else f'{foot} '}{line}" for foot, line in sides.items())
     assumed = assumed_rows(body)
-    return [("body", f"{type(body).__name__}, {body.mass:.4g} kg, {shape}"), *assumed, *contact_lines(settings)]
+    return [
+        ("body", f"{type(body).__name__}, {body.mass:.4g} kg, {shape}"),
+        *assumed,
+        *contact_lines(settings, varied=varied),
+    ]
 
 
 def subject_facts(problem: StudyProblem) -> dict[str, Any]:
@@ -119,7 +127,10 @@ def subject_facts(problem: StudyProblem) -> dict[str, Any]:
     body, motion = problem.bodies[0], problem.motions[0]
     facts = {"duration_s": motion.duration, "peak_acceleration_m_s2": motion.peak}
     kind = "pulse" if isinstance(motion, Pulse) else "record"
-    ground = ("friction", "bounce", "bounce_law") if problem.settings.friction is not None else ()
+    table = problem.document.map
+    ground = ["friction", "bounce", "bounce_law"] if problem.settings.friction is not None else []
+    if ground and table is not None and "friction" in {table.x.axis, table.y.axis}:
+        del ground[0]
     return {
         "body": repr(body),
         **{name: getattr(problem.settings, name) for name in ground},

@@ -11,7 +11,7 @@ from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.dynamics._simulate import components_of, in_plane, in_space, refuse
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
-from rocking.dynamics.parameters import COMPLEMENTARITY, RockingParameters, sides_of
+from rocking.dynamics.parameters import COMPLEMENTARITY, RockingParameters, is_none, sides_of
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.motion import GroundMotion
@@ -290,7 +290,7 @@ def _row(name: str, values: Any) -> FloatArray:
 
 
 def _label(restitution: Any) -> str:
-    if restitution is None:
+    if is_none(restitution):
         return COMPLEMENTARITY
     label = getattr(restitution, "label", None)
     return label if isinstance(label, str) else str(restitution)

@@ -180,7 +180,7 @@ class RockingParameters:
         law = restitution if isinstance(restitution, ImpactLaw) else ConstantRestitution()
         base = getattr(restitution, "times", 1.0) if isinstance(restitution, ImpactLaw) else restitution
         coefficients: Mapping[str, float]
-        if base is None and friction is not None:
+        if friction is not None and is_none(base):
             coefficients, label = dict.fromkeys(FEET, UNIMPOSED), COMPLEMENTARITY
         else:
             coefficients, label = coefficients_of(base, body)
@@ -199,6 +199,11 @@ class RockingParameters:
                 share,
             )
         return cls(made["right"], made["left"], law, _label(law, {foot: made[foot].share for foot in FEET}, label))
+
+
+def is_none(restitution: Any) -> bool:
+    """Whether no coefficient is imposed: None, or the word for it that files and options have."""
+    return restitution is None or (isinstance(restitution, str) and restitution == COMPLEMENTARITY.split(maxsplit=1)[0])
 
 
 def sides_of(bodies: Sequence[RockingParameters | None]) -> dict[str, FloatArray]:
@@ -272,6 +277,10 @@ def _label(law: ImpactLaw, shares: Mapping[Foot, float], base: str) -> str:
 
 def coefficients_of(restitution: Any, body: Body) -> tuple[dict[str, float], str]:
     """Return the coefficients for landing left and right, and what to call them [-]."""
+    if is_none(restitution):
+        raise InvalidValueError(
+            f"restitution={restitution!r} leaves impacts to complementarity, which needs friction=: give it, or a model"
+        )
     if isinstance(restitution, (str, RestitutionModel)):
         found = model(restitution)
         return {foot: found.coefficient(body, foot) for foot in FEET}, found.label

@@ -147,7 +147,7 @@ class Settings:
         if self.mechanics not in {"rocking", "contact"}:
             raise InvalidValueError(f"friction is no setting of {self.mechanics}; {self._has(_OWN[self.mechanics])}")
         object.__setattr__(self, "mechanics", "contact")
-        friction = checks.positive("friction", self.friction)
+        friction = checks.within("friction", self.friction, 0.0, 1e6, hint="1e6 for feet that never slide")
         made = {
             "friction": friction,
             "bounce": checks.within("bounce", self.bounce, 0.0, 1.0, open_high=True),

@@ -269,7 +269,7 @@ class SettingsTable(JobTable):
 class StudySettingsTable(SettingsTable):
     """How to integrate: what is left out has its usual value. Friction is of studies; one history has its own table."""
 
-    friction: Positive | None = _key("coefficient of friction, with which bodies slide, hop and fly [-]")
+    friction: float | None = _key("coefficient of friction, with which bodies slide, hop and fly [-]", None, ge=0.0)
     bounce: float | None = _key("with friction: coefficient of normal restitution, from 0 [-]", None, ge=0.0)
     bounce_law: Literal["newton", "poisson", "stronge"] | None = _key(_BOUNCE_LAW)
 

@@ -252,6 +252,7 @@ _ALL = (
     Axis(
         "friction", "1", "coefficient of friction between body and ground", "friction", RESTITUTION,
         lambda case, values: {"sides": {**case.sides, "friction": values}}, _check_friction, high=1e6,
+        low_is_allowed=True,
     ),
 )  # fmt: skip
 

@@ -105,7 +105,8 @@ def test_engines_agree() -> None:
         np.testing.assert_allclose(fast[key], slow[key], rtol=1e-9)
 
 
-BAD = [(key, value) for key in ROWS if not key.startswith(("q_", "friction")) for value in (math.nan, math.inf, -math.inf)] + [
+OF_ROCKING = [key for key in ROWS if key != "friction"]
+BAD = [(key, value) for key in OF_ROCKING if not key.startswith("q_") for value in (math.nan, math.inf, -math.inf)] + [
     ("alpha_right", 0.0), ("alpha_left", 0.5 * math.pi), ("alpha_left", -0.1), ("p_right", 0.0), ("p_left", 1e9),
     ("r_right", -0.1), ("r_left", 101.0), ("scale", 1.1e9), ("rotation", 1.6), ("rotation", -1.6), ("velocity", 1e9),
 ]  # fmt: skip

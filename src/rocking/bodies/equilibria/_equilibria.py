@@ -53,6 +53,8 @@ class Equilibria:
         Poses that a smaller rise of the centre leaves are not counted [m].
     hull : Polytope
         Facets, edges and vertices of the convex hull about the centre of mass.
+    surface : ndarray, shape (n, 3)
+        Points of the surface that were given, from the centre of mass, those inside the hull too [m].
     basins : dict of int to int
         Number of the pose to which each stable facet of the hull leads; rings count on after the stable poses.
     links : tuple of (int, int, Equilibrium)

@@ -24,7 +24,7 @@ from rocking.bodies.solid.shape import vector
 from rocking.bodies.solid.solid import Solid
 from rocking.checks import length_unit
 from rocking.conventions import LENGTH_UNITS, FloatArray, IntArray
-from rocking.errors import BodyFileError, InvalidValueError, MissingExtraError, how_to_install
+from rocking.errors import BodyFileError, GeometryError, InvalidValueError, MissingExtraError, how_to_install
 from rocking.portable import applied, norm, times
 
 MESH_FORMATS = ("stl", "obj", "ply", "glb", "xyz")
@@ -115,6 +115,12 @@ def solid_from_mesh(
         points, place = mesh.shape.vertices, mesh.shape.moments().centre
         if centre is not None:
             place = vector("centre", centre) - mesh.middle
+            outside = float((mesh.shape.hull.equations @ np.append(place, 1.0)).max())
+            if outside >= 0.0:
+                raise GeometryError(
+                    f"the centre of mass {centre} m lies {outside:.3g} m outside of the hull of the mesh, as the file "
+                    "has it; was it measured from another origin, or in another unit?"
+                )
         if base is None and not stands(points, place, checks.positive("base_tolerance", tolerance, "m")):
             turn = settled(mesh.shape.hull.points[mesh.shape.hull.vertices], place)
             part = Part(mesh.shape, density, rotation=turn, translation=mesh.middle)

@@ -1,7 +1,10 @@
 """Holes of a surface: the open bottom of a scan gets a level face, others a patch between their edges."""
 
+import math
+
 import numpy as np
 
+from rocking.bodies.equilibria.poses import set_down
 from rocking.bodies.solid._changes import HELP, Changes
 from rocking.bodies.solid.polyhedron import alone
 from rocking.bodies.solid.surfaces import area_vectors
@@ -11,7 +14,7 @@ from rocking.errors import GeometryError
 LOW = 0.1
 """A rim is that of a bottom if half of it lies so low, over the height of the body [-]."""
 
-_LEVEL, _NOTCH, _LISTED, _SLIT, _LOOSE = 0.7, 0.01, 3, 1e-6, 0.5
+_LEVEL, _NOTCH, _LISTED, _SLIT, _LOOSE, _LEANS = 0.7, 0.01, 3, 1e-6, 0.5, 0.05
 
 
 def boundary_loops(faces: IntArray) -> list[IntArray]:
@@ -58,7 +61,7 @@ def closed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Float
         )
     added, slits, patches, bound, where = [faces], 0, [], 0.0, np.zeros(3)
     for ring in loops:
-        if _is_bottom(points, ring):
+        if _is_bottom(points, faces, ring):
             points, level = _levelled(points, ring, changes)
             added.append(level)
             continue
@@ -89,16 +92,20 @@ def _listed(loops: list[IntArray], points: FloatArray, changes: Changes) -> str:
     return f"the surface is not closed, it has {len(loops)} hole(s): {words}{more}"
 
 
-def _is_bottom(points: FloatArray, ring: IntArray) -> bool:
-    """Whether a ring is about level, and half of it lies low."""
+def _is_bottom(points: FloatArray, faces: IntArray, ring: IntArray) -> bool:
+    """Whether a ring is about level, half of it lies low, and a face across it looks down out of the body."""
     low, high, normal = points[:, 2].min(), points[:, 2].max(), _normal(points[ring])
     is_level = abs(normal[2]) >= _LEVEL * np.linalg.norm(normal)
-    return bool(is_level and np.median(points[ring, 2]) - low <= LOW * (high - low))
+    if not is_level or np.median(points[ring, 2]) - low > LOW * (high - low):
+        return False
+    a, b, c = np.moveaxis(points[faces] - points[ring].mean(axis=0), 1, 0)
+    outward = np.sign(np.einsum("ij,ij->", a, np.cross(b, c)))  # of the volume, above zero where faces look outward
+    return bool(normal[2] * outward < 0.0)
 
 
-def _notched(points: FloatArray, ring: IntArray) -> tuple[IntArray, IntArray]:
+def _notched(height: FloatArray, ring: IntArray) -> tuple[IntArray, IntArray]:
     """Return a rim without the tops of its notches, and the faces that fill them."""
-    height, most = points[:, 2], np.median(points[ring, 2]) + _NOTCH * np.ptp(points[:, 2])
+    most = np.median(height[ring]) + _NOTCH * np.ptp(height)
     rest, ears = ring.tolist(), []
     while len(rest) > 3 and height[top := max(rest, key=height.item)] > most:
         at = rest.index(top)
@@ -108,9 +115,17 @@ def _notched(points: FloatArray, ring: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def _levelled(points: FloatArray, ring: IntArray, changes: Changes) -> tuple[FloatArray, IntArray]:
-    """Return points with those of a rim let down to the lowest one, and the faces down there and beneath."""
-    ring, ears = _notched(points, ring)
-    low, rim = float(points[:, 2].min()), points[ring]
+    """Return points with those of a rim let down to the lowest one, and the faces down there and beneath.
+
+    Down is across the plane of the rim, so that a body that leans stands upright once it is set on its bottom.
+    """
+    ring, _ = _notched(points[:, 2], ring)
+    normal = np.linalg.svd(points[ring] - points[ring].mean(axis=0), full_matrices=False)[2][2]
+    upright = set_down(-normal * (1.0 if normal[2] > 0.0 else -1.0))
+    leans = math.degrees(math.acos(min(1.0, abs(float(normal[2])))))
+    stood = points @ upright.T
+    ring, ears = _notched(stood[:, 2], ring)
+    low, rim = float(stood[:, 2].min()), stood[ring]
     lowered = rim * [1.0, 1.0, 0.0] + [0.0, 0.0, low]
     is_low = rim[:, 2] - low <= 1e-9 * float(np.ptp(points, axis=0).max())
     below = np.where(is_low, ring, len(points) + np.cumsum(~is_low) - 1)
@@ -121,11 +136,12 @@ def _levelled(points: FloatArray, ring: IntArray, changes: Changes) -> tuple[Flo
     plan = np.abs(area_vectors(lowered[patch])[:, 2])
     volume = 0.0 if is_low.all() else float((plan * (rim[patch][..., 2].mean(axis=1) - low)).sum())
     changes.say(
-        f"closed the open bottom, {_width(rim):.3g} m wide ({len(ring)} edges), by a level face at its lowest point",
+        f"closed the open bottom, {_width(rim):.3g} m wide ({len(ring)} edges), by a flat face at its lowest point"
+        + (f", {leans:.2g} degrees from level as its rim is" if leans > _LEANS else ""),
         volume,
-        lowered.mean(axis=0),
+        (lowered @ upright).mean(axis=0),
     )
-    return np.concatenate([points, lowered[~is_low]]), np.concatenate([ears, skirt, below[patch]])
+    return np.concatenate([points, (lowered @ upright)[~is_low]]), np.concatenate([ears, skirt, below[patch]])
 
 
 def _normal(ring: FloatArray) -> FloatArray:

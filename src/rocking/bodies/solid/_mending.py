@@ -12,6 +12,8 @@ from rocking.bodies.solid.surfaces import area_vectors
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import GeometryError
 
+THIN = 0.05
+"""Thickness of a sheet over its width [-]."""
 DUST, SPECK = 1e-3, 1e-6
 """Boxes of pieces left out over the largest one's: open pieces, closed ones [-]."""
 
@@ -37,14 +39,29 @@ def without_dust(points: FloatArray, faces: IntArray, changes: Changes) -> IntAr
     is_open = np.zeros(count, dtype=bool)
     is_open[np.tile(labels, 3)[np.bincount(numbers)[numbers] == 1]] = True
     dust = room < np.where(is_open, DUST, SPECK) * room.max()
+    sheets = [k for k in np.flatnonzero(is_open & ~dust & (room < room.max())) if _is_sheet(points[faces[labels == k]])]
+    if sheets:
+        changes.say(
+            f"left out {len(sheets)} open sheet(s) beside the body, such as the table that it was scanned on, "
+            f"{np.isin(labels, sheets).sum()} faces"
+        )
     if dust.any():
         whole = float(room[dust].sum())
         where = (0.5 * (low + high) * room[:, None])[dust].sum(axis=0) / whole if whole else None
         changes.say(
             f"left out {dust.sum()} loose piece(s) that hold next to nothing, {dust[labels].sum()} faces", whole, where
         )
+    dust[sheets] = True
     kept: IntArray = faces[~dust[labels]]
     return kept
+
+
+def _is_sheet(triangles: FloatArray) -> bool:
+    """Whether corners lie near one plane."""
+    corners = triangles.reshape(-1, 3)
+    arms = corners - corners.mean(axis=0)
+    along = np.ptp(arms @ np.linalg.eigh(arms.T @ arms)[1], axis=0)
+    return bool(along[0] < THIN * along[2])
 
 
 def without_fins(points: FloatArray, faces: IntArray, changes: Changes) -> IntArray:

@@ -63,7 +63,9 @@ def repaired(
     points, faces = decimated(points, faces, changes)
     points, faces = uncrossed(points, faces, changes)
     if wall is not None:
-        points, faces = hollowed(points, faces, checks.within("wall", wall, 0.0, 0.5 * size, unit="m"), changes)
+        points, faces = hollowed(
+            points, faces, checks.within("wall", wall, 0.0, 0.5 * size, unit="m", open_low=True), changes
+        )
     shape = Polyhedron(*_used(points, faces), simple=True)
     _check_hull(shape)
     return Repaired(shape, middle, changes.sentences(shape.moments(), float(np.ptp(shape.vertices, axis=0).max())))

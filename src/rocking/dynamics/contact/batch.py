@@ -45,7 +45,7 @@ class RowsWithContact:
         coefficients = np.array([values[f"r_{foot}"] for foot in FEET])
         known = np.all(((coefficients >= 0.0) & (coefficients <= 100.0)) | (coefficients == UNIMPOSED), axis=0)
         size = np.maximum(right["size"], left["size"])
-        usual = np.float64(self.settings.friction or np.nan)
+        usual = np.nan if self.settings.friction is None else self.settings.friction
         friction = np.where(np.isnan(values["friction"]), usual, values["friction"])
         table: dict[str, Any] = {
             "inertia": np.where(same & known, right["inertia"], np.nan), "height": right["height"],

@@ -19,7 +19,7 @@ from rocking.dynamics.contact.fast_engine import FAST, NUMBERS, REFERENCE, chose
 from rocking.dynamics.contact.impact_resolution import GroundContact
 from rocking.dynamics.contact.response import ContactResponse
 from rocking.dynamics.impact_laws import ImpactLaw
-from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.parameters import RockingParameters, is_none
 from rocking.dynamics.response_base import followed, ground_at_rest
 from rocking.dynamics.settings import Settings, check_progress, check_threads, processors
 from rocking.errors import InvalidValueError, PlausibilityWarning
@@ -87,7 +87,7 @@ def many_with_contact(  # noqa: PLR0913 - what the front door hands on
     check_progress(progress)
     check_threads(threads)
     for mu in friction:
-        plausibility.warn(plausibility.of_friction(checks.positive("friction", float(mu))))
+        plausibility.warn(plausibility.of_friction(checks.within("friction", float(mu), 0.0, 1e6)))
     if chosen(engine) == "fast":
         imposed = [[_imposed(body, each, settings) or (np.nan, np.nan) for each in restitutions] for body in bodies]
         law = GroundContact(0.0, checks.number("bounce", bounce), None, bounce_law)
@@ -192,7 +192,7 @@ def _row_of(response: ContactResponse) -> dict[str, float]:
 
 
 def _imposed(body: Body, restitution: Any, settings: Settings) -> tuple[float, float] | None:
-    if restitution is None:
+    if is_none(restitution):
         return None
     if isinstance(restitution, ImpactLaw):
         raise InvalidValueError(

@@ -224,8 +224,9 @@ class Responses:
 
     @property
     def rocked(self) -> BoolArray:
-        """Which histories rocked and stayed standing."""
-        return np.isin(self.outcome, [each.code for each in _ROCKED])
+        """Which histories rocked and stayed standing; what hops flat does not rock."""
+        hopped = (self.outcome == Outcome.FLEW.code) & ~(self.rotation > 0.0)
+        return np.asarray(np.isin(self.outcome, [each.code for each in _ROCKED]) & ~hopped)
 
     @property
     def overturned(self) -> FloatArray:

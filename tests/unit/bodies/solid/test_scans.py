@@ -1,5 +1,6 @@
 """Scans made badly on purpose: they come in by one call with the right centre to the stated bound, or are refused."""
 
+import math
 import re
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import pytest
 
 import rocking as rk
 from rocking.bodies.equilibria.poses import set_down
-from rocking.bodies.solid import _manifold, box
+from rocking.bodies.solid import _manifold, box, extrusion, rotation_about
 from rocking.bodies.solid._changes import MOST_SHIFT, MOST_VOLUME
 from rocking.bodies.solid._repair import repaired
 from rocking.bodies.solid._resting import settled
@@ -86,6 +87,17 @@ def speckled():
 
 TABLE = np.array([[-0.5, -0.5, -1e-3], [0.5, -0.5, -1e-3], [0.5, 0.5, -1e-3], [-0.5, 0.5, -1e-3]])
 
+
+def table():
+    """The sheet that it was scanned on: rough, and half a degree from level."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.linspace(-0.2, 0.2, 21), np.linspace(-0.2, 0.2, 21)))
+    z = 5e-4 * np.random.default_rng(7).normal(size=x.size) + math.tan(math.radians(0.5)) * (x - 0.2) - 3e-3
+    a = (np.arange(20)[:, None] * 21 + np.arange(20)).ravel()
+    return np.stack([x, y, z], axis=1), np.concatenate(
+        [np.stack([a, a + 1, a + 22], 1), np.stack([a, a + 22, a + 21], 1)]
+    )
+
+
 # what was done to the scan, words of the sentence that says how it was mended
 MENDED = {
     "open": ((V[:-1], SIDES), "closed the open bottom"),
@@ -103,6 +115,7 @@ MENDED = {
     "dust": (speckled(), "loose piece(s)"),
     "fin": (finned(), "fins"),
     "on its table": (joined((V, F), (TABLE, np.array([[0, 1, 2], [0, 2, 3]]))), "loose piece"),
+    "on a rough table": (joined((V, F), table()), "open sheet(s) beside the body"),
     "cloud": ((bad_scans.scattered(V, F, 6000), NONE), "skin over"),
     "cloud without a bottom": ((bad_scans.scattered(V, SIDES, 6000), NONE), "closed the open bottom"),
     "cloud with noise": ((bad_scans.scattered(V, F, 6000) + 2e-4 * RANDOM.normal(size=(6000, 3)), NONE), "skin over"),
@@ -124,6 +137,36 @@ def test_mended(scan, words, tmp_path):
     height = found.centre[2] - found.ground
     assert abs(height - CENTRE[2]) <= shift + 1e-3 * SIZE
     assert np.linalg.norm(found.centre - CENTRE) <= shift + 5e-3 * SIZE
+
+
+@pytest.mark.verifies("invariant", "the body before it leant", within="1 % of the nearest edge's distance")
+@pytest.mark.parametrize("degrees", [1.0, 3.0])
+def test_an_open_scan_that_leans_is_set_upright(degrees, tmp_path):
+    """Its bottom is closed along its rim, and the body set down on that: base and height are the upright one's."""
+    turn = rotation_about([1.0, 0.4, 0.0], math.radians(degrees))
+    upright = read(tmp_path / "upright.ply", V, F)
+    found = read(tmp_path / "leaning.ply", V[:-1] @ turn.T, SIDES)
+    assert any("degrees from level as its rim is" in words for words in found.repairs)
+    assert found.centre[2] - found.ground == pytest.approx(upright.centre[2] - upright.ground, abs=2e-4 * SIZE)
+    margins = [each.base.margin(each.centre[:2]) for each in (found, upright)]
+    assert margins[0] == pytest.approx(margins[1], rel=1e-2)
+    # the negative control: closed level, as it leans, the centre comes that much nearer to the edge
+    assert math.sin(math.radians(degrees)) * CENTRE[2] > 0.02 * margins[1]
+
+
+@pytest.mark.verifies("closed form", "the prism without its hole", within="1e-6")
+def test_a_hole_in_the_top_of_a_plinth_is_no_bottom(tmp_path):
+    """Low and level, but it looks up: it is closed by a flat face, not dug down to the ground."""
+    outline = [(0.0, 0.0), (0.4, 0.0), (0.4, 0.06), (0.1, 0.06), (0.1, 0.9), (0.0, 0.9)]
+    shape = extrusion(outline, 0.3)
+    vertices = shape.vertices[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
+    level = np.ptp(vertices[shape.faces][..., 2], axis=1) < 1e-12
+    top = level & (np.abs(vertices[shape.faces][:, 0, 2] - 0.06) < 1e-9)
+    faces = np.delete(shape.faces, np.flatnonzero(top)[0], axis=0)
+    assert len(faces) == len(shape.faces) - 1
+    found = read(tmp_path / "plinth.ply", vertices, faces, repair="all")
+    assert not any("bottom" in words for words in found.repairs), found.repairs
+    assert found.volume == pytest.approx(0.3 * (0.4 * 0.06 + 0.1 * 0.84), rel=1e-6)
 
 
 def stated(repairs):
