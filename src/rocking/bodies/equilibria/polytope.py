@@ -259,14 +259,15 @@ def _merged(corners: FloatArray, triangles: IntArray, beside: IntArray, slopes: 
 
     The tolerance is lowered until no facet departs from its plane by more than ten times as much.
     """
-    from scipy.sparse import coo_array
+    from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
     normals, heights = slopes.normals, slopes.heights
     count, label = len(triangles), np.arange(len(triangles))
     while (slopes.drop <= flat).any():
         mine, side = np.nonzero(slopes.drop <= flat)
-        graph = coo_array((np.ones(len(mine), dtype=bool), (mine, beside[mine, side])), shape=(len(triangles),) * 2)
+        # a matrix, since SciPy 1.11 walks no arrays of which the numbers are longer
+        graph = coo_matrix((np.ones(len(mine), dtype=bool), (mine, beside[mine, side])), shape=(len(triangles),) * 2)
         count, found = connected_components(graph, directed=False)
         label = found.astype(np.int64)
         total = np.stack([np.bincount(label, slopes.areas[:, i], count) for i in range(3)], axis=1)
@@ -299,9 +300,9 @@ def _merged(corners: FloatArray, triangles: IntArray, beside: IntArray, slopes: 
 
 def _grouped(members: IntArray, count: int) -> tuple[IntArray, IntArray]:
     """Return the places of members in the order of their values, and where each value starts."""
-    from scipy.sparse import coo_array
+    from scipy.sparse import coo_matrix
 
     places = np.arange(members.size)
     # a sparse matrix sorts its rows by counting
-    rows = coo_array((places, (members.ravel(), places)), shape=(count, members.size)).tocsr()
+    rows = coo_matrix((places, (members.ravel(), places)), shape=(count, members.size)).tocsr()
     return rows.data, rows.indptr.astype(np.int64)
