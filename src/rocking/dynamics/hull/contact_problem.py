@@ -1,0 +1,290 @@
+"""Forces or impulses on a set of touching vertices: one problem for accelerations and for velocities.
+
+The touching vertices of a convex body on a plane form a face of its hull: a vertex, an edge or a facet. What stays on
+the ground is this face or a part of its border; each vertex that stays sticks, or slides with the friction mu N against
+its direction. Every candidate is a linear system of at most six unknowns.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import combinations
+
+from rocking.dynamics.hull.body import HullBody
+from rocking.dynamics.hull.vectors import (
+    ZERO,
+    Frame,
+    Vector,
+    added,
+    applied,
+    cross,
+    dot,
+    length,
+    minus,
+    plus,
+    scaled,
+    unit,
+)
+
+_SINGULAR = 1e-12
+_TURNS, _STRAIGHT = 200, 1e-13
+
+Wrench = tuple[Vector, Vector]
+
+
+@dataclass(frozen=True)
+class ContactSet:
+    """Which vertices stay on the ground, and which of them stick."""
+
+    members: tuple[int, ...]
+    stuck: tuple[int, ...] = ()
+
+
+FLIGHT = ContactSet(())
+
+
+@dataclass
+class Problem:
+    """What would happen without forces, and where they act."""
+
+    body: HullBody
+    axes: Frame  # axes of the ground in those of the body
+    linear: Vector  # acceleration of the centre without contact, or its velocity before the impact, in axes of the body
+    angular: Vector
+    friction: float
+    bias: dict[int, Vector] = field(default_factory=dict)  # w x (w x r) of each vertex; none in impacts
+    places: dict[int, Vector] = field(default_factory=dict)  # where the impulse of a vertex acts, if not at the vertex
+
+    def rate(self, i: int, linear: Vector, angular: Vector) -> Vector:
+        """Return the acceleration or velocity of a vertex."""
+        free = plus(linear, cross(angular, self.body.points[i]))
+        return plus(free, self.bias[i]) if self.bias else free
+
+    def place(self, i: int) -> Vector:
+        """Return where the force of a vertex acts."""
+        return self.places.get(i, self.body.points[i]) if self.places else self.body.points[i]
+
+
+@dataclass
+class Solution:
+    """What a candidate does."""
+
+    contact: ContactSet
+    linear: Vector
+    angular: Vector
+    normals: dict[int, float]
+    directions: dict[int, Vector]  # of those that slide
+    pulls: dict[int, Vector]  # forces along the ground of those that stick
+
+
+def solve(problem: Problem, contact: ContactSet, directions: dict[int, Vector]) -> Solution | None:
+    """Return accelerations and forces of a candidate with given directions of sliding; None where there are none."""
+    if not contact.members:
+        return Solution(contact, problem.linear, problem.angular, {}, {}, {})
+    carrying = list(contact.members)
+    while True:
+        found = linear(problem, contact, carrying, directions)
+        if found is None or len(contact.members) <= 3:
+            return found
+        least = min(carrying, key=lambda i: found.normals[i])
+        if found.normals[least] >= 0.0 or len(carrying) == 3:
+            return found
+        carrying.remove(least)
+
+
+def linear(
+    problem: Problem, contact: ContactSet, carrying: list[int], directions: dict[int, Vector]
+) -> Solution | None:
+    """Return what certain forces do, pulled or not, so that the vertices of the contact stay on the ground."""
+    x, y, up = problem.axes
+    mu, points = problem.friction, problem.body.points
+    columns: list[Wrench] = []
+    rows: list[tuple[Wrench, float]] = []
+    # normal forces: of each vertex, or linear in its place where more than three carry
+    if len(carrying) <= 3:
+        weights = [{i: 1.0} for i in carrying]
+    else:
+        weights = [{i: dot(axis, problem.place(i)) for i in carrying} for axis in (x, y)]
+        weights.insert(0, dict.fromkeys(carrying, 1.0))
+    for share in weights:
+        force, moment, row, known = ZERO, ZERO, (ZERO, ZERO), 0.0
+        for i, w in share.items():
+            push = added(up, -mu, directions[i]) if i in directions else up
+            force, moment = added(force, w, push), added(moment, w, cross(problem.place(i), push))
+            row = added(row[0], w, up), added(row[1], w, cross(points[i], up))
+            known += w * dot(up, problem.bias[i]) if problem.bias else 0.0
+        columns.append((force, moment))
+        rows.append((row, known))
+    # forces along the ground that make vertices stick: two, and a third that keeps them from turning
+    stuck = contact.stuck
+    if stuck:
+        share = 1.0 / len(stuck)
+        middle = [sum(share * problem.place(i)[k] for i in stuck) for k in range(3)]
+        centre = (middle[0], middle[1], middle[2])
+        first = stuck[0]
+        for axis in (x, y):
+            columns.append((axis, cross(centre, axis)))
+            known = dot(axis, problem.bias[first]) if problem.bias else 0.0
+            rows.append(((axis, cross(points[first], axis)), known))
+        if len(stuck) > 1:
+            other = stuck[len(stuck) // 2]
+            across = unit(cross(up, minus(points[other], points[first])))
+            # a couple, and the turning of the second about the first
+            columns.append((ZERO, up))
+            known = dot(across, minus(problem.bias[other], problem.bias[first])) if problem.bias else 0.0
+            rows.append(((ZERO, cross(minus(points[other], points[first]), across)), known))
+    answer = _eliminated(problem, columns, rows)
+    if answer is None:
+        return None
+    force, moment = ZERO, ZERO
+    for c, (f, m) in zip(answer, columns, strict=True):
+        force, moment = added(force, c, f), added(moment, c, m)
+    centre_rate = added(problem.linear, 1.0 / problem.body.mass, force)
+    angular = plus(problem.angular, applied(problem.body.compliance, moment))
+    normals = dict.fromkeys(contact.members, 0.0)
+    for c, share_of in zip(answer, weights, strict=False):
+        for i, w in share_of.items():
+            normals[i] += c * w
+    pulls = _pulls(problem, stuck, normals, answer[len(weights) :])
+    return Solution(contact, centre_rate, angular, normals, directions, pulls)
+
+
+def _eliminated(problem: Problem, columns: list[Wrench], rows: list[tuple[Wrench, float]]) -> list[float] | None:
+    """Solve for the multipliers by Gauss; None where a pivot is not positive, so that no force answers a motion."""
+    n, mass = len(columns), problem.body.mass
+    soft = [(scaled(1.0 / mass, f), applied(problem.body.compliance, m)) for f, m in columns]
+    table = []
+    for (f, m), known in rows:
+        line = [dot(f, cf) + dot(m, cm) for cf, cm in soft]
+        line.append(-(dot(f, problem.linear) + dot(m, problem.angular) + known))
+        table.append(line)
+    for k in range(n):
+        pivot = table[k][k]
+        if not pivot > _SINGULAR * max(abs(v) for v in table[k][:n]):
+            return None
+        for j in range(k + 1, n):
+            factor = table[j][k] / pivot
+            if factor:
+                for c in range(k + 1, n + 1):
+                    table[j][c] -= factor * table[k][c]
+    answer = [0.0] * n
+    for k in range(n - 1, -1, -1):
+        total = table[k][n]
+        for c in range(k + 1, n):
+            total -= table[k][c] * answer[c]
+        answer[k] = total / table[k][k]
+    return answer
+
+
+def _pulls(
+    problem: Problem, stuck: tuple[int, ...], normals: dict[int, float], parts: list[float]
+) -> dict[int, Vector]:
+    """Share what holds the sticking vertices as their normal forces are shared, and as these would resist turning."""
+    if not stuck:
+        return {}
+    x, y, up = problem.axes
+    total = plus(scaled(parts[0], x), scaled(parts[1], y))
+    if len(stuck) == 1:
+        return {stuck[0]: total}
+    weights = {i: max(normals[i], 0.0) for i in stuck}
+    weight = sum(weights.values())
+    if not weight > 0.0:
+        weights, weight = dict.fromkeys(stuck, 1.0), float(len(stuck))
+    arms = {i: problem.place(i) for i in stuck}
+    loaded = even = ZERO
+    for i in stuck:
+        loaded = added(loaded, weights[i] / weight, arms[i])
+        even = added(even, 1.0 / len(stuck), arms[i])
+    couple = parts[2] + dot(up, cross(minus(even, loaded), total))
+    turning = {i: cross(up, minus(arms[i], loaded)) for i in stuck}
+    resistance = sum(weights[i] * dot(turning[i], turning[i]) for i in stuck)
+    rate = couple / resistance if resistance > 0.0 else 0.0
+    return {i: scaled(weights[i], plus(scaled(1.0 / weight, total), scaled(rate, turning[i]))) for i in stuck}
+
+
+def sliding(
+    problem: Problem, contact: ContactSet, known: dict[int, Vector], guess: dict[int, Vector] | None = None
+) -> Solution | None:
+    """Return a candidate with the directions in which its free vertices start to slide, by iteration; None if none."""
+    open_ones = [i for i in contact.members if i not in contact.stuck and i not in known]
+    if not open_ones or problem.friction == 0.0:
+        return solve(problem, contact, {**dict.fromkeys(open_ones, ZERO), **known})
+    directions = {**dict.fromkeys(open_ones, ZERO), **known, **(guess or {})}
+    up = problem.axes[2]
+    for turn in range(_TURNS):
+        found = solve(problem, contact, directions)
+        if found is None:
+            return None
+        change = 0.0
+        made = dict(directions)
+        for i in open_ones:
+            rate = problem.rate(i, found.linear, found.angular)
+            new = unit(added(rate, -dot(rate, up), up))
+            if turn > 20:
+                new = unit(plus(new, directions[i]))
+            change = max(change, length(minus(new, directions[i])))
+            made[i] = new
+        directions = made
+        if change <= _STRAIGHT:
+            return solve(problem, contact, directions)
+    return None
+
+
+def faces(problem: Problem, touching: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
+    """Yield what may stay of the touching vertices: all, the edges of their border, single ones."""
+    border = outline(problem, touching)
+    if len(border) > 2:
+        yield border
+    if len(border) > 1:
+        for k, i in enumerate(border if len(border) > 2 else border[:1]):
+            yield i, border[(k + 1) % len(border)]
+    for i in border:
+        yield (i,)
+
+
+def outline(problem: Problem, touching: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the vertices of the convex polygon of points on the ground, in order (Andrew's monotone chain)."""
+    x, y, _ = problem.axes
+    places = sorted((dot(x, problem.body.points[i]), dot(y, problem.body.points[i]), i) for i in touching)
+    if len(places) < 3:
+        return tuple(i for _, _, i in places)
+    slack = 1e-10 * problem.body.size**2
+
+    def chain(ordered: list[tuple[float, float, int]]) -> list[tuple[float, float, int]]:
+        kept: list[tuple[float, float, int]] = []
+        for p in ordered:
+            while len(kept) > 1:
+                (ax, ay, _), (bx, by, _) = kept[-2:]
+                if (bx - ax) * (p[1] - ay) - (by - ay) * (p[0] - ax) > slack:
+                    break
+                kept.pop()
+            kept.append(p)
+        return kept[:-1]
+
+    return tuple(i for _, _, i in chain(places) + chain(places[::-1]))
+
+
+def friction_states(members: tuple[int, ...], still: tuple[int, ...]) -> Iterator[ContactSet]:
+    """Yield which of the vertices that do not slide yet stick: all, all but one, one, none."""
+    if len(still) == len(members) or len(still) < 2:
+        yield ContactSet(members, still)
+    if len(still) > 1:
+        # two sticking vertices of a facet make it rest
+        sizes = (1,) if len(members) > 2 else range(len(still) - 1, 0, -1)
+        for n in sizes:
+            yield from (ContactSet(members, part) for part in combinations(still, n))
+    if still:
+        yield ContactSet(members)
+
+
+def valid(problem: Problem, found: Solution, touching: tuple[int, ...], slack: float) -> bool:
+    """Whether no force pulls, no sticking one takes more friction than there is, and no gap closes."""
+    mass, mu, up = problem.body.mass, problem.friction, problem.axes[2]
+    if any(n < -slack * mass for n in found.normals.values()):
+        return False
+    if not math.isinf(mu):
+        for i, pull in found.pulls.items():
+            if length(pull) > mu * found.normals[i] + slack * mass * (1.0 + mu):
+                return False
+    rates = (dot(up, problem.rate(i, found.linear, found.angular)) for i in touching if i not in found.contact.members)
+    return all(rate >= -slack for rate in rates)

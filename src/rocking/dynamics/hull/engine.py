@@ -1,0 +1,647 @@
+"""The reference engine for a body on the vertices of its hull: steps, events to rounding, contact by complementarity."""
+
+import math
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any, NamedTuple
+
+from rocking.dynamics.hull import contact_problem as contacts
+from rocking.dynamics.hull.body import HullBody
+from rocking.dynamics.hull.contact_problem import FLIGHT, ContactSet, Problem, Solution
+from rocking.dynamics.hull.ground import HullGround
+from rocking.dynamics.hull.motion import (
+    Mode,
+    Rates,
+    State,
+    StepResult,
+    energies,
+    gap,
+    point_velocity,
+    problem_of,
+    slip_direction,
+    step,
+    valued,
+)
+from rocking.dynamics.hull.restitution import law_of, nearest, place_of
+from rocking.dynamics.hull.vectors import (
+    ZERO,
+    Vector,
+    added,
+    applied,
+    back,
+    cross,
+    dot,
+    frame,
+    length,
+    minus,
+    normalised,
+    product,
+    scaled,
+    unit,
+)
+from rocking.outcome import Outcome, Status
+
+_CLOSED, _GRAZED = 1e-11, 1e-14  # gaps over the size: of vertices that land together, and at which one lands
+_FORCE = 1e-11  # acceleration over gravity below which a force counts as zero
+_SLIP = 1e-7  # speed over sqrt(g size) below which a vertex does not slide
+_LADDER = (1e-11, 1e-9, 1e-7, 1e-5)
+_AHEAD = 1e-6  # how much later, over sqrt(size / g), the ground decides which mode starts
+_PILED, _STUCK = 30, 80
+_PATIENCE = 100.0
+_HALVINGS = 80
+
+
+class EventKind(Enum):
+    """What happens at an event."""
+
+    IMPACT = "vertices strike the ground"
+    CHANGE = "vertices leave, stick or start to slide"
+    REST = "comes to rest"
+    UPLIFT = "leaves its rest"
+
+
+class Event(NamedTuple):
+    """Something that happened."""
+
+    time: float
+    kind: EventKind
+    contact: ContactSet  # after it
+    before: float  # kinetic energy before [J]
+    after: float  # kinetic energy after [J]
+
+
+@dataclass
+class History:
+    """A history at the ends of its steps."""
+
+    time: list[float] = field(default_factory=list)
+    states: list[State] = field(default_factory=list)
+    contacts: list[ContactSet] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
+    status: Status = Status.GOOD
+    outcome: Outcome = Outcome.NO_UPLIFT
+    still_rocking: bool = False
+    lost: float = 0.0  # energy lost in impacts and by coming to rest; friction's work is not in it [J]
+    replaced: int = 0  # impacts whose impulse had to act at the vertices that land
+    held: int = 0  # impacts and changes without a solution, where the largest face was made to stick
+    flew: bool = False
+    slid: bool = False
+    rocked: bool = False
+    fell: bool = False  # off the shelf
+
+
+@dataclass(frozen=True)
+class HullSettings:
+    """How to integrate.
+
+    Parameters
+    ----------
+    tolerance : float
+        Bound on the local error of a step, over size, radian and their rates [-].
+    rest_speed : float
+        Speed over sqrt(g size) below which a vertex that leaves would fall back at once, and whose square is the
+        energy over m g size at which a body on nearly a whole facet comes to rest [-].
+    most_events : int
+        A history with more is stopped with a status.
+    """
+
+    tolerance: float = 1e-12
+    rest_speed: float = 1e-6
+    most_events: int = 100_000
+
+
+class HullEngine:
+    """One history."""
+
+    def __init__(
+        self,
+        body: HullBody,
+        ground: HullGround,
+        restitution: Any = "housner-3d",
+        friction: float = math.inf,
+        settings: HullSettings | None = None,
+    ) -> None:
+        self.body, self.ground, self.friction = body, ground, friction
+        self.restitution, self.settings = restitution, settings or HullSettings()
+        self.pace = math.sqrt(ground.gravity / body.size)
+        self.speed = ground.gravity / self.pace  # sqrt(g size)
+        self.slow = self.settings.rest_speed * self.speed
+        self.weak = self.settings.rest_speed**2 * body.mass * ground.gravity * body.size
+        self.time, self.stretch = 0.0, 0
+        self.length = 0.1 / self.pace
+        self.mode = self._mode(FLIGHT, {})
+        self.anchors: dict[int, Vector] = {}
+        self.at_once, self.moment = 0, -1.0
+        self.history = History()
+        self.ended: Status | None = None
+
+    # ---- the course of a history ------------------------------------------------------------------------------------
+
+    def run(self, state: State, horizon: float = 0.0) -> History:
+        """Return the history from a state; it ends at rest after the motion and the horizon, or when patience ends."""
+        self.state = state
+        self.until = max(horizon, self.ground.motion.end)
+        self.first_up = frame(state.attitude)[2]
+        lowest = min(gap(self.body, state, i) for i in range(len(self.body.points)))
+        self.base = tuple(
+            i for i in range(len(self.body.points)) if gap(self.body, state, i) <= lowest + 1e-9 * self.body.size
+        )
+        self.law = law_of(self.restitution, self.body, self._base_of(state))
+        if any(point_velocity(self.body, state, i)[2] < -_SLIP * 1e-4 * self.speed for i in self._touching()):
+            self._impact()
+        else:
+            self._choose(self._touching())
+        self._keep()
+        while self.ended is None and not self._over():
+            if self._resting:
+                self._rest()
+            else:
+                self._step()
+        return self._judged()
+
+    def _base_of(self, state: State) -> tuple[int, ...]:
+        """Vertices of the facet that faces down most."""
+        down = scaled(-1.0, frame(state.attitude)[2])
+        normal, height = max(self.body.facets, key=lambda facet: dot(facet[0], down))
+        points = self.body.points
+        return tuple(i for i, p in enumerate(points) if abs(dot(normal, p) - height) <= 1e-9 * self.body.size)
+
+    @property
+    def _resting(self) -> bool:
+        contact = self.mode.contact
+        return len(contact.members) > 2 and len(contact.stuck) == len(contact.members)
+
+    def _over(self) -> bool:
+        if self.state.place[2] < -2.0 * self.body.size:
+            self.history.fell = True
+            return True
+        if self.time < self.until:
+            return False
+        if self._resting:
+            return True
+        self.history.still_rocking = self.time > self.until + _PATIENCE / self.pace
+        return self.history.still_rocking
+
+    def _judged(self) -> History:
+        made = self.history
+        made.status = self.ended or Status.GOOD
+        if self.ended is not None:
+            made.outcome = Outcome.FAILED
+        elif made.fell or self._pose(self.first_up) != self._pose(frame(self.state.attitude)[2]):
+            made.outcome = Outcome.OVERTURNED
+        elif made.flew:
+            made.outcome = Outcome.FLEW
+        elif made.rocked:
+            made.outcome = Outcome.ROCKED_AND_SLID if made.slid else Outcome.ROCKED
+        elif made.slid:
+            made.outcome = Outcome.SLID
+        return made
+
+    def _pose(self, up: Vector) -> int:
+        """Return the facet that faces down most."""
+        facets = self.body.facets
+        return max(range(len(facets)), key=lambda k: -dot(facets[k][0], up))
+
+    # ---- rest -------------------------------------------------------------------------------------------------------
+
+    def _rest(self) -> None:
+        """Rest to the end of the stretch, or until the ground tips or moves the body."""
+        if self.stretch >= self.ground.motion.count:
+            self._hold(self.until)
+            return
+        end = float(self.ground.motion.times[self.stretch + 1])
+        span = end - self.time
+        coefficients = self.ground.field(self.stretch, self.time, span)
+        marks = [1.0] if len(coefficients) < 3 else [k / 8.0 for k in range(1, 9)]
+        before = 0.0
+        for mark in marks:
+            if self._stands(valued(coefficients, mark)) < 0.0:
+                low, high = before, mark
+                for _ in range(_HALVINGS):
+                    middle = 0.5 * (low + high)
+                    low, high = (low, middle) if self._stands(valued(coefficients, middle)) < 0.0 else (middle, high)
+                self._hold(self.time + high * span)
+                self._event(EventKind.UPLIFT, 0.0)
+                self._choose(self._touching(), exclude=self.mode.contact)
+                return
+            before = mark
+        self._hold(end)
+        self.stretch += 1
+
+    def _hold(self, until: float) -> None:
+        self.time = until
+        self._keep()
+
+    def _stands(self, pull: Vector) -> float:
+        """Least distance of the centre of pressure from the border, times the pull, and what friction leaves over."""
+        axes, points = frame(self.state.attitude), self.body.points
+        members = self.mode.contact.members
+        least = -pull[2]
+        if not math.isinf(self.friction):
+            least = min(least, -self.friction * pull[2] - math.hypot(pull[0], pull[1]))
+        for k, i in enumerate(members):
+            a, b = applied(axes, points[i]), applied(axes, points[members[(k + 1) % len(members)]])
+            x, y = b[0] - a[0], b[1] - a[1]
+            size = math.hypot(x, y)
+            inward = (-y / size, x / size)
+            inside = -(a[0] * inward[0] + a[1] * inward[1])
+            tips = -inside * pull[2] - a[2] * (pull[0] * inward[0] + pull[1] * inward[1])  # Eq. 94
+            least = min(least, tips / self.body.size)
+        return least
+
+    # ---- a step -----------------------------------------------------------------------------------------------------
+
+    def _step(self) -> None:
+        body, start = self.body, self.state
+        moving = self.stretch < self.ground.motion.count
+        left = (float(self.ground.motion.times[self.stretch + 1]) if moving else math.inf) - self.time
+        whole = min(self.length, left)
+        if whole < left < 2.0 * whole:
+            whole = 0.5 * left
+        coefficients = self.ground.field(self.stretch, self.time, whole)
+
+        def to(part: float) -> StepResult:
+            return step(body, start, self.mode, coefficients, whole, part, self.pace)
+
+        result = to(1.0)
+        if not math.isfinite(result.error):
+            self.ended = Status.NOT_FINITE
+            return
+        if any(rates.found is None for _, _, rates in result.samples):
+            if whole * self.pace > 1e-9:
+                self.length = 0.25 * whole
+            else:
+                self._shocked()
+            return
+        growth = 0.9 * (self.settings.tolerance / max(result.error, 1e-300)) ** 0.2
+        if result.error > self.settings.tolerance and whole * self.pace > 1e-10:
+            self.length = whole * max(0.1, growth)
+            return
+        self.length = max(whole, self.length if whole == left else 0.0) if growth > 1.0 else whole
+        self.length = min(self.length * min(max(growth, 0.3), 4.0), 0.2 / self.pace)
+        part, kind, which = self._first_event(result, to)
+        if kind:
+            result = to(part)
+        self.time = self.time + part * whole
+        if not kind and whole == left:
+            self.stretch += 1
+            self.time = float(self.ground.motion.times[self.stretch])
+        self.state = result.state
+        self._settle_on(self.mode.contact)
+        self._keep()
+        if kind == "gap":
+            self._impact()
+        elif kind:
+            self._event(EventKind.CHANGE, energies(body, self.state, ZERO)[0])
+            self._choose(self._touching(), exclude=self.mode.contact)
+
+    def _first_event(self, result: StepResult, to: Any) -> tuple[float, str, int]:
+        """Return when the first margin falls below zero: part of the step, kind of the margin, vertex."""
+        found: list[tuple[float, float, str, int]] = []
+        for kind, i in self._watched(result):
+            values = [self._margin(kind, i, state, rates) for _, state, rates in result.samples]
+            if values[0] < 0.0:
+                return 0.0, kind, i
+            for (low, _, _), (high, _, _), a, b in zip(
+                result.samples, result.samples[1:], values, values[1:], strict=False
+            ):
+                if b < 0.0:
+                    found.append((low + (high - low) * a / (a - b), high, kind, i))
+                    break
+            else:
+                dip = self._dip(i, result, values) if kind == "gap" else None
+                if dip is not None and self._at("gap", i, to(dip)) < 0.0:
+                    found.append((0.9 * dip, dip, kind, i))
+        part, kind, which = 1.0, "", -1
+        for _, high, this, i in sorted(found):
+            if high >= part:
+                trial = to(part) if part < 1.0 else result
+                if part < 1.0 and self._at(this, i, trial) >= 0.0:
+                    continue
+                high = part
+            part, kind, which = self._located(this, i, high, to), this, i
+        return part, kind, which
+
+    def _located(self, kind: str, i: int, high: float, to: Any) -> float:
+        """Return the zero of a margin that is below zero at the end, by regula falsi (Illinois)."""
+        low, at_low, at_high = 0.0, self._at(kind, i, to(0.0)), self._at(kind, i, to(high))
+        side = 0
+        for _ in range(_HALVINGS):
+            if high - low <= 1e-15 or at_high == 0.0:
+                break
+            middle = low + (high - low) * at_low / (at_low - at_high)
+            middle = middle if low < middle < high else 0.5 * (low + high)
+            value = self._at(kind, i, to(middle))
+            if value < 0.0:
+                if high - middle <= 1e-15 * high:
+                    high = middle
+                    break
+                high, at_high = middle, value
+                at_low *= 0.5 if side == -1 else 1.0
+                side = -1
+            else:
+                if middle - low <= 1e-15 * high and side == 1:
+                    low = middle
+                    break
+                low, at_low = middle, value
+                at_high *= 0.5 if side == 1 else 1.0
+                side = 1
+        return high
+
+    def _watched(self, result: StepResult) -> list[tuple[str, int]]:
+        contact, body = self.mode.contact, self.body
+        watched = [("normal", i) for i in contact.members]
+        if not math.isinf(self.friction):
+            watched += [("stick", i) for i in contact.stuck]
+        watched += [("slip", i) for i in contact.members if i not in contact.stuck]
+        one, two = result.samples[0][1], result.state
+        fastest = max(length(s.velocity) + body.size * length(s.spin) for s in (one, two))
+        reach = fastest * self.length
+        up, high = frame(one.attitude)[2], one.place[2]
+        after, later = frame(two.attitude)[2], two.place[2]
+        for i, p in enumerate(body.points):
+            if i not in contact.members and min(high + dot(up, p), later + dot(after, p)) < reach:
+                watched.append(("gap", i))
+        return watched
+
+    def _margin(self, kind: str, i: int, state: State, rates: Rates) -> float:
+        """Return what must not fall below zero: a height, an acceleration or a speed."""
+        slack = _FORCE * self.ground.gravity
+        if kind == "gap":
+            height = gap(self.body, state, i) + _GRAZED * self.body.size
+            place = added(state.place, 1.0, applied(frame(state.attitude), self.body.points[i]))
+            return height if self.ground.under(place) or height > 0.0 else math.inf
+        if rates.found is None:
+            return -1.0
+        if kind == "normal":
+            return rates.found.normals[i] / self.body.mass + slack
+        if kind == "stick":
+            free = self.friction * rates.found.normals[i] - length(rates.found.pulls[i])
+            return free / self.body.mass + slack * (1.0 + self.friction)
+        direction = slip_direction(self.body, self.state, self.mode, i)
+        speed = dot(direction, point_velocity(self.body, state, i))
+        started = dot(direction, point_velocity(self.body, self.state, i)) > self.mode.slow
+        return speed - self.mode.slow if started else speed + self.mode.slow
+
+    def _at(self, kind: str, i: int, result: StepResult) -> float:
+        return self._margin(kind, i, result.state, result.samples[-1][2])
+
+    def _dip(self, i: int, result: StepResult, values: list[float]) -> float | None:
+        """Return where a gap is least within a step, by its values and rates at the ends; None where it is not."""
+        (_, one, _), (_, two, _) = result.samples[0], result.samples[-1]
+        a, b = point_velocity(self.body, one, i)[2], point_velocity(self.body, two, i)[2]
+        return a / (a - b) if a < 0.0 < b and min(values) < self.body.size * 1e-3 else None
+
+    # ---- contact ----------------------------------------------------------------------------------------------------
+
+    def _touching(self, reach: float = _CLOSED) -> tuple[int, ...]:
+        axes, place = frame(self.state.attitude), self.state.place
+        found = []
+        for i, p in enumerate(self.body.points):
+            at = added(place, 1.0, applied(axes, p))
+            if at[2] <= reach * self.body.size and self.ground.under(at):
+                found.append(i)
+        return tuple(found)
+
+    def _field(self) -> Vector:
+        """Return gravity less the acceleration of the ground, a moment later."""
+        ahead = _AHEAD / self.pace
+        if self.stretch >= self.ground.motion.count:
+            return self.ground.weight
+        return valued(self.ground.field(self.stretch, self.time, ahead), 1.0)
+
+    def _mode(self, contact: ContactSet, starts: dict[int, Vector]) -> Mode:
+        return Mode(contact, self.friction, starts, _SLIP * self.speed)
+
+    def _choose(
+        self, touching: tuple[int, ...], exclude: ContactSet | None = None, closed: tuple[int, ...] = ()
+    ) -> None:
+        """Choose what stays on the ground: the first candidate whose forces obey every law."""
+        if self.ended is not None or self._guarded():
+            return
+        body, state = self.body, self.state
+        near = tuple(i for i in touching if i in closed or point_velocity(body, state, i)[2] <= self.slow)
+        problem = problem_of(body, state, self._field(), self.friction)
+        problem.bias = {i: cross(state.spin, cross(state.spin, p)) for i, p in enumerate(body.points)}
+        moving = {}
+        for i in near:
+            x, y, _ = point_velocity(body, state, i)
+            if math.hypot(x, y) > 1.001 * _SLIP * self.speed:
+                moving[i] = back(problem.axes, unit((x, y, 0.0)))
+        for slack in _LADDER:
+            for found in self._candidates(problem, near, moving):
+                if found.contact != exclude and contacts.valid(problem, found, near, slack * self.ground.gravity):
+                    self._take(problem, found, moving)
+                    return
+        self._shocked()
+
+    def _candidates(self, problem: Problem, near: tuple[int, ...], moving: dict[int, Vector]) -> Any:
+        for members in contacts.faces(problem, near):
+            known = {i: moving[i] for i in members if i in moving}
+            still = tuple(i for i in members if i not in known)
+            for contact in contacts.friction_states(members, still):
+                if math.isinf(self.friction) and len(contact.stuck) < len(members):
+                    contact = ContactSet(members, members)
+                found = contacts.sliding(problem, contact, {i: d for i, d in known.items() if i not in contact.stuck})
+                if found is not None:
+                    yield found
+                if math.isinf(self.friction):
+                    break
+        yield contacts.solve(problem, FLIGHT, {})
+
+    def _take(self, problem: Problem, found: Solution, moving: dict[int, Vector]) -> None:
+        starts = {i: applied(problem.axes, d) for i, d in found.directions.items() if i not in moving}
+        self.mode = self._mode(found.contact, starts)
+        axes = problem.axes
+        self.anchors = {
+            i: added(self.state.place, 1.0, applied(axes, self.body.points[i])) for i in found.contact.stuck
+        }
+        before = energies(self.body, self.state, ZERO)[0]
+        self._settle_on(found.contact)
+        self.history.lost += before - energies(self.body, self.state, ZERO)[0]
+        self.length = min(self.length, 0.02 / self.pace)
+        made = self.history
+        made.flew |= not found.contact.members
+        made.slid |= any(i not in found.contact.stuck for i in found.contact.members)
+        made.rocked |= 0 < len(found.contact.members) < 3
+        if self._resting:
+            self.state = self.state._replace(velocity=ZERO, spin=ZERO)
+
+    def _settle_on(self, contact: ContactSet) -> None:
+        """Take drift and rounding out of the attitude, the place and the velocities that the contact fixes."""
+        if not contact.members:
+            return
+        body, members = self.body, contact.members
+        attitude = self.state.attitude
+        for _ in range(2 if len(members) > 1 else 0):
+            attitude = levelled(body, attitude, members)
+        axes = frame(attitude)
+        first = applied(axes, body.points[(contact.stuck or members)[0]])
+        x, y, _ = self.state.place
+        if contact.stuck:
+            anchor = self.anchors[contact.stuck[0]]
+            x, y = anchor[0] - first[0], anchor[1] - first[1]
+        state = self.state._replace(place=(x, y, -first[2]), attitude=attitude)
+        problem = Problem(body, axes, back(axes, state.velocity), state.spin, 0.0)
+        found = contacts.linear(problem, contact, list(members), dict.fromkeys(members, ZERO))
+        if found is not None:
+            state = state._replace(velocity=applied(axes, found.linear), spin=found.angular)
+        self.state = state
+
+    # ---- impacts ----------------------------------------------------------------------------------------------------
+
+    def _impact(self) -> None:
+        """Resolve the impact of all vertices that touch."""
+        body, old = self.body, self.mode.contact.members
+        touching = self._touching()
+        before = energies(body, self.state, ZERO)[0]
+        axes = frame(self.state.attitude)
+        problem = Problem(body, axes, back(axes, self.state.velocity), self.state.spin, self.friction)
+        found = None
+        for law in (True, False):
+            problem.places = self._places(touching, old) if law and old else {}
+            found = self._struck(problem, touching, before)
+            if found is not None or not old:
+                break
+            self.history.replaced += 1
+        if found is None:
+            self._pile(touching)
+        else:
+            self.state = self.state._replace(velocity=applied(axes, found.linear), spin=found.angular)
+        after = energies(body, self.state, ZERO)[0]
+        self.history.lost += before - after
+        closed = found.contact.members if found is not None else touching
+        self._choose(touching, closed=closed)
+        self._calm()
+        self.history.events.append(Event(self.time, EventKind.IMPACT, self.mode.contact, before, after))
+
+    def _places(self, touching: tuple[int, ...], old: tuple[int, ...]) -> dict[int, Vector]:
+        points = self.body.points
+        stood = [points[i] for i in old]
+        landing = [i for i in touching if i not in old]
+        return {i: place_of(self.law, nearest(stood, points[i]), points[i]) for i in landing}
+
+    def _struck(self, problem: Problem, touching: tuple[int, ...], before: float) -> Solution | None:
+        speed = length(problem.linear) + self.body.size * length(problem.angular)
+        guesses = {}
+        for i in touching:
+            x, y, _ = point_velocity(self.body, self.state, i)
+            guesses[i] = back(problem.axes, unit((x, y, 0.0)))
+        for slack in _LADDER[:3]:
+            for members in contacts.faces(problem, touching):
+                for contact in contacts.friction_states(members, members):
+                    if math.isinf(self.friction) and contact.stuck != members:
+                        continue
+                    guess = {i: guesses[i] for i in members if i not in contact.stuck}
+                    found = contacts.sliding(problem, contact, {}, guess)
+                    if found is None or not contacts.valid(problem, found, touching, slack * speed):
+                        continue
+                    w = found.angular
+                    after = self.body.mass * dot(found.linear, found.linear) + dot(w, applied(self.body.tensor, w))
+                    if 0.5 * after <= before * (1.0 + 1e-12):
+                        return found
+        return None
+
+    def _pile(self, touching: tuple[int, ...]) -> None:
+        """Make the largest face stick by a plastic impact, pulled or not."""
+        self.history.held += 1
+        axes = frame(self.state.attitude)
+        problem = Problem(self.body, axes, back(axes, self.state.velocity), self.state.spin, 0.0)
+        members = next(contacts.faces(problem, touching), ())
+        found = contacts.linear(problem, ContactSet(members, members), list(members), {}) if members else None
+        if found is not None:
+            self.state = self.state._replace(velocity=applied(axes, found.linear), spin=found.angular)
+
+    def _shocked(self) -> None:
+        """Let touching vertices stick at once where no force is possible (Painleve), or end with a status."""
+        touching = self._touching()
+        if not touching or self.at_once > _PILED:
+            self.ended = Status.NO_CONTACT_FORCE
+            return
+        before = energies(self.body, self.state, ZERO)[0]
+        self._pile(touching)
+        self.history.lost += before - energies(self.body, self.state, ZERO)[0]
+        self._choose(touching, closed=touching)
+
+    def _calm(self) -> None:
+        """Lay a body flat that hardly moves above a facet, if the ground holds it there."""
+        near = self._touching(10.0 * self.settings.rest_speed**2)
+        if self._resting or len(near) < 3 or self.ended is not None:
+            return
+        saved = self.state, self.mode, self.anchors
+        before = sum(energies(self.body, self.state, self.ground.weight))
+        self._settle_on(ContactSet(near))
+        if before - sum(energies(self.body, self.state, self.ground.weight)) <= self.weak:
+            self._choose(near, closed=near)
+            if len(self.mode.contact.members) > 2:
+                self.history.lost += before - sum(energies(self.body, self.state, self.ground.weight))
+                return
+        self.state, self.mode, self.anchors = saved
+
+    # ---- small parts ------------------------------------------------------------------------------------------------
+
+    def _keep(self) -> None:
+        made = self.history
+        made.time.append(self.time)
+        made.states.append(self.state)
+        made.contacts.append(self.mode.contact)
+
+    def _event(self, kind: EventKind, energy: float) -> None:
+        self.history.events.append(Event(self.time, kind, self.mode.contact, energy, energy))
+
+    def _guarded(self) -> bool:
+        self.at_once = self.at_once + 1 if self.time <= self.moment else 0
+        self.moment = self.time
+        if self.at_once > _STUCK:
+            self.ended = Status.STUCK
+        if len(self.history.events) > self.settings.most_events:
+            self.ended = Status.TOO_MANY_EVENTS
+        return self.ended is not None
+
+
+def levelled(body: HullBody, attitude: tuple[float, ...], members: tuple[int, ...]) -> tuple[float, ...]:
+    """Return an attitude turned by the least small angle that brings an edge or a facet onto the ground."""
+    axes, count = frame(attitude), len(members)
+    a, b = (body.points[members[k]] for k in (0, count // 2 if count < 4 else count // 3))
+    edge = applied(axes, minus(b, a))
+    if count == 2:
+        level = edge[0] * edge[0] + edge[1] * edge[1]
+        turn = (-edge[2] * edge[1] / level, edge[2] * edge[0] / level, 0.0)
+    else:
+        other = applied(axes, minus(body.points[members[(2 * count) // 3]], a))
+        normal = unit(cross(edge, other))
+        normal = normal if normal[2] > 0.0 else scaled(-1.0, normal)
+        turn = (normal[1], -normal[0], 0.0)
+    return normalised(product((1.0, 0.5 * turn[0], 0.5 * turn[1], 0.5 * turn[2]), attitude))
+
+
+def standing(body: HullBody, *, facet: int | None = None, tilt: float = 0.0, azimuth: float = 0.0) -> State:
+    """Return a body at rest that stands in the axes of its vertices, or on a facet, leaning by an angle.
+
+    Parameters
+    ----------
+    body : HullBody
+        The body.
+    facet : int, optional
+        Number of the facet to stand on, as `body.facets` has them; the axes of the vertices stand upright if None.
+    tilt : float
+        How far it leans [rad].
+    azimuth : float
+        In which direction, from x towards y [rad].
+
+    Returns
+    -------
+    State
+        The lowest vertex is on the ground, below or beside the origin; the centre of mass is over the origin.
+    """
+    attitude: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0)
+    if facet is not None:
+        down = body.facets[facet][0]
+        axis = cross(down, (0.0, 0.0, -1.0))
+        attitude = normalised((1.0 - down[2], *axis)) if down[2] < 1.0 - 1e-12 else (0.0, 1.0, 0.0, 0.0)
+    half = 0.5 * tilt
+    lean = (math.cos(half), -math.sin(half) * math.sin(azimuth), math.sin(half) * math.cos(azimuth), 0.0)
+    attitude = normalised(product(lean, attitude))
+    up = frame(attitude)[2]
+    lowest = min(dot(up, p) for p in body.points)
+    return State((0.0, 0.0, -lowest), attitude, ZERO, ZERO)

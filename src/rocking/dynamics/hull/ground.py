@@ -1,0 +1,78 @@
+"""The ground: a plane that may be tilted, and may end, and its acceleration."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from rocking import checks, conventions
+from rocking.dynamics.hull.vectors import Frame, Vector, applied, minus
+from rocking.dynamics.space.ground import SpatialGround, ground_of
+
+
+@dataclass(frozen=True, eq=False)
+class HullGround:
+    """The plane that a body stands on, and how it moves.
+
+    Parameters
+    ----------
+    x, y, vertical : GroundMotion, pulse or None
+        Accelerations, in level axes [m/s2].
+    slope : float
+        Angle of the plane from the horizontal [rad].
+    azimuth : float
+        Direction in which it falls, from x towards y [rad].
+    shelf : tuple of float, optional
+        Half sizes of the plane along its two axes from the origin; points beyond do not touch. Edges of the shelf do
+        not touch the body either. None for a plane without end [m].
+    gravity : float
+        Acceleration of gravity [m/s2].
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
+    """
+
+    x: Any = None
+    y: Any = None
+    vertical: Any = None
+    slope: float = 0.0
+    azimuth: float = 0.0
+    shelf: tuple[float, float] | None = None
+    gravity: float = conventions.g
+
+    def __post_init__(self) -> None:
+        """Check the values and cut the motions to common stretches."""
+        checks.within("slope", self.slope, 0.0, 0.5 * math.pi, unit="rad", open_high=True)
+        checks.within("gravity", self.gravity, 0.0, 1e6, unit="m/s2", open_low=True)
+        motion = ground_of(self.x, self.y, self.vertical)
+        object.__setattr__(self, "motion", motion)
+        c, s, cc, ss = math.cos(self.azimuth), math.sin(self.azimuth), math.cos(self.slope), math.sin(self.slope)
+        # turned about the horizontal line across the direction in which the plane falls
+        rows: Frame = (
+            (c * c * cc + s * s, c * s * (cc - 1.0), -c * ss),
+            (c * s * (cc - 1.0), s * s * cc + c * c, -s * ss),
+            (c * ss, s * ss, cc),
+        )
+        object.__setattr__(self, "level", rows)
+
+    motion: SpatialGround = None  # type: ignore[assignment]
+    level: Frame = None  # type: ignore[assignment]
+
+    @property
+    def weight(self) -> Vector:
+        """Gravity, in axes of the plane [m/s2]."""
+        return applied(self.level, (0.0, 0.0, -self.gravity))
+
+    def field(self, stretch: int, start: float, span: float) -> list[Vector]:
+        """Return gravity less the acceleration of the ground over a span, by powers of its share, in the plane's axes."""
+        rows = self.motion.part(stretch, start, span)
+        found = []
+        for k in range(rows.shape[1]):
+            a = applied(self.level, (float(rows[0, k]), float(rows[1, k]), float(rows[2, k])))
+            found.append(minus(self.weight if k == 0 else (0.0, 0.0, 0.0), a))
+        return found
+
+    def under(self, place: Vector) -> bool:
+        """Whether there is ground under a point."""
+        return self.shelf is None or (abs(place[0]) <= self.shelf[0] and abs(place[1]) <= self.shelf[1])

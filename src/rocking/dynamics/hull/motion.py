@@ -1,0 +1,185 @@
+"""The motion while the contact lasts: accelerations, and steps of the fifth order of Dormand and Prince (1980).
+
+The state is (place, attitude, velocity, angular velocity): of the centre of mass in axes of the ground, the quaternion,
+and the angular velocity in axes of the body. Forces come from the contact problem at every stage, so that the normal
+forces, friction and gaps at the stages are there to be watched.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from rocking.dynamics.hull.body import HullBody
+from rocking.dynamics.hull.contact_problem import ContactSet, Problem, Solution, solve
+from rocking.dynamics.hull.vectors import (
+    ZERO,
+    Vector,
+    added,
+    applied,
+    back,
+    cross,
+    dot,
+    frame,
+    length,
+    normalised,
+    plus,
+    scaled,
+)
+
+NODES = (0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0)
+_STAGES = (
+    (),
+    (1.0 / 5.0,),
+    (3.0 / 40.0, 9.0 / 40.0),
+    (44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0),
+    (19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0),
+    (9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0),
+    (35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0),
+)
+_ERROR = (
+    71.0 / 57600.0,
+    0.0,
+    -71.0 / 16695.0,
+    71.0 / 1920.0,
+    -17253.0 / 339200.0,
+    22.0 / 525.0,
+    -1.0 / 40.0,
+)
+
+
+class State(NamedTuple):
+    """Where the body is and how it moves."""
+
+    place: Vector
+    attitude: tuple[float, ...]
+    velocity: Vector
+    spin: Vector
+
+
+@dataclass(frozen=True)
+class Mode:
+    """The contact that lasts, with the directions in which its vertices start to slide, in axes of the ground."""
+
+    contact: ContactSet
+    friction: float
+    starts: dict[int, Vector]
+    slow: float  # below this speed the direction is that of the start
+
+
+class Rates(NamedTuple):
+    """Rates of a state, and the contact that they come from; `found` is None where no force answers the motion."""
+
+    place: Vector
+    attitude: tuple[float, ...]
+    velocity: Vector
+    spin: Vector
+    found: Solution | None
+    problem: Problem
+
+
+def problem_of(body: HullBody, state: State, field: Vector, friction: float) -> Problem:
+    """Return the contact problem of the accelerations; field: gravity less the acceleration of the ground [m/s2]."""
+    axes, w = frame(state.attitude), state.spin
+    free = applied(body.compliance, scaled(-1.0, cross(w, applied(body.tensor, w))))
+    return Problem(body, axes, back(axes, field), free, friction)
+
+
+def rates_of(body: HullBody, state: State, mode: Mode, field: Vector) -> Rates:
+    """Return the rates of a state in a mode."""
+    problem = problem_of(body, state, field, mode.friction)
+    axes, w = problem.axes, state.spin
+    problem.bias = {i: cross(w, cross(w, body.points[i])) for i in mode.contact.members}
+    directions = {i: slip_direction(body, state, mode, i) for i in mode.contact.members if i not in mode.contact.stuck}
+    found = solve(problem, mode.contact, {i: back(axes, d) for i, d in directions.items()})
+    linear, angular = (problem.linear, problem.angular) if found is None else (found.linear, found.angular)
+    turning = quaternion_rate(state.attitude, w)
+    return Rates(state.velocity, turning, applied(axes, linear), angular, found, problem)
+
+
+def quaternion_rate(q: tuple[float, ...], w: Vector) -> tuple[float, ...]:
+    """Return the rate of an attitude."""
+    s, x, y, z = q
+    return (
+        -0.5 * (x * w[0] + y * w[1] + z * w[2]),  # Eq. 22
+        0.5 * (s * w[0] + y * w[2] - z * w[1]),
+        0.5 * (s * w[1] + z * w[0] - x * w[2]),
+        0.5 * (s * w[2] + x * w[1] - y * w[0]),
+    )
+
+
+def point_velocity(body: HullBody, state: State, i: int) -> Vector:
+    """Return the velocity of a vertex, in axes of the ground."""
+    return plus(state.velocity, applied(frame(state.attitude), cross(state.spin, body.points[i])))
+
+
+def slip_direction(body: HullBody, state: State, mode: Mode, i: int) -> Vector:
+    """Return the direction in which a vertex slides, in axes of the ground."""
+    x, y, _ = point_velocity(body, state, i)
+    speed = length((x, y, 0.0))
+    if speed > mode.slow or i not in mode.starts:
+        return (x / speed, y / speed, 0.0) if speed > 0.0 else ZERO
+    return mode.starts[i]
+
+
+def gap(body: HullBody, state: State, i: int) -> float:
+    """Return the height of a vertex over the ground."""
+    return state.place[2] + dot(frame(state.attitude)[2], body.points[i])
+
+
+def _moved(state: State, stages: list[Rates], weights: tuple[float, ...], h: float) -> State:
+    place, velocity, spin, attitude = state.place, state.velocity, state.spin, list(state.attitude)
+    for weight, k in zip(weights, stages, strict=False):
+        if weight:
+            c = h * weight
+            place, velocity, spin = added(place, c, k.place), added(velocity, c, k.velocity), added(spin, c, k.spin)
+            for j in range(4):
+                attitude[j] += c * k.attitude[j]
+    return State(place, tuple(attitude), velocity, spin)
+
+
+class StepResult(NamedTuple):
+    """A step, and what happened at its stages."""
+
+    state: State
+    error: float  # of the local error, its size over that of the body
+    samples: list[tuple[float, State, Rates]]  # start, some stages and end, with the part of the step
+
+
+def step(
+    body: HullBody, state: State, mode: Mode, field: list[Vector], length_of: float, part: float, pace: float
+) -> StepResult:
+    """Advance by a part of a step.
+
+    field: gravity less the acceleration of the ground over the whole step, by powers of its share [m/s2]; length_of:
+    duration of the whole step [s]; part: share to advance by [-]; pace: sqrt(g / size), by which errors of velocities
+    are measured [1/s].
+    """
+    h = part * length_of
+    stages: list[Rates] = []
+    samples: list[tuple[float, State, Rates]] = []
+    at = state
+    for number, (node, weights) in enumerate(zip(NODES, _STAGES, strict=True)):
+        at = _moved(state, stages, weights, h) if number else state
+        rates = rates_of(body, at, mode, valued(field, part * node))
+        stages.append(rates)
+        if number in (0, 2, 3, 6):
+            samples.append((node, at, rates))
+    off = _moved(State(ZERO, (0.0, 0.0, 0.0, 0.0), ZERO, ZERO), stages, _ERROR, h)
+    turned = max(abs(c) for c in off.attitude)
+    error = max(length(off.place) / body.size, 2.0 * turned, length(off.velocity) / (body.size * pace))
+    error = max(error, length(off.spin) / pace)
+    return StepResult(at._replace(attitude=normalised(at.attitude)), error, samples)
+
+
+def valued(field: list[Vector], share: float) -> Vector:
+    """Return the value of a polynomial."""
+    total = ZERO
+    for c in reversed(field):
+        total = added(c, share, total)
+    return total
+
+
+def energies(body: HullBody, state: State, gravity: Vector) -> tuple[float, float]:
+    """Return the kinetic energy and the potential energy over the origin of the ground [J]."""
+    w = state.spin
+    kinetic = 0.5 * (body.mass * dot(state.velocity, state.velocity) + dot(w, applied(body.tensor, w)))
+    return kinetic, -body.mass * dot(gravity, state.place)

@@ -1,0 +1,116 @@
+"""Where the impulse of a landing acts: on the way from where the body stood to where it lands, for any law."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.dynamics.hull.body import HullBody
+from rocking.dynamics.hull.vectors import Vector, added, applied, cross, dot, minus, scaled, unit
+from rocking.errors import InvalidValueError
+from rocking.restitution.space.impulse_position import impulse_position
+
+ImpulseLaw = Callable[[Vector, Vector], float]
+"""Position k of the impulse of a step between two points of the body, from its centre of mass; 1 at the new one [-]."""
+
+_LEVEL = 1e-9
+
+
+def law_of(restitution: Any, body: HullBody, base: tuple[int, ...]) -> ImpulseLaw:
+    """Return a law of impacts.
+
+    Parameters
+    ----------
+    restitution : {"housner-3d", "ked-3d"} or float
+        Housner's impact (k = 1); the pivot-consistent KED, which needs the body's solid; or the coefficient of a
+        landing of the whole base in any direction [-].
+    body : HullBody
+        The body.
+    base : tuple of int
+        Vertices of the base to which the coefficient belongs; steps elsewhere take k = 1.
+
+    Returns
+    -------
+    ImpulseLaw
+        k of every step.
+
+    Raises
+    ------
+    InvalidValueError
+        If the law is not known, or needs a solid that the body has not.
+    """
+    if restitution in ("housner", "housner-3d"):
+        return lambda _old, _new: 1.0
+    if restitution in ("ked", "ked-3d"):
+        if body.solid is None:
+            raise InvalidValueError("restitution 'ked-3d' needs the distribution of mass: give the HullBody its solid")
+        position = impulse_position(body.solid)
+        return _on_base(body, base, lambda step: position.at(np.array(step)))
+    if isinstance(restitution, (int, float)):
+        r = checks.within("restitution", float(restitution), 0.0, 1.0)
+        return _on_base(body, base, _Coefficient(body, base, r).at)
+    raise InvalidValueError(f"restitution must be 'housner-3d', 'ked-3d' or a number, got {restitution!r:.60}")
+
+
+def _on_base(body: HullBody, base: tuple[int, ...], position: Callable[[Vector], float]) -> ImpulseLaw:
+    """Keep a law to steps within the base, and k between 0 and 1, where no force pulls."""
+    up = _normal(body, base)
+    height = dot(up, body.points[base[0]])
+
+    def at(old: Vector, new: Vector) -> float:
+        lies = all(abs(dot(up, p) - height) <= _LEVEL * body.size for p in (old, new))
+        return min(max(position(minus(new, old)), 0.0), 1.0) if lies else 1.0
+
+    return at
+
+
+def _normal(body: HullBody, base: tuple[int, ...]) -> Vector:
+    a, b, c = (body.points[base[(j * len(base)) // 3]] for j in range(3))
+    normal = unit(cross(minus(b, a), minus(c, a)))
+    return normal if dot(normal, a) < 0.0 else scaled(-1.0, normal)
+
+
+class _Coefficient:
+    """The place at which the impulse of a landing of the whole base gives one coefficient r."""
+
+    def __init__(self, body: HullBody, base: tuple[int, ...], r: float) -> None:
+        self.body, self.r = body, r
+        self.base = [body.points[i] for i in base]
+        self.up = _normal(body, base)
+        self.height = -dot(self.up, self.base[0])
+
+    def at(self, step: Vector) -> float:
+        """Return k in the direction of a step."""
+        along = unit(added(step, -dot(step, self.up), self.up))
+        edge = cross(self.up, along)
+        reaches = [dot(along, p) for p in self.base]
+        new, old = max(reaches), -min(reaches)
+        over_foot = dot(edge, applied(self.body.tensor, edge)) / self.body.mass + self.height**2
+        ahead = over_foot * (1.0 - self.r) / (self.r * new + old)  # Eq. 4
+        return (2.0 * ahead - (new - old)) / (new + old)  # Eq. 104
+
+
+def place_of(law: ImpulseLaw, old: Vector, new: Vector) -> Vector:
+    """Return where the impulse of a step acts."""
+    step = minus(new, old)
+    if not math.sqrt(dot(step, step)) > 0.0:
+        return new
+    return added(new, -0.5 * (1.0 - law(old, new)), step)  # Eq. 254
+
+
+def nearest(points: list[Vector], to: Vector) -> Vector:
+    """Return the point of a vertex, an edge or a facet (by its border) that is nearest to another one."""
+    if len(points) == 1:
+        return points[0]
+    best = points[0]
+    for k, a in enumerate(points):
+        b = points[(k + 1) % len(points)]
+        along = minus(b, a)
+        share = dot(minus(to, a), along) / dot(along, along)
+        found = added(a, min(max(share, 0.0), 1.0), along)
+        gap, least = minus(found, to), minus(best, to)
+        if dot(gap, gap) < dot(least, least):
+            best = found
+    return best
