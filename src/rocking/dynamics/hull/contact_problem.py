@@ -27,7 +27,7 @@ from rocking.dynamics.hull.vectors import (
 )
 
 _SINGULAR = 1e-12
-_TURNS, _STRAIGHT = 200, 1e-13
+_TURNS, _STRAIGHT = 300, 1e-12
 
 Wrench = tuple[Vector, Vector]
 
@@ -202,32 +202,45 @@ def _pulls(
     return {i: scaled(weights[i], plus(scaled(1.0 / weight, total), scaled(rate, turning[i]))) for i in stuck}
 
 
-def sliding(
-    problem: Problem, contact: ContactSet, known: dict[int, Vector], guess: dict[int, Vector] | None = None
-) -> Solution | None:
-    """Return a candidate with the directions in which its free vertices start to slide, by iteration; None if none."""
-    open_ones = [i for i in contact.members if i not in contact.stuck and i not in known]
-    if not open_ones or problem.friction == 0.0:
-        return solve(problem, contact, {**dict.fromkeys(open_ones, ZERO), **known})
-    directions = {**dict.fromkeys(open_ones, ZERO), **known, **(guess or {})}
-    up = problem.axes[2]
-    for turn in range(_TURNS):
+def sliding(problem: Problem, contact: ContactSet, known: dict[int, Vector], still: float) -> Solution | None:
+    """Return a candidate with the directions in which its free vertices start to slide, by iteration; None if none.
+
+    known: directions of those that slide already; still: rate of a vertex below which it only just starts to slide, so
+    that friction alone has the direction: against the force that held it.
+    """
+    free = [i for i in contact.members if i not in contact.stuck and i not in known]
+    if not free or problem.friction == 0.0:
+        return solve(problem, contact, {**dict.fromkeys(free, ZERO), **known})
+    directions, up = {**dict.fromkeys(free, ZERO), **known}, problem.axes[2]
+    holding = solve(problem, ContactSet(contact.members, tuple(i for i in contact.members if i not in known)), known)
+    if holding is not None:
+        directions.update({i: unit(scaled(-1.0, holding.pulls[i])) for i in free})
+    soft = {i: _compliance(problem, i) * problem.friction * len(free) for i in free}
+    for _ in range(_TURNS):
         found = solve(problem, contact, directions)
         if found is None:
             return None
-        change = 0.0
-        made = dict(directions)
-        for i in open_ones:
+        change, before = 0.0, directions
+        for i in free:
             rate = problem.rate(i, found.linear, found.angular)
-            new = unit(added(rate, -dot(rate, up), up))
-            if turn > 20:
-                new = unit(plus(new, directions[i]))
-            change = max(change, length(minus(new, directions[i])))
-            made[i] = new
-        directions = made
+            slip = added(rate, -dot(rate, up), up)
+            if length(slip) <= still and length(before[i]) > 0.0:
+                continue
+            new = unit(added(slip, soft[i] * max(found.normals[i], 0.0), before[i]))  # Eq. 257
+            change = max(change, length(minus(new, before[i])))
+            directions = {**directions, i: new}
         if change <= _STRAIGHT:
-            return solve(problem, contact, directions)
+            return found
     return None
+
+
+def _compliance(problem: Problem, i: int) -> float:
+    """Return the larger of what one unit of force along each axis of the ground moves a vertex along it."""
+    arm, found = problem.body.points[i], 0.0
+    for axis in problem.axes[:2]:
+        turned = cross(applied(problem.body.compliance, cross(arm, axis)), arm)
+        found = max(found, 1.0 / problem.body.mass + dot(turned, axis))
+    return found
 
 
 def faces(problem: Problem, touching: tuple[int, ...]) -> Iterator[tuple[int, ...]]:

@@ -43,7 +43,7 @@ from rocking.outcome import Outcome, Status
 
 _CLOSED, _GRAZED = 1e-11, 1e-14  # gaps over the size: of vertices that land together, and at which one lands
 _FORCE = 1e-11  # acceleration over gravity below which a force counts as zero
-_SLIP = 1e-7  # speed over sqrt(g size) below which a vertex does not slide
+_SLIP, _SLIDES = 1e-7, 1e-4  # speeds over sqrt(g size): below, a vertex does not slide; it keeps how it started
 _LADDER = (1e-11, 1e-9, 1e-7, 1e-5)
 _AHEAD = 1e-6  # how much later, over sqrt(size / g), the ground decides which mode starts
 _PILED, _STUCK = 30, 80
@@ -106,7 +106,7 @@ class HullSettings:
     """
 
     tolerance: float = 1e-12
-    rest_speed: float = 1e-6
+    rest_speed: float = 1e-5
     most_events: int = 100_000
 
 
@@ -127,6 +127,7 @@ class HullEngine:
         self.speed = ground.gravity / self.pace  # sqrt(g size)
         self.slow = self.settings.rest_speed * self.speed
         self.weak = self.settings.rest_speed**2 * body.mass * ground.gravity * body.size
+        self.slack = _FORCE * ground.gravity
         self.time, self.stretch = 0.0, 0
         self.length = 0.1 / self.pace
         self.mode = self._mode(FLIGHT, {})
@@ -255,7 +256,7 @@ class HullEngine:
         body, start = self.body, self.state
         moving = self.stretch < self.ground.motion.count
         left = (float(self.ground.motion.times[self.stretch + 1]) if moving else math.inf) - self.time
-        whole = min(self.length, left)
+        whole = min(self.length, left, 2e-3 / self.pace if self.mode.starts else left)
         if whole < left < 2.0 * whole:
             whole = 0.5 * left
         coefficients = self.ground.field(self.stretch, self.time, whole)
@@ -288,6 +289,9 @@ class HullEngine:
             self.time = float(self.ground.motion.times[self.stretch])
         self.state = result.state
         self._settle_on(self.mode.contact)
+        if any(self._slip(i) > _SLIDES * self.speed for i in self.mode.starts):
+            slow = {i: d for i, d in self.mode.starts.items() if self._slip(i) <= _SLIDES * self.speed}
+            self.mode = self._mode(self.mode.contact, slow)
         self._keep()
         if kind == "gap":
             self._impact()
@@ -297,54 +301,50 @@ class HullEngine:
 
     def _first_event(self, result: StepResult, to: Any) -> tuple[float, str, int]:
         """Return when the first margin falls below zero: part of the step, kind of the margin, vertex."""
-        found: list[tuple[float, float, str, int]] = []
+        found: list[tuple[float, float, float, str, int]] = []
         for kind, i in self._watched(result):
             values = [self._margin(kind, i, state, rates) for _, state, rates in result.samples]
             if values[0] < 0.0:
                 return 0.0, kind, i
-            for (low, _, _), (high, _, _), a, b in zip(
-                result.samples, result.samples[1:], values, values[1:], strict=False
-            ):
+            nodes = [node for node, _, _ in result.samples]
+            for a, b, low, high in zip(values, values[1:], nodes, nodes[1:], strict=False):
                 if b < 0.0:
-                    found.append((low + (high - low) * a / (a - b), high, kind, i))
+                    found.append((low + (high - low) * a / (a - b), low, high, kind, i))
                     break
             else:
                 dip = self._dip(i, result, values) if kind == "gap" else None
                 if dip is not None and self._at("gap", i, to(dip)) < 0.0:
-                    found.append((0.9 * dip, dip, kind, i))
-        part, kind, which = 1.0, "", -1
-        for _, high, this, i in sorted(found):
-            if high >= part:
-                trial = to(part) if part < 1.0 else result
-                if part < 1.0 and self._at(this, i, trial) >= 0.0:
+                    found.append((0.9 * dip, 0.0, dip, kind, i))
+        part, first, which = 1.0, "", -1
+        for _, low, high, kind, i in sorted(found):
+            if part < 1.0 and high >= part:
+                if self._at(kind, i, to(part)) >= 0.0:
                     continue
-                high = part
-            part, kind, which = self._located(this, i, high, to), this, i
-        return part, kind, which
+                low, high = min(low, part), part
+            if self._at(kind, i, to(high)) < 0.0:
+                part, first, which = self._located(kind, i, low, high, to), kind, i
+        return part, first, which
 
-    def _located(self, kind: str, i: int, high: float, to: Any) -> float:
-        """Return the zero of a margin that is below zero at the end, by regula falsi (Illinois)."""
-        low, at_low, at_high = 0.0, self._at(kind, i, to(0.0)), self._at(kind, i, to(high))
+    def _located(self, kind: str, i: int, low: float, high: float, to: Any) -> float:
+        """Return the zero of a margin that is below zero at the end of a bracket, by regula falsi (Illinois)."""
+        close = {"gap": 0.5 * _GRAZED * self.body.size, "slip": 1e-3 * _SLIP * self.speed}.get(kind, self.slack)
+        at_low, at_high = self._at(kind, i, to(low)), self._at(kind, i, to(high))
+        if at_low < 0.0:
+            low, high, at_high = 0.0, low, at_low
+            at_low = self._at(kind, i, to(low))
         side = 0
         for _ in range(_HALVINGS):
-            if high - low <= 1e-15 or at_high == 0.0:
+            if at_high >= -close or high - low <= 1e-15:
                 break
-            middle = low + (high - low) * at_low / (at_low - at_high)
+            # aims a little below zero
+            middle = low + (high - low) * (at_low + 0.5 * close) / (at_low - at_high)
             middle = middle if low < middle < high else 0.5 * (low + high)
             value = self._at(kind, i, to(middle))
             if value < 0.0:
-                if high - middle <= 1e-15 * high:
-                    high = middle
-                    break
-                high, at_high = middle, value
-                at_low *= 0.5 if side == -1 else 1.0
+                high, at_high, at_low = middle, value, at_low * (0.5 if side < 0 else 1.0)
                 side = -1
             else:
-                if middle - low <= 1e-15 * high and side == 1:
-                    low = middle
-                    break
-                low, at_low = middle, value
-                at_high *= 0.5 if side == 1 else 1.0
+                low, at_low, at_high = middle, value, at_high * (0.5 if side > 0 else 1.0)
                 side = 1
         return high
 
@@ -366,7 +366,7 @@ class HullEngine:
 
     def _margin(self, kind: str, i: int, state: State, rates: Rates) -> float:
         """Return what must not fall below zero: a height, an acceleration or a speed."""
-        slack = _FORCE * self.ground.gravity
+        slack = self.slack
         if kind == "gap":
             height = gap(self.body, state, i) + _GRAZED * self.body.size
             place = added(state.place, 1.0, applied(frame(state.attitude), self.body.points[i]))
@@ -378,10 +378,8 @@ class HullEngine:
         if kind == "stick":
             free = self.friction * rates.found.normals[i] - length(rates.found.pulls[i])
             return free / self.body.mass + slack * (1.0 + self.friction)
-        direction = slip_direction(self.body, self.state, self.mode, i)
-        speed = dot(direction, point_velocity(self.body, state, i))
-        started = dot(direction, point_velocity(self.body, self.state, i)) > self.mode.slow
-        return speed - self.mode.slow if started else speed + self.mode.slow
+        speed = dot(slip_direction(self.body, self.state, self.mode, i), point_velocity(self.body, state, i))
+        return speed + (1.0 if i in self.mode.starts else -1.0) * _SLIP * self.speed
 
     def _at(self, kind: str, i: int, result: StepResult) -> float:
         return self._margin(kind, i, result.state, result.samples[-1][2])
@@ -411,7 +409,7 @@ class HullEngine:
         return valued(self.ground.field(self.stretch, self.time, ahead), 1.0)
 
     def _mode(self, contact: ContactSet, starts: dict[int, Vector]) -> Mode:
-        return Mode(contact, self.friction, starts, _SLIP * self.speed)
+        return Mode(contact, self.friction, starts)
 
     def _choose(
         self, touching: tuple[int, ...], exclude: ContactSet | None = None, closed: tuple[int, ...] = ()
@@ -425,12 +423,13 @@ class HullEngine:
         problem.bias = {i: cross(state.spin, cross(state.spin, p)) for i, p in enumerate(body.points)}
         moving = {}
         for i in near:
-            x, y, _ = point_velocity(body, state, i)
-            if math.hypot(x, y) > 1.001 * _SLIP * self.speed:
+            if self._slip(i) > 10.0 * _SLIP * self.speed:
+                x, y, _ = point_velocity(body, state, i)
                 moving[i] = back(problem.axes, unit((x, y, 0.0)))
+        candidates = [found for found in self._candidates(problem, near, moving) if found.contact != exclude]
         for slack in _LADDER:
-            for found in self._candidates(problem, near, moving):
-                if found.contact != exclude and contacts.valid(problem, found, near, slack * self.ground.gravity):
+            for found in candidates:
+                if contacts.valid(problem, found, near, slack * self.ground.gravity):
                     self._take(problem, found, moving)
                     return
         self._shocked()
@@ -442,7 +441,7 @@ class HullEngine:
             for contact in contacts.friction_states(members, still):
                 if math.isinf(self.friction) and len(contact.stuck) < len(members):
                     contact = ContactSet(members, members)
-                found = contacts.sliding(problem, contact, {i: d for i, d in known.items() if i not in contact.stuck})
+                found = contacts.sliding(problem, contact, known, 1e-5 * self.ground.gravity)
                 if found is not None:
                     yield found
                 if math.isinf(self.friction):
@@ -450,7 +449,8 @@ class HullEngine:
         yield contacts.solve(problem, FLIGHT, {})
 
     def _take(self, problem: Problem, found: Solution, moving: dict[int, Vector]) -> None:
-        starts = {i: applied(problem.axes, d) for i, d in found.directions.items() if i not in moving}
+        slow = [i for i in found.directions if i not in moving or self._slip(i) <= _SLIDES * self.speed]
+        starts = {i: applied(problem.axes, found.directions[i]) for i in slow}
         self.mode = self._mode(found.contact, starts)
         axes = problem.axes
         self.anchors = {
@@ -466,6 +466,11 @@ class HullEngine:
         made.rocked |= 0 < len(found.contact.members) < 3
         if self._resting:
             self.state = self.state._replace(velocity=ZERO, spin=ZERO)
+
+    def _slip(self, i: int) -> float:
+        """Return the speed of a vertex along the ground."""
+        x, y, _ = point_velocity(self.body, self.state, i)
+        return math.hypot(x, y)
 
     def _settle_on(self, contact: ContactSet) -> None:
         """Take drift and rounding out of the attitude, the place and the velocities that the contact fixes."""
@@ -523,17 +528,12 @@ class HullEngine:
 
     def _struck(self, problem: Problem, touching: tuple[int, ...], before: float) -> Solution | None:
         speed = length(problem.linear) + self.body.size * length(problem.angular)
-        guesses = {}
-        for i in touching:
-            x, y, _ = point_velocity(self.body, self.state, i)
-            guesses[i] = back(problem.axes, unit((x, y, 0.0)))
         for slack in _LADDER[:3]:
             for members in contacts.faces(problem, touching):
                 for contact in contacts.friction_states(members, members):
                     if math.isinf(self.friction) and contact.stuck != members:
                         continue
-                    guess = {i: guesses[i] for i in members if i not in contact.stuck}
-                    found = contacts.sliding(problem, contact, {}, guess)
+                    found = contacts.sliding(problem, contact, {}, 1e-9 * speed)
                     if found is None or not contacts.valid(problem, found, touching, slack * speed):
                         continue
                     w = found.angular
@@ -568,15 +568,21 @@ class HullEngine:
         near = self._touching(10.0 * self.settings.rest_speed**2)
         if self._resting or len(near) < 3 or self.ended is not None:
             return
-        saved = self.state, self.mode, self.anchors
-        before = sum(energies(self.body, self.state, self.ground.weight))
-        self._settle_on(ContactSet(near))
-        if before - sum(energies(self.body, self.state, self.ground.weight)) <= self.weak:
-            self._choose(near, closed=near)
-            if len(self.mode.contact.members) > 2:
-                self.history.lost += before - sum(energies(self.body, self.state, self.ground.weight))
+        state, lost, anchors = self.state, self.history.lost, self.anchors
+        before = sum(energies(self.body, state, self.ground.weight))
+        problem = problem_of(self.body, state, self._field(), math.inf)
+        members = next(contacts.faces(problem, near))
+        held = contacts.solve(problem, ContactSet(members, members), {}) if len(members) > 2 else None
+        if held is None or not min(held.normals.values()) > 0.0:
+            return
+        for stuck in (members, ()) if self.friction < math.inf else (members,):
+            self.anchors = {i: added(state.place, 1.0, applied(problem.axes, self.body.points[i])) for i in stuck}
+            self._settle_on(ContactSet(members, stuck))
+            if before - sum(energies(self.body, self.state, self.ground.weight)) <= self.weak:
+                self._choose(near, closed=near)
+                self.history.lost = lost + before - sum(energies(self.body, self.state, self.ground.weight))
                 return
-        self.state, self.mode, self.anchors = saved
+            self.state, self.anchors = state, anchors
 
     # ---- small parts ------------------------------------------------------------------------------------------------
 

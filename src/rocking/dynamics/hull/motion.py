@@ -23,6 +23,7 @@ from rocking.dynamics.hull.vectors import (
     normalised,
     plus,
     scaled,
+    unit,
 )
 
 NODES = (0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0)
@@ -62,7 +63,6 @@ class Mode:
     contact: ContactSet
     friction: float
     starts: dict[int, Vector]
-    slow: float  # below this speed the direction is that of the start
 
 
 class Rates(NamedTuple):
@@ -113,11 +113,10 @@ def point_velocity(body: HullBody, state: State, i: int) -> Vector:
 
 def slip_direction(body: HullBody, state: State, mode: Mode, i: int) -> Vector:
     """Return the direction in which a vertex slides, in axes of the ground."""
+    if i in mode.starts:
+        return mode.starts[i]
     x, y, _ = point_velocity(body, state, i)
-    speed = length((x, y, 0.0))
-    if speed > mode.slow or i not in mode.starts:
-        return (x / speed, y / speed, 0.0) if speed > 0.0 else ZERO
-    return mode.starts[i]
+    return unit((x, y, 0.0))
 
 
 def gap(body: HullBody, state: State, i: int) -> float:
