@@ -145,7 +145,7 @@ def linear(
     for c, share_of in zip(answer, weights, strict=False):
         for i, w in share_of.items():
             normals[i] += c * w
-    pulls = _pulls(problem, stuck, normals, answer[len(weights) :])
+    pulls = {} if problem.friction == math.inf else _pulls(problem, stuck, normals, answer[len(weights) :])
     return Solution(contact, centre_rate, angular, normals, directions, pulls)
 
 
@@ -158,9 +158,10 @@ def _eliminated(problem: Problem, columns: list[Wrench], rows: list[tuple[Wrench
         line = [dot(f, cf) + dot(m, cm) for cf, cm in soft]
         line.append(-(dot(f, problem.linear) + dot(m, problem.angular) + known))
         table.append(line)
+    sizes = [_SINGULAR * table[k][k] for k in range(n)]
     for k in range(n):
         pivot = table[k][k]
-        if not pivot > _SINGULAR * max(abs(v) for v in table[k][:n]):
+        if not pivot > sizes[k]:
             return None
         for j in range(k + 1, n):
             factor = table[j][k] / pivot

@@ -298,6 +298,7 @@ class HullEngine:
         elif kind:
             self._event(EventKind.CHANGE, energies(body, self.state, ZERO)[0])
             self._choose(self._touching(), exclude=self.mode.contact)
+            self._keep()
 
     def _first_event(self, result: StepResult, to: Any) -> tuple[float, str, int]:
         """Return when the first margin falls below zero: part of the step, kind of the margin, vertex."""
@@ -519,6 +520,7 @@ class HullEngine:
         self._choose(touching, closed=closed)
         self._calm()
         self.history.events.append(Event(self.time, EventKind.IMPACT, self.mode.contact, before, after))
+        self._keep()
 
     def _places(self, touching: tuple[int, ...], old: tuple[int, ...]) -> dict[int, Vector]:
         points = self.body.points
