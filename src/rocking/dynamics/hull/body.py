@@ -56,7 +56,7 @@ class HullBody:
 
     def __post_init__(self) -> None:
         """Check the values and keep the vertices of the hull."""
-        checks.within("mass", self.mass, 0.0, math.inf, unit="kg", open_low=True)
+        object.__setattr__(self, "mass", checks.within("mass", self.mass, 0.0, math.inf, unit="kg", open_low=True))
         for name, shape in (("vertices", (-1, 3)), ("centre", (3,)), ("inertia", (3, 3))):
             values = np.array(getattr(self, name), dtype=np.float64)
             fits = values.ndim == len(shape) and all(n in (-1, m) for n, m in zip(shape, values.shape, strict=True))

@@ -200,7 +200,18 @@ def _pulls(
     turning = {i: cross(up, minus(arms[i], loaded)) for i in stuck}
     resistance = sum(weights[i] * dot(turning[i], turning[i]) for i in stuck)
     rate = couple / resistance if resistance > 0.0 else 0.0
-    return {i: scaled(weights[i], plus(scaled(1.0 / weight, total), scaled(rate, turning[i]))) for i in stuck}
+    shares = {i: scaled(weights[i], plus(scaled(1.0 / weight, total), scaled(rate, turning[i]))) for i in stuck}
+    if len(stuck) > 2:
+        return shares
+    # along an edge only the sum is determined: each end takes of it what its cone leaves
+    along = unit(minus(arms[stuck[1]], arms[stuck[0]]))
+    across = {i: added(pull, -dot(pull, along), along) for i, pull in shares.items()}
+    most = {i: (problem.friction * weights[i]) ** 2 - dot(across[i], across[i]) for i in stuck}
+    room = {i: math.sqrt(max(square, 0.0)) for i, square in most.items()}
+    whole = sum(room.values())
+    if not whole > 0.0:
+        return shares
+    return {i: added(across[i], room[i] / whole * dot(total, along), along) for i in stuck}
 
 
 def sliding(problem: Problem, contact: ContactSet, known: dict[int, Vector], still: float) -> Solution | None:
@@ -293,12 +304,21 @@ def friction_states(members: tuple[int, ...], still: tuple[int, ...]) -> Iterato
 
 def valid(problem: Problem, found: Solution, touching: tuple[int, ...], slack: float) -> bool:
     """Whether no force pulls, no sticking one takes more friction than there is, and no gap closes."""
-    mass, mu, up = problem.body.mass, problem.friction, problem.axes[2]
+    mass, mu = problem.body.mass, problem.friction
     if any(n < -slack * mass for n in found.normals.values()):
         return False
-    if not math.isinf(mu):
-        for i, pull in found.pulls.items():
-            if length(pull) > mu * found.normals[i] + slack * mass * (1.0 + mu):
-                return False
-    rates = (dot(up, problem.rate(i, found.linear, found.angular)) for i in touching if i not in found.contact.members)
-    return all(rate >= -slack for rate in rates)
+    if any(length(pull) > mu * found.normals[i] + slack * mass * (1.0 + mu) for i, pull in found.pulls.items()):
+        return False
+    return clear(problem, found, touching, slack)
+
+
+def clear(problem: Problem, found: Solution, touching: tuple[int, ...], slack: float) -> bool:
+    """Whether no gap closes."""
+    up, free = problem.axes[2], (i for i in touching if i not in found.contact.members)
+    return all(dot(up, problem.rate(i, found.linear, found.angular)) >= -slack for i in free)
+
+
+def least_pull(problem: Problem, candidates: list[Solution], touching: tuple[int, ...], slack: float) -> Solution | None:
+    """Return what stands in where no candidate obeys every law: no gap closes, and the ground pulls least."""
+    kept = [c for c in candidates if c.contact.members and clear(problem, c, touching, slack)]
+    return max(kept, key=lambda c: min(c.normals.values()), default=None)

@@ -1,7 +1,7 @@
 """The reference engine for a body on the vertices of its hull: steps, events to rounding, contact by complementarity."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Any, NamedTuple
 
@@ -43,7 +43,8 @@ from rocking.outcome import Outcome, Status
 
 _CLOSED, _GRAZED = 1e-11, 1e-14  # gaps over the size: of vertices that land together, and at which one lands
 _FORCE = 1e-11  # acceleration over gravity below which a force counts as zero
-_SLIP, _SLIDES = 1e-7, 1e-4  # speeds over sqrt(g size): below, a vertex does not slide; it keeps how it started
+# speeds over sqrt(g size): at which sliding stops, below which a vertex may stick, or still slides as it started
+_SLIP, _STILL, _SLIDES = 1e-7, 1e-6, 1e-4
 _LADDER = (1e-11, 1e-9, 1e-7, 1e-5)
 _AHEAD = 1e-6  # how much later, over sqrt(size / g), the ground decides which mode starts
 _PILED, _STUCK = 30, 80
@@ -272,7 +273,7 @@ class HullEngine:
             if whole * self.pace > 1e-9:
                 self.length = 0.25 * whole
             else:
-                self._shocked()
+                self._shocked(self._touching())
             return
         growth = 0.9 * (self.settings.tolerance / max(result.error, 1e-300)) ** 0.2
         if result.error > self.settings.tolerance and whole * self.pace > 1e-10:
@@ -291,14 +292,16 @@ class HullEngine:
         self._settle_on(self.mode.contact)
         if any(self._slip(i) > _SLIDES * self.speed for i in self.mode.starts):
             slow = {i: d for i, d in self.mode.starts.items() if self._slip(i) <= _SLIDES * self.speed}
-            self.mode = self._mode(self.mode.contact, slow)
+            self.mode = replace(self.mode, starts=slow)
         self._keep()
         if kind == "gap":
             self._impact()
         elif kind:
             self._event(EventKind.CHANGE, energies(body, self.state, ZERO)[0])
-            self._choose(self._touching(), exclude=self.mode.contact)
+            self._choose(self._touching(), exclude=self.mode.contact if kind != "slip" else None)
             self._keep()
+        elif self.mode.pulled:
+            self._choose(self._touching())
 
     def _first_event(self, result: StepResult, to: Any) -> tuple[float, str, int]:
         """Return when the first margin falls below zero: part of the step, kind of the margin, vertex."""
@@ -351,8 +354,8 @@ class HullEngine:
 
     def _watched(self, result: StepResult) -> list[tuple[str, int]]:
         contact, body = self.mode.contact, self.body
-        watched = [("normal", i) for i in contact.members]
-        if not math.isinf(self.friction):
+        watched = [("normal", i) for i in contact.members if not self.mode.pulled]
+        if not math.isinf(self.friction) and not self.mode.pulled:
             watched += [("stick", i) for i in contact.stuck]
         watched += [("slip", i) for i in contact.members if i not in contact.stuck]
         one, two = result.samples[0][1], result.state
@@ -380,7 +383,7 @@ class HullEngine:
             free = self.friction * rates.found.normals[i] - length(rates.found.pulls[i])
             return free / self.body.mass + slack * (1.0 + self.friction)
         speed = dot(slip_direction(self.body, self.state, self.mode, i), point_velocity(self.body, state, i))
-        return speed + (1.0 if i in self.mode.starts else -1.0) * _SLIP * self.speed
+        return speed + (2.0 * _STILL if i in self.mode.starts else -_SLIP) * self.speed
 
     def _at(self, kind: str, i: int, result: StepResult) -> float:
         return self._margin(kind, i, result.state, result.samples[-1][2])
@@ -424,16 +427,25 @@ class HullEngine:
         problem.bias = {i: cross(state.spin, cross(state.spin, p)) for i, p in enumerate(body.points)}
         moving = {}
         for i in near:
-            if self._slip(i) > 10.0 * _SLIP * self.speed:
+            if self._slip(i) > _STILL * self.speed:
                 x, y, _ = point_velocity(body, state, i)
                 moving[i] = back(problem.axes, unit((x, y, 0.0)))
-        candidates = [found for found in self._candidates(problem, near, moving) if found.contact != exclude]
+        candidates = list(self._candidates(problem, near, moving))
         for slack in _LADDER:
             for found in candidates:
-                if contacts.valid(problem, found, near, slack * self.ground.gravity):
+                if found.contact != exclude and contacts.valid(problem, found, near, slack * self.ground.gravity):
                     self._take(problem, found, moving)
                     return
-        self._shocked()
+        if moving and not self.mode.pulled and self.at_once < _PILED:
+            self._shocked(near)
+            return
+        found = contacts.least_pull(problem, candidates, near, 1e-5 * self.ground.gravity)
+        if found is None:
+            self.ended = Status.NO_CONTACT_FORCE
+            return
+        self.history.held += found.contact != self.mode.contact or not self.mode.pulled
+        self._take(problem, found, moving)
+        self.mode = replace(self.mode, pulled=True)
 
     def _candidates(self, problem: Problem, near: tuple[int, ...], moving: dict[int, Vector]) -> Any:
         for members in contacts.faces(problem, near):
@@ -442,12 +454,14 @@ class HullEngine:
             for contact in contacts.friction_states(members, still):
                 if math.isinf(self.friction) and len(contact.stuck) < len(members):
                     contact = ContactSet(members, members)
-                found = contacts.sliding(problem, contact, known, 1e-5 * self.ground.gravity)
+                found = contacts.sliding(problem, contact, known, 1e-5 * self.ground.gravity if problem.bias else 0.0)
                 if found is not None:
                     yield found
                 if math.isinf(self.friction):
                     break
-        yield contacts.solve(problem, FLIGHT, {})
+        flight = contacts.solve(problem, FLIGHT, {})
+        assert flight is not None
+        yield flight
 
     def _take(self, problem: Problem, found: Solution, moving: dict[int, Vector]) -> None:
         slow = [i for i in found.directions if i not in moving or self._slip(i) <= _SLIDES * self.speed]
@@ -511,6 +525,9 @@ class HullEngine:
                 break
             self.history.replaced += 1
         if found is None:
+            self.history.held += 1
+            found = contacts.least_pull(problem, self.struck, touching, 1e-7 * self._fastest(problem))
+        if found is None:
             self._pile(touching)
         else:
             self.state = self.state._replace(velocity=applied(axes, found.linear), spin=found.angular)
@@ -529,24 +546,24 @@ class HullEngine:
         return {i: place_of(self.law, nearest(stood, points[i]), points[i]) for i in landing}
 
     def _struck(self, problem: Problem, touching: tuple[int, ...], before: float) -> Solution | None:
-        speed = length(problem.linear) + self.body.size * length(problem.angular)
+        """Return the first candidate whose impulses obey every law; None where there is none."""
+        self.struck = [s for s in self._candidates(problem, touching, {}) if self._energy(s) <= before * (1.0 + 1e-12)]
         for slack in _LADDER[:3]:
-            for members in contacts.faces(problem, touching):
-                for contact in contacts.friction_states(members, members):
-                    if math.isinf(self.friction) and contact.stuck != members:
-                        continue
-                    found = contacts.sliding(problem, contact, {}, 1e-9 * speed)
-                    if found is None or not contacts.valid(problem, found, touching, slack * speed):
-                        continue
-                    w = found.angular
-                    after = self.body.mass * dot(found.linear, found.linear) + dot(w, applied(self.body.tensor, w))
-                    if 0.5 * after <= before * (1.0 + 1e-12):
-                        return found
+            for found in self.struck:
+                if contacts.valid(problem, found, touching, slack * self._fastest(problem)):
+                    return found
         return None
+
+    def _fastest(self, problem: Problem) -> float:
+        return length(problem.linear) + self.body.size * length(problem.angular)
+
+    def _energy(self, found: Solution) -> float:
+        """Return the kinetic energy after an impact [J]."""
+        w = found.angular
+        return 0.5 * (self.body.mass * dot(found.linear, found.linear) + dot(w, applied(self.body.tensor, w)))
 
     def _pile(self, touching: tuple[int, ...]) -> None:
         """Make the largest face stick by a plastic impact, pulled or not."""
-        self.history.held += 1
         axes = frame(self.state.attitude)
         problem = Problem(self.body, axes, back(axes, self.state.velocity), self.state.spin, 0.0)
         members = next(contacts.faces(problem, touching), ())
@@ -554,12 +571,8 @@ class HullEngine:
         if found is not None:
             self.state = self.state._replace(velocity=applied(axes, found.linear), spin=found.angular)
 
-    def _shocked(self) -> None:
-        """Let touching vertices stick at once where no force is possible (Painleve), or end with a status."""
-        touching = self._touching()
-        if not touching or self.at_once > _PILED:
-            self.ended = Status.NO_CONTACT_FORCE
-            return
+    def _shocked(self, touching: tuple[int, ...]) -> None:
+        """Let vertices that slide stick at once where no force is possible (Painleve)."""
         before = energies(self.body, self.state, ZERO)[0]
         self._pile(touching)
         self.history.lost += before - energies(self.body, self.state, ZERO)[0]

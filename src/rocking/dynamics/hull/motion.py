@@ -63,6 +63,7 @@ class Mode:
     contact: ContactSet
     friction: float
     starts: dict[int, Vector]
+    pulled: bool = False  # whether no contact obeys every law, and this one, with the least pull, stands in
 
 
 class Rates(NamedTuple):
