@@ -321,4 +321,5 @@ def clear(problem: Problem, found: Solution, touching: tuple[int, ...], slack: f
 def least_pull(problem: Problem, candidates: list[Solution], touching: tuple[int, ...], slack: float) -> Solution | None:
     """Return what stands in where no candidate obeys every law: no gap closes, and the ground pulls least."""
     kept = [c for c in candidates if c.contact.members and clear(problem, c, touching, slack)]
-    return max(kept, key=lambda c: min(c.normals.values()), default=None)
+    pushed = (c for c in kept if min(c.normals.values()) >= -slack * problem.body.mass)
+    return next(pushed, None) or max(kept, key=lambda c: min(c.normals.values()), default=None)

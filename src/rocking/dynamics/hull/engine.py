@@ -47,7 +47,8 @@ _FORCE = 1e-11  # acceleration over gravity below which a force counts as zero
 _SLIP, _STILL, _SLIDES = 1e-7, 1e-6, 1e-4
 _LADDER = (1e-11, 1e-9, 1e-7, 1e-5)
 _AHEAD = 1e-6  # how much later, over sqrt(size / g), the ground decides which mode starts
-_PILED, _STUCK = 30, 80
+_PILED, _STUCK = 30, 200
+_CROWD, _CROWDED = 30, 1e-2  # changes of contact, and the time over sqrt(size / g) within which they are too many
 _PATIENCE = 100.0
 _HALVINGS = 80
 
@@ -134,6 +135,7 @@ class HullEngine:
         self.mode = self._mode(FLIGHT, {})
         self.anchors: dict[int, Vector] = {}
         self.at_once, self.moment = 0, -1.0
+        self.changes, self.since = 0, 0.0
         self.history = History()
         self.ended: Status | None = None
 
@@ -427,16 +429,17 @@ class HullEngine:
         problem.bias = {i: cross(state.spin, cross(state.spin, p)) for i, p in enumerate(body.points)}
         moving = {}
         for i in near:
-            if self._slip(i) > _STILL * self.speed:
+            if self._slip(i) > 3.0 * _STILL * self.speed:
                 x, y, _ = point_velocity(body, state, i)
                 moving[i] = back(problem.axes, unit((x, y, 0.0)))
         candidates = list(self._candidates(problem, near, moving))
-        for slack in _LADDER:
+        crowded = self._crowded()
+        for slack in () if crowded else _LADDER:
             for found in candidates:
                 if found.contact != exclude and contacts.valid(problem, found, near, slack * self.ground.gravity):
                     self._take(problem, found, moving)
                     return
-        if moving and not self.mode.pulled and self.at_once < _PILED:
+        if moving and not self.mode.pulled and not crowded:
             self._shocked(near)
             return
         found = contacts.least_pull(problem, candidates, near, 1e-5 * self.ground.gravity)
@@ -446,6 +449,13 @@ class HullEngine:
         self.history.held += found.contact != self.mode.contact or not self.mode.pulled
         self._take(problem, found, moving)
         self.mode = replace(self.mode, pulled=True)
+
+    def _crowded(self) -> bool:
+        """Whether changes of contact follow each other without end."""
+        if self.time - self.since > _CROWDED / self.pace:
+            self.changes, self.since = 0, self.time
+        self.changes += not self.mode.pulled
+        return self.changes > _CROWD or self.at_once > _PILED
 
     def _candidates(self, problem: Problem, near: tuple[int, ...], moving: dict[int, Vector]) -> Any:
         for members in contacts.faces(problem, near):
@@ -472,7 +482,7 @@ class HullEngine:
             i: added(self.state.place, 1.0, applied(axes, self.body.points[i])) for i in found.contact.stuck
         }
         before = energies(self.body, self.state, ZERO)[0]
-        self._settle_on(found.contact)
+        self._settle_on(found.contact, tuple(i for i in found.contact.members if i not in moving))
         self.history.lost += before - energies(self.body, self.state, ZERO)[0]
         self.length = min(self.length, 0.02 / self.pace)
         made = self.history
@@ -487,8 +497,8 @@ class HullEngine:
         x, y, _ = point_velocity(self.body, self.state, i)
         return math.hypot(x, y)
 
-    def _settle_on(self, contact: ContactSet) -> None:
-        """Take drift and rounding out of the attitude, the place and the velocities that the contact fixes."""
+    def _settle_on(self, contact: ContactSet, still: tuple[int, ...] = ()) -> None:
+        """Take drift and rounding out of the attitude, the place and the velocities; still: which have no slip."""
         if not contact.members:
             return
         body, members = self.body, contact.members
@@ -503,7 +513,8 @@ class HullEngine:
             x, y = anchor[0] - first[0], anchor[1] - first[1]
         state = self.state._replace(place=(x, y, -first[2]), attitude=attitude)
         problem = Problem(body, axes, back(axes, state.velocity), state.spin, 0.0)
-        found = contacts.linear(problem, contact, list(members), dict.fromkeys(members, ZERO))
+        whole = ContactSet(members, still or contact.stuck)
+        found = contacts.linear(problem, whole, list(members), dict.fromkeys(members, ZERO))
         if found is not None:
             state = state._replace(velocity=applied(axes, found.linear), spin=found.angular)
         self.state = state
@@ -521,6 +532,9 @@ class HullEngine:
         for law in (True, False):
             problem.places = self._places(touching, old) if law and old else {}
             found = self._struck(problem, touching, before)
+            if self.at_once > _PILED:
+                found, self.struck = None, []
+                break
             if found is not None or not old:
                 break
             self.history.replaced += 1
