@@ -1,0 +1,348 @@
+"""Bodies on the vertices of their hull: steps, contact, impacts and ends of histories against exact values and engines.
+
+REF numbers: see CONTRIBUTING.md. With ROCKING_CAMPAIGN=1 thirty random hulls are shaken by three motions each.
+"""
+
+import math
+import os
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+
+import rocking as rk
+from rocking.bodies.solid import Solid, box
+from rocking.dynamics import SpatialStart
+from rocking.dynamics.hull import HullBody, HullEngine, HullGround, HullSettings, standing
+from rocking.dynamics.hull.contact_problem import ContactSet, Problem, linear
+from rocking.dynamics.hull.engine import EventKind
+from rocking.dynamics.hull.motion import Mode, State, energies, step
+from rocking.dynamics.hull.restitution import place_of
+from rocking.dynamics.hull.vectors import ZERO, applied, back, cross, dot, frame, scaled
+from rocking.dynamics.space import SpatialBody
+from rocking.errors import GeometryError, InvalidValueError
+from rocking.motions import GroundMotion
+from rocking.outcome import Outcome, Status
+
+pytestmark = pytest.mark.verifies(room="rocking in space")
+
+G = rk.conventions.g
+FINE = HullSettings(tolerance=1e-14)
+TOWER = (1.0, 1.3, 4.0)
+HULLS = 30 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 2
+
+
+def _rocking(body, tilt, azimuth=0.0, spin=(0.0, 0.0, 0.0)):
+    """A body that leans on its lowest vertex, which is at rest; spin: in axes of the ground."""
+    state = standing(body, tilt=tilt, azimuth=azimuth)
+    axes = frame(state.attitude)
+    low = min(body.points, key=lambda p: dot(axes[2], p))
+    w = back(axes, spin)
+    return state._replace(spin=w, velocity=applied(axes, cross(w, scaled(-1.0, low))))
+
+
+def _momentum(body, state):
+    return np.array(applied(frame(state.attitude), applied(body.tensor, state.spin)))
+
+
+def _hull_of(rng, count=10):
+    """A random hull with the mass properties of its tetrahedra."""
+    points = rng.normal(size=(count, 3))
+    points *= [0.3, 0.3, 0.6] * rng.uniform(0.6, 1.0, (count, 1)) / np.linalg.norm(points, axis=1)[:, None]
+    origin, mass, first, second = points.mean(axis=0), 0.0, np.zeros(3), np.zeros((3, 3))
+    for corners in points[ConvexHull(points).simplices] - origin:
+        volume, total = abs(np.linalg.det(corners)) / 6.0, corners.sum(axis=0)
+        mass, first = mass + volume, first + volume * total / 4.0
+        second += volume / 20.0 * (corners.T @ corners + np.outer(total, total))
+    first /= mass
+    second -= mass * np.outer(first, first)
+    return HullBody(points, 2500.0 * mass, first + origin, 2500.0 * (np.trace(second) * np.eye(3) - second))
+
+
+# ---- steps ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.verifies("order", "steps of order 5", within="0.3", control="within")
+def test_steps_have_order_five():
+    """A vertex that slides while the body spins: halved steps leave 2^5 less error; a first-order one would not."""
+    body = HullBody.box(0.4, 0.6, 1.0, 100.0)
+    start = _rocking(body, 0.3, 0.7, (0.5, 1.0, 2.0))
+    low = min(range(8), key=lambda i: dot(frame(start.attitude)[2], body.points[i]))
+    start = start._replace(velocity=(start.velocity[0] + 1.0, start.velocity[1] - 0.5, start.velocity[2]))
+    mode = Mode(ContactSet((low,)), 0.3, {})
+
+    def end(count):
+        state = start
+        for _ in range(count):
+            state = step(body, state, mode, [(0.0, 0.0, -G)], 0.2 / count, 1.0, 1.0).state
+        return np.array([*state.place, *state.attitude, *state.velocity, *state.spin])
+
+    exact = end(256)
+    errors = [np.abs(end(n) - exact).max() for n in (8, 16, 32)]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert np.abs(orders - 5.0).max() < 0.6, orders
+
+
+@pytest.mark.verifies("closed form", "free flight", within="1e-12", control="within")
+def test_free_flight_is_a_parabola_and_keeps_momentum_and_energy():
+    """Thrown up while the ground accelerates linearly in time: the centre's cubic path, momentum and energy kept."""
+    body = _hull_of(np.random.default_rng(1))
+    start = State((0.0, 0.0, 3.0), (1.0, 0.0, 0.0, 0.0), (0.3, -0.2, 2.0), (3.0, -2.0, 5.0))
+    ground = HullGround(GroundMotion([0.0, 4.0], 0.5))
+    engine = HullEngine(body, ground, settings=HullSettings(tolerance=1e-13))
+    history = engine.run(start)
+    k = int(np.searchsorted(history.time, 0.5 - 1e-12))
+    t, state = history.time[k], history.states[k]
+    expected = np.array([0.3 * t - 8.0 * t**3 / 6.0, -0.2 * t, 3.0 + 2.0 * t - 0.5 * G * t * t])
+    assert not history.contacts[k].members
+    np.testing.assert_allclose(state.place, expected, rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose(_momentum(body, state), _momentum(body, start), rtol=1e-10)
+    spun = [dot(s.spin, applied(body.tensor, s.spin)) for s in (start, state)]
+    assert spun[1] == pytest.approx(spun[0], rel=1e-10)
+    assert np.abs(np.subtract(state.spin, start.spin)).max() > 0.1  # a body that only spun would not show it
+
+
+# ---- the engines that are special cases -------------------------------------------------------------------------------
+
+
+@pytest.mark.verifies("second engine", "the reference engine in space", within="1e-10", control="within")
+@pytest.mark.parametrize(
+    ("tilt", "azimuth", "spin", "restitution"),
+    [(0.12, 0.0, ZERO, "housner-3d"), (0.15, 0.5, ZERO, "housner-3d"), (0.1, 2.0, (0.1, -0.2, 0.05), "housner-3d")],
+)
+def test_a_prism_is_that_of_the_engine_in_space(tilt, azimuth, spin, restitution):
+    """Edge and vertex rocking through impacts: attitude and impact times to 1e-10; another tilt is another history."""
+    space = SpatialBody.box(*TOWER)
+    start = SpatialStart(tilt, azimuth, angular_velocity=spin)
+    expected = rk.free_rocking(space, restitution=restitution, start=start, duration=1.5)
+    body = HullBody.box(*TOWER, mass=space.mass)
+    engine = HullEngine(body, HullGround(), restitution, settings=FINE)
+    engine.run(_rocking(body, tilt, azimuth, spin), horizon=1.5) if False else None
+    history = _until(engine, _rocking(body, tilt, azimuth, spin), 1.5)
+    time = np.array(history.time)
+    up = np.array([frame(state.attitude)[2] for state in history.states])
+    seen = expected.at(time).rotation[:, 2]
+    np.testing.assert_allclose(up, seen, rtol=0.0, atol=1e-10)
+    struck = [event.time for event in history.events if event.kind is EventKind.IMPACT]
+    assert struck
+    np.testing.assert_allclose(struck, expected.impacts["time"][: len(struck)], rtol=0.0, atol=1e-10)
+    other = rk.free_rocking(space, restitution=restitution, start=SpatialStart(tilt + 1e-6, azimuth), duration=1.5)
+    assert np.abs(other.at(time).rotation[:, 2] - seen).max() > 1e-7
+
+
+def _until(engine, state, end):
+    """A history cut at a time, without waiting for rest."""
+    over = engine._over
+    engine._over = lambda: engine.time >= end or over()
+    history = engine.run(state, end)
+    kept = [k for k, t in enumerate(history.time) if t < end]
+    history.time, history.states = [history.time[k] for k in kept], [history.states[k] for k in kept]
+    history.events = [event for event in history.events if event.time < end]
+    return history
+
+
+@pytest.mark.verifies("second engine", "the reference engine in space", within="1e-10", control="within")
+def test_a_shaken_prism_is_that_of_the_engine_in_space():
+    """Lifted from rest by two components: attitude to 1e-10 over the motion; without the second one it is another."""
+    time = 0.02 * np.arange(41)
+    x, y = (GroundMotion(a * np.sin(w * time), 0.02) for a, w in ((4.0, 8.0), (3.6, 5.0)))
+    space = SpatialBody.box(*TOWER)
+    body = HullBody.box(*TOWER, mass=space.mass)
+    history = _until(HullEngine(body, HullGround(x, y), settings=FINE), standing(body), 0.8)
+    seen = rk.simulate(space, {"x": x, "y": y}, restitution="housner-3d").at(np.array(history.time)).rotation[:, 2]
+    up = np.array([frame(state.attitude)[2] for state in history.states])
+    np.testing.assert_allclose(up, seen, rtol=0.0, atol=1e-10)
+    assert any(event.kind is EventKind.UPLIFT for event in history.events)
+    alone = rk.simulate(space, {"x": x}, restitution="housner-3d").at(np.array(history.time)).rotation[:, 2]
+    assert np.abs(alone - seen).max() > 1e-4
+
+
+@pytest.mark.verifies("invariant", "energy and vertical angular momentum", within="1e-9 of the barrier", control="within")
+def test_energy_is_closed_and_momentum_about_the_vertical_is_kept():
+    """On a vertex of a random hull nothing is lost; over impacts what is lost is booked; friction's work is missed."""
+    body = _hull_of(np.random.default_rng(5))
+    ground = HullGround()
+    start = _rocking(body, 0.0, 0.0, (0.2, 0.1, 0.7))
+    history = _until(HullEngine(body, ground), start, 0.6)
+    total = [sum(energies(body, s, ground.weight)) for s in history.states]
+    barrier = body.mass * G * body.size * 1e-2
+    assert abs(total[-1] + history.lost - total[0]) < 1e-9 * barrier
+    first = next((k for k, c in enumerate(history.contacts) if c != history.contacts[1]), len(history.states)) - 1
+    low = history.contacts[1].stuck[0]
+    turned = []
+    for state in (history.states[1], history.states[first]):
+        arm = scaled(-1.0, applied(frame(state.attitude), body.points[low]))
+        turned.append(_momentum(body, state)[2] + body.mass * cross(arm, state.velocity)[2])
+    assert turned[1] == pytest.approx(turned[0], rel=1e-10)
+    rough = _until(HullEngine(body, ground, friction=0.05), start, 0.6)
+    assert sum(energies(body, rough.states[-1], ground.weight)) + rough.lost < total[0] - 1e-6 * barrier
+
+
+# ---- impacts --------------------------------------------------------------------------------------------------------
+
+
+def _steps(body, law, places):
+    """Energies of a plane body that turns about one place of its base after another."""
+    body.__dict__["points"] = places
+    state, found = (0.0, 1.0, 0.0), []
+    linear_velocity = cross(state, scaled(-1.0, places[0]))
+    for k in range(len(places)):
+        found.append(0.5 * (body.mass * dot(linear_velocity, linear_velocity) + dot(state, applied(body.tensor, state))))
+        if k + 1 < len(places):
+            problem = Problem(body, frame((1.0, 0.0, 0.0, 0.0)), linear_velocity, state, math.inf)
+            problem.places = {k + 1: place_of(law, places[k], places[k + 1])}
+            solved = linear(problem, ContactSet((k + 1,), (k + 1,)), [k + 1], {})
+            linear_velocity, state = solved.linear, solved.angular
+    return found
+
+
+@pytest.mark.verifies("closed form", "loss of a landing in n steps (REF)", within="1e-12", control="within")
+@pytest.mark.parametrize(
+    ("count", "loss"),
+    [(1, 0.1024960798807509), (2, 0.0514677585548414), (4, 0.0259341370573942), (256, 0.0004097494607067)],
+)
+def test_a_landing_split_into_steps_loses_the_reference_share(count, loss):
+    """The rectangle with h/b = 4 and the paper's k; Housner's k = 1 loses more."""
+    found = {}
+    for k in (0.5856037087878, 1.0):
+        body = HullBody.box(1.0, 1.0, 4.0, 1.0)
+        places = [(-0.5 + j / count, 0.0, -2.0) for j in range(count + 1)]
+        kinetic = _steps(body, lambda _a, _b, k=k: k, places)
+        found[k] = 1.0 - kinetic[-1] / kinetic[0]
+    assert found[0.5856037087878] == pytest.approx(loss, abs=1e-12)
+    assert found[1.0] > 1.3 * loss
+
+
+@pytest.mark.verifies("closed form", "the paper's coefficient of a whole base", within="1e-8", control="within")
+def test_a_block_that_lands_on_its_whole_base_has_the_papers_coefficient():
+    """REF .94736683503 (1 x 1 x 4); a stated coefficient comes out as stated; Housner's is another."""
+    solid = Solid(box(1.0, 1.0, 4.0))
+    body = HullBody.box(1.0, 1.0, 4.0, 100.0)
+    with_solid = HullBody(body.vertices, body.mass, body.centre, body.inertia, solid)
+    for restitution, r in (("ked-3d", 0.947366835032369679), (0.87, 0.87), ("housner-3d", 59.0 / 71.0 * 0 + 1.0 - 1.5 / 17.0)):
+        history = _until(HullEngine(with_solid, HullGround(), restitution), _rocking(body, 0.1), 1.2)
+        event = next(event for event in history.events if event.kind is EventKind.IMPACT)
+        assert math.sqrt(event.after / event.before) == pytest.approx(r, abs=2e-8)
+    with pytest.raises(InvalidValueError, match="distribution of mass"):
+        HullEngine(body, HullGround(), "ked-3d").run(standing(body))
+
+
+@pytest.mark.verifies("closed form", "an impact with little friction (REF)", within="1e-12", control="within")
+@pytest.mark.parametrize(("friction", "r"), [(0.0, 0.25), (6.0 / 17.0, 0.7), (10.0, 0.7)])
+def test_an_impact_with_little_friction_slips(friction, r):
+    """h/b = 2 landing flat: r = .25 without friction, .7 from 6/17 on."""
+    body = HullBody.box(1.0, 1.0, 2.0, 1.0)
+    spin = (0.0, 1.0, 0.0)
+    start = standing(body)._replace(spin=spin, velocity=cross(spin, (0.5, 0.0, 1.0)))
+    engine = HullEngine(body, HullGround(), friction=friction)
+    history = _until(engine, start, 1e-3)
+    assert history.states[1].spin[1] == pytest.approx(r, abs=1e-12)
+
+
+# ---- sliding, slopes, shelves -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.verifies("closed form", "sliding down a slope", within="1e-10", control="within")
+def test_a_block_slides_down_a_slope_and_stands_on_a_rough_one():
+    """g (sin - mu cos) t^2/2 for mu < tan of the slope, in the slope's direction; above it nothing moves."""
+    body = HullBody.box(0.6, 1.0, 0.8, 100.0)
+    for friction, pull in ((0.2, G * (math.sin(0.3) - 0.2 * math.cos(0.3))), (0.35, 0.0)):
+        ground = HullGround(slope=0.3, azimuth=0.7)
+        history = _until(HullEngine(body, ground, friction=friction), standing(body), 0.5)
+        t, x, y = history.time[-1], *history.states[-1].place[:2]
+        moved = 0.5 * pull * t * t
+        np.testing.assert_allclose((x, y), (moved * math.cos(0.7), moved * math.sin(0.7)), rtol=0.0, atol=1e-9)
+
+
+@pytest.mark.verifies("closed form", "sliding before rocking", within="exact", control="within")
+def test_a_block_slides_before_it_rocks_where_friction_is_below_its_slenderness():
+    """b/h = .25: with mu = .2 it slides and never lifts, with mu = .6 it lifts and never slides."""
+    body = HullBody.box(1.0, 1.0, 4.0, 100.0)
+    motion = GroundMotion([0.0, 4.0, 4.0, 0.0, -2.0, 0.0], 0.05)
+    slid = HullEngine(body, HullGround(motion), friction=0.2).run(standing(body))
+    rocked = HullEngine(body, HullGround(motion), friction=0.6, settings=HullSettings(rest_speed=1e-3))
+    lifted = _until(rocked, standing(body), 0.5)
+    assert slid.outcome is Outcome.SLID and not slid.rocked
+    assert lifted.rocked and not lifted.slid
+
+
+def test_a_body_tips_over_a_steep_slope_and_slides_off_a_shelf():
+    """Steeper than b/h it overturns; a shelf that ends lets it fall; a level one holds it."""
+    body = HullBody.box(0.5, 0.5, 2.0, 10.0)
+    steep = HullEngine(body, HullGround(slope=0.3), settings=HullSettings(tolerance=1e-8)).run(standing(body))
+    assert (steep.outcome, steep.status) == (Outcome.OVERTURNED, Status.GOOD)
+    assert HullEngine(body, HullGround(slope=0.2)).run(standing(body), 1.0).outcome is Outcome.NO_UPLIFT
+    flat = HullBody.box(0.5, 0.5, 0.3, 10.0)
+    ground = HullGround(slope=0.3, shelf=(0.6, 0.6))
+    fell = HullEngine(flat, ground, friction=0.1, settings=HullSettings(tolerance=1e-8)).run(standing(flat))
+    assert fell.fell and fell.outcome is Outcome.OVERTURNED
+
+
+# ---- many corners, random bodies --------------------------------------------------------------------------------------
+
+
+def _polygon(count):
+    angle = 2.0 * math.pi * np.arange(count) / count
+    ring = np.column_stack([0.4 * np.cos(angle), 0.4 * np.sin(angle)])
+    points = [(x, y, z) for x, y in ring for z in (0.0, 1.2)]
+    return HullBody(points, 1.0, (0.0, 0.0, 0.6), np.diag([0.16, 0.16, 0.08]))
+
+
+@pytest.mark.verifies("order", "a polygon of n corners loses 1/n", within="0.25", control="within")
+def test_a_polygon_of_many_corners_tends_to_the_rim_that_rolls():
+    """Twice the corners: half the energy lost while it rolls round (order 1 in n)."""
+    lost = []
+    for count in (16, 32):
+        body = _polygon(count)
+        engine = HullEngine(body, HullGround(), settings=HullSettings(tolerance=1e-9))
+        start = _rocking(body, 0.25, 0.01, (0.0, 0.0, 0.0))
+        start = _rocking(body, 0.25, 0.01, scaled(-1.4, frame(start.attitude)[2]))
+        history = _until(engine, start, 0.5)
+        assert sum(event.kind is EventKind.IMPACT for event in history.events) >= count // 8
+        lost.append(history.lost)
+    assert math.log2(lost[0] / lost[1]) == pytest.approx(1.0, abs=0.5)
+
+
+@pytest.mark.parametrize("seed", range(HULLS))
+def test_random_hulls_have_a_result_under_every_motion(seed):
+    """Shaken with three components, sticking, rough and smooth: a status and an outcome each, and no vertex below."""
+    rng = np.random.default_rng(seed)
+    body = _hull_of(rng)
+    facet = max(range(len(body.facets)), key=lambda k: -body.facets[k][0][2])
+    for friction, restitution in ((math.inf, "housner-3d"), (0.7, 0.9), (0.3, "housner-3d")):
+        x, y, z = (GroundMotion(rng.normal(size=20) * size, 0.02) for size in (6.0, 6.0, 2.0))
+        settings = HullSettings(tolerance=1e-7, rest_speed=1e-3)
+        history = HullEngine(body, HullGround(x, y, z), restitution, friction, settings).run(standing(body, facet=facet))
+        assert history.status is Status.GOOD, (history.status, friction)
+        assert history.outcome is not Outcome.FAILED
+        lowest = min(s.place[2] + dot(frame(s.attitude)[2], p) for s in history.states for p in body.points)
+        assert lowest > -1e-6 * body.size
+
+
+@pytest.mark.verifies("invariant", "other axes of the body", within="1e-9", control="within")
+def test_an_asymmetric_body_in_other_axes_moves_alike():
+    """The hull of an L-shaped prism, named in turned axes about its vertical: the same history."""
+    outline = [(0.0, 0.0), (0.9, 0.0), (0.9, 0.5), (0.4, 1.6), (0.0, 1.6)]
+    points = np.array([(x, y, z) for x, z in outline for y in (0.0, 0.5)])
+    centre, inertia = np.array([0.33, 0.25, 0.62]), np.array([[20.0, 0.0, 3.0], [0.0, 24.0, 0.0], [3.0, 0.0, 9.0]])
+    turn = np.array([[math.cos(1.1), -math.sin(1.1), 0.0], [math.sin(1.1), math.cos(1.1), 0.0], [0.0, 0.0, 1.0]])
+    one = HullBody(points, 100.0, centre, inertia)
+    two = HullBody(points @ turn.T, 100.0, turn @ centre, turn @ inertia @ turn.T)
+    heights = []
+    for body, azimuth in ((one, 0.3), (two, 1.4), (one, 1.4)):
+        history = _until(HullEngine(body, HullGround(), friction=0.5), standing(body, tilt=0.12, azimuth=azimuth), 0.6)
+        heights.append([state.place[2] for state in history.states[-1:]] + [event.time for event in history.events[:2]])
+    np.testing.assert_allclose(heights[0], heights[1], rtol=0.0, atol=1e-9)
+    assert len(heights[2]) != len(heights[0]) or np.abs(np.subtract(heights[2], heights[0])).max() > 1e-3
+
+
+def test_bad_bodies_and_grounds_are_refused():
+    """Flat bodies, inertia that no body has, slopes beyond the vertical: errors that name the value."""
+    with pytest.raises(GeometryError, match="span a volume"):
+        HullBody([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], 1.0, (0, 0, 0), np.eye(3))
+    with pytest.raises(InvalidValueError, match="principal moments"):
+        HullBody.box(1.0, 1.0, 1.0, 1.0).__class__(np.eye(4, 3), 1.0, (0, 0, 0), -np.eye(3))
+    with pytest.raises(InvalidValueError, match="slope"):
+        HullGround(slope=2.0)
+    with pytest.raises(InvalidValueError, match="restitution"):
+        HullEngine(HullBody.box(1, 1, 1, 1.0), HullGround(), "wrong").run(standing(HullBody.box(1, 1, 1, 1.0)))
