@@ -62,7 +62,7 @@ def _hull_of(rng, count=10):
 # ---- steps ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.verifies("order", "steps of order 5", within="0.3", control="within")
+@pytest.mark.verifies("order", "steps of order 5", within="0.2", control="within")
 def test_steps_have_order_five():
     """A vertex that slides while the body spins: halved steps leave 2^5 less error; a first-order one would not."""
     body = HullBody.box(0.4, 0.6, 1.0, 100.0)
@@ -78,9 +78,9 @@ def test_steps_have_order_five():
         return np.array([*state.place, *state.attitude, *state.velocity, *state.spin])
 
     exact = end(256)
-    errors = [np.abs(end(n) - exact).max() for n in (8, 16, 32)]
-    orders = np.log2(np.array(errors[:-1]) / errors[1:])
-    assert np.abs(orders - 5.0).max() < 0.6, orders
+    errors = [np.abs(end(n) - exact).max() for n in (8, 16, 32, 64)]
+    order = math.log2(errors[0] / errors[-1]) / 3.0
+    assert order > 4.8, errors
 
 
 @pytest.mark.verifies("closed form", "free flight", within="1e-12", control="within")
@@ -117,7 +117,6 @@ def test_a_prism_is_that_of_the_engine_in_space(tilt, azimuth, spin, restitution
     expected = rk.free_rocking(space, restitution=restitution, start=start, duration=1.5)
     body = HullBody.box(*TOWER, mass=space.mass)
     engine = HullEngine(body, HullGround(), restitution, settings=FINE)
-    engine.run(_rocking(body, tilt, azimuth, spin), horizon=1.5) if False else None
     history = _until(engine, _rocking(body, tilt, azimuth, spin), 1.5)
     time = np.array(history.time)
     up = np.array([frame(state.attitude)[2] for state in history.states])
@@ -219,7 +218,7 @@ def test_a_block_that_lands_on_its_whole_base_has_the_papers_coefficient():
     solid = Solid(box(1.0, 1.0, 4.0))
     body = HullBody.box(1.0, 1.0, 4.0, 100.0)
     with_solid = HullBody(body.vertices, body.mass, body.centre, body.inertia, solid)
-    for restitution, r in (("ked-3d", 0.947366835032369679), (0.87, 0.87), ("housner-3d", 59.0 / 71.0 * 0 + 1.0 - 1.5 / 17.0)):
+    for restitution, r in (("ked-3d", 0.947366835032369679), (0.93, 0.93), ("housner-3d", 1.0 - 1.5 / 17.0)):
         history = _until(HullEngine(with_solid, HullGround(), restitution), _rocking(body, 0.1), 1.2)
         event = next(event for event in history.events if event.kind is EventKind.IMPACT)
         assert math.sqrt(event.after / event.before) == pytest.approx(r, abs=2e-8)

@@ -215,6 +215,12 @@ class HullEngine:
             return
         end = float(self.ground.motion.times[self.stretch + 1])
         span = end - self.time
+        if self.mode.pulled:
+            part = min(1e-3 / self.pace, span)
+            self.stretch += part == span
+            self._hold(end if part == span else self.time + part)
+            self._choose(self._touching())
+            return
         coefficients = self.ground.field(self.stretch, self.time, span)
         marks = [1.0] if len(coefficients) < 3 else [k / 8.0 for k in range(1, 9)]
         before = 0.0
@@ -226,7 +232,8 @@ class HullEngine:
                     low, high = (low, middle) if self._stands(valued(coefficients, middle)) < 0.0 else (middle, high)
                 self._hold(self.time + high * span)
                 self._event(EventKind.UPLIFT, 0.0)
-                self._choose(self._touching(), exclude=self.mode.contact)
+                slips = self._slips(valued(coefficients, high)) < 0.0
+                self._choose(self._touching(), self.mode.contact, leaves=not slips)
                 return
             before = mark
         self._hold(end)
@@ -240,9 +247,7 @@ class HullEngine:
         """Least distance of the centre of pressure from the border, times the pull, and what friction leaves over."""
         axes, points = frame(self.state.attitude), self.body.points
         members = self.mode.contact.members
-        least = -pull[2]
-        if not math.isinf(self.friction):
-            least = min(least, -self.friction * pull[2] - math.hypot(pull[0], pull[1]))
+        least = min(-pull[2], self._slips(pull))
         for k, i in enumerate(members):
             a, b = applied(axes, points[i]), applied(axes, points[members[(k + 1) % len(members)]])
             x, y = b[0] - a[0], b[1] - a[1]
@@ -252,6 +257,10 @@ class HullEngine:
             tips = -inside * pull[2] - a[2] * (pull[0] * inward[0] + pull[1] * inward[1])  # Eq. 94
             least = min(least, tips / self.body.size)
         return least
+
+    def _slips(self, pull: Vector) -> float:
+        """Return what friction leaves over on a base at rest; below zero it slides."""
+        return math.inf if math.isinf(self.friction) else -self.friction * pull[2] - math.hypot(pull[0], pull[1])
 
     # ---- a step -----------------------------------------------------------------------------------------------------
 
@@ -300,7 +309,8 @@ class HullEngine:
             self._impact()
         elif kind:
             self._event(EventKind.CHANGE, energies(body, self.state, ZERO)[0])
-            self._choose(self._touching(), exclude=self.mode.contact if kind != "slip" else None)
+            exclude = self.mode.contact if kind != "slip" else None
+            self._choose(self._touching(), exclude, leaves=kind == "normal")
             self._keep()
         elif self.mode.pulled:
             self._choose(self._touching())
@@ -418,12 +428,23 @@ class HullEngine:
         return Mode(contact, self.friction, starts)
 
     def _choose(
-        self, touching: tuple[int, ...], exclude: ContactSet | None = None, closed: tuple[int, ...] = ()
+        self,
+        touching: tuple[int, ...],
+        exclude: ContactSet | None = None,
+        closed: tuple[int, ...] = (),
+        *,
+        leaves: bool = False,
     ) -> None:
-        """Choose what stays on the ground: the first candidate whose forces obey every law."""
+        """Choose what stays on the ground: the first candidate whose forces obey every law.
+
+        exclude: the contact that has just ended; closed: vertices that an impact has stopped; leaves: whether one of
+        its vertices leaves, so that no way of sticking or sliding keeps all of them.
+        """
         if self.ended is not None or self._guarded():
             return
         body, state = self.body, self.state
+        over = {-1} if exclude is None else set(exclude.members)
+        held = set() if exclude is None else set(exclude.stuck)
         near = tuple(i for i in touching if i in closed or point_velocity(body, state, i)[2] <= self.slow)
         problem = problem_of(body, state, self._field(), self.friction)
         problem.bias = {i: cross(state.spin, cross(state.spin, p)) for i, p in enumerate(body.points)}
@@ -434,15 +455,20 @@ class HullEngine:
                 moving[i] = back(problem.axes, unit((x, y, 0.0)))
         candidates = list(self._candidates(problem, near, moving))
         crowded = self._crowded()
+
+        def excluded(contact: ContactSet) -> bool:
+            return set(contact.members) == over and (leaves or set(contact.stuck) == held)
+
         for slack in () if crowded else _LADDER:
             for found in candidates:
-                if found.contact != exclude and contacts.valid(problem, found, near, slack * self.ground.gravity):
+                if not excluded(found.contact) and contacts.valid(problem, found, near, slack * self.ground.gravity):
                     self._take(problem, found, moving)
                     return
         if moving and not self.mode.pulled and not crowded:
             self._shocked(near)
             return
         found = contacts.least_pull(problem, candidates, near, 1e-5 * self.ground.gravity)
+        found = candidates[0] if crowded and candidates[0].contact.members else found
         if found is None:
             self.ended = Status.NO_CONTACT_FORCE
             return
