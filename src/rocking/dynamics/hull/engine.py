@@ -1,6 +1,7 @@
 """The reference engine for a body on the vertices of its hull: steps, events to rounding, contact by complementarity."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Any, NamedTuple
@@ -310,7 +311,7 @@ class HullEngine:
         elif kind:
             self._event(EventKind.CHANGE, energies(body, self.state, ZERO)[0])
             exclude = self.mode.contact if kind != "slip" else None
-            self._choose(self._touching(), exclude, leaves=kind == "normal")
+            self._choose(self._touching(), exclude, leaves=kind in ("normal", "shelf"))
             self._keep()
         elif self.mode.pulled:
             self._choose(self._touching())
@@ -321,7 +322,10 @@ class HullEngine:
         for kind, i in self._watched(result):
             values = [self._margin(kind, i, state, rates) for _, state, rates in result.samples]
             if values[0] < 0.0:
-                return 0.0, kind, i
+                # a vertex that has just left is on the ground but for rounding
+                if kind != "gap" or point_velocity(self.body, self.state, i)[2] < -1e-12 * self.speed:
+                    return 0.0, kind, i
+                values[0] = 0.0
             nodes = [node for node, _, _ in result.samples]
             for a, b, low, high in zip(values, values[1:], nodes, nodes[1:], strict=False):
                 if b < 0.0:
@@ -343,11 +347,12 @@ class HullEngine:
 
     def _located(self, kind: str, i: int, low: float, high: float, to: Any) -> float:
         """Return the zero of a margin that is below zero at the end of a bracket, by regula falsi (Illinois)."""
-        close = {"gap": 0.5 * _GRAZED * self.body.size, "slip": 1e-3 * _SLIP * self.speed}.get(kind, self.slack)
+        close = {"gap": 0.5 * _GRAZED * self.body.size, "shelf": _CLOSED * self.body.size, "slip": 1e-3 * _SLIP * self.speed}.get(kind, self.slack)
         at_low, at_high = self._at(kind, i, to(low)), self._at(kind, i, to(high))
         if at_low < 0.0:
             low, high, at_high = 0.0, low, at_low
             at_low = self._at(kind, i, to(low))
+        at_low = max(at_low, 0.0)
         side = 0
         for _ in range(_HALVINGS):
             if at_high >= -close or high - low <= 1e-15:
@@ -369,7 +374,9 @@ class HullEngine:
         watched = [("normal", i) for i in contact.members if not self.mode.pulled]
         if not math.isinf(self.friction) and not self.mode.pulled:
             watched += [("stick", i) for i in contact.stuck]
-        watched += [("slip", i) for i in contact.members if i not in contact.stuck]
+        loose = [i for i in contact.members if i not in contact.stuck]
+        watched += [("slip", i) for i in loose]
+        watched += [("shelf", i) for i in loose if self.ground.shelf is not None]
         one, two = result.samples[0][1], result.state
         fastest = max(length(s.velocity) + body.size * length(s.spin) for s in (one, two))
         reach = fastest * self.length
@@ -387,6 +394,8 @@ class HullEngine:
             height = gap(self.body, state, i) + _GRAZED * self.body.size
             place = added(state.place, 1.0, applied(frame(state.attitude), self.body.points[i]))
             return height if self.ground.under(place) or height > 0.0 else math.inf
+        if kind == "shelf":
+            return self.ground.inside(added(state.place, 1.0, applied(frame(state.attitude), self.body.points[i])))
         if rates.found is None:
             return -1.0
         if kind == "normal":
@@ -449,7 +458,7 @@ class HullEngine:
         problem = problem_of(body, state, self._field(), self.friction)
         problem.bias = {i: cross(state.spin, cross(state.spin, p)) for i, p in enumerate(body.points)}
         moving = {}
-        for i in near:
+        for i in near if self.friction < math.inf else ():
             if self._slip(i) > 3.0 * _STILL * self.speed:
                 x, y, _ = point_velocity(body, state, i)
                 moving[i] = back(problem.axes, unit((x, y, 0.0)))
@@ -467,7 +476,7 @@ class HullEngine:
         if moving and not self.mode.pulled and not crowded:
             self._shocked(near)
             return
-        found = contacts.least_pull(problem, candidates, near, 1e-5 * self.ground.gravity)
+        found = contacts.least_pull(problem, candidates, near, 1e-9 * self.ground.gravity)
         found = candidates[0] if crowded and candidates[0].contact.members else found
         if found is None:
             self.ended = Status.NO_CONTACT_FORCE
@@ -483,18 +492,19 @@ class HullEngine:
         self.changes += not self.mode.pulled
         return self.changes > _CROWD or self.at_once > _PILED
 
-    def _candidates(self, problem: Problem, near: tuple[int, ...], moving: dict[int, Vector]) -> Any:
+    def _candidates(self, problem: Problem, near: tuple[int, ...], moving: dict[int, Vector]) -> Iterator[Solution]:
+        """Yield what may stay: first what sticks wherever it does not slide yet, larger faces first; flight last."""
+        states = []
         for members in contacts.faces(problem, near):
-            known = {i: moving[i] for i in members if i in moving}
-            still = tuple(i for i in members if i not in known)
+            still = tuple(i for i in members if i not in moving)
             for contact in contacts.friction_states(members, still):
-                if math.isinf(self.friction) and len(contact.stuck) < len(members):
-                    contact = ContactSet(members, members)
-                found = contacts.sliding(problem, contact, known, 1e-5 * self.ground.gravity if problem.bias else 0.0)
-                if found is not None:
-                    yield found
-                if math.isinf(self.friction):
-                    break
+                if not math.isinf(self.friction) or contact.stuck == members:
+                    states.append((len(still) - len(contact.stuck), contact))
+        for _, contact in sorted(states, key=lambda state: state[0]):
+            known = {i: moving[i] for i in contact.members if i in moving and i not in contact.stuck}
+            found = contacts.sliding(problem, contact, known, 1e-5 * self.ground.gravity if problem.bias else 0.0)
+            if found is not None:
+                yield found
         flight = contacts.solve(problem, FLIGHT, {})
         assert flight is not None
         yield flight
@@ -566,7 +576,7 @@ class HullEngine:
             self.history.replaced += 1
         if found is None:
             self.history.held += 1
-            found = contacts.least_pull(problem, self.struck, touching, 1e-7 * self._fastest(problem))
+            found = contacts.least_pull(problem, self.struck, touching, 1e-9 * self._fastest(problem))
         if found is None:
             self._pile(touching)
         else:

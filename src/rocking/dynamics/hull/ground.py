@@ -75,4 +75,9 @@ class HullGround:
 
     def under(self, place: Vector) -> bool:
         """Whether there is ground under a point."""
-        return self.shelf is None or (abs(place[0]) <= self.shelf[0] and abs(place[1]) <= self.shelf[1])
+        return self.shelf is None or self.inside(place) >= 0.0
+
+    def inside(self, place: Vector) -> float:
+        """Return the distance of a point from the nearest edge of the shelf; below zero it is beyond [m]."""
+        assert self.shelf is not None
+        return min(self.shelf[0] - abs(place[0]), self.shelf[1] - abs(place[1]))
