@@ -156,7 +156,9 @@ def test_a_shaken_prism_is_that_of_the_engine_in_space():
     assert np.abs(alone - seen).max() > 1e-4
 
 
-@pytest.mark.verifies("invariant", "energy and vertical angular momentum", within="1e-9 of the barrier", control="within")
+@pytest.mark.verifies(
+    "invariant", "energy and vertical angular momentum", within="1e-9 of the barrier", control="within"
+)
 def test_energy_is_closed_and_momentum_about_the_vertical_is_kept():
     """On a vertex of a random hull nothing is lost; over impacts what is lost is booked; friction's work is missed."""
     body = _hull_of(np.random.default_rng(5))
@@ -186,7 +188,9 @@ def _steps(body, law, places):
     state, found = (0.0, 1.0, 0.0), []
     linear_velocity = cross(state, scaled(-1.0, places[0]))
     for k in range(len(places)):
-        found.append(0.5 * (body.mass * dot(linear_velocity, linear_velocity) + dot(state, applied(body.tensor, state))))
+        found.append(
+            0.5 * (body.mass * dot(linear_velocity, linear_velocity) + dot(state, applied(body.tensor, state)))
+        )
         if k + 1 < len(places):
             problem = Problem(body, frame((1.0, 0.0, 0.0, 0.0)), linear_velocity, state, math.inf)
             problem.places = {k + 1: place_of(law, places[k], places[k + 1])}
@@ -311,7 +315,9 @@ def test_random_hulls_have_a_result_under_every_motion(seed):
     for friction, restitution in ((math.inf, "housner-3d"), (0.7, 0.9), (0.3, "housner-3d")):
         x, y, z = (GroundMotion(rng.normal(size=20) * size, 0.02) for size in (6.0, 6.0, 2.0))
         settings = HullSettings(tolerance=1e-7, rest_speed=1e-3)
-        history = HullEngine(body, HullGround(x, y, z), restitution, friction, settings).run(standing(body, facet=facet))
+        history = HullEngine(body, HullGround(x, y, z), restitution, friction, settings).run(
+            standing(body, facet=facet)
+        )
         assert history.status is Status.GOOD, (history.status, friction)
         assert history.outcome is not Outcome.FAILED
         lowest = min(s.place[2] + dot(frame(s.attitude)[2], p) for s in history.states for p in body.points)

@@ -116,7 +116,7 @@ class HullBody:
 
     @cached_property
     def facets(self) -> list[tuple[Vector, float]]:
-        """Outward normals of the facets and their distances from the centre of mass; coplanar facets are one [-], [m]."""
+        """Outward normals of the facets, and distances from the centre of mass; coplanar ones are merged [-], [m]."""
         found: list[tuple[Vector, float]] = []
         for a, b, c, d in ConvexHull(self.vertices - self.centre).equations:
             normal = (float(a), float(b), float(c))

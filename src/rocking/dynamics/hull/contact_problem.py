@@ -96,43 +96,12 @@ def linear(
     problem: Problem, contact: ContactSet, carrying: list[int], directions: dict[int, Vector]
 ) -> Solution | None:
     """Return what certain forces do, pulled or not, so that the vertices of the contact stay on the ground."""
-    x, y, up = problem.axes
-    mu, points = problem.friction, problem.body.points
-    columns: list[Wrench] = []
-    rows: list[tuple[Wrench, float]] = []
-    # normal forces: of each vertex, or linear in its place where more than three carry
-    if len(carrying) <= 3:
-        weights = [{i: 1.0} for i in carrying]
-    else:
-        weights = [{i: dot(axis, problem.place(i)) for i in carrying} for axis in (x, y)]
-        weights.insert(0, dict.fromkeys(carrying, 1.0))
-    for share in weights:
-        force, moment, row, known = ZERO, ZERO, (ZERO, ZERO), 0.0
-        for i, w in share.items():
-            push = added(up, -mu, directions[i]) if i in directions else up
-            force, moment = added(force, w, push), added(moment, w, cross(problem.place(i), push))
-            row = added(row[0], w, up), added(row[1], w, cross(points[i], up))
-            known += w * dot(up, problem.bias[i]) if problem.bias else 0.0
-        columns.append((force, moment))
-        rows.append((row, known))
-    # forces along the ground that make vertices stick: two, and a third that keeps them from turning
+    weights = _weights(problem, carrying)
+    rows = [_normal_row(problem, share) for share in weights]
+    columns = [_normal_column(problem, share, directions) for share in weights]
     stuck = contact.stuck
     if stuck:
-        share = 1.0 / len(stuck)
-        middle = [sum(share * problem.place(i)[k] for i in stuck) for k in range(3)]
-        centre = (middle[0], middle[1], middle[2])
-        first = stuck[0]
-        for axis in (x, y):
-            columns.append((axis, cross(centre, axis)))
-            known = dot(axis, problem.bias[first]) if problem.bias else 0.0
-            rows.append(((axis, cross(points[first], axis)), known))
-        if len(stuck) > 1:
-            other = stuck[len(stuck) // 2]
-            across = unit(cross(up, minus(points[other], points[first])))
-            # a couple, and the turning of the second about the first
-            columns.append((ZERO, up))
-            known = dot(across, minus(problem.bias[other], problem.bias[first])) if problem.bias else 0.0
-            rows.append(((ZERO, cross(minus(points[other], points[first]), across)), known))
+        _stick(problem, stuck, columns, rows)
     answer = _eliminated(problem, columns, rows)
     if answer is None:
         return None
@@ -147,6 +116,49 @@ def linear(
             normals[i] += c * w
     pulls = {} if problem.friction == math.inf else _pulls(problem, stuck, normals, answer[len(weights) :])
     return Solution(contact, centre_rate, angular, normals, directions, pulls)
+
+
+def _weights(problem: Problem, carrying: list[int]) -> list[dict[int, float]]:
+    """Return the shapes of the normal forces: of each vertex, or linear in its place where more than three carry."""
+    if len(carrying) <= 3:
+        return [{i: 1.0} for i in carrying]
+    level = [{i: dot(axis, problem.place(i)) for i in carrying} for axis in problem.axes[:2]]
+    return [dict.fromkeys(carrying, 1.0), *level]
+
+
+def _normal_column(problem: Problem, share: dict[int, float], directions: dict[int, Vector]) -> Wrench:
+    force = moment = ZERO
+    for i, w in share.items():
+        up = problem.axes[2]
+        push = added(up, -problem.friction, directions[i]) if i in directions else up
+        force, moment = added(force, w, push), added(moment, w, cross(problem.place(i), push))
+    return force, moment
+
+
+def _normal_row(problem: Problem, share: dict[int, float]) -> tuple[Wrench, float]:
+    force, moment, known, up = ZERO, ZERO, 0.0, problem.axes[2]
+    for i, w in share.items():
+        force, moment = added(force, w, up), added(moment, w, cross(problem.body.points[i], up))
+        known += w * dot(up, problem.bias[i]) if problem.bias else 0.0
+    return (force, moment), known
+
+
+def _stick(problem: Problem, stuck: tuple[int, ...], columns: list[Wrench], rows: list[tuple[Wrench, float]]) -> None:
+    """Add the forces along the ground that make vertices stick: two, and a couple that keeps them from turning."""
+    points, up, centre = problem.body.points, problem.axes[2], ZERO
+    for i in stuck:
+        centre = added(centre, 1.0 / len(stuck), problem.place(i))
+    first, other = stuck[0], stuck[len(stuck) // 2]
+    for axis in problem.axes[:2]:
+        columns.append((axis, cross(centre, axis)))
+        known = dot(axis, problem.bias[first]) if problem.bias else 0.0
+        rows.append(((axis, cross(points[first], axis)), known))
+    if len(stuck) > 1:
+        arm = minus(points[other], points[first])
+        across = unit(cross(up, arm))
+        columns.append((ZERO, up))
+        known = dot(across, minus(problem.bias[other], problem.bias[first])) if problem.bias else 0.0
+        rows.append(((ZERO, cross(arm, across)), known))
 
 
 def _eliminated(problem: Problem, columns: list[Wrench], rows: list[tuple[Wrench, float]]) -> list[float] | None:
@@ -318,7 +330,9 @@ def clear(problem: Problem, found: Solution, touching: tuple[int, ...], slack: f
     return all(dot(up, problem.rate(i, found.linear, found.angular)) >= -slack for i in free)
 
 
-def least_pull(problem: Problem, candidates: list[Solution], touching: tuple[int, ...], slack: float) -> Solution | None:
+def least_pull(
+    problem: Problem, candidates: list[Solution], touching: tuple[int, ...], slack: float
+) -> Solution | None:
     """Return what stands in where no candidate obeys every law: no gap closes, and the ground pulls least."""
     kept = [c for c in candidates if c.contact.members and clear(problem, c, touching, slack)]
     pushed = (c for c in kept if min(c.normals.values()) >= -slack * problem.body.mass)

@@ -1,4 +1,4 @@
-"""The reference engine for a body on the vertices of its hull: steps, events to rounding, contact by complementarity."""
+"""The reference engine of a body on the vertices of its hull: steps, events to rounding, contact by complementarity."""
 
 import math
 from collections.abc import Iterator
@@ -45,7 +45,7 @@ from rocking.outcome import Outcome, Status
 _CLOSED, _GRAZED = 1e-11, 1e-14  # gaps over the size: of vertices that land together, and at which one lands
 _FORCE = 1e-11  # acceleration over gravity below which a force counts as zero
 # speeds over sqrt(g size): at which sliding stops, below which a vertex may stick, or still slides as it started
-_SLIP, _STILL, _SLIDES = 1e-7, 1e-6, 1e-4
+_SLIP, _STILL, _SLIDES = 5e-6, 5e-6, 1e-4
 _LADDER = (1e-11, 1e-9, 1e-7, 1e-5)
 _AHEAD = 1e-6  # how much later, over sqrt(size / g), the ground decides which mode starts
 _PILED, _STUCK = 30, 200
@@ -293,7 +293,7 @@ class HullEngine:
             return
         self.length = max(whole, self.length if whole == left else 0.0) if growth > 1.0 else whole
         self.length = min(self.length * min(max(growth, 0.3), 4.0), 0.2 / self.pace)
-        part, kind, which = self._first_event(result, to)
+        part, kind = self._first_event(result, to)
         if kind:
             result = to(part)
         self.time = self.time + part * whole
@@ -316,38 +316,45 @@ class HullEngine:
         elif self.mode.pulled:
             self._choose(self._touching())
 
-    def _first_event(self, result: StepResult, to: Any) -> tuple[float, str, int]:
-        """Return when the first margin falls below zero: part of the step, kind of the margin, vertex."""
-        found: list[tuple[float, float, float, str, int]] = []
+    def _first_event(self, result: StepResult, to: Any) -> tuple[float, str]:
+        """Return when the first margin falls below zero: part of the step, kind of the margin."""
+        part, first = 1.0, ""
+        for _, low, high, kind, i in sorted(self._fallen(result, to)):
+            if part < 1.0 and high >= part:
+                if self._at(kind, i, to(part)) >= 0.0:
+                    continue
+                bracket = min(low, part), part
+            else:
+                bracket = low, high
+            if self._at(kind, i, to(bracket[1])) < 0.0:
+                part, first = self._located(kind, i, bracket, to), kind
+        return part, first
+
+    def _fallen(self, result: StepResult, to: Any) -> Iterator[tuple[float, float, float, str, int]]:
+        """Yield margins that fall below zero between samples: about where, the bracket, kind and vertex."""
+        nodes = [node for node, _, _ in result.samples]
         for kind, i in self._watched(result):
             values = [self._margin(kind, i, state, rates) for _, state, rates in result.samples]
             if values[0] < 0.0:
                 # a vertex that has just left is on the ground but for rounding
-                if kind != "gap" or point_velocity(self.body, self.state, i)[2] < -1e-12 * self.speed:
-                    return 0.0, kind, i
-                values[0] = 0.0
-            nodes = [node for node, _, _ in result.samples]
-            for a, b, low, high in zip(values, values[1:], nodes, nodes[1:], strict=False):
-                if b < 0.0:
-                    found.append((low + (high - low) * a / (a - b), low, high, kind, i))
-                    break
-            else:
-                dip = self._dip(i, result, values) if kind == "gap" else None
-                if dip is not None and self._at("gap", i, to(dip)) < 0.0:
-                    found.append((0.9 * dip, 0.0, dip, kind, i))
-        part, first, which = 1.0, "", -1
-        for _, low, high, kind, i in sorted(found):
-            if part < 1.0 and high >= part:
-                if self._at(kind, i, to(part)) >= 0.0:
+                rises = point_velocity(self.body, self.state, i)[2] >= -1e-12 * self.speed
+                if kind != "gap" or not rises:
+                    yield 0.0, 0.0, 0.0, kind, i
                     continue
-                low, high = min(low, part), part
-            if self._at(kind, i, to(high)) < 0.0:
-                part, first, which = self._located(kind, i, low, high, to), kind, i
-        return part, first, which
+                values[0] = 0.0
+            below = next((k for k, value in enumerate(values) if value < 0.0), 0)
+            dip = self._dip(i, result, values) if kind == "gap" and not below else None
+            if below:
+                a, b, low, high = values[below - 1], values[below], nodes[below - 1], nodes[below]
+                yield low + (high - low) * a / (a - b), low, high, kind, i
+            elif dip is not None and self._at("gap", i, to(dip)) < 0.0:
+                yield 0.9 * dip, 0.0, dip, kind, i
 
-    def _located(self, kind: str, i: int, low: float, high: float, to: Any) -> float:
+    def _located(self, kind: str, i: int, bracket: tuple[float, float], to: Any) -> float:
         """Return the zero of a margin that is below zero at the end of a bracket, by regula falsi (Illinois)."""
-        close = {"gap": 0.5 * _GRAZED * self.body.size, "shelf": _CLOSED * self.body.size, "slip": 1e-3 * _SLIP * self.speed}.get(kind, self.slack)
+        low, high = bracket
+        sizes = {"gap": 0.5 * _GRAZED * self.body.size, "shelf": _CLOSED * self.body.size}
+        close = sizes.get(kind, 1e-3 * _SLIP * self.speed if kind == "slip" else self.slack)
         at_low, at_high = self._at(kind, i, to(low)), self._at(kind, i, to(high))
         if at_low < 0.0:
             low, high, at_high = 0.0, low, at_low
@@ -476,13 +483,13 @@ class HullEngine:
         if moving and not self.mode.pulled and not crowded:
             self._shocked(near)
             return
-        found = contacts.least_pull(problem, candidates, near, 1e-9 * self.ground.gravity)
-        found = candidates[0] if crowded and candidates[0].contact.members else found
-        if found is None:
+        best = contacts.least_pull(problem, candidates, near, 1e-9 * self.ground.gravity)
+        best = candidates[0] if crowded and candidates[0].contact.members else best
+        if best is None:
             self.ended = Status.NO_CONTACT_FORCE
             return
-        self.history.held += found.contact != self.mode.contact or not self.mode.pulled
-        self._take(problem, found, moving)
+        self.history.held += best.contact != self.mode.contact or not self.mode.pulled
+        self._take(problem, best, moving)
         self.mode = replace(self.mode, pulled=True)
 
     def _crowded(self) -> bool:
@@ -597,7 +604,9 @@ class HullEngine:
 
     def _struck(self, problem: Problem, touching: tuple[int, ...], before: float) -> Solution | None:
         """Return the first candidate whose impulses obey every law; None where there is none."""
-        self.struck = [s for s in self._candidates(problem, touching, {}) if self._energy(s) <= before * (1.0 + 1e-12)]
+        self.struck: list[Solution] = [
+            s for s in self._candidates(problem, touching, {}) if self._energy(s) <= before * (1.0 + 1e-12)
+        ]
         for slack in _LADDER[:3]:
             for found in self.struck:
                 if contacts.valid(problem, found, touching, slack * self._fastest(problem)):

@@ -65,7 +65,7 @@ class HullGround:
         return applied(self.level, (0.0, 0.0, -self.gravity))
 
     def field(self, stretch: int, start: float, span: float) -> list[Vector]:
-        """Return gravity less the acceleration of the ground over a span, by powers of its share, in the plane's axes."""
+        """Return gravity less the ground's acceleration over a span, by powers of its share, in axes of the plane."""
         rows = self.motion.part(stretch, start, span)
         found = []
         for k in range(rows.shape[1]):
