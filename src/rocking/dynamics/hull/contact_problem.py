@@ -57,7 +57,7 @@ class Problem:
 
     def rate(self, i: int, linear: Vector, angular: Vector) -> Vector:
         """Return the acceleration or velocity of a vertex."""
-        free = plus(linear, cross(angular, self.body.points[i]))
+        free = plus(linear, cross(angular, self.body.points[i]))  # Eq. 250
         return plus(free, self.bias[i]) if self.bias else free
 
     def place(self, i: int) -> Vector:
@@ -123,7 +123,7 @@ def _weights(problem: Problem, carrying: list[int]) -> list[dict[int, float]]:
     if len(carrying) <= 3:
         return [{i: 1.0} for i in carrying]
     level = [{i: dot(axis, problem.place(i)) for i in carrying} for axis in problem.axes[:2]]
-    return [dict.fromkeys(carrying, 1.0), *level]
+    return [dict.fromkeys(carrying, 1.0), *level]  # Eq. 253
 
 
 def _normal_column(problem: Problem, share: dict[int, float], directions: dict[int, Vector]) -> Wrench:
@@ -168,7 +168,7 @@ def _eliminated(problem: Problem, columns: list[Wrench], rows: list[tuple[Wrench
     table = []
     for (f, m), known in rows:
         line = [dot(f, cf) + dot(m, cm) for cf, cm in soft]
-        line.append(-(dot(f, problem.linear) + dot(m, problem.angular) + known))
+        line.append(-(dot(f, problem.linear) + dot(m, problem.angular) + known))  # Eq. 252
         table.append(line)
     sizes = [_SINGULAR * table[k][k] for k in range(n)]
     for k in range(n):
@@ -212,6 +212,7 @@ def _pulls(
     turning = {i: cross(up, minus(arms[i], loaded)) for i in stuck}
     resistance = sum(weights[i] * dot(turning[i], turning[i]) for i in stuck)
     rate = couple / resistance if resistance > 0.0 else 0.0
+    # Eq. 255
     shares = {i: scaled(weights[i], plus(scaled(1.0 / weight, total), scaled(rate, turning[i]))) for i in stuck}
     if len(stuck) > 2:
         return shares
@@ -219,7 +220,7 @@ def _pulls(
     along = unit(minus(arms[stuck[1]], arms[stuck[0]]))
     across = {i: added(pull, -dot(pull, along), along) for i, pull in shares.items()}
     most = {i: (problem.friction * weights[i]) ** 2 - dot(across[i], across[i]) for i in stuck}
-    room = {i: math.sqrt(max(square, 0.0)) for i, square in most.items()}
+    room = {i: math.sqrt(max(square, 0.0)) for i, square in most.items()}  # Eq. 256
     whole = sum(room.values())
     if not whole > 0.0:
         return shares
@@ -321,7 +322,7 @@ def valid(problem: Problem, found: Solution, touching: tuple[int, ...], slack: f
         return False
     if any(length(pull) > mu * found.normals[i] + slack * mass * (1.0 + mu) for i, pull in found.pulls.items()):
         return False
-    return clear(problem, found, touching, slack)
+    return clear(problem, found, touching, slack)  # Eq. 251
 
 
 def clear(problem: Problem, found: Solution, touching: tuple[int, ...], slack: float) -> bool:

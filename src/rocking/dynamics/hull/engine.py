@@ -137,6 +137,7 @@ class HullEngine:
         self.anchors: dict[int, Vector] = {}
         self.at_once, self.moment = 0, -1.0
         self.changes, self.since = 0, 0.0
+        self.struck: list[Solution] = []
         self.history = History()
         self.ended: Status | None = None
 
@@ -604,9 +605,7 @@ class HullEngine:
 
     def _struck(self, problem: Problem, touching: tuple[int, ...], before: float) -> Solution | None:
         """Return the first candidate whose impulses obey every law; None where there is none."""
-        self.struck: list[Solution] = [
-            s for s in self._candidates(problem, touching, {}) if self._energy(s) <= before * (1.0 + 1e-12)
-        ]
+        self.struck = [s for s in self._candidates(problem, touching, {}) if self._energy(s) <= before * (1.0 + 1e-12)]
         for slack in _LADDER[:3]:
             for found in self.struck:
                 if contacts.valid(problem, found, touching, slack * self._fastest(problem)):
