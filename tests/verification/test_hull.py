@@ -14,9 +14,9 @@ import rocking as rk
 from rocking.bodies.solid import Solid, box
 from rocking.dynamics import SpatialStart
 from rocking.dynamics.hull import HullBody, HullEngine, HullGround, HullSettings, standing
-from rocking.dynamics.hull.contact_problem import ContactSet, Problem, linear
-from rocking.dynamics.hull.engine import EventKind
-from rocking.dynamics.hull.motion import Mode, State, energies, step
+from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear
+from rocking.dynamics.hull.engine import HullEventKind
+from rocking.dynamics.hull.motion import HullMode, State, energies, step
 from rocking.dynamics.hull.restitution import place_of
 from rocking.dynamics.hull.vectors import ZERO, applied, back, cross, dot, frame, scaled
 from rocking.dynamics.space import SpatialBody
@@ -69,12 +69,12 @@ def test_steps_have_order_five():
     start = _rocking(body, 0.3, 0.7, (0.5, 1.0, 2.0))
     low = min(range(8), key=lambda i: dot(frame(start.attitude)[2], body.points[i]))
     start = start._replace(velocity=(start.velocity[0] + 1.0, start.velocity[1] - 0.5, start.velocity[2]))
-    mode = Mode(ContactSet((low,)), 0.3, {})
+    mode = HullMode(HullContact((low,)), 0.3, {})
 
     def end(count):
         state = start
         for _ in range(count):
-            state = step(body, state, mode, [(0.0, 0.0, -G)], 0.2 / count, 1.0, 1.0).state
+            state = step(body, state, mode, [(0.0, 0.0, -G)], (0.2 / count, 1.0), 1.0).state
         return np.array([*state.place, *state.attitude, *state.velocity, *state.spin])
 
     exact = end(256)
@@ -122,7 +122,7 @@ def test_a_prism_is_that_of_the_engine_in_space(tilt, azimuth, spin, restitution
     up = np.array([frame(state.attitude)[2] for state in history.states])
     seen = expected.at(time).rotation[:, 2]
     np.testing.assert_allclose(up, seen, rtol=0.0, atol=1e-10)
-    struck = [event.time for event in history.events if event.kind is EventKind.IMPACT]
+    struck = [event.time for event in history.events if event.kind is HullEventKind.IMPACT]
     assert struck
     np.testing.assert_allclose(struck, expected.impacts["time"][: len(struck)], rtol=0.0, atol=1e-10)
     other = rk.free_rocking(space, restitution=restitution, start=SpatialStart(tilt + 1e-6, azimuth), duration=1.5)
@@ -151,7 +151,7 @@ def test_a_shaken_prism_is_that_of_the_engine_in_space():
     seen = rk.simulate(space, {"x": x, "y": y}, restitution="housner-3d").at(np.array(history.time)).rotation[:, 2]
     up = np.array([frame(state.attitude)[2] for state in history.states])
     np.testing.assert_allclose(up, seen, rtol=0.0, atol=1e-10)
-    assert any(event.kind is EventKind.UPLIFT for event in history.events)
+    assert any(event.kind is HullEventKind.UPLIFT for event in history.events)
     alone = rk.simulate(space, {"x": x}, restitution="housner-3d").at(np.array(history.time)).rotation[:, 2]
     assert np.abs(alone - seen).max() > 1e-4
 
@@ -194,7 +194,7 @@ def _steps(body, law, places):
         if k + 1 < len(places):
             problem = Problem(body, frame((1.0, 0.0, 0.0, 0.0)), linear_velocity, state, math.inf)
             problem.places = {k + 1: place_of(law, places[k], places[k + 1])}
-            solved = linear(problem, ContactSet((k + 1,), (k + 1,)), [k + 1], {})
+            solved = linear(problem, HullContact((k + 1,), (k + 1,)), [k + 1], {})
             linear_velocity, state = solved.linear, solved.angular
     return found
 
@@ -216,7 +216,7 @@ def test_a_landing_split_into_steps_loses_the_reference_share(count, loss):
     assert found[1.0] > 1.3 * loss
 
 
-@pytest.mark.verifies("closed form", "the paper's coefficient of a whole base", within="1e-8", control="within")
+@pytest.mark.verifies("closed form", "the paper's coefficient of a whole base", within="2e-8", control="within")
 def test_a_block_that_lands_on_its_whole_base_has_the_papers_coefficient():
     """REF .94736683503 (1 x 1 x 4); a stated coefficient comes out as stated; Housner's is another."""
     solid = Solid(box(1.0, 1.0, 4.0))
@@ -224,7 +224,7 @@ def test_a_block_that_lands_on_its_whole_base_has_the_papers_coefficient():
     with_solid = HullBody(body.vertices, body.mass, body.centre, body.inertia, solid)
     for restitution, r in (("ked-3d", 0.947366835032369679), (0.93, 0.93), ("housner-3d", 1.0 - 1.5 / 17.0)):
         history = _until(HullEngine(with_solid, HullGround(), restitution), _rocking(body, 0.1), 1.2)
-        event = next(event for event in history.events if event.kind is EventKind.IMPACT)
+        event = next(event for event in history.events if event.kind is HullEventKind.IMPACT)
         assert math.sqrt(event.after / event.before) == pytest.approx(r, abs=2e-8)
     with pytest.raises(InvalidValueError, match="distribution of mass"):
         HullEngine(body, HullGround(), "ked-3d").run(standing(body))
@@ -245,7 +245,7 @@ def test_an_impact_with_little_friction_slips(friction, r):
 # ---- sliding, slopes, shelves ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.verifies("closed form", "sliding down a slope", within="1e-10", control="within")
+@pytest.mark.verifies("closed form", "sliding down a slope", within="1e-9", control="within")
 def test_a_block_slides_down_a_slope_and_stands_on_a_rough_one():
     """g (sin - mu cos) t^2/2 for mu < tan of the slope, in the slope's direction; above it nothing moves."""
     body = HullBody.box(0.6, 1.0, 0.8, 100.0)
@@ -269,6 +269,7 @@ def test_a_block_slides_before_it_rocks_where_friction_is_below_its_slenderness(
     assert (lifted.rocked, lifted.slid) == (True, False)
 
 
+@pytest.mark.verifies("closed form", "tipping on a slope", within="exact", control="within")
 def test_a_body_tips_over_a_steep_slope_and_slides_off_a_shelf():
     """Steeper than b/h it overturns; a shelf that ends lets it fall; a level one holds it."""
     body = HullBody.box(0.5, 0.5, 2.0, 10.0)
@@ -301,11 +302,17 @@ def test_a_polygon_of_many_corners_tends_to_the_rim_that_rolls():
         start = _rocking(body, 0.25, 0.01, (0.0, 0.0, 0.0))
         start = _rocking(body, 0.25, 0.01, scaled(-1.4, frame(start.attitude)[2]))
         history = _until(engine, start, 0.5)
-        assert sum(event.kind is EventKind.IMPACT for event in history.events) >= count // 8
+        assert sum(event.kind is HullEventKind.IMPACT for event in history.events) >= count // 8
         lost.append(history.lost)
     assert math.log2(lost[0] / lost[1]) == pytest.approx(1.0, abs=0.5)
 
 
+@pytest.mark.verifies(
+    "invariant",
+    "no vertex below the ground",
+    within="1e-6",
+    control="within",
+)
 @pytest.mark.parametrize("seed", range(HULLS))
 def test_random_hulls_have_a_result_under_every_motion(seed):
     """Shaken with three components, sticking, rough and smooth: a status and an outcome each, and no vertex below."""
@@ -320,6 +327,7 @@ def test_random_hulls_have_a_result_under_every_motion(seed):
         )
         assert history.status is Status.GOOD, (history.status, friction)
         assert history.outcome is not Outcome.FAILED
+        assert history.rocked or history.slid  # at rest nothing would be shown
         lowest = min(s.place[2] + dot(frame(s.attitude)[2], p) for s in history.states for p in body.points)
         assert lowest > -1e-6 * body.size
 
@@ -342,6 +350,7 @@ def test_an_asymmetric_body_in_other_axes_moves_alike():
     assert len(heights[2]) != len(heights[0]) or np.abs(np.subtract(heights[2], heights[0])).max() > 1e-3
 
 
+@pytest.mark.verifies("negative control")
 def test_bad_bodies_and_grounds_are_refused():
     """Flat bodies, inertia that no body has, slopes beyond the vertical: errors that name the value."""
     with pytest.raises(GeometryError, match="span a volume"):

@@ -33,14 +33,14 @@ Wrench = tuple[Vector, Vector]
 
 
 @dataclass(frozen=True)
-class ContactSet:
+class HullContact:
     """Which vertices stay on the ground, and which of them stick."""
 
     members: tuple[int, ...]
     stuck: tuple[int, ...] = ()
 
 
-FLIGHT = ContactSet(())
+FLIGHT = HullContact(())
 
 
 @dataclass
@@ -69,7 +69,7 @@ class Problem:
 class Solution:
     """What a candidate does."""
 
-    contact: ContactSet
+    contact: HullContact
     linear: Vector
     angular: Vector
     normals: dict[int, float]
@@ -77,7 +77,7 @@ class Solution:
     pulls: dict[int, Vector]  # forces along the ground of those that stick
 
 
-def solve(problem: Problem, contact: ContactSet, directions: dict[int, Vector]) -> Solution | None:
+def solve(problem: Problem, contact: HullContact, directions: dict[int, Vector]) -> Solution | None:
     """Return accelerations and forces of a candidate with given directions of sliding; None where there are none."""
     if not contact.members:
         return Solution(contact, problem.linear, problem.angular, {}, {}, {})
@@ -93,7 +93,7 @@ def solve(problem: Problem, contact: ContactSet, directions: dict[int, Vector]) 
 
 
 def linear(
-    problem: Problem, contact: ContactSet, carrying: list[int], directions: dict[int, Vector]
+    problem: Problem, contact: HullContact, carrying: list[int], directions: dict[int, Vector]
 ) -> Solution | None:
     """Return what certain forces do, pulled or not, so that the vertices of the contact stay on the ground."""
     weights = _weights(problem, carrying)
@@ -227,7 +227,7 @@ def _pulls(
     return {i: added(across[i], room[i] / whole * dot(total, along), along) for i in stuck}
 
 
-def sliding(problem: Problem, contact: ContactSet, known: dict[int, Vector], still: float) -> Solution | None:
+def sliding(problem: Problem, contact: HullContact, known: dict[int, Vector], still: float) -> Solution | None:
     """Return a candidate with the directions in which its free vertices start to slide, by iteration; None if none.
 
     known: directions of those that slide already; still: rate of a vertex below which it only just starts to slide, so
@@ -237,7 +237,7 @@ def sliding(problem: Problem, contact: ContactSet, known: dict[int, Vector], sti
     if not free or problem.friction == 0.0:
         return solve(problem, contact, {**dict.fromkeys(free, ZERO), **known})
     directions, up = {**dict.fromkeys(free, ZERO), **known}, problem.axes[2]
-    holding = solve(problem, ContactSet(contact.members, tuple(i for i in contact.members if i not in known)), known)
+    holding = solve(problem, HullContact(contact.members, tuple(i for i in contact.members if i not in known)), known)
     if holding is not None:
         directions.update({i: unit(scaled(-1.0, holding.pulls[i])) for i in free})
     soft = {i: _compliance(problem, i) * problem.friction * len(free) for i in free}
@@ -302,17 +302,17 @@ def outline(problem: Problem, touching: tuple[int, ...]) -> tuple[int, ...]:
     return tuple(i for _, _, i in chain(places) + chain(places[::-1]))
 
 
-def friction_states(members: tuple[int, ...], still: tuple[int, ...]) -> Iterator[ContactSet]:
+def friction_states(members: tuple[int, ...], still: tuple[int, ...]) -> Iterator[HullContact]:
     """Yield which of the vertices that do not slide yet stick: all, all but one, one, none."""
     if len(still) == len(members) or len(still) < 2:
-        yield ContactSet(members, still)
+        yield HullContact(members, still)
     if len(still) > 1:
         # two sticking vertices of a facet make it rest
         sizes = (1,) if len(members) > 2 else range(len(still) - 1, 0, -1)
         for n in sizes:
-            yield from (ContactSet(members, part) for part in combinations(still, n))
+            yield from (HullContact(members, part) for part in combinations(still, n))
     if still:
-        yield ContactSet(members)
+        yield HullContact(members)
 
 
 def valid(problem: Problem, found: Solution, touching: tuple[int, ...], slack: float) -> bool:

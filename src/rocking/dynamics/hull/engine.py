@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 
 from rocking.dynamics.hull import contact_problem as contacts
 from rocking.dynamics.hull.body import HullBody
-from rocking.dynamics.hull.contact_problem import FLIGHT, ContactSet, Problem, Solution
+from rocking.dynamics.hull.contact_problem import FLIGHT, HullContact, Problem, Solution
 from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.motion import (
-    Mode,
+    HullMode,
     Rates,
     State,
     StepResult,
@@ -54,7 +54,7 @@ _PATIENCE = 100.0
 _HALVINGS = 80
 
 
-class EventKind(Enum):
+class HullEventKind(Enum):
     """What happens at an event."""
 
     IMPACT = "vertices strike the ground"
@@ -63,24 +63,24 @@ class EventKind(Enum):
     UPLIFT = "leaves its rest"
 
 
-class Event(NamedTuple):
+class HullEvent(NamedTuple):
     """Something that happened."""
 
     time: float
-    kind: EventKind
-    contact: ContactSet  # after it
+    kind: HullEventKind
+    contact: HullContact  # after it
     before: float  # kinetic energy before [J]
     after: float  # kinetic energy after [J]
 
 
 @dataclass
-class History:
+class HullHistory:
     """A history at the ends of its steps."""
 
     time: list[float] = field(default_factory=list)
     states: list[State] = field(default_factory=list)
-    contacts: list[ContactSet] = field(default_factory=list)
-    events: list[Event] = field(default_factory=list)
+    contacts: list[HullContact] = field(default_factory=list)
+    events: list[HullEvent] = field(default_factory=list)
     status: Status = Status.GOOD
     outcome: Outcome = Outcome.NO_UPLIFT
     still_rocking: bool = False
@@ -114,7 +114,28 @@ class HullSettings:
 
 
 class HullEngine:
-    """One history."""
+    """The reference engine; one object follows one history.
+
+    Parameters
+    ----------
+    body : HullBody
+        The body.
+    ground : HullGround
+        What it stands on, and how that moves.
+    restitution : {"housner-3d", "ked-3d"} or float
+        What an impact costs; a number is the coefficient of a landing of the whole base, where it is not below
+        Housner's [-].
+    friction : float
+        Coulomb coefficient; infinite for vertices that never slide [-].
+    settings : HullSettings, optional
+        How to integrate.
+
+    Examples
+    --------
+    >>> body = HullBody.box(1.0, 1.0, 4.0, mass=100.0)
+    >>> HullEngine(body, HullGround(slope=0.2)).run(standing(body), 0.1).outcome.value
+    'stayed at rest: the ground never lifted it'
+    """
 
     def __init__(
         self,
@@ -138,13 +159,26 @@ class HullEngine:
         self.at_once, self.moment = 0, -1.0
         self.changes, self.since = 0, 0.0
         self.struck: list[Solution] = []
-        self.history = History()
+        self.history = HullHistory()
         self.ended: Status | None = None
 
     # ---- the course of a history ------------------------------------------------------------------------------------
 
-    def run(self, state: State, horizon: float = 0.0) -> History:
-        """Return the history from a state; it ends at rest after the motion and the horizon, or when patience ends."""
+    def run(self, state: State, horizon: float = 0.0) -> HullHistory:
+        """Return the history from a state; it ends at rest after the motion and the horizon, or when patience ends.
+
+        Parameters
+        ----------
+        state : State
+            As `standing` gives it, or any other above the ground.
+        horizon : float
+            How long to follow the body at least [s].
+
+        Returns
+        -------
+        HullHistory
+            The history at the ends of its steps.
+        """
         self.state = state
         self.until = max(horizon, self.ground.motion.end)
         self.first_up = frame(state.attitude)[2]
@@ -188,7 +222,7 @@ class HullEngine:
         self.history.still_rocking = self.time > self.until + _PATIENCE / self.pace
         return self.history.still_rocking
 
-    def _judged(self) -> History:
+    def _judged(self) -> HullHistory:
         made = self.history
         made.status = self.ended or Status.GOOD
         if self.ended is not None:
@@ -233,7 +267,7 @@ class HullEngine:
                     middle = 0.5 * (low + high)
                     low, high = (low, middle) if self._stands(valued(coefficients, middle)) < 0.0 else (middle, high)
                 self._hold(self.time + high * span)
-                self._event(EventKind.UPLIFT, 0.0)
+                self._event(HullEventKind.UPLIFT, 0.0)
                 slips = self._slips(valued(coefficients, high)) < 0.0
                 self._choose(self._touching(), self.mode.contact, leaves=not slips)
                 return
@@ -276,7 +310,7 @@ class HullEngine:
         coefficients = self.ground.field(self.stretch, self.time, whole)
 
         def to(part: float) -> StepResult:
-            return step(body, start, self.mode, coefficients, whole, part, self.pace)
+            return step(body, start, self.mode, coefficients, (whole, part), self.pace)
 
         result = to(1.0)
         if not math.isfinite(result.error):
@@ -292,8 +326,7 @@ class HullEngine:
         if result.error > self.settings.tolerance and whole * self.pace > 1e-10:
             self.length = whole * max(0.1, growth)
             return
-        self.length = max(whole, self.length if whole == left else 0.0) if growth > 1.0 else whole
-        self.length = min(self.length * min(max(growth, 0.3), 4.0), 0.2 / self.pace)
+        self._pace_on(whole, growth, cut=whole == left)
         part, kind = self._first_event(result, to)
         if kind:
             result = to(part)
@@ -303,14 +336,23 @@ class HullEngine:
             self.time = float(self.ground.motion.times[self.stretch])
         self.state = result.state
         self._settle_on(self.mode.contact)
+        self._keep()
+        self._end(kind)
+
+    def _pace_on(self, whole: float, growth: float, *, cut: bool) -> None:
+        """Set the length of the next step; cut: whether a sample of the motion has cut this one."""
+        base = max(whole, self.length if cut else 0.0) if growth > 1.0 else whole
+        self.length = min(base * min(max(growth, 0.3), 4.0), 0.2 / self.pace)
+
+    def _end(self, kind: str) -> None:
+        """Let the mode go on, or end by what has fallen below zero."""
         if any(self._slip(i) > _SLIDES * self.speed for i in self.mode.starts):
             slow = {i: d for i, d in self.mode.starts.items() if self._slip(i) <= _SLIDES * self.speed}
             self.mode = replace(self.mode, starts=slow)
-        self._keep()
         if kind == "gap":
             self._impact()
         elif kind:
-            self._event(EventKind.CHANGE, energies(body, self.state, ZERO)[0])
+            self._event(HullEventKind.CHANGE, energies(self.body, self.state, ZERO)[0])
             exclude = self.mode.contact if kind != "slip" else None
             self._choose(self._touching(), exclude, leaves=kind in ("normal", "shelf"))
             self._keep()
@@ -441,13 +483,13 @@ class HullEngine:
             return self.ground.weight
         return valued(self.ground.field(self.stretch, self.time, ahead), 1.0)
 
-    def _mode(self, contact: ContactSet, starts: dict[int, Vector]) -> Mode:
-        return Mode(contact, self.friction, starts)
+    def _mode(self, contact: HullContact, starts: dict[int, Vector]) -> HullMode:
+        return HullMode(contact, self.friction, starts)
 
     def _choose(
         self,
         touching: tuple[int, ...],
-        exclude: ContactSet | None = None,
+        exclude: HullContact | None = None,
         closed: tuple[int, ...] = (),
         *,
         leaves: bool = False,
@@ -473,7 +515,7 @@ class HullEngine:
         candidates = list(self._candidates(problem, near, moving))
         crowded = self._crowded()
 
-        def excluded(contact: ContactSet) -> bool:
+        def excluded(contact: HullContact) -> bool:
             return set(contact.members) == over and (leaves or set(contact.stuck) == held)
 
         for slack in () if crowded else _LADDER:
@@ -505,9 +547,9 @@ class HullEngine:
         states = []
         for members in contacts.faces(problem, near):
             still = tuple(i for i in members if i not in moving)
-            for contact in contacts.friction_states(members, still):
-                if not math.isinf(self.friction) or contact.stuck == members:
-                    states.append((len(still) - len(contact.stuck), contact))
+            ways = contacts.friction_states(members, still)
+            ways = (way for way in ways if self.friction < math.inf or way.stuck == members)
+            states += [(len(still) - len(way.stuck), way) for way in ways]
         for _, contact in sorted(states, key=lambda state: state[0]):
             known = {i: moving[i] for i in contact.members if i in moving and i not in contact.stuck}
             found = contacts.sliding(problem, contact, known, 1e-5 * self.ground.gravity if problem.bias else 0.0)
@@ -541,7 +583,7 @@ class HullEngine:
         x, y, _ = point_velocity(self.body, self.state, i)
         return math.hypot(x, y)
 
-    def _settle_on(self, contact: ContactSet, still: tuple[int, ...] = ()) -> None:
+    def _settle_on(self, contact: HullContact, still: tuple[int, ...] = ()) -> None:
         """Take drift and rounding out of the attitude, the place and the velocities; still: which have no slip."""
         if not contact.members:
             return
@@ -557,7 +599,7 @@ class HullEngine:
             x, y = anchor[0] - first[0], anchor[1] - first[1]
         state = self.state._replace(place=(x, y, -first[2]), attitude=attitude)
         problem = Problem(body, axes, back(axes, state.velocity), state.spin, 0.0)
-        whole = ContactSet(members, still or contact.stuck)
+        whole = HullContact(members, still or contact.stuck)
         found = contacts.linear(problem, whole, list(members), dict.fromkeys(members, ZERO))
         if found is not None:
             state = state._replace(velocity=applied(axes, found.linear), spin=found.angular)
@@ -594,7 +636,7 @@ class HullEngine:
         closed = found.contact.members if found is not None else touching
         self._choose(touching, closed=closed)
         self._calm()
-        self.history.events.append(Event(self.time, EventKind.IMPACT, self.mode.contact, before, after))
+        self.history.events.append(HullEvent(self.time, HullEventKind.IMPACT, self.mode.contact, before, after))
         self._keep()
 
     def _places(self, touching: tuple[int, ...], old: tuple[int, ...]) -> dict[int, Vector]:
@@ -625,7 +667,7 @@ class HullEngine:
         axes = frame(self.state.attitude)
         problem = Problem(self.body, axes, back(axes, self.state.velocity), self.state.spin, 0.0)
         members = next(contacts.faces(problem, touching), ())
-        found = contacts.linear(problem, ContactSet(members, members), list(members), {}) if members else None
+        found = contacts.linear(problem, HullContact(members, members), list(members), {}) if members else None
         if found is not None:
             self.state = self.state._replace(velocity=applied(axes, found.linear), spin=found.angular)
 
@@ -645,12 +687,12 @@ class HullEngine:
         before = sum(energies(self.body, state, self.ground.weight))
         problem = problem_of(self.body, state, self._field(), math.inf)
         members = next(contacts.faces(problem, near))
-        held = contacts.solve(problem, ContactSet(members, members), {}) if len(members) > 2 else None
+        held = contacts.solve(problem, HullContact(members, members), {}) if len(members) > 2 else None
         if held is None or not min(held.normals.values()) > 0.0:
             return
         for stuck in (members, ()) if self.friction < math.inf else (members,):
             self.anchors = {i: added(state.place, 1.0, applied(problem.axes, self.body.points[i])) for i in stuck}
-            self._settle_on(ContactSet(members, stuck))
+            self._settle_on(HullContact(members, stuck))
             if before - sum(energies(self.body, self.state, self.ground.weight)) <= self.weak:
                 self._choose(near, closed=near)
                 self.history.lost = lost + before - sum(energies(self.body, self.state, self.ground.weight))
@@ -665,8 +707,8 @@ class HullEngine:
         made.states.append(self.state)
         made.contacts.append(self.mode.contact)
 
-    def _event(self, kind: EventKind, energy: float) -> None:
-        self.history.events.append(Event(self.time, kind, self.mode.contact, energy, energy))
+    def _event(self, kind: HullEventKind, energy: float) -> None:
+        self.history.events.append(HullEvent(self.time, kind, self.mode.contact, energy, energy))
 
     def _guarded(self) -> bool:
         self.at_once = self.at_once + 1 if self.time <= self.moment else 0

@@ -45,8 +45,7 @@ class HullGround:
         """Check the values and cut the motions to common stretches."""
         checks.within("slope", self.slope, 0.0, 0.5 * math.pi, unit="rad", open_high=True)
         checks.within("gravity", self.gravity, 0.0, 1e6, unit="m/s2", open_low=True)
-        motion = ground_of(self.x, self.y, self.vertical)
-        object.__setattr__(self, "motion", motion)
+        object.__setattr__(self, "_motion", ground_of(self.x, self.y, self.vertical))
         c, s, cc, ss = math.cos(self.azimuth), math.sin(self.azimuth), math.cos(self.slope), math.sin(self.slope)
         # turned about the horizontal line across the direction in which the plane falls
         rows: Frame = (
@@ -54,30 +53,67 @@ class HullGround:
             (c * s * (cc - 1.0), s * s * cc + c * c, -s * ss),
             (c * ss, s * ss, cc),
         )
-        object.__setattr__(self, "level", rows)
+        object.__setattr__(self, "_level", rows)
 
-    motion: SpatialGround = None  # type: ignore[assignment]
-    level: Frame = None  # type: ignore[assignment]
+    @property
+    def motion(self) -> SpatialGround:
+        """The three components on common stretches of time."""
+        return self.__dict__["_motion"]  # type: ignore[no-any-return]
 
     @property
     def weight(self) -> Vector:
         """Gravity, in axes of the plane [m/s2]."""
-        return applied(self.level, (0.0, 0.0, -self.gravity))
+        return applied(self.__dict__["_level"], (0.0, 0.0, -self.gravity))
 
     def field(self, stretch: int, start: float, span: float) -> list[Vector]:
-        """Return gravity less the ground's acceleration over a span, by powers of its share, in axes of the plane."""
+        """Return gravity less the ground's acceleration over a span, by powers of its share, in axes of the plane.
+
+        Parameters
+        ----------
+        stretch : int
+            Number of the stretch.
+        start, span : float
+            When the span starts, and its duration [s].
+
+        Returns
+        -------
+        list of tuple of float
+            Coefficients, from the power 0 [m/s2].
+        """
         rows = self.motion.part(stretch, start, span)
         found = []
         for k in range(rows.shape[1]):
-            a = applied(self.level, (float(rows[0, k]), float(rows[1, k]), float(rows[2, k])))
+            a = applied(self.__dict__["_level"], (float(rows[0, k]), float(rows[1, k]), float(rows[2, k])))
             found.append(minus(self.weight if k == 0 else (0.0, 0.0, 0.0), a))
         return found
 
     def under(self, place: Vector) -> bool:
-        """Whether there is ground under a point."""
+        """Return whether there is ground under a point.
+
+        Parameters
+        ----------
+        place : tuple of float
+            The point [m].
+
+        Returns
+        -------
+        bool
+            False beyond the shelf.
+        """
         return self.shelf is None or self.inside(place) >= 0.0
 
     def inside(self, place: Vector) -> float:
-        """Return the distance of a point from the nearest edge of the shelf; below zero it is beyond [m]."""
+        """Return the distance of a point from the nearest edge of the shelf.
+
+        Parameters
+        ----------
+        place : tuple of float
+            The point [m].
+
+        Returns
+        -------
+        float
+            Below zero beyond it [m].
+        """
         assert self.shelf is not None
         return min(self.shelf[0] - abs(place[0]), self.shelf[1] - abs(place[1]))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from rocking.dynamics.hull.body import HullBody
-from rocking.dynamics.hull.contact_problem import ContactSet, Problem, Solution, solve
+from rocking.dynamics.hull.contact_problem import HullContact, Problem, Solution, solve
 from rocking.dynamics.hull.vectors import (
     ZERO,
     Vector,
@@ -57,10 +57,10 @@ class State(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Mode:
+class HullMode:
     """The contact that lasts, with the directions in which its vertices start to slide, in axes of the ground."""
 
-    contact: ContactSet
+    contact: HullContact
     friction: float
     starts: dict[int, Vector]
     pulled: bool = False  # whether no contact obeys every law, and this one, with the least pull, stands in
@@ -84,7 +84,7 @@ def problem_of(body: HullBody, state: State, field: Vector, friction: float) -> 
     return Problem(body, axes, back(axes, field), free, friction)
 
 
-def rates_of(body: HullBody, state: State, mode: Mode, field: Vector) -> Rates:
+def rates_of(body: HullBody, state: State, mode: HullMode, field: Vector) -> Rates:
     """Return the rates of a state in a mode."""
     problem = problem_of(body, state, field, mode.friction)
     axes, w = problem.axes, state.spin
@@ -112,7 +112,7 @@ def point_velocity(body: HullBody, state: State, i: int) -> Vector:
     return plus(state.velocity, applied(frame(state.attitude), cross(state.spin, body.points[i])))
 
 
-def slip_direction(body: HullBody, state: State, mode: Mode, i: int) -> Vector:
+def slip_direction(body: HullBody, state: State, mode: HullMode, i: int) -> Vector:
     """Return the direction in which a vertex slides, in axes of the ground."""
     if i in mode.starts:
         return mode.starts[i]
@@ -145,15 +145,16 @@ class StepResult(NamedTuple):
 
 
 def step(
-    body: HullBody, state: State, mode: Mode, field: list[Vector], length_of: float, part: float, pace: float
+    body: HullBody, state: State, mode: HullMode, field: list[Vector], span: tuple[float, float], pace: float
 ) -> StepResult:
     """Advance by a part of a step.
 
-    field: gravity less the acceleration of the ground over the whole step, by powers of its share [m/s2]; length_of:
-    duration of the whole step [s]; part: share to advance by [-]; pace: sqrt(g / size), by which errors of velocities
-    are measured [1/s].
+    field: gravity less the acceleration of the ground over the whole step, by powers of its share [m/s2]; span:
+    duration of the whole step [s] and share to advance by [-]; pace: sqrt(g / size), by which errors of velocities are
+    measured [1/s].
     """
-    h = part * length_of
+    part = span[1]
+    h = part * span[0]
     stages: list[Rates] = []
     samples: list[tuple[float, State, Rates]] = []
     at = state
