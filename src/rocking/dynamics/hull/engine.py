@@ -153,7 +153,7 @@ class HullEngine:
         self.weak = self.settings.rest_speed**2 * body.mass * ground.gravity * body.size
         self.slack = _FORCE * ground.gravity
         self.time, self.stretch = 0.0, 0
-        self.length = 0.1 / self.pace
+        self.length = self.span = 0.1 / self.pace  # of the next step, and of the present one
         self.mode = self._mode(FLIGHT, {})
         self.anchors: dict[int, Vector] = {}
         self.at_once, self.moment = 0, -1.0
@@ -312,6 +312,7 @@ class HullEngine:
         def to(part: float) -> StepResult:
             return step(body, start, self.mode, coefficients, (whole, part), self.pace)
 
+        self.span = whole
         result = to(1.0)
         if not math.isfinite(result.error):
             self.ended = Status.NOT_FINITE
@@ -429,7 +430,7 @@ class HullEngine:
         watched += [("shelf", i) for i in loose if self.ground.shelf is not None]
         one, two = result.samples[0][1], result.state
         fastest = max(length(s.velocity) + body.size * length(s.spin) for s in (one, two))
-        reach = fastest * self.length
+        reach = fastest * self.span
         up, high = frame(one.attitude)[2], one.place[2]
         after, later = frame(two.attitude)[2], two.place[2]
         for i, p in enumerate(body.points):
@@ -527,7 +528,7 @@ class HullEngine:
             self._shocked(near)
             return
         best = contacts.least_pull(problem, candidates, near, 1e-9 * self.ground.gravity)
-        best = candidates[0] if crowded and candidates[0].contact.members else best
+        best = candidates[0] if (crowded or best is None) and candidates[0].contact.members else best
         if best is None:
             self.ended = Status.NO_CONTACT_FORCE
             return
