@@ -364,14 +364,11 @@ class HullEngine:
         """Return when the first margin falls below zero: part of the step, kind of the margin."""
         part, first = 1.0, ""
         for _, low, high, kind, i in sorted(self._fallen(result, to)):
-            if part < 1.0 and high >= part:
-                if self._at(kind, i, to(part)) >= 0.0:
-                    continue
-                bracket = min(low, part), part
-            else:
-                bracket = low, high
-            if self._at(kind, i, to(bracket[1])) < 0.0:
-                part, first = self._located(kind, i, bracket, to), kind
+            # stages lie beside the motion: what is below zero there may fall a little later
+            for end in (min(high, part), part):
+                if self._at(kind, i, to(end)) < 0.0:
+                    part, first = self._located(kind, i, (min(low, end), end), to), kind
+                    break
         return part, first
 
     def _fallen(self, result: StepResult, to: Any) -> Iterator[tuple[float, float, float, str, int]]:
