@@ -1,20 +1,18 @@
 """A body as its convex hull meets the ground: vertices, mass, centre of mass and inertia."""
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from rocking import checks
+from rocking.bodies.equilibria.polytope import Polytope, polytope
+from rocking.bodies.solid import Solid
 from rocking.conventions import FloatArray
-from rocking.dynamics.hull.vectors import Frame, Vector, length
-from rocking.errors import GeometryError, InvalidValueError
+from rocking.dynamics.hull.vectors import Frame, Vector, dot, length
+from rocking.dynamics.space.body import checked_inertia, finite
+from rocking.errors import GeometryError
 from rocking.portable import inverse
-
-_MERGED = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +22,7 @@ class HullBody:
     Parameters
     ----------
     vertices : array_like, shape (k, 3)
-        Points of the body; those inside the convex hull are left out [m].
+        Points of the body; those inside the convex hull, or within one of its facets, are left out [m].
     mass : float
         Mass [kg].
     centre : array_like, shape (3,)
@@ -37,67 +35,61 @@ class HullBody:
     Raises
     ------
     InvalidValueError
-        If a value is outside its range.
+        If a value is not finite, or no body has such an inertia.
     GeometryError
-        If the points span no volume.
+        If the points span no volume, or the centre of mass is not inside their hull.
 
     Examples
     --------
-    >>> cube = HullBody.box(1.0, 1.0, 1.0, mass=1.0)
-    >>> len(cube.points), cube.size == 0.75**0.5
-    (8, True)
+    >>> from rocking.bodies.solid import box
+    >>> cube = HullBody.of(Solid(box(1.0, 1.0, 1.0)))
+    >>> len(cube.points), len(cube.hull.normals), cube.size == 0.75**0.5
+    (8, 6, True)
     """
 
-    vertices: Any
+    vertices: FloatArray
     mass: float
-    centre: Any
-    inertia: Any
-    solid: Any = None
+    centre: FloatArray
+    inertia: FloatArray
+    solid: Solid | None = None
+    hull: Polytope = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the values and keep the vertices of the hull."""
-        object.__setattr__(self, "mass", checks.within("mass", self.mass, 0.0, math.inf, unit="kg", open_low=True))
-        for name, shape in (("vertices", (-1, 3)), ("centre", (3,)), ("inertia", (3, 3))):
-            values = np.array(getattr(self, name), dtype=np.float64)
-            fits = values.ndim == len(shape) and all(n in (-1, m) for n, m in zip(shape, values.shape, strict=True))
-            if not (fits and np.isfinite(values).all()):
-                raise InvalidValueError(f"{name} must be {shape} finite numbers (-1: any count), got {values!r:.60}")
-            object.__setattr__(self, name, values)
-        moments = np.linalg.eigvalsh(self.inertia)
-        if not moments[0] > 0.0 or np.abs(self.inertia - self.inertia.T).max() > 1e-9 * moments[2]:
-            raise InvalidValueError(f"inertia must be symmetric with principal moments > 0, got {moments}")
-        try:
-            hull = ConvexHull(self.vertices)
-        except Exception as error:
+        """Check the values and seek the hull."""
+        points = checks.real_array("vertices", self.vertices, "m")
+        object.__setattr__(self, "vertices", finite("vertices", points, (len(points), 3), "m"))
+        object.__setattr__(self, "mass", checks.positive("mass", self.mass, "kg"))
+        object.__setattr__(self, "centre", finite("centre", self.centre, (3,), "m"))
+        object.__setattr__(self, "inertia", checked_inertia(self.inertia))
+        object.__setattr__(self, "hull", polytope(self.vertices, self.centre))
+        if not self.hull.heights.min() > 0.0:
             raise GeometryError(
-                f"vertices must span a volume, at least four of them, got {self.vertices!r:.80}"
-            ) from error
-        object.__setattr__(self, "vertices", self.vertices[np.sort(hull.vertices)])
+                f"the centre of mass {self.centre.tolist()} m must lie inside the hull of the vertices: it is "
+                f"{-self.hull.heights.min():.3g} m outside; are both in the same axes and unit?"
+            )
 
     @classmethod
-    def box(cls, x: float, y: float, z: float, mass: float) -> "HullBody":
-        """Return a homogeneous box with the middle of its base at the origin.
+    def of(cls, solid: Solid) -> "HullBody":
+        """Return a solid on the vertices of its hull, as it stands.
 
         Parameters
         ----------
-        x, y, z : float
-            Full sizes [m].
-        mass : float
-            Mass [kg].
+        solid : Solid
+            The solid; round faces are those of `Solid.equilibria`, of 360 corners.
 
         Returns
         -------
         HullBody
-            The box.
+            The body, in the solid's own frame.
         """
-        corners = [(sx * x, sy * y, sz * z) for sx in (-0.5, 0.5) for sy in (-0.5, 0.5) for sz in (0.0, 1.0)]
-        inertia = mass / 12.0 * np.diag([y * y + z * z, x * x + z * z, x * x + y * y])
-        return cls(corners, mass, (0.0, 0.0, 0.5 * z), inertia)
+        moments = solid.local_moments
+        points = solid.equilibria().hull_vertices - solid.origin
+        return cls(points, moments.mass, moments.centre, moments.inertia, solid)
 
     @cached_property
     def points(self) -> list[Vector]:
         """Vertices, from the centre of mass [m]."""
-        return [(float(p[0]), float(p[1]), float(p[2])) for p in self.vertices - self.centre]
+        return [(float(x), float(y), float(z)) for x, y, z in self.hull.vertices]
 
     @cached_property
     def compliance(self) -> Frame:
@@ -115,14 +107,32 @@ class HullBody:
         return max(length(p) for p in self.points)
 
     @cached_property
-    def facets(self) -> list[tuple[Vector, float]]:
-        """Outward normals of the facets, and distances from the centre of mass; coplanar ones are merged [-], [m]."""
-        found: list[tuple[Vector, float]] = []
-        for a, b, c, d in ConvexHull(self.vertices - self.centre).equations:
-            normal = (float(a), float(b), float(c))
-            if not any(sum(x * y for x, y in zip(normal, n, strict=True)) > 1.0 - _MERGED for n, _ in found):
-                found.append((normal, -float(d)))
-        return found
+    def facets(self) -> list[Vector]:
+        """Facets as the dual of the hull has them: outward unit normals over distances from the centre [1/m]."""
+        return [(float(x), float(y), float(z)) for x, y, z in self.hull.normals / self.hull.heights[:, None]]
+
+    @cached_property
+    def poses(self) -> list[int]:
+        """Number of the stable pose to which each facet leads; the pose with the lowest centre is 0."""
+        hull = self.hull
+        order = np.lexsort((np.arange(len(hull.heights)), hull.heights))
+        number = {int(facet): k for k, facet in enumerate(order[hull.stable[order]])}
+        return [number[hull.rolled(facet)] for facet in range(len(hull.heights))]
+
+    def under(self, up: Vector) -> int:
+        """Return the facet through which the vertical through the centre of mass leaves the hull, downward.
+
+        Parameters
+        ----------
+        up : tuple of float
+            Upward in the axes of the body [-].
+
+        Returns
+        -------
+        int
+            Number of the facet.
+        """
+        return min(range(len(self.facets)), key=lambda k: dot(self.facets[k], up))  # Eq. 258
 
 
 def _rows(matrix: FloatArray) -> Frame:

@@ -91,6 +91,8 @@ class HullHistory:
     slid: bool = False
     rocked: bool = False
     fell: bool = False  # off the shelf
+    pose: int = -1  # the stable pose in which it ends, or to which it is on its way
+    overturning_time: float = math.nan  # when its centre left the first pose for the last time [s]
 
 
 @dataclass(frozen=True)
@@ -132,7 +134,8 @@ class HullEngine:
 
     Examples
     --------
-    >>> body = HullBody.box(1.0, 1.0, 4.0, mass=100.0)
+    >>> from rocking.bodies.solid import Solid, box
+    >>> body = HullBody.of(Solid(box(1.0, 1.0, 4.0)))
     >>> HullEngine(body, HullGround(slope=0.2)).run(standing(body), 0.1).outcome.value
     'stayed at rest: the ground never lifted it'
     """
@@ -181,12 +184,8 @@ class HullEngine:
         """
         self.state = state
         self.until = max(horizon, self.ground.motion.end)
-        self.first_up = frame(state.attitude)[2]
-        lowest = min(gap(self.body, state, i) for i in range(len(self.body.points)))
-        self.base = tuple(
-            i for i in range(len(self.body.points)) if gap(self.body, state, i) <= lowest + 1e-9 * self.body.size
-        )
-        self.law = law_of(self.restitution, self.body, self._base_of(state))
+        self.stood = self.under = self.body.under(frame(state.attitude)[2])
+        self.law = law_of(self.restitution, self.body, self.stood)
         if any(point_velocity(self.body, state, i)[2] < -_SLIP * 1e-4 * self.speed for i in self._touching()):
             self._impact()
         else:
@@ -198,13 +197,6 @@ class HullEngine:
             else:
                 self._step()
         return self._judged()
-
-    def _base_of(self, state: State) -> tuple[int, ...]:
-        """Vertices of the facet that faces down most."""
-        down = scaled(-1.0, frame(state.attitude)[2])
-        normal, height = max(self.body.facets, key=lambda facet: dot(facet[0], down))
-        points = self.body.points
-        return tuple(i for i, p in enumerate(points) if abs(dot(normal, p) - height) <= 1e-9 * self.body.size)
 
     @property
     def _resting(self) -> bool:
@@ -225,9 +217,10 @@ class HullEngine:
     def _judged(self) -> HullHistory:
         made = self.history
         made.status = self.ended or Status.GOOD
+        made.pose = self.body.poses[self.under]
         if self.ended is not None:
             made.outcome = Outcome.FAILED
-        elif made.fell or self._pose(self.first_up) != self._pose(frame(self.state.attitude)[2]):
+        elif made.fell or made.pose != self.body.poses[self.stood]:
             made.outcome = Outcome.OVERTURNED
         elif made.flew:
             made.outcome = Outcome.FLEW
@@ -237,10 +230,12 @@ class HullEngine:
             made.outcome = Outcome.SLID
         return made
 
-    def _pose(self, up: Vector) -> int:
-        """Return the facet that faces down most."""
-        facets = self.body.facets
-        return max(range(len(facets)), key=lambda k: -dot(facets[k][0], up))
+    def _watch(self) -> None:
+        """Note when the vertical through the centre of mass leaves a facet that leads to the first pose."""
+        under, poses = self.body.under(frame(self.state.attitude)[2]), self.body.poses
+        if poses[under] != poses[self.under] == poses[self.stood]:
+            self.history.overturning_time = self.time
+        self.under = under
 
     # ---- rest -------------------------------------------------------------------------------------------------------
 
@@ -701,6 +696,7 @@ class HullEngine:
 
     def _keep(self) -> None:
         made = self.history
+        self._watch()
         made.time.append(self.time)
         made.states.append(self.state)
         made.contacts.append(self.mode.contact)
@@ -742,7 +738,7 @@ def standing(body: HullBody, *, facet: int | None = None, tilt: float = 0.0, azi
     body : HullBody
         The body.
     facet : int, optional
-        Number of the facet to stand on, as `body.facets` has them; the axes of the vertices stand upright if None.
+        Number of the facet to stand on, as `body.hull` has them; the axes of the vertices stand upright if None.
     tilt : float
         How far it leans [rad].
     azimuth : float
@@ -755,7 +751,7 @@ def standing(body: HullBody, *, facet: int | None = None, tilt: float = 0.0, azi
     """
     attitude: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0)
     if facet is not None:
-        down = body.facets[facet][0]
+        down = unit(body.facets[facet])
         axis = cross(down, (0.0, 0.0, -1.0))
         attitude = normalised((1.0 - down[2], *axis)) if down[2] < 1.0 - 1e-12 else (0.0, 1.0, 0.0, 0.0)
     half = 0.5 * tilt

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
+from rocking.bodies.equilibria.polytope import FLAT
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.vectors import Vector, added, applied, cross, dot, minus, scaled, unit
 from rocking.errors import InvalidValueError
@@ -15,10 +16,8 @@ from rocking.restitution.space.impulse_position import impulse_position
 ImpulseLaw = Callable[[Vector, Vector], float]
 """Position k of the impulse of a step between two points of the body, from its centre of mass; 1 at the new one [-]."""
 
-_LEVEL = 1e-9
 
-
-def law_of(restitution: Any, body: HullBody, base: tuple[int, ...]) -> ImpulseLaw:
+def law_of(restitution: Any, body: HullBody, base: int) -> ImpulseLaw:
     """Return a law of impacts.
 
     Parameters
@@ -28,8 +27,8 @@ def law_of(restitution: Any, body: HullBody, base: tuple[int, ...]) -> ImpulseLa
         landing of the whole base in any direction [-].
     body : HullBody
         The body.
-    base : tuple of int
-        Vertices of the base to which the coefficient belongs; steps elsewhere take k = 1.
+    base : int
+        Number of the facet to which the coefficient belongs; steps elsewhere take k = 1.
 
     Returns
     -------
@@ -54,32 +53,24 @@ def law_of(restitution: Any, body: HullBody, base: tuple[int, ...]) -> ImpulseLa
     raise InvalidValueError(f"restitution must be 'housner-3d', 'ked-3d' or a number, got {restitution!r:.60}")
 
 
-def _on_base(body: HullBody, base: tuple[int, ...], position: Callable[[Vector], float]) -> ImpulseLaw:
+def _on_base(body: HullBody, base: int, position: Callable[[Vector], float]) -> ImpulseLaw:
     """Keep a law to steps within the base, and k between 0 and 1, where no force pulls."""
-    up = _normal(body, base)
-    height = dot(up, body.points[base[0]])
+    normal, height = unit(body.facets[base]), float(body.hull.heights[base])
 
     def at(old: Vector, new: Vector) -> float:
-        lies = all(abs(dot(up, p) - height) <= _LEVEL * body.size for p in (old, new))
+        lies = all(height - dot(normal, p) <= FLAT * body.size for p in (old, new))
         return min(max(position(minus(new, old)), 0.0), 1.0) if lies else 1.0
 
     return at
 
 
-def _normal(body: HullBody, base: tuple[int, ...]) -> Vector:
-    a, b, c = (body.points[base[(j * len(base)) // 3]] for j in range(3))
-    normal = unit(cross(minus(b, a), minus(c, a)))
-    return normal if dot(normal, a) < 0.0 else scaled(-1.0, normal)
-
-
 class _Coefficient:
     """The place at which the impulse of a landing of the whole base gives one coefficient r."""
 
-    def __init__(self, body: HullBody, base: tuple[int, ...], r: float) -> None:
+    def __init__(self, body: HullBody, base: int, r: float) -> None:
         self.body, self.r = body, r
-        self.base = [body.points[i] for i in base]
-        self.up = _normal(body, base)
-        self.height = -dot(self.up, self.base[0])
+        self.base = [body.points[i] for i in body.hull.corners(base)]
+        self.up, self.height = scaled(-1.0, unit(body.facets[base])), float(body.hull.heights[base])
 
     def at(self, step: Vector) -> float:
         """Return k in the direction of a step."""
