@@ -1,0 +1,296 @@
+// Forces or impulses on a set of touching vertices: one problem for accelerations and for velocities.
+#pragma once
+#include "body.hpp"
+
+namespace rocking::hull {
+
+constexpr double kSingular = 1e-12, kStraight = 1e-12;
+constexpr int kTurns = 300;
+
+struct Contact {
+    Points members, stuck;
+    bool operator==(const Contact& o) const { return members == o.members && stuck == o.stuck; }
+};
+
+inline bool has(const Points& all, int i) { return std::find(all.begin(), all.end(), i) != all.end(); }
+
+// What would happen without forces, and where they act.
+struct Problem {
+    const Body* body = nullptr;
+    Mat axes;
+    Vec linear, angular, spin;
+    double friction = 0.0;
+    bool forces = false;                            // accelerations, not velocities: with the centripetal part
+    std::vector<std::pair<int, Vec>> places;        // where the impulse of a vertex acts, if not at the vertex
+
+    Vec bias(int i) const { return cross(spin, cross(spin, body->points[i])); }
+    Vec rate(int i, Vec a, Vec alpha) const {
+        const Vec free = a + cross(alpha, body->points[i]);  // Eq. 250
+        return forces ? free + bias(i) : free;
+    }
+    Vec place(int i) const {
+        for (const auto& [k, at] : places)
+            if (k == i) return at;
+        return body->points[i];
+    }
+    Vec ground(double x, double y) const { return x * axes.a + y * axes.b; }
+};
+
+// What a candidate does; lists go with the members of the contact.
+struct Solution {
+    Contact contact;
+    Vec linear, angular;
+    std::vector<double> normals;
+    Vecs directions, pulls;  // of those that slide, of those that stick; zero for the others
+    bool exists = false;
+};
+
+struct Wrench {
+    Vec f, m;
+};
+
+// Gauss without exchange; false where a pivot is not positive, so that no force answers a motion.
+inline bool eliminated(const Problem& p, int n, const Wrench* columns, const Wrench* rows, const double* known, double* answer) {
+    double t[6][7], sizes[6];
+    Wrench soft[6];
+    for (int c = 0; c < n; ++c) soft[c] = {1.0 / p.body->mass * columns[c].f, p.body->inverse * columns[c].m};
+    for (int r = 0; r < n; ++r) {
+        for (int c = 0; c < n; ++c) t[r][c] = dot(rows[r].f, soft[c].f) + dot(rows[r].m, soft[c].m);
+        t[r][n] = -(dot(rows[r].f, p.linear) + dot(rows[r].m, p.angular) + known[r]);  // Eq. 252
+        sizes[r] = kSingular * t[r][r];
+    }
+    for (int k = 0; k < n; ++k) {
+        if (!(t[k][k] > sizes[k])) return false;
+        for (int j = k + 1; j < n; ++j) {
+            const double factor = t[j][k] / t[k][k];
+            if (factor != 0.0)
+                for (int c = k + 1; c <= n; ++c) t[j][c] -= factor * t[k][c];
+        }
+    }
+    for (int k = n - 1; k >= 0; --k) {
+        double total = t[k][n];
+        for (int c = k + 1; c < n; ++c) total -= t[k][c] * answer[c];
+        answer[k] = total / t[k][k];
+    }
+    return true;
+}
+
+// Shares what holds the sticking vertices as their normal forces are shared, and as these would resist turning.
+inline void share_pulls(const Problem& p, const double* parts, Solution& s) {
+    const Points& stuck = s.contact.stuck;
+    const int n = static_cast<int>(stuck.size());
+    s.pulls.assign(s.contact.members.size(), Vec{});
+    if (!n) return;
+    const auto slot = [&](int i) { return std::find(s.contact.members.begin(), s.contact.members.end(), i) - s.contact.members.begin(); };
+    const Vec total = p.ground(parts[0], parts[1]), up = p.axes.c;
+    if (n == 1) {
+        s.pulls[slot(stuck[0])] = total;
+        return;
+    }
+    thread_local std::vector<double> weights;
+    thread_local Vecs arms, turning;
+    weights.assign(n, 0.0), arms.assign(n, Vec{}), turning.assign(n, Vec{});
+    double weight = 0.0;
+    for (int k = 0; k < n; ++k) arms[k] = p.place(stuck[k]), weight += weights[k] = greater(s.normals[slot(stuck[k])], 0.0);
+    if (!(weight > 0.0)) weights.assign(n, 1.0), weight = n;
+    Vec loaded, even;
+    for (int k = 0; k < n; ++k) loaded = loaded + weights[k] / weight * arms[k], even = even + 1.0 / n * arms[k];
+    const double couple = parts[2] + dot(up, cross(even - loaded, total));
+    double resistance = 0.0;
+    for (int k = 0; k < n; ++k) turning[k] = cross(up, arms[k] - loaded), resistance += weights[k] * dot(turning[k], turning[k]);
+    const double rate = resistance > 0.0 ? couple / resistance : 0.0;
+    for (int k = 0; k < n; ++k) turning[k] = weights[k] * (1.0 / weight * total + rate * turning[k]);  // Eq. 255
+    if (n == 2) {
+        const Vec along = unit(arms[1] - arms[0]);
+        double room[2], whole = 0.0;
+        Vec across[2];
+        for (int k = 0; k < 2; ++k) {
+            across[k] = turning[k] - dot(turning[k], along) * along;
+            const double most = p.friction * weights[k];
+            whole += room[k] = std::sqrt(greater(most * most - dot(across[k], across[k]), 0.0));  // Eq. 256
+        }
+        if (whole > 0.0)
+            for (int k = 0; k < 2; ++k) turning[k] = across[k] + room[k] / whole * dot(total, along) * along;
+    }
+    for (int k = 0; k < n; ++k) s.pulls[slot(stuck[k])] = turning[k];
+}
+
+// What certain forces do, pulled or not, so that the vertices of s.contact stay on the ground; carrying: slots of members.
+inline bool linear(const Problem& p, const Points& carrying, Solution& s) {
+    const Body& body = *p.body;
+    const Points &members = s.contact.members, &stuck = s.contact.stuck;
+    const Vec up = p.axes.c;
+    const int n = static_cast<int>(carrying.size()), shapes = n <= 3 ? n : 3, rest = static_cast<int>(stuck.size());
+    Wrench columns[6], rows[6];
+    double known[6] = {}, answer[6];
+    const auto weight = [&](int shape, int k) {
+        if (n <= 3) return shape == k ? 1.0 : 0.0;
+        const Vec at = p.place(members[carrying[k]]);
+        return shape == 0 ? 1.0 : dot(shape == 1 ? p.axes.a : p.axes.b, at);  // Eq. 253
+    };
+    for (int j = 0; j < shapes; ++j)
+        for (int k = 0; k < n; ++k) {
+            const double w = weight(j, k);
+            if (w == 0.0) continue;
+            const int i = members[carrying[k]];
+            const Vec slide = s.directions[carrying[k]];
+            const Vec push = dot(slide, slide) > 0.0 ? up - p.friction * slide : up;
+            columns[j].f = columns[j].f + w * push, columns[j].m = columns[j].m + w * cross(p.place(i), push);
+            rows[j].f = rows[j].f + w * up, rows[j].m = rows[j].m + w * cross(body.points[i], up);
+            if (p.forces) known[j] += w * dot(up, p.bias(i));
+        }
+    int size = shapes;
+    if (rest) {
+        Vec centre;
+        for (int i : stuck) centre = centre + 1.0 / rest * p.place(i);
+        const int one = stuck[0], other = stuck[rest / 2];
+        for (const Vec axis : {p.axes.a, p.axes.b}) {
+            columns[size] = {axis, cross(centre, axis)}, rows[size] = {axis, cross(body.points[one], axis)};
+            known[size++] = p.forces ? dot(axis, p.bias(one)) : 0.0;
+        }
+        if (rest > 1) {
+            const Vec arm = body.points[other] - body.points[one], across = unit(cross(up, arm));
+            columns[size] = {{}, up}, rows[size] = {{}, cross(arm, across)};
+            known[size++] = p.forces ? dot(across, p.bias(other) - p.bias(one)) : 0.0;
+        }
+    }
+    if (!eliminated(p, size, columns, rows, known, answer)) return false;
+    Vec force, moment;
+    for (int k = 0; k < size; ++k) force = force + answer[k] * columns[k].f, moment = moment + answer[k] * columns[k].m;
+    s.linear = p.linear + 1.0 / body.mass * force;
+    s.angular = p.angular + body.inverse * moment;
+    s.normals.assign(members.size(), 0.0);
+    for (int j = 0; j < shapes; ++j)
+        for (int k = 0; k < n; ++k) s.normals[carrying[k]] += answer[j] * weight(j, k);
+    if (p.friction < kInfinite) share_pulls(p, answer + shapes, s);
+    else s.pulls.assign(members.size(), Vec{});
+    return true;
+}
+
+// Accelerations and forces of s.contact with the directions s.directions.
+inline bool solve(const Problem& p, Solution& s) {
+    if (s.contact.members.empty()) {
+        s.linear = p.linear, s.angular = p.angular, s.normals.clear(), s.pulls.clear();
+        return s.exists = true;
+    }
+    thread_local Points carrying;
+    carrying.resize(s.contact.members.size());
+    for (std::size_t k = 0; k < carrying.size(); ++k) carrying[k] = static_cast<int>(k);
+    for (;;) {
+        s.exists = linear(p, carrying, s);
+        if (!s.exists || s.contact.members.size() <= 3) return s.exists;
+        auto least = carrying.begin();
+        for (auto k = carrying.begin(); k != carrying.end(); ++k)
+            if (s.normals[*k] < s.normals[*least]) least = k;
+        if (s.normals[*least] >= 0.0 || carrying.size() == 3) return s.exists;
+        carrying.erase(least);
+    }
+}
+
+// The same with the directions in which free vertices start to slide, by iteration. s.directions: of those that slide
+// already; still: rate below which friction alone has the direction.
+inline bool sliding(const Problem& p, double still, Solution& s) {
+    const Points& members = s.contact.members;
+    Points free, others;
+    for (std::size_t k = 0; k < members.size(); ++k)
+        if (dot(s.directions[k], s.directions[k]) > 0.0) others.push_back(members[k]);
+        else if (!has(s.contact.stuck, members[k])) free.push_back(static_cast<int>(k));
+    if (free.empty() || p.friction == 0.0) return solve(p, s);
+    Solution holding = s;
+    holding.contact.stuck.clear();
+    for (int i : members)
+        if (!has(others, i)) holding.contact.stuck.push_back(i);
+    if (solve(p, holding))
+        for (int k : free) s.directions[k] = unit(-1.0 * holding.pulls[k]);
+    std::vector<double> soft;
+    for (int k : free) {
+        const Mat& w = p.body->soft[members[k]];
+        soft.push_back(greater(dot(p.axes.a, w * p.axes.a), dot(p.axes.b, w * p.axes.b)) * p.friction * static_cast<double>(free.size()));
+    }
+    Vecs after;
+    for (int turn = 0; turn < kTurns; ++turn) {
+        if (!solve(p, s)) return false;
+        double change = 0.0;
+        after = s.directions;
+        for (std::size_t j = 0; j < free.size(); ++j) {
+            const int k = free[j];
+            const Vec rate = p.rate(members[k], s.linear, s.angular), slip = rate - dot(rate, p.axes.c) * p.axes.c, before = s.directions[k];
+            if (norm(slip) <= still && dot(before, before) > 0.0) continue;
+            after[k] = unit(slip + soft[j] * greater(s.normals[k], 0.0) * before);  // Eq. 257
+            change = greater(change, norm(after[k] - before));
+        }
+        if (change <= kStraight) return true;
+        s.directions = after;
+    }
+    return s.exists = false;
+}
+
+// The vertices of the convex polygon of points on the ground, in order (Andrew's monotone chain).
+inline Points outline(const Problem& p, const Points& touching) {
+    struct At {
+        double x, y;
+        int i;
+    };
+    std::vector<At> places, kept;
+    for (int i : touching) places.push_back({dot(p.axes.a, p.body->points[i]), dot(p.axes.b, p.body->points[i]), i});
+    std::sort(places.begin(), places.end(), [](const At& a, const At& b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.i < b.i; });
+    Points made;
+    if (places.size() < 3) {
+        for (const At& at : places) made.push_back(at.i);
+        return made;
+    }
+    const double slack = 1e-10 * p.body->size * p.body->size;
+    for (int pass = 0; pass < 2; ++pass) {
+        kept.clear();
+        for (const At& at : places) {
+            while (kept.size() > 1) {
+                const At &a = kept[kept.size() - 2], &b = kept.back();
+                if ((b.x - a.x) * (at.y - a.y) - (b.y - a.y) * (at.x - a.x) > slack) break;
+                kept.pop_back();
+            }
+            kept.push_back(at);
+        }
+        for (std::size_t k = 0; k + 1 < kept.size(); ++k) made.push_back(kept[k].i);
+        std::reverse(places.begin(), places.end());
+    }
+    return made;
+}
+
+// What may stay of the touching vertices: all, the edges of their border, single ones.
+inline std::vector<Points> faces(const Problem& p, const Points& touching) {
+    const Points border = outline(p, touching);
+    std::vector<Points> made;
+    const std::size_t n = border.size();
+    if (n > 2) made.push_back(border);
+    if (n > 1)
+        for (std::size_t k = 0; k < (n > 2 ? n : 1); ++k) made.push_back({border[k], border[(k + 1) % n]});
+    for (int i : border) made.push_back({i});
+    return made;
+}
+
+// Which of the vertices that do not slide yet stick: all, all but one, one, none.
+inline void friction_states(const Points& members, const Points& still, std::vector<Contact>& made) {
+    if (still.size() == members.size() || still.size() < 2) made.push_back({members, still});
+    if (still.size() > 1)  // two sticking vertices of a facet make it rest; of an edge that leaves single ones
+        for (int i : still) made.push_back({members, {i}});
+    if (!still.empty()) made.push_back({members, {}});
+}
+
+// Whether no gap closes.
+inline bool clear(const Problem& p, const Solution& s, const Points& touching, double slack) {
+    for (int i : touching)
+        if (!has(s.contact.members, i) && dot(p.axes.c, p.rate(i, s.linear, s.angular)) < -slack) return false;
+    return true;
+}
+
+// Whether no force pulls, no sticking one takes more friction than there is, and no gap closes.
+inline bool valid(const Problem& p, const Solution& s, const Points& touching, double slack) {
+    const double mass = p.body->mass, mu = p.friction;
+    for (std::size_t k = 0; k < s.normals.size(); ++k) {
+        if (s.normals[k] < -slack * mass) return false;
+        if (mu < kInfinite && has(s.contact.stuck, s.contact.members[k]) && norm(s.pulls[k]) > mu * s.normals[k] + slack * mass * (1.0 + mu)) return false;
+    }
+    return clear(p, s, touching, slack);  // Eq. 251
+}
+
+}  // namespace rocking::hull

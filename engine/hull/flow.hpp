@@ -1,0 +1,210 @@
+// The motion while a contact lasts: accelerations, and steps of the fifth order of Dormand and Prince (1980). One vertex
+// that sticks or slides, and an edge that sticks, have closed forms; every other contact is a small linear system.
+#pragma once
+#include "contact.hpp"
+
+namespace rocking::hull {
+
+struct Mode {
+    Contact contact;
+    Vecs starts;          // by member: direction in which it starts to slide, axes of the ground
+    std::vector<char> starting;
+    bool pulled = false;  // no contact obeys every law, and this one stands in
+    bool stuck(std::size_t k) const { return has(contact.stuck, contact.members[k]); }
+    bool resting() const { return contact.members.size() > 2 && contact.stuck.size() == contact.members.size(); }
+};
+
+struct Rates {
+    Vec place, velocity, spin;
+    double q[4];
+};
+
+struct Forces {
+    bool found = true;
+    std::vector<double> normals, pulls;  // by member
+};
+
+inline Vec point_velocity(const Body& b, const State& s, const Mat& axes, int i) { return s.velocity + axes * cross(s.spin, b.points[i]); }
+
+inline Vec slip_direction(const Body& b, const State& s, const Mat& axes, const Mode& mode, std::size_t k) {
+    if (mode.starting[k]) return mode.starts[k];
+    const Vec v = point_velocity(b, s, axes, mode.contact.members[k]);
+    return unit({v.x, v.y, 0.0});
+}
+
+class Flow {
+  public:
+    Flow(const Body& body, double friction) : b_(body), mu_(friction) {}
+
+    void start(const Mode& mode) {
+        mode_ = &mode;
+        const Contact& c = mode.contact;
+        const std::size_t n = c.members.size(), stuck = c.stuck.size();
+        kind_ = n == 0 ? kFlight : n == 1 ? (stuck ? kStuckVertex : kSlidingVertex) : n == 2 && stuck == 2 ? kEdge : kAny;
+        if (kind_ == kEdge) {
+            const Vec one = b_.points[c.members[0]], arm = b_.points[c.members[1]] - one;
+            length_ = norm(arm), along_ = 1.0 / length_ * arm;
+            const Vec lever = cross(along_, one);
+            about_ = dot(along_, b_.inertia * along_) + b_.mass * dot(lever, lever);
+        }
+        solution_.contact = c;
+    }
+
+    // f: where the forces go, if they are asked for.
+    void rates(const State& s, Vec field, Rates& r, Forces* f) {
+        const Mat axes = frame(s.q);
+        const Vec w = s.spin;
+        Vec linear = row_times(field, axes), angular = b_.inverse * cross(b_.inertia * w, w);
+        const bool found = act(s, axes, linear, angular, f);
+        if (f) f->found = found;
+        found_ &= found;
+        r.place = s.velocity, r.velocity = axes * linear, r.spin = angular;
+        const double *q = s.q;
+        r.q[0] = -0.5 * (q[1] * w.x + q[2] * w.y + q[3] * w.z);  // Eq. 22
+        r.q[1] = 0.5 * (q[0] * w.x + q[2] * w.z - q[3] * w.y);
+        r.q[2] = 0.5 * (q[0] * w.y + q[3] * w.x - q[1] * w.z);
+        r.q[3] = 0.5 * (q[0] * w.z + q[1] * w.y - q[2] * w.x);
+    }
+
+    static constexpr int kSamples = 4;
+    static constexpr double nodes[kSamples] = {0.0, 0.3, 0.8, 1.0};
+    State samples[kSamples];  // at the start, two stages and the end
+    Forces forces[kSamples];
+    double error = 0.0;
+    bool found() const { return found_; }
+
+    // Advances by a part of a step.
+    const State& step(const State& state, const Field& field, double whole, double part, double pace) {
+        static constexpr double node[7] = {0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0};
+        static constexpr double a[7][6] = {{},
+                                           {1.0 / 5.0},
+                                           {3.0 / 40.0, 9.0 / 40.0},
+                                           {44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0},
+                                           {19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0},
+                                           {9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0},
+                                           {35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0}};
+        static constexpr double off[7] = {71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0};
+        static constexpr int sample[7] = {0, -1, 1, 2, -1, -1, 3};
+        const double h = part * whole;
+        Rates k[7];
+        State at = state;
+        found_ = true;
+        for (int n = 0; n < 7; ++n) {
+            if (n) at = moved(state, k, a[n], n, h);
+            const int keep = sample[n];
+            if (keep >= 0) samples[keep] = at;
+            rates(at, field.at(part * node[n]), k[n], keep >= 0 ? &forces[keep] : nullptr);
+        }
+        const State none{{}, {0.0}, {}, {}}, wrong = moved(none, k, off, 7, h);
+        double turned = 0.0;
+        for (double c : wrong.q) turned = greater(turned, std::fabs(c));
+        error = greater(norm(wrong.place) / b_.size, 2.0 * turned);
+        error = greater(error, greater(norm(wrong.velocity) / (b_.size * pace), norm(wrong.spin) / pace));
+        if (!std::isfinite(norm(wrong.place) + turned + norm(wrong.velocity) + norm(wrong.spin))) error = kNan;
+        normalise(samples[3].q);
+        return samples[3];
+    }
+
+  private:
+    enum Kind { kFlight, kStuckVertex, kSlidingVertex, kEdge, kAny };
+
+    static State moved(const State& s, const Rates* k, const double* weights, int n, double h) {
+        State made = s;
+        for (int j = 0; j < n; ++j) {
+            const double c = h * weights[j];
+            if (c == 0.0) continue;
+            made.place = made.place + c * k[j].place, made.velocity = made.velocity + c * k[j].velocity, made.spin = made.spin + c * k[j].spin;
+            for (int i = 0; i < 4; ++i) made.q[i] += c * k[j].q[i];
+        }
+        return made;
+    }
+
+    void set(Forces* f, double normal, double pull) const {
+        if (f) f->normals.assign(1, normal), f->pulls.assign(1, pull);
+    }
+
+    // Adds what the contact does to accelerations without it; false where no force answers.
+    bool act(const State& s, const Mat& axes, Vec& linear, Vec& angular, Forces* f) {
+        const Contact& c = mode_->contact;
+        if (kind_ == kFlight) {
+            if (f) f->normals.clear(), f->pulls.clear();
+            return true;
+        }
+        if (kind_ == kEdge) return edge(s, axes, linear, angular, f), true;
+        if (kind_ == kAny) return system(s, axes, linear, angular, f);
+        const int i = c.members[0];
+        const Vec r = b_.points[i], up = axes.c, free = linear + cross(angular, r) + cross(s.spin, cross(s.spin, r));
+        Vec force;
+        if (kind_ == kStuckVertex) {
+            force = -1.0 * (b_.stiff[i] * free);
+            const double normal = dot(up, force);
+            set(f, normal, norm(force - normal * up));
+        } else {
+            const Vec push = up - mu_ * row_times(slip_direction(b_, s, axes, *mode_, 0), axes);
+            const double yields = dot(up, b_.soft[i] * push);
+            if (!(yields > 0.0)) return false;
+            const double normal = -dot(up, free) / yields;
+            force = normal * push;
+            set(f, normal, 0.0);
+        }
+        linear = linear + 1.0 / b_.mass * force, angular = angular + b_.inverse * cross(r, force);
+        return true;
+    }
+
+    // About an edge at rest only the turning along it is open; each end has the force across it that the moments ask for.
+    void edge(const State& s, const Mat& axes, Vec& linear, Vec& angular, Forces* f) const {
+        const Vec e = along_, r = b_.points[mode_->contact.members[0]], w = s.spin, gyro = cross(w, b_.inertia * w);
+        const Vec swing = cross(w, cross(w, e)), beta = -1.0 * cross(e, swing), centripetal = cross(w, cross(w, r));
+        const Vec pull = cross(beta, r) + centripetal + linear;
+        const double alpha = -(dot(e, b_.inertia * beta + gyro) + b_.mass * dot(e, cross(r, pull))) / about_;
+        const Vec turn = alpha * e + beta, centre = -1.0 * (cross(turn, r) + centripetal);
+        if (f) {
+            const Vec force = b_.mass * (centre - linear), moment = b_.inertia * turn + gyro - cross(r, force), up = axes.c;
+            const Vec second = 1.0 / length_ * cross(moment, e), across = unit(cross(up, e)), first = force - second;
+            const double normal[2] = {dot(up, first), dot(up, second)}, side[2] = {dot(across, first), dot(across, second)}, total = dot(e, force);
+            f->normals.assign(normal, normal + 2), f->pulls.assign(2, 0.0);
+            if (mu_ < kInfinite) {
+                double room[2], weight[2];
+                for (int k = 0; k < 2; ++k) {
+                    weight[k] = greater(normal[k], 0.0);
+                    const double most = mu_ * weight[k];
+                    room[k] = std::sqrt(greater(most * most - side[k] * side[k], 0.0));  // Eq. 256
+                }
+                double* by = room[0] + room[1] > 0.0 ? room : weight;
+                if (!(by[0] + by[1] > 0.0)) by[0] = by[1] = 1.0;
+                for (int k = 0; k < 2; ++k) {
+                    const double part = by[k] / (by[0] + by[1]) * total;
+                    f->pulls[k] = std::sqrt(side[k] * side[k] + part * part);
+                }
+            }
+        }
+        linear = centre, angular = turn;
+    }
+
+    bool system(const State& s, const Mat& axes, Vec& linear, Vec& angular, Forces* f) {
+        const std::size_t n = mode_->contact.members.size();
+        problem_.body = &b_, problem_.axes = axes, problem_.linear = linear, problem_.angular = angular, problem_.spin = s.spin;
+        problem_.friction = mu_, problem_.forces = true;
+        solution_.directions.assign(n, Vec{});
+        for (std::size_t k = 0; k < n; ++k)
+            if (!mode_->stuck(k)) solution_.directions[k] = row_times(slip_direction(b_, s, axes, *mode_, k), axes);
+        if (!solve(problem_, solution_)) return false;
+        linear = solution_.linear, angular = solution_.angular;
+        if (f) {
+            f->normals = solution_.normals, f->pulls.assign(n, 0.0);
+            for (std::size_t k = 0; k < n; ++k) f->pulls[k] = norm(solution_.pulls[k]);
+        }
+        return true;
+    }
+
+    const Body& b_;
+    double mu_, length_ = 0.0, about_ = 0.0;
+    Vec along_;
+    const Mode* mode_ = nullptr;
+    Kind kind_ = kFlight;
+    bool found_ = true;
+    Problem problem_;
+    Solution solution_;
+};
+
+}  // namespace rocking::hull

@@ -1,0 +1,67 @@
+// Where the impulse of a landing acts: on the way from where the body stood to where it lands.
+#pragma once
+#include "body.hpp"
+
+namespace rocking::hull {
+
+enum Code : int { kHousner = 0, kCoefficient = 2, kKed = 3 };
+constexpr double kFlat = 1e-7;
+
+struct Law {
+    int code = kHousner, base = 0;
+    double coefficient = 0.0;
+
+    // k between 0 and 1 of a step within the base; 1 of every other one.
+    double at(const Body& b, Vec old, Vec now) const {
+        const double height = 1.0 / norm(b.facets[base]);
+        const Vec down = height * b.facets[base], step = now - old;
+        if (code == kHousner || height - dot(down, old) > kFlat * b.size || height - dot(down, now) > kFlat * b.size) return 1.0;
+        return lesser(greater(code == kKed ? by_azimuth(b, step) : by_coefficient(b, step, down, height), 0.0), 1.0);
+    }
+
+    Vec place(const Body& b, Vec old, Vec now) const {
+        const Vec step = now - old;
+        return norm(step) > 0.0 ? now - 0.5 * (1.0 - at(b, old, now)) * step : now;  // Eq. 254
+    }
+
+  private:
+    double by_coefficient(const Body& b, Vec step, Vec down, double height) const {
+        const Vec up = -1.0 * down, along = unit(step - dot(step, up) * up), edge = cross(up, along);
+        double ahead = -kInfinite, behind = kInfinite;
+        for (int k = b.first_corner[base]; k < b.first_corner[base + 1]; ++k) {
+            const double reach = dot(along, b.points[b.corners[k]]);
+            ahead = greater(ahead, reach), behind = lesser(behind, reach);
+        }
+        const double over_foot = dot(edge, b.inertia * edge) / b.mass + height * height;
+        const double lever = over_foot * (1.0 - coefficient) / (coefficient * ahead - behind);  // Eq. 4
+        return (2.0 * lever - (ahead + behind)) / (ahead - behind);  // Eq. 104
+    }
+
+    static double by_azimuth(const Body& b, Vec step) {
+        double angle = std::atan2(step.y, step.x);
+        const double* p = b.positions;
+        if (angle < p[0]) angle += 2.0 * 3.141592653589793;
+        for (int i = 1; i < b.intervals && angle >= b.positions[i * kInterval]; ++i) p += kInterval;
+        const double x = (2.0 * angle - p[0] - p[1]) / (p[1] - p[0]);
+        double one = 0.0, two = 0.0;
+        for (int k = kInterval - 1; k > 2; --k) {
+            const double sum = 2.0 * x * one - two + p[k];
+            two = one, one = sum;
+        }
+        return x * one - two + p[2];
+    }
+};
+
+// The point of a vertex, an edge or a facet (by its border) that is nearest to another one.
+inline Vec nearest(const Body& b, const Points& stood, Vec to) {
+    const std::size_t n = stood.size();
+    Vec best = b.points[stood[0]];
+    for (std::size_t k = 0; n > 1 && k < n; ++k) {
+        const Vec a = b.points[stood[k]], along = b.points[stood[(k + 1) % n]] - a;
+        const Vec found = a + lesser(greater(dot(to - a, along) / dot(along, along), 0.0), 1.0) * along;
+        if (dot(found - to, found - to) < dot(best - to, best - to)) best = found;
+    }
+    return best;
+}
+
+}  // namespace rocking::hull

@@ -1,0 +1,775 @@
+// One history: steps, events to rounding, changes of contact, impacts, rest.
+#pragma once
+#include <array>
+
+#include "flow.hpp"
+#include "law.hpp"
+
+namespace rocking::hull {
+
+// gaps over the size: of vertices that land together, and at which one lands
+constexpr double kClosed = 1e-11, kGrazed = 1e-14, kForce = 1e-11;
+// speeds over sqrt(g size): at which sliding stops, below which a vertex may stick, or still slides as it started
+constexpr double kSlip = 5e-6, kStill = 5e-6, kSlides = 1e-4;
+constexpr std::array<double, 4> kLadder{1e-11, 1e-9, 1e-7, 1e-5};
+constexpr double kAhead = 1e-6, kCrowded = 1e-2, kPatience = 100.0, kMargin = 0.1;
+constexpr int kPiled = 30, kMany = 200, kCrowd = 30, kHalvings = 80;
+
+// Codes of `rocking.outcome`.
+enum Outcome : int { kNoUplift = 0, kRocked = 1, kOverturned = 2, kFailed = 3, kSlid = 4, kRockedAndSlid = 5, kFlew = 6 };
+enum Status : int { kGood = 0, kInvalid = 1, kNotFinite = 2, kTooManyEvents = 3, kStuck = 6, kNoContactForce = 7 };
+enum Kind : int { kNone, kGap, kNormal, kShelf, kSlipping, kSticking };
+
+struct Settings {
+    double tolerance, rest_speed;
+    std::int64_t most_events;
+};
+
+struct Result {
+    int outcome = kFailed, status = kInvalid, pose = -1;
+    std::int64_t impacts = 0, uplifts = 0, events = 0, steps = 0, held = 0, replaced = 0;
+    bool still_rocking = false;
+    double peak_tilt = 0.0, peak_time = 0.0, peak_spin = 0.0, overturning_time = kNan, direction = kNan, first_uplift = kNan, sliding = 0.0,
+           residual = 0.0, end = 0.0, lost = 0.0;
+};
+
+class Run {
+  public:
+    Run(const Body& body, const Ground& ground, const Law& law, double friction, const Settings& set)
+        : b_(body), g_(ground), law_(law), mu_(friction), set_(set), flow_(body, friction) {
+        pace_ = std::sqrt(g_.gravity / b_.size), speed_ = g_.gravity / pace_;
+        slow_ = set_.rest_speed * speed_, slack_ = kForce * g_.gravity;
+        weak_ = set_.rest_speed * set_.rest_speed * b_.mass * g_.gravity * b_.size;
+        length_ = span_ = 0.1 / pace_;
+    }
+
+    Result run(const State& start, double horizon) {
+        s_ = start;
+        until_ = greater(horizon, g_.end());
+        first_ = start.place;
+        const Mat axes = frame(s_.q);
+        law_.base = stood_ = under_ = b_.under(axes.c, 0);
+        upright_ = -1.0 * unit(b_.facets[stood_]);
+        tilt_ = dot(upright_, axes.c), tilting_ = 0.0, kept_ = 0.0;
+        flow_.start(mode_);
+        touch(touching_);
+        bool strikes = false;
+        for (int i : touching_) strikes |= velocity(i).z < -kSlip * 1e-4 * speed_;
+        if (strikes) impact();
+        else choose(touching_);
+        keep();
+        while (ended_ == kGood && !over()) {
+            if (mode_.resting()) rest();
+            else step();
+        }
+        return judged();
+    }
+
+  private:
+    // ---- the course of a history ----
+
+    bool over() {
+        if (s_.place.z < -2.0 * b_.size) return fell_ = true;
+        if (time_ < until_) return false;
+        if (mode_.resting()) return true;
+        return r_.still_rocking = time_ > until_ + kPatience / pace_;
+    }
+
+    Result judged() {
+        r_.status = ended_, r_.pose = b_.poses[under_], r_.end = time_;
+        if (ended_ != kGood) r_.outcome = kFailed;
+        else if (fell_ || r_.pose != b_.poses[stood_]) r_.outcome = kOverturned;
+        else if (flew_) r_.outcome = kFlew;
+        else if (rocked_) r_.outcome = slid_ ? kRockedAndSlid : kRocked;
+        else r_.outcome = slid_ ? kSlid : kNoUplift;
+        if (r_.outcome != kOverturned) r_.overturning_time = r_.direction = kNan;
+        r_.still_rocking &= r_.outcome != kOverturned;
+        r_.peak_tilt = peak_ < 1.0 ? std::atan2(std::sqrt((1.0 - peak_) * (1.0 + peak_)), peak_) : 0.0;
+        r_.residual = std::sqrt((s_.place.x - first_.x) * (s_.place.x - first_.x) + (s_.place.y - first_.y) * (s_.place.y - first_.y));
+        return r_;
+    }
+
+    // What a state leaves behind: peaks, and whether the vertical through the centre has left the first pose.
+    void keep() {
+        const Mat axes = frame(s_.q);
+        const double tilt = dot(upright_, axes.c), tilting = -dot(upright_, cross(s_.spin, axes.c)), span = time_ - kept_;
+        note(tilt, time_);
+        if (span > 0.0 && tilting_ < 0.0 && tilting > 0.0) {  // least cosine of Hermite's cubic
+            const double d0 = tilting_ * span, d1 = tilting * span, rise = tilt - tilt_;
+            const double c3 = d0 + d1 - 2.0 * rise, c2 = 3.0 * rise - 2.0 * d0 - d1;
+            const double root = std::sqrt(greater(c2 * c2 - 3.0 * c3 * d0, 0.0)), at = -d0 / (c2 + root);
+            if (at > 0.0 && at < 1.0) note(tilt_ + at * (d0 + at * (c2 + at * c3)), kept_ + at * span);
+        }
+        r_.peak_spin = greater(r_.peak_spin, norm(s_.spin));
+        const int under = b_.under(axes.c, under_);
+        if (under != under_) {
+            const Points& poses = b_.poses;
+            if (poses[under] != poses[under_] && poses[under_] == poses[stood_]) {
+                const Vec apart = b_.facets[under_] - b_.facets[under];
+                const double before = dot(apart, up_), after = dot(apart, axes.c);
+                r_.overturning_time = kept_ + (after > before ? -before / (after - before) : 1.0) * span;
+                const Vec leans = axes * upright_;
+                r_.direction = std::atan2(leans.y, leans.x);
+            }
+            under_ = under;
+        }
+        tilt_ = tilt, tilting_ = tilting, kept_ = time_, up_ = axes.c;
+    }
+
+    void note(double cosine, double time) {
+        if (cosine < peak_) peak_ = cosine, r_.peak_time = time;
+    }
+
+    // ---- rest ----
+
+    void rest() {
+        if (g_.motion->count <= stretch_) return hold(until_);
+        const double end = g_.time(stretch_ + 1), span = end - time_;
+        if (mode_.pulled) {
+            const double part = lesser(1e-3 / pace_, span);
+            stretch_ += part == span;
+            hold(part == span ? end : time_ + part);
+            touch(touching_);
+            return choose(touching_);
+        }
+        g_.field(stretch_, time_, span, field_);
+        border();
+        const int marks = field_.degree < 2 ? 1 : 8;
+        double before = 0.0;
+        for (int k = 1; k <= marks; ++k) {
+            const double mark = k / static_cast<double>(marks);
+            if (stands(field_.at(mark)) < 0.0) {
+                double low = before, high = mark;
+                for (int j = 0; j < kHalvings; ++j) {
+                    const double middle = 0.5 * (low + high);
+                    (stands(field_.at(middle)) < 0.0 ? high : low) = middle;
+                }
+                hold(time_ + high * span);
+                ++r_.events;
+                const bool slides = slips(field_.at(high)) < 0.0;
+                touch(touching_);
+                const Contact left = mode_.contact;
+                return choose(touching_, &left, nullptr, !slides);
+            }
+            before = mark;
+        }
+        hold(end);
+        ++stretch_;
+    }
+
+    void hold(double until) {
+        time_ = until;
+        keep();
+    }
+
+    struct Side {
+        double inside, height;
+        Vec inward;
+    };
+
+    void border() {
+        if (bordered_) return;
+        bordered_ = true;
+        sides_.clear();
+        const Mat axes = frame(s_.q);
+        const Points& members = mode_.contact.members;
+        for (std::size_t k = 0; k < members.size(); ++k) {
+            const Vec a = axes * b_.points[members[k]], b = axes * b_.points[members[(k + 1) % members.size()]];
+            const double x = b.x - a.x, y = b.y - a.y, size = std::sqrt(x * x + y * y);
+            const Vec inward{-y / size, x / size, 0.0};
+            sides_.push_back({-(a.x * inward.x + a.y * inward.y), a.z, inward});
+        }
+    }
+
+    // Least distance of the centre of pressure from the border, times the pull, and what friction leaves over.
+    double stands(Vec pull) const {
+        double least = lesser(-pull.z, slips(pull));
+        for (const Side& s : sides_)
+            least = lesser(least, (-s.inside * pull.z - s.height * (pull.x * s.inward.x + pull.y * s.inward.y)) / b_.size);  // Eq. 94
+        return least;
+    }
+
+    double slips(Vec pull) const { return mu_ == kInfinite ? kInfinite : -mu_ * pull.z - std::sqrt(pull.x * pull.x + pull.y * pull.y); }
+
+    // ---- a step ----
+
+    const State& to(double part) {
+        if (part != part_) flow_.step(start_, field_, span_, part, pace_), part_ = part;
+        return flow_.samples[3];
+    }
+
+    bool starting() const { return std::find(mode_.starting.begin(), mode_.starting.end(), 1) != mode_.starting.end(); }
+
+    void step() {
+        ++r_.steps;
+        const bool moving = stretch_ < g_.motion->count;
+        const double left = (moving ? g_.time(stretch_ + 1) : kInfinite) - time_;
+        double whole = lesser(length_, left);
+        if (starting()) whole = lesser(whole, 2e-3 / pace_);
+        if (whole < left && left < 2.0 * whole) whole = 0.5 * left;
+        g_.field(stretch_, time_, whole, field_);
+        start_ = s_, span_ = whole, part_ = -1.0;
+        to(1.0);
+        const double error = flow_.error;
+        if (!std::isfinite(error)) return end_with(kNotFinite);
+        for (const Forces& f : flow_.forces)
+            if (!f.found) {
+                if (whole * pace_ > 1e-9) {
+                    length_ = 0.25 * whole;
+                } else {
+                    touch(touching_);
+                    shocked(touching_);
+                }
+                return;
+            }
+        const double growth = 0.9 * std::pow(set_.tolerance / greater(error, 1e-300), 0.2);
+        if (error > set_.tolerance && whole * pace_ > 1e-10) {
+            length_ = whole * greater(0.1, growth);
+            return;
+        }
+        const double base = growth > 1.0 && whole == left ? greater(whole, length_) : whole;
+        length_ = lesser(base * lesser(greater(growth, 0.3), 4.0), 0.2 / pace_);
+        double part = 1.0;
+        const Kind kind = first_event(part);
+        to(part);
+        slide(part * whole);
+        time_ += part * whole;
+        if (kind == kNone && whole == left) ++stretch_, time_ = g_.time(stretch_);
+        s_ = flow_.samples[3];
+        settle_on(mode_.contact, {});
+        keep();
+        finish(kind);
+    }
+
+    // Path of the vertex that slides most: exact for cubics at the four stages.
+    void slide(double span) {
+        static constexpr double weight[4] = {1.0 / 12.0, 10.0 / 21.0, 5.0 / 12.0, 1.0 / 42.0};
+        double most = 0.0;
+        const Points& members = mode_.contact.members;
+        if (mode_.contact.stuck.size() == members.size()) return;
+        for (std::size_t k = 0; k < members.size(); ++k) {
+            if (mode_.stuck(k)) continue;
+            double path = 0.0;
+            for (int j = 0; j < 4; ++j) {
+                const Vec v = point_velocity(b_, flow_.samples[j], frame(flow_.samples[j].q), members[k]);
+                path += weight[j] * std::sqrt(v.x * v.x + v.y * v.y);
+            }
+            most = greater(most, path);
+        }
+        r_.sliding += span * most;
+    }
+
+    void finish(Kind kind) {
+        for (std::size_t k = 0; k < mode_.starting.size(); ++k)
+            if (mode_.starting[k] && slip(mode_.contact.members[k]) > kSlides * speed_) mode_.starting[k] = 0;
+        if (kind == kGap) return impact();
+        if (kind == kNone && !mode_.pulled) return;
+        touch(touching_);
+        if (kind == kNone) return choose(touching_);
+        ++r_.events;
+        const Contact left = mode_.contact;
+        choose(touching_, kind == kSlipping ? nullptr : &left, nullptr, kind == kNormal || kind == kShelf);
+        keep();
+    }
+
+    struct Watch {
+        Kind kind;
+        int i, slot;     // vertex, and its place among the members
+    };
+    struct Fall {
+        double about, low, high;
+        Watch what;
+        bool operator<(const Fall& o) const {
+            if (about != o.about) return about < o.about;
+            if (low != o.low) return low < o.low;
+            if (high != o.high) return high < o.high;
+            return what.kind != o.what.kind ? what.kind < o.what.kind : what.i < o.what.i;
+        }
+    };
+
+    // When the first margin falls below zero, and which kind.
+    Kind first_event(double& part) {
+        Kind first = kNone;
+        fallen();
+        std::sort(falls_.begin(), falls_.end());
+        for (const Fall& f : falls_)
+            for (const double end : {lesser(f.high, part), part})  // stages lie beside the motion
+                if (at(f.what, end) < 0.0) {
+                    part = located(f.what, lesser(f.low, end), end), first = f.what.kind;
+                    break;
+                }
+        return first;
+    }
+
+    void fallen() {
+        falls_.clear();
+        watch();
+        dips_.clear();
+        for (const Watch& w : watched_) {
+            double v[4];
+            for (int k = 0; k < 4; ++k) v[k] = margin(w, flow_.samples[k], flow_.forces[k]);
+            if (v[0] < 0.0) {
+                // a vertex that has just left is on the ground but for rounding
+                if (w.kind != kGap || !(velocity(w.i).z >= -1e-12 * speed_)) {
+                    falls_.push_back({0.0, 0.0, 0.0, w});
+                    continue;
+                }
+                v[0] = 0.0;
+            }
+            int below = 0;
+            for (int k = 1; k < 4 && !below; ++k) below = v[k] < 0.0 ? k : 0;
+            if (below) {
+                const double a = v[below - 1], b = v[below], low = Flow::nodes[below - 1], high = Flow::nodes[below];
+                falls_.push_back({low + (high - low) * a / (a - b), low, high, w});
+            } else if (w.kind == kGap) {
+                const double a = velocity(w.i).z, b = point_velocity(b_, flow_.samples[3], frame(flow_.samples[3].q), w.i).z;
+                const double least = lesser(lesser(v[0], v[1]), lesser(v[2], v[3]));
+                if (a < 0.0 && b > 0.0 && least < b_.size * 1e-3) dips_.push_back({0.9 * a / (a - b), 0.0, a / (a - b), w});
+            }
+        }
+        for (const Fall& d : dips_)
+            if (at(d.what, d.high) < 0.0) falls_.push_back(d);
+    }
+
+    // The zero of a margin that is below zero at the end of a bracket, by regula falsi (Illinois).
+    double located(const Watch& w, double low, double high) {
+        const double close = w.kind == kGap ? 0.5 * kGrazed * b_.size : w.kind == kShelf ? kClosed * b_.size : w.kind == kSlipping ? 1e-3 * kSlip * speed_ : slack_;
+        double at_low = at(w, low), at_high = at(w, high);
+        if (at_low < 0.0) high = low, at_high = at_low, low = 0.0, at_low = at(w, low);
+        at_low = greater(at_low, 0.0);
+        int side = 0;
+        for (int k = 0; k < kHalvings && at_high < -close && high - low > 1e-15; ++k) {
+            double middle = low + (high - low) * (at_low + 0.5 * close) / (at_low - at_high);  // aims a little below zero
+            if (!(low < middle && middle < high)) middle = 0.5 * (low + high);
+            const double value = at(w, middle);
+            if (value < 0.0) {
+                high = middle, at_high = value;
+                if (side < 0) at_low *= 0.5;
+                side = -1;
+            } else {
+                low = middle, at_low = value;
+                if (side > 0) at_high *= 0.5;
+                side = 1;
+            }
+        }
+        return high;
+    }
+
+    void watch() {
+        watched_.clear();
+        const Points& members = mode_.contact.members;
+        for (std::size_t k = 0; k < members.size(); ++k) {
+            const int i = members[k], slot = static_cast<int>(k);
+            const bool stuck = mode_.stuck(k);
+            if (!mode_.pulled) watched_.push_back({kNormal, i, slot});
+            if (stuck && !mode_.pulled && mu_ < kInfinite) watched_.push_back({kSticking, i, slot});
+            if (stuck) continue;
+            watched_.push_back({kSlipping, i, slot});
+            if (g_.ends()) watched_.push_back({kShelf, i, slot});
+        }
+        slides_.clear();
+        const Mat axes = frame(s_.q);
+        for (std::size_t k = 0; k < members.size(); ++k) slides_.push_back(mode_.stuck(k) ? Vec{} : slip_direction(b_, s_, axes, mode_, k));
+        const State& end = flow_.samples[3];
+        const Vec up = axes.c, after = frame(end.q).c;
+        const double fastest = greater(norm(s_.velocity) + b_.size * norm(s_.spin), norm(end.velocity) + b_.size * norm(end.spin));
+        const double reach = fastest * span_, high = s_.place.z, later = end.place.z;
+        // the vertices that are near keep being the same ones until the body has moved through their margin
+        travelled_ += reach;
+        if (!(travelled_ + 2.0 * reach <= margin_)) {
+            margin_ = greater(kMargin * b_.size, 4.0 * reach), travelled_ = reach;
+            near_.clear();
+            for (std::size_t i = 0; i < b_.points.size(); ++i)
+                if (high + dot(up, b_.points[i]) < margin_) near_.push_back(static_cast<int>(i));
+        }
+        for (int i : near_)
+            if (lesser(high + dot(up, b_.points[i]), later + dot(after, b_.points[i])) < reach && !has(members, i)) watched_.push_back({kGap, i, -1});
+    }
+
+    // What must not fall below zero: a height, an acceleration or a speed.
+    double margin(const Watch& w, const State& s, const Forces& f) const {
+        if (w.kind == kGap || w.kind == kShelf) {
+            const Mat axes = frame(s.q);
+            const Vec p = b_.points[w.i];
+            if (w.kind == kShelf) return g_.inside(s.place + axes * p);
+            const double height = s.place.z + dot(axes.c, p) + kGrazed * b_.size;
+            return !g_.ends() || height > 0.0 || g_.inside(s.place + axes * p) >= 0.0 ? height : kInfinite;
+        }
+        if (!f.found) return -1.0;
+        if (w.kind == kNormal) return f.normals[w.slot] / b_.mass + slack_;
+        if (w.kind == kSticking) return (mu_ * f.normals[w.slot] - f.pulls[w.slot]) / b_.mass + slack_ * (1.0 + mu_);
+        const double speed = dot(slides_[w.slot], point_velocity(b_, s, frame(s.q), w.i));
+        return speed + (mode_.starting[w.slot] ? 2.0 * kStill : -kSlip) * speed_;
+    }
+
+    double at(const Watch& w, double part) {
+        const State& s = to(part);
+        return margin(w, s, flow_.forces[3]);
+    }
+
+    // ---- contact ----
+
+    Vec velocity(int i) const { return point_velocity(b_, s_, frame(s_.q), i); }
+    double slip(int i) const {
+        const Vec v = velocity(i);
+        return std::sqrt(v.x * v.x + v.y * v.y);
+    }
+
+    void touch(Points& found, double reach = kClosed) const {
+        found.clear();
+        const Mat axes = frame(s_.q);
+        for (std::size_t i = 0; i < b_.points.size(); ++i) {
+            if (s_.place.z + dot(axes.c, b_.points[i]) > reach * b_.size) continue;
+            if (!g_.ends() || g_.inside(s_.place + axes * b_.points[i]) >= 0.0) found.push_back(static_cast<int>(i));
+        }
+    }
+
+    // Gravity less the acceleration of the ground, a moment later.
+    Vec pull() const {
+        if (stretch_ >= g_.motion->count) return g_.weight;
+        Field f;
+        g_.field(stretch_, time_, kAhead / pace_, f);
+        return f.at(1.0);
+    }
+
+    Problem problem_of(Vec field, double friction) const {
+        Problem p;
+        p.body = &b_, p.axes = frame(s_.q), p.linear = row_times(field, p.axes), p.spin = s_.spin, p.friction = friction;
+        p.angular = b_.inverse * cross(b_.inertia * s_.spin, s_.spin);
+        return p;
+    }
+    Problem velocities(double friction) const {
+        Problem p;
+        p.body = &b_, p.axes = frame(s_.q), p.linear = row_times(s_.velocity, p.axes), p.angular = s_.spin, p.friction = friction;
+        return p;
+    }
+
+    using Moving = std::vector<std::pair<int, Vec>>;
+    static const Vec* moving_of(const Moving& moving, int i) {
+        for (const auto& each : moving)
+            if (each.first == i) return &each.second;
+        return nullptr;
+    }
+
+    // What may stay, solved when asked for: first what sticks wherever it does not slide yet, larger faces first; flight last.
+    class Candidates {
+      public:
+        Candidates(const Problem& p, const Points& near, const Moving& moving, double still) : p_(p), moving_(moving), still_(still) {
+            std::vector<std::pair<std::size_t, Contact>> ways;
+            std::vector<Contact> states;
+            for (const Points& members : faces(p, near)) {
+                Points free;
+                for (int i : members)
+                    if (!moving_of(moving, i)) free.push_back(i);
+                states.clear();
+                friction_states(members, free, states);
+                for (Contact& way : states)
+                    if (p.friction < kInfinite || way.stuck == members) ways.push_back({free.size() - way.stuck.size(), std::move(way)});
+            }
+            std::stable_sort(ways.begin(), ways.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+            for (auto& way : ways) order_.push_back(std::move(way.second));
+            order_.push_back({});
+        }
+
+        // Null after the last one.
+        const Solution* operator[](std::size_t k) {
+            while (made_.size() <= k && next_ < order_.size()) {
+                Solution s;
+                s.contact = order_[next_++];
+                s.directions.assign(s.contact.members.size(), Vec{});
+                for (std::size_t j = 0; j < s.contact.members.size(); ++j) {
+                    const Vec* d = moving_of(moving_, s.contact.members[j]);
+                    if (d && !has(s.contact.stuck, s.contact.members[j])) s.directions[j] = *d;
+                }
+                if (sliding(p_, still_, s)) made_.push_back(std::move(s));
+            }
+            return k < made_.size() ? &made_[k] : nullptr;
+        }
+
+      private:
+        const Problem& p_;
+        const Moving& moving_;
+        double still_;
+        std::vector<Contact> order_;
+        std::vector<Solution> made_;
+        std::size_t next_ = 0;
+    };
+
+    // What stands in where no candidate obeys every law: no gap closes, and the ground pulls least.
+    template <class Fits>
+    static const Solution* least_pull(const Problem& p, Candidates& all, const Points& touching, double slack, Fits fits) {
+        const Solution* best = nullptr;
+        double most = -kInfinite;
+        const Solution* pushed = nullptr;
+        for (std::size_t k = 0; const Solution* c = all[k]; ++k) {
+            if (!fits(*c) || c->contact.members.empty() || !clear(p, *c, touching, slack)) continue;
+            const double least = *std::min_element(c->normals.begin(), c->normals.end());
+            if (!pushed && least >= -slack * p.body->mass) pushed = c;
+            if (least > most) most = least, best = c;
+            if (pushed) break;
+        }
+        return pushed ? pushed : best;
+    }
+
+    static bool same(Points a, Points b) {
+        std::sort(a.begin(), a.end()), std::sort(b.begin(), b.end());
+        return a == b;
+    }
+
+    // The first candidate whose forces obey every law. exclude: what has just ended; closed: what an impact has stopped;
+    // leaves: one of its vertices leaves, so that no way of sticking or sliding keeps all of them.
+    void choose(const Points& touching, const Contact* exclude = nullptr, const Points* closed = nullptr, bool leaves = false) {
+        if (ended_ != kGood || guarded()) return;
+        Points near;
+        for (int i : touching)
+            if ((closed && has(*closed, i)) || velocity(i).z <= slow_) near.push_back(i);
+        Problem p = problem_of(pull(), mu_);
+        p.forces = true;
+        Moving moving;
+        if (mu_ < kInfinite)
+            for (int i : near)
+                if (slip(i) > 3.0 * kStill * speed_) {
+                    const Vec v = velocity(i);
+                    moving.push_back({i, row_times(unit({v.x, v.y, 0.0}), p.axes)});
+                }
+        Candidates candidates(p, near, moving, 1e-5 * g_.gravity);
+        const bool crowd = crowded();
+        for (std::size_t level = crowd ? kLadder.size() : 0; level < kLadder.size(); ++level)
+            for (std::size_t k = 0; const Solution* found = candidates[k]; ++k) {
+                const Contact& c = found->contact;
+                if (exclude && same(c.members, exclude->members) && (leaves || same(c.stuck, exclude->stuck))) continue;
+                if (valid(p, *found, near, kLadder[level] * g_.gravity)) return take(p, *found, moving);
+            }
+        if (!moving.empty() && !mode_.pulled && !crowd) return shocked(near);
+        const Solution* best = crowd ? nullptr : least_pull(p, candidates, near, 1e-9 * g_.gravity, [](const Solution&) { return true; });
+        if (!best && candidates[0] && !candidates[0]->contact.members.empty()) best = candidates[0];
+        if (!best && crowd) best = least_pull(p, candidates, near, 1e-9 * g_.gravity, [](const Solution&) { return true; });
+        if (!best) return end_with(kNoContactForce);
+        r_.held += !(best->contact == mode_.contact) || !mode_.pulled;
+        take(p, *best, moving);
+        mode_.pulled = true;
+    }
+
+    bool crowded() {
+        if (time_ - since_ > kCrowded / pace_) changes_ = 0, since_ = time_;
+        changes_ += !mode_.pulled;
+        return changes_ > kCrowd || at_once_ > kPiled;
+    }
+
+    bool guarded() {
+        at_once_ = time_ <= moment_ ? at_once_ + 1 : 0;
+        moment_ = time_;
+        if (at_once_ > kMany) ended_ = kStuck;
+        if (r_.events > set_.most_events) ended_ = kTooManyEvents;
+        return ended_ != kGood;
+    }
+
+    void end_with(Status status) { ended_ = status; }
+
+    void take(const Problem& p, const Solution& found, const Moving& moving) {
+        const Contact& c = found.contact;
+        const std::size_t n = c.members.size();
+        if (mode_.contact.members.size() > 2 && n < 3) {
+            if (!r_.uplifts++) r_.first_uplift = time_;
+        }
+        Mode mode;
+        mode.contact = c, mode.starts.assign(n, Vec{}), mode.starting.assign(n, 0);
+        Points still;
+        for (std::size_t k = 0; k < n; ++k) {
+            const bool moves = moving_of(moving, c.members[k]);
+            if (!moves) still.push_back(c.members[k]);
+            if (has(c.stuck, c.members[k]) || (moves && slip(c.members[k]) > kSlides * speed_)) continue;
+            mode.starting[k] = 1, mode.starts[k] = p.axes * found.directions[k];
+        }
+        mode_ = mode, bordered_ = false;
+        flow_.start(mode_);
+        if (!c.stuck.empty()) anchor_ = s_.place + p.axes * b_.points[c.stuck[0]];
+        const double before = kinetic();
+        settle_on(mode_.contact, still);
+        r_.lost += before - kinetic();
+        length_ = lesser(length_, 0.02 / pace_);
+        flew_ |= n == 0, slid_ |= c.stuck.size() < n, rocked_ |= n > 0 && n < 3;
+        if (mode_.resting()) s_.velocity = s_.spin = {};
+    }
+
+    double kinetic() const { return 0.5 * (b_.mass * dot(s_.velocity, s_.velocity) + dot(s_.spin, b_.inertia * s_.spin)); }
+    double energy() const { return kinetic() - b_.mass * dot(g_.weight, s_.place); }
+
+    // Takes drift and rounding out of attitude, place and velocities; still: which have no slip.
+    void settle_on(const Contact& c, const Points& still) {
+        const Points& members = c.members;
+        if (members.empty()) return;
+        for (int k = 0; k < (members.size() > 1 ? 2 : 0); ++k) level(members);
+        const Mat axes = frame(s_.q);
+        const Vec first = axes * b_.points[c.stuck.empty() ? members[0] : c.stuck[0]];
+        if (!c.stuck.empty()) s_.place.x = anchor_.x - first.x, s_.place.y = anchor_.y - first.y;
+        s_.place.z = -first.z;
+        if (members.size() == 1) {
+            const int i = members[0];
+            const Vec at = row_times(s_.velocity, axes) + cross(s_.spin, b_.points[i]);
+            const bool sticks = !still.empty() || !c.stuck.empty();
+            const Vec push = sticks ? -1.0 * (b_.stiff[i] * at) : -dot(axes.c, at) / dot(axes.c, b_.soft[i] * axes.c) * axes.c;
+            s_.velocity = s_.velocity + 1.0 / b_.mass * (axes * push), s_.spin = s_.spin + b_.inverse * cross(b_.points[i], push);
+            return;
+        }
+        project(c, still.empty() ? c.stuck : still);
+    }
+
+    // Makes a contact stick, or keep its height, by an impact without friction.
+    bool project(const Contact& c, const Points& stuck) {
+        if (c.members.empty()) return false;
+        const Problem p = velocities(kInfinite);
+        Solution s;
+        s.contact = {c.members, stuck};
+        s.directions.assign(c.members.size(), Vec{});
+        Points all(c.members.size());
+        for (std::size_t k = 0; k < all.size(); ++k) all[k] = static_cast<int>(k);
+        if (!linear(p, all, s)) return false;
+        s_.velocity = p.axes * s.linear, s_.spin = s.angular;
+        return true;
+    }
+
+    // Turns by the least small angle that brings an edge or a facet onto the ground.
+    void level(const Points& members) {
+        const Mat axes = frame(s_.q);
+        const std::size_t n = members.size();
+        const Vec a = b_.points[members[0]], edge = axes * (b_.points[members[n < 4 ? n / 2 : n / 3]] - a);
+        Vec turn;
+        if (n == 2) {
+            const double flat = edge.x * edge.x + edge.y * edge.y;
+            turn = {-edge.z * edge.y / flat, edge.z * edge.x / flat, 0.0};
+        } else {
+            Vec normal = unit(cross(edge, axes * (b_.points[members[2 * n / 3]] - a)));
+            if (!(normal.z > 0.0)) normal = -1.0 * normal;
+            turn = {normal.y, -normal.x, 0.0};
+        }
+        const double x = 0.5 * turn.x, y = 0.5 * turn.y, *q = s_.q;
+        double made[4] = {q[0] - x * q[1] - y * q[2], q[1] + x * q[0] + y * q[3], q[2] + y * q[0] - x * q[3], q[3] + x * q[2] - y * q[1]};  // Eq. 80
+        normalise(made);
+        std::copy(made, made + 4, s_.q);
+    }
+
+    // ---- impacts ----
+
+    void impact() {
+        const Points old = mode_.contact.members;
+        Points touching;
+        touch(touching);
+        const double before = kinetic();
+        Problem p = velocities(mu_);
+        const Moving none;
+        const double fastest = norm(p.linear) + b_.size * norm(p.angular);
+        const auto fits = [&](const Solution& s) { return 0.5 * (b_.mass * dot(s.linear, s.linear) + dot(s.angular, b_.inertia * s.angular)) <= before * (1.0 + 1e-12); };
+        const Solution* found = nullptr;
+        std::vector<Candidates> tried;  // keeps what `found` points to
+        tried.reserve(2);
+        Problem both[2] = {p, p};
+        int last = 0;
+        bool piled = false;
+        for (int attempt = 0; attempt < 2; ++attempt) {
+            last = attempt;
+            Problem& now = both[attempt];
+            if (attempt == 0 && !old.empty())
+                for (int i : touching)
+                    if (!has(old, i)) now.places.push_back({i, law_.place(b_, nearest(b_, old, b_.points[i]), b_.points[i])});
+            tried.emplace_back(now, touching, none, 0.0);
+            Candidates& all = tried.back();
+            for (int l = 0; l < 3 && !found; ++l)
+                for (std::size_t k = 0; const Solution* c = all[k]; ++k)
+                    if (fits(*c) && valid(now, *c, touching, kLadder[l] * fastest)) {
+                        found = c;
+                        break;
+                    }
+            if (at_once_ > kPiled) {
+                found = nullptr, piled = true;
+                break;
+            }
+            if (found || old.empty()) break;
+            ++r_.replaced;
+        }
+        if (!found) {
+            ++r_.held;
+            if (!piled) found = least_pull(both[last], tried.back(), touching, 1e-9 * fastest, fits);
+        }
+        Points closed = touching;
+        if (found) {
+            s_.velocity = p.axes * found->linear, s_.spin = found->angular;
+            closed = found->contact.members;
+        } else {
+            pile(touching);
+        }
+        r_.lost += before - kinetic();
+        choose(touching, nullptr, &closed);
+        calm();
+        ++r_.events, ++r_.impacts;
+        keep();
+    }
+
+    // Makes the largest face stick by a plastic impact, pulled or not.
+    void pile(const Points& touching) {
+        const Problem p = velocities(0.0);
+        const auto all = faces(p, touching);
+        if (!all.empty()) project({all[0], {}}, all[0]);
+    }
+
+    // Lets vertices that slide stick at once where no force is possible (Painleve).
+    void shocked(const Points& touching) {
+        const Points kept = touching;
+        const double before = kinetic();
+        pile(kept);
+        r_.lost += before - kinetic();
+        choose(kept, nullptr, &kept);
+    }
+
+    // Lays a body flat that hardly moves above a facet, if the ground holds it there.
+    void calm() {
+        Points near;
+        touch(near, 10.0 * set_.rest_speed * set_.rest_speed);
+        if (mode_.resting() || near.size() < 3 || ended_ != kGood) return;
+        const State state = s_;
+        const Vec anchor = anchor_;
+        const double lost = r_.lost, before = energy();
+        const Problem p = problem_of(pull(), kInfinite);
+        const Points members = faces(p, near)[0];
+        if (members.size() < 3) return;
+        Solution held;
+        held.contact = {members, members};
+        held.directions.assign(members.size(), Vec{});
+        if (!solve(p, held) || !(*std::min_element(held.normals.begin(), held.normals.end()) > 0.0)) return;
+        for (int sticks = 1; sticks >= (mu_ < kInfinite ? 0 : 1); --sticks) {
+            if (sticks) anchor_ = s_.place + p.axes * b_.points[members[0]];
+            settle_on({members, sticks ? members : Points{}}, {});
+            if (before - energy() <= weak_) {
+                choose(near, nullptr, &near);
+                r_.lost = lost + before - energy();
+                return;
+            }
+            s_ = state, anchor_ = anchor;
+        }
+    }
+
+    const Body& b_;
+    const Ground& g_;
+    Law law_;
+    const double mu_;
+    const Settings& set_;
+    Flow flow_;
+    double pace_, speed_, slow_, slack_, weak_, length_, span_, until_ = 0.0, time_ = 0.0, part_ = -1.0;
+    std::int64_t stretch_ = 0;
+    State s_, start_;
+    Mode mode_;
+    Vec anchor_, first_, upright_, up_;
+    Field field_;
+    int stood_ = 0, under_ = 0, at_once_ = 0, changes_ = 0;
+    double moment_ = -1.0, since_ = 0.0, tilt_ = 1.0, tilting_ = 0.0, kept_ = 0.0, peak_ = 1.0, margin_ = -1.0, travelled_ = 0.0;
+    bool bordered_ = false, fell_ = false, flew_ = false, slid_ = false, rocked_ = false;
+    Status ended_ = kGood;
+    std::vector<Side> sides_;
+    Points touching_, near_;
+    Vecs slides_;
+    std::vector<Watch> watched_;
+    std::vector<Fall> falls_, dips_;
+    Result r_;
+};
+
+}  // namespace rocking::hull

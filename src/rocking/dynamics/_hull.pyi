@@ -1,0 +1,21 @@
+from typing import Any
+
+from rocking.conventions import FloatArray, IntArray
+
+class Library:
+    def __init__(self) -> None: ...
+    def add_body(self, mass: float, inertia: FloatArray, vertices: FloatArray, facets: FloatArray, **lists: Any) -> None: ...
+    def add_nobody(self) -> None: ...
+    def add_motion(self, times: FloatArray, rows: FloatArray) -> None: ...
+    def run(
+        self,
+        numbers: FloatArray,
+        choices: IntArray,
+        results: FloatArray,
+        counts: IntArray,
+        gravity: float,
+        rest_speed: float,
+        tolerance: float,
+        most_events: int,
+        threads: int,
+    ) -> None: ...
