@@ -20,7 +20,7 @@ template <class T>
 using Table = nb::ndarray<T, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Whole = std::int64_t;
 
-constexpr int kNumbers = 28, kChoices = 3, kResults = 10, kCounts = 10;
+constexpr int kNumbers = 29, kChoices = 3, kResults = 10, kCounts = 10;
 constexpr Whole kChunk = 4;
 
 static void expect(bool fine, const char* what) {
@@ -40,6 +40,9 @@ static void lists(Line<const Whole> first, Line<const Whole> members, std::size_
 
 class Library {
   public:
+    Library() = default;
+    Library(const Library&) = delete;
+
     // positions: intervals of k of landings on the base, none where they are not known.
     void add_body(double mass, Table<const double> inertia, Table<const double> vertices, Table<const double> facets, Line<const Whole> poses,
                   Line<const Whole> first, Line<const Whole> beside, Line<const Whole> first_corner, Line<const Whole> corners, Table<const double> positions) {
@@ -72,8 +75,7 @@ class Library {
         motions_.push_back({t, kept_.back().data(), static_cast<Whole>(rows.shape(0)), powers - 1});
     }
 
-    void run(Table<const double> numbers, Table<const Whole> choices, Table<double> results, Table<Whole> counts, double gravity, double rest_speed,
-             double tolerance, Whole most_events, int threads) const {
+    void run(Table<const double> numbers, Table<const Whole> choices, Table<double> results, Table<Whole> counts, double rest_speed, double tolerance, Whole most_events, int threads) const {
         const auto rows = static_cast<Whole>(numbers.shape(0));
         const auto fits = [&](const auto& a, int columns) { return static_cast<Whole>(a.shape(0)) == rows && static_cast<int>(a.shape(1)) == columns; };
         expect(fits(numbers, kNumbers) && fits(choices, kChoices) && fits(results, kResults) && fits(counts, kCounts) && threads > 0, "tables of histories expected");
@@ -87,7 +89,7 @@ class Library {
         auto labour = [&] {
             for (Whole begin; (begin = next.fetch_add(kChunk)) < rows;)
                 for (Whole row = begin; row < std::min(begin + kChunk, rows); ++row)
-                    write(one(v + row * kNumbers, c + row * kChoices, set, gravity), out + row * kResults, whole + row * kCounts);
+                    write(one(v + row * kNumbers, c + row * kChoices, set), out + row * kResults, whole + row * kCounts);
         };
         std::vector<std::thread> crew;
         for (Whole k = 1; k < std::min<Whole>(threads, (rows + kChunk - 1) / kChunk); ++k) crew.emplace_back(labour);
@@ -97,17 +99,17 @@ class Library {
 
   private:
     // Numbers: coefficient, scale, horizon, friction; axes of the plane; half sizes of the shelf; attitude, place, velocity,
-    // spin. Choices: body, motion, law.
-    Result one(const double* v, const Whole* c, const Settings& set, double gravity) const {
+    // spin; gravity. Choices: body, motion, law.
+    Result one(const double* v, const Whole* c, const Settings& set) const {
         for (int k = 0; k < kNumbers; ++k)
             if (!(std::fabs(v[k]) <= 1e9) && !(v[k] == kInfinite && (k == 3 || k == 13 || k == 14))) return {};
         const auto there = [](Whole k, const auto& all) { return k >= 0 && k < static_cast<Whole>(all.size()); };
-        if (!there(c[0], bodies_) || !there(c[1], motions_) || !bodies_[c[0]]->usable || !(v[3] >= 0.0 && v[13] > 0.0 && v[14] > 0.0)) return {};
+        if (!there(c[0], bodies_) || !there(c[1], motions_) || !bodies_[c[0]]->usable || !(v[3] >= 0.0 && v[13] > 0.0 && v[14] > 0.0 && v[28] > 0.0)) return {};
         const Body& b = *bodies_[c[0]];
         if (!(c[2] == kHousner || (c[2] == kCoefficient && v[0] >= 0.0 && v[0] <= 1.0) || (c[2] == kKed && b.intervals > 0))) return {};
         Ground g;
-        g.motion = &motions_[c[1]], g.scale = v[1], g.gravity = gravity, g.level = mat(v + 4), g.shelf[0] = v[13], g.shelf[1] = v[14];
-        g.weight = g.level * Vec{0.0, 0.0, -gravity};
+        g.motion = &motions_[c[1]], g.scale = v[1], g.gravity = v[28], g.level = mat(v + 4), g.shelf[0] = v[13], g.shelf[1] = v[14];
+        g.weight = g.level * Vec{0.0, 0.0, -g.gravity};
         State s{vec(v + 19), {v[15], v[16], v[17], v[18]}, vec(v + 22), vec(v + 25)};
         const double length = s.q[0] * s.q[0] + s.q[1] * s.q[1] + s.q[2] * s.q[2] + s.q[3] * s.q[3];
         if (!(std::fabs(length - 1.0) < 1e-9)) return {};
@@ -137,6 +139,6 @@ NB_MODULE(_hull, m) {
              "corners"_a, "positions"_a)
         .def("add_nobody", &Library::add_nobody)
         .def("add_motion", &Library::add_motion, "times"_a, "rows"_a)
-        .def("run", &Library::run, "numbers"_a, "choices"_a, "results"_a, "counts"_a, "gravity"_a, "rest_speed"_a, "tolerance"_a, "most_events"_a,
+        .def("run", &Library::run, "numbers"_a, "choices"_a, "results"_a, "counts"_a, "rest_speed"_a, "tolerance"_a, "most_events"_a,
              "threads"_a);
 }

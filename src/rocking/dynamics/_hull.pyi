@@ -13,7 +13,6 @@ class Library:
         choices: IntArray,
         results: FloatArray,
         counts: IntArray,
-        gravity: float,
         rest_speed: float,
         tolerance: float,
         most_events: int,

@@ -1,7 +1,8 @@
-"""Bodies on the vertices of their convex hull: rocking, sliding, flight and falls in space; the reference engine."""
+"""Bodies on the vertices of their convex hull: rocking, sliding, flight and falls in space."""
 
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.engine import HullEngine, HullSettings, standing
 from rocking.dynamics.hull.ground import HullGround
+from rocking.dynamics.hull.histories import HullBatch, hull_histories
 
-__all__ = ["HullBody", "HullEngine", "HullGround", "HullSettings", "standing"]
+__all__ = ["HullBatch", "HullBody", "HullEngine", "HullGround", "HullSettings", "hull_histories", "standing"]

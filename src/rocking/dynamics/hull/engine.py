@@ -51,6 +51,7 @@ _AHEAD = 1e-6  # how much later, over sqrt(size / g), the ground decides which m
 _PILED, _STUCK = 30, 200
 _CROWD, _CROWDED = 30, 1e-2  # changes of contact, and the time over sqrt(size / g) within which they are too many
 _PATIENCE = 100.0
+_PATH = (1.0 / 12.0, 10.0 / 21.0, 5.0 / 12.0, 1.0 / 42.0)
 _HALVINGS = 80
 
 
@@ -73,6 +74,15 @@ class HullEvent(NamedTuple):
     after: float  # kinetic energy after [J]
 
 
+class _Watched(NamedTuple):
+    """The end of a step."""
+
+    time: float
+    up: Vector  # in axes of the body
+    tilt: float  # cosine of the angle from the pose at the beginning
+    rate: float  # of that [1/s]
+
+
 @dataclass
 class HullHistory:
     """A history at the ends of its steps."""
@@ -93,6 +103,20 @@ class HullHistory:
     fell: bool = False  # off the shelf
     pose: int = -1  # the stable pose in which it ends, or to which it is on its way
     overturning_time: float = math.nan  # when its centre left the first pose for the last time [s]
+    direction: float = math.nan  # in which it leant then, from x towards y [rad]
+    least_cosine: float = 1.0  # of the angle from the pose at the beginning
+    peak_time: float = 0.0  # of that [s]
+    peak_spin: float = 0.0  # largest angular velocity [rad/s]
+    sliding_distance: float = 0.0  # path of the vertex that slides most [m]
+    first_uplift: float = math.nan  # [s]
+    uplifts: int = 0
+    steps: int = 0
+
+    @property
+    def peak_tilt(self) -> float:
+        """Largest angle from the pose at the beginning [rad]."""
+        least = self.least_cosine
+        return math.atan2(math.sqrt(max((1.0 - least) * (1.0 + least), 0.0)), least)
 
 
 @dataclass(frozen=True)
@@ -185,6 +209,8 @@ class HullEngine:
         self.state = state
         self.until = max(horizon, self.ground.motion.end)
         self.stood = self.under = self.body.under(frame(state.attitude)[2])
+        self.upright = scaled(-1.0, unit(self.body.facets[self.stood]))
+        self.watched: _Watched | None = None
         self.law = law_of(self.restitution, self.body, self.stood)
         if any(point_velocity(self.body, state, i)[2] < -_SLIP * 1e-4 * self.speed for i in self._touching()):
             self._impact()
@@ -228,14 +254,47 @@ class HullEngine:
             made.outcome = Outcome.ROCKED_AND_SLID if made.slid else Outcome.ROCKED
         elif made.slid:
             made.outcome = Outcome.SLID
+        if made.outcome is Outcome.OVERTURNED:
+            made.still_rocking = False
+        else:
+            made.overturning_time = made.direction = math.nan
         return made
 
     def _watch(self) -> None:
-        """Note when the vertical through the centre of mass leaves a facet that leads to the first pose."""
-        under, poses = self.body.under(frame(self.state.attitude)[2]), self.body.poses
-        if poses[under] != poses[self.under] == poses[self.stood]:
-            self.history.overturning_time = self.time
-        self.under = under
+        """Note peaks, and when the vertical through the centre of mass leaves a facet that leads to the first pose."""
+        made, axes = self.history, frame(self.state.attitude)
+        up, tilt = axes[2], dot(self.upright, axes[2])
+        last = _Watched(self.time, up, tilt, -dot(self.upright, cross(self.state.spin, up)))
+        peaks = [(tilt, self.time)]
+        span = self.time - self.watched.time if self.watched else 0.0
+        if self.watched and span > 0.0 and self.watched.rate < 0.0 < last.rate:
+            low, rise = (self.watched.rate * span, last.rate * span), tilt - self.watched.tilt
+            cubic, square = sum(low) - 2.0 * rise, 3.0 * rise - 2.0 * low[0] - low[1]
+            at = -low[0] / (square + math.sqrt(max(square * square - 3.0 * cubic * low[0], 0.0)))
+            between = self.watched.tilt + at * (low[0] + at * (square + at * cubic))
+            peaks.append((between, self.watched.time + at * span))
+        made.least_cosine, made.peak_time = min((made.least_cosine, made.peak_time), *peaks)
+        made.peak_spin = max(made.peak_spin, length(self.state.spin))
+        under, poses = self.body.under(up), self.body.poses
+        if self.watched and poses[under] != poses[self.under] == poses[self.stood]:
+            apart = minus(self.body.facets[self.under], self.body.facets[under])
+            before, after = dot(apart, self.watched.up), dot(apart, up)
+            made.overturning_time = self.watched.time - (before / (after - before) if after > before else -1.0) * span
+            x, y, _ = applied(axes, self.upright)
+            made.direction = math.atan2(y, x)
+        self.under, self.watched = under, last
+
+    def _slide(self, result: StepResult, span: float) -> None:
+        """Add the path of the vertex that slides most: exact for cubics at the four stages that are kept."""
+        loose = [i for i in self.mode.contact.members if i not in self.mode.contact.stuck]
+        paths = [
+            sum(
+                w * math.hypot(*point_velocity(self.body, s, i)[:2])
+                for w, (_, s, _) in zip(_PATH, result.samples, strict=True)
+            )
+            for i in loose
+        ]
+        self.history.sliding_distance += span * max(paths, default=0.0)
 
     # ---- rest -------------------------------------------------------------------------------------------------------
 
@@ -297,6 +356,7 @@ class HullEngine:
 
     def _step(self) -> None:
         body, start = self.body, self.state
+        self.history.steps += 1
         moving = self.stretch < self.ground.motion.count
         left = (float(self.ground.motion.times[self.stretch + 1]) if moving else math.inf) - self.time
         whole = min(self.length, left, 2e-3 / self.pace if self.mode.starts else left)
@@ -326,6 +386,7 @@ class HullEngine:
         part, kind = self._first_event(result, to)
         if kind:
             result = to(part)
+        self._slide(result, part * whole)
         self.time = self.time + part * whole
         if not kind and whole == left:
             self.stretch += 1
@@ -555,8 +616,11 @@ class HullEngine:
     def _take(self, problem: Problem, found: Solution, moving: dict[int, Vector]) -> None:
         slow = [i for i in found.directions if i not in moving or self._slip(i) <= _SLIDES * self.speed]
         starts = {i: applied(problem.axes, found.directions[i]) for i in slow}
+        made, axes = self.history, problem.axes
+        if len(self.mode.contact.members) > 2 > len(found.contact.members) - 1:
+            made.first_uplift = made.first_uplift if made.uplifts else self.time
+            made.uplifts += 1
         self.mode = self._mode(found.contact, starts)
-        axes = problem.axes
         self.anchors = {
             i: added(self.state.place, 1.0, applied(axes, self.body.points[i])) for i in found.contact.stuck
         }
@@ -564,7 +628,6 @@ class HullEngine:
         self._settle_on(found.contact, tuple(i for i in found.contact.members if i not in moving))
         self.history.lost += before - energies(self.body, self.state, ZERO)[0]
         self.length = min(self.length, 0.02 / self.pace)
-        made = self.history
         made.flew |= not found.contact.members
         made.slid |= any(i not in found.contact.stuck for i in found.contact.members)
         made.rocked |= 0 < len(found.contact.members) < 3

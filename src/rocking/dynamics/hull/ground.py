@@ -1,7 +1,7 @@
 """The ground: a plane that may be tilted, and may end, and its acceleration."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from rocking import checks, conventions
@@ -40,12 +40,14 @@ class HullGround:
     azimuth: float = 0.0
     shelf: tuple[float, float] | None = None
     gravity: float = conventions.g
+    motion: SpatialGround = field(init=False, repr=False)  # the three components on common stretches of time
+    level: Frame = field(init=False, repr=False)  # level axes to axes of the plane
 
     def __post_init__(self) -> None:
         """Check the values and cut the motions to common stretches."""
         checks.within("slope", self.slope, 0.0, 0.5 * math.pi, unit="rad", open_high=True)
         checks.within("gravity", self.gravity, 0.0, 1e6, unit="m/s2", open_low=True)
-        object.__setattr__(self, "_motion", ground_of(self.x, self.y, self.vertical))
+        object.__setattr__(self, "motion", ground_of(self.x, self.y, self.vertical))
         c, s, cc, ss = math.cos(self.azimuth), math.sin(self.azimuth), math.cos(self.slope), math.sin(self.slope)
         # turned about the horizontal line across the direction in which the plane falls
         rows: Frame = (
@@ -53,17 +55,12 @@ class HullGround:
             (c * s * (cc - 1.0), s * s * cc + c * c, -s * ss),
             (c * ss, s * ss, cc),
         )
-        object.__setattr__(self, "_level", rows)
-
-    @property
-    def motion(self) -> SpatialGround:
-        """The three components on common stretches of time."""
-        return self.__dict__["_motion"]  # type: ignore[no-any-return]
+        object.__setattr__(self, "level", rows)
 
     @property
     def weight(self) -> Vector:
         """Gravity, in axes of the plane [m/s2]."""
-        return applied(self.__dict__["_level"], (0.0, 0.0, -self.gravity))
+        return applied(self.level, (0.0, 0.0, -self.gravity))
 
     def field(self, stretch: int, start: float, span: float) -> list[Vector]:
         """Return gravity less the ground's acceleration over a span, by powers of its share, in axes of the plane.
@@ -83,7 +80,7 @@ class HullGround:
         rows = self.motion.part(stretch, start, span)
         found = []
         for k in range(rows.shape[1]):
-            a = applied(self.__dict__["_level"], (float(rows[0, k]), float(rows[1, k]), float(rows[2, k])))
+            a = applied(self.level, (float(rows[0, k]), float(rows[1, k]), float(rows[2, k])))
             found.append(minus(self.weight if k == 0 else (0.0, 0.0, 0.0), a))
         return found
 
