@@ -268,10 +268,12 @@ class HullEngine:
         peaks = [(tilt, self.time)]
         span = self.time - self.watched.time if self.watched else 0.0
         if self.watched and span > 0.0 and self.watched.rate < 0.0 < last.rate:
-            low, rise = (self.watched.rate * span, last.rate * span), tilt - self.watched.tilt
-            cubic, square = sum(low) - 2.0 * rise, 3.0 * rise - 2.0 * low[0] - low[1]
-            at = -low[0] / (square + math.sqrt(max(square * square - 3.0 * cubic * low[0], 0.0)))
-            between = self.watched.tilt + at * (low[0] + at * (square + at * cubic))
+            # the least cosine of Hermite's cubic
+            first, second, rise = self.watched.rate * span, last.rate * span, tilt - self.watched.tilt
+            cubic, square = first + second - 2.0 * rise, 3.0 * rise - 2.0 * first - second
+            slope = square + math.sqrt(max(square * square - 3.0 * cubic * first, 0.0))
+            at = min(-first / slope, 1.0) if slope > 0.0 else 1.0
+            between = self.watched.tilt + at * (first + at * (square + at * cubic))
             peaks.append((between, self.watched.time + at * span))
         made.least_cosine, made.peak_time = min((made.least_cosine, made.peak_time), *peaks)
         made.peak_spin = max(made.peak_spin, length(self.state.spin))

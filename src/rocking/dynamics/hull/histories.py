@@ -57,7 +57,7 @@ class HullBatch:
         return overturned(self["outcome"])
 
 
-def hull_histories(
+def hull_histories(  # noqa: PLR0913 - the axes of a study
     bodies: HullBody | Sequence[HullBody],
     grounds: HullGround | Sequence[HullGround],
     restitution: Any = "housner-3d",
