@@ -202,25 +202,31 @@ inline bool sliding(const Problem& p, double still, Solution& s) {
         if (!has(others, i)) holding.contact.stuck.push_back(i);
     if (solve(p, holding))
         for (int k : free) s.directions[k] = unit(-1.0 * holding.pulls[k]);
+    const std::size_t n = free.size();
     std::vector<double> soft;
     for (int k : free) {
         const Mat& w = p.body->soft[members[k]];
-        soft.push_back(greater(dot(p.axes.a, w * p.axes.a), dot(p.axes.b, w * p.axes.b)) * p.friction * static_cast<double>(free.size()));
+        soft.push_back(greater(dot(p.axes.a, w * p.axes.a), dot(p.axes.b, w * p.axes.b)) * p.friction * static_cast<double>(n));
     }
-    Vecs after;
+    Vecs after(n), moved(n), last(n);
     for (int turn = 0; turn < kTurns; ++turn) {
         if (!solve(p, s)) return false;
-        double change = 0.0;
-        after = s.directions;
-        for (std::size_t j = 0; j < free.size(); ++j) {
+        double change = 0.0, along = 0.0, square = 0.0;
+        for (std::size_t j = 0; j < n; ++j) {
             const int k = free[j];
             const Vec rate = p.rate(members[k], s.linear, s.angular), slip = rate - dot(rate, p.axes.c) * p.axes.c, before = s.directions[k];
-            if (norm(slip) <= still && dot(before, before) > 0.0) continue;
-            after[k] = unit(slip + soft[j] * greater(s.normals[k], 0.0) * before);  // Eq. 257
-            change = greater(change, norm(after[k] - before));
+            const bool only_starts = norm(slip) <= still && dot(before, before) > 0.0;
+            after[j] = only_starts ? before : unit(slip + soft[j] * greater(s.normals[k], 0.0) * before);  // Eq. 257
+            moved[j] = after[j] - before;
+            change = greater(change, norm(moved[j]));
+            along += dot(moved[j], last[j]), square += dot(last[j], last[j]);
         }
         if (change <= kStraight) return true;
-        s.directions = after;
+        // every third turn goes where the last two, as a geometric series, lead to (Aitken)
+        const double ratio = turn % 3 == 2 && square > 0.0 ? along / square : 0.0;
+        const double further = std::fabs(ratio) < 0.98 ? ratio / (1.0 - ratio) : 0.0;
+        for (std::size_t j = 0; j < n; ++j) s.directions[free[j]] = further != 0.0 ? unit(after[j] + further * moved[j]) : after[j];
+        last = moved;
     }
     return s.exists = false;
 }

@@ -198,14 +198,22 @@ class Run {
         return flow_.samples[3];
     }
 
-    bool starting() const { return std::find(mode_.starting.begin(), mode_.starting.end(), 1) != mode_.starting.end(); }
+    // Slip of what only starts to slide, at the end of the step, over what ends that.
+    double fastest_start() const {
+        double most = 0.0;
+        for (std::size_t k = 0; k < mode_.starting.size(); ++k)
+            if (mode_.starting[k]) {
+                const Vec v = point_velocity(b_, flow_.samples[3], frame(flow_.samples[3].q), mode_.contact.members[k]);
+                most = greater(most, std::sqrt(v.x * v.x + v.y * v.y));
+            }
+        return most / (kSlides * speed_);
+    }
 
     void step() {
         ++r_.steps;
         const bool moving = stretch_ < g_.motion->count;
         const double left = (moving ? g_.time(stretch_ + 1) : kInfinite) - time_;
         double whole = lesser(length_, left);
-        if (starting()) whole = lesser(whole, 2e-3 / pace_);
         if (whole < left && left < 2.0 * whole) whole = 0.5 * left;
         g_.field(stretch_, time_, whole, field_);
         start_ = s_, span_ = whole, part_ = -1.0;
@@ -222,6 +230,11 @@ class Run {
                 }
                 return;
             }
+        const double fast = fastest_start();
+        if (fast > 2.0 && whole * pace_ > 2e-3) {
+            length_ = whole * greater(1.5 / fast, 0.1);
+            return;
+        }
         const double growth = 0.9 * std::pow(set_.tolerance / greater(error, 1e-300), 0.2);
         if (error > set_.tolerance && whole * pace_ > 1e-10) {
             length_ = whole * greater(0.1, growth);
