@@ -141,17 +141,21 @@ inline bool linear(const Problem& p, const Points& carrying, Solution& s) {
         }
     int size = shapes;
     if (rest) {
-        Vec centre;
-        for (int i : stuck) centre = centre + 1.0 / rest * p.place(i);
-        const int one = stuck[0], other = stuck[rest / 2];
+        Vec acts, moves, known_there;  // means over those that stick: the matrix is symmetric where the forces are at the vertices
+        const double share = 1.0 / rest;
+        for (int i : stuck) {
+            acts = acts + share * p.place(i), moves = moves + share * body.points[i];
+            if (p.forces) known_there = known_there + share * p.bias(i);
+        }
         for (const Vec axis : {p.axes.a, p.axes.b}) {
-            columns[size] = {axis, cross(centre, axis)}, rows[size] = {axis, cross(body.points[one], axis)};
-            known[size++] = p.forces ? dot(axis, p.bias(one)) : 0.0;
+            columns[size] = {axis, cross(acts, axis)}, rows[size] = {axis, cross(moves, axis)};
+            known[size++] = dot(axis, known_there);
         }
         if (rest > 1) {
-            const Vec arm = body.points[other] - body.points[one], across = unit(cross(up, arm));
-            columns[size] = {{}, up}, rows[size] = {{}, cross(arm, across)};
-            known[size++] = p.forces ? dot(across, p.bias(other) - p.bias(one)) : 0.0;
+            const int one = stuck[0], other = stuck[rest / 2];
+            const Vec arm = body.points[other] - body.points[one], across = cross(up, arm);
+            columns[size] = rows[size] = {{}, up};
+            known[size++] = p.forces ? dot(across, p.bias(other) - p.bias(one)) / dot(across, across) : 0.0;
         }
     }
     if (!eliminated(p, size, columns, rows, known, answer)) return false;

@@ -12,7 +12,7 @@ constexpr double kClosed = 1e-11, kGrazed = 1e-14, kForce = 1e-11;
 // speeds over sqrt(g size): at which sliding stops, below which a vertex may stick, or still slides as it started
 constexpr double kSlip = 5e-6, kStill = 5e-6, kSlides = 1e-4;
 constexpr std::array<double, 4> kLadder{1e-11, 1e-9, 1e-7, 1e-5};
-constexpr double kAhead = 1e-6, kCrowded = 1e-2, kPatience = 100.0, kMargin = 0.1;
+constexpr double kAhead = 1e-6, kCrowded = 1e-2, kPatience = 100.0, kMargin = 0.1, kAfter = 0.1;
 constexpr int kPiled = 30, kMany = 200, kCrowd = 30, kHalvings = 80;
 
 // Codes of `rocking.outcome`.
@@ -292,6 +292,7 @@ class Run {
     struct Fall {
         double about, low, high;
         Watch what;
+        double values[4];  // at the stages
         bool operator<(const Fall& o) const {
             if (about != o.about) return about < o.about;
             if (low != o.low) return low < o.low;
@@ -308,7 +309,7 @@ class Run {
         for (const Fall& f : falls_)
             for (const double end : {lesser(f.high, part), part})  // stages lie beside the motion
                 if (at(f.what, end) < 0.0) {
-                    part = located(f.what, lesser(f.low, end), end), first = f.what.kind;
+                    part = located(f, lesser(f.low, end), end), first = f.what.kind;
                     break;
                 }
         return first;
@@ -324,7 +325,7 @@ class Run {
             if (v[0] < 0.0) {
                 // a vertex that has just left is on the ground but for rounding
                 if (w.kind != kGap || !(velocity(w.i).z >= -1e-12 * speed_)) {
-                    falls_.push_back({0.0, 0.0, 0.0, w});
+                    falls_.push_back({0.0, 0.0, 0.0, w, {v[0], v[1], v[2], v[3]}});
                     continue;
                 }
                 v[0] = 0.0;
@@ -333,39 +334,52 @@ class Run {
             for (int k = 1; k < 4 && !below; ++k) below = v[k] < 0.0 ? k : 0;
             if (below) {
                 const double a = v[below - 1], b = v[below], low = Flow::nodes[below - 1], high = Flow::nodes[below];
-                falls_.push_back({low + (high - low) * a / (a - b), low, high, w});
+                falls_.push_back({low + (high - low) * a / (a - b), low, high, w, {v[0], v[1], v[2], v[3]}});
             } else if (w.kind == kGap) {
                 const double a = velocity(w.i).z, b = point_velocity(b_, flow_.samples[3], frame(flow_.samples[3].q), w.i).z;
                 const double least = lesser(lesser(v[0], v[1]), lesser(v[2], v[3]));
-                if (a < 0.0 && b > 0.0 && least < b_.size * 1e-3) dips_.push_back({0.9 * a / (a - b), 0.0, a / (a - b), w});
+                if (a < 0.0 && b > 0.0 && least < b_.size * 1e-3) dips_.push_back({0.9 * a / (a - b), 0.0, a / (a - b), w, {v[0], v[1], v[2], v[3]}});
             }
         }
         for (const Fall& d : dips_)
             if (at(d.what, d.high) < 0.0) falls_.push_back(d);
     }
 
-    // The zero of a margin that is below zero at the end of a bracket, by regula falsi (Illinois).
-    double located(const Watch& w, double low, double high) {
+    // The zero of a margin that is below zero at the end of a bracket: from the cubic through the four stages by secants,
+    // which a bracket keeps. Aims a little below zero.
+    double located(const Fall& f, double low, double high) {
+        const Watch& w = f.what;
         const double close = w.kind == kGap ? 0.5 * kGrazed * b_.size : w.kind == kShelf ? kClosed * b_.size : w.kind == kSlipping ? 1e-3 * kSlip * speed_ : slack_;
-        double at_low = at(w, low), at_high = at(w, high);
-        if (at_low < 0.0) high = low, at_high = at_low, low = 0.0, at_low = at(w, low);
-        at_low = greater(at_low, 0.0);
-        int side = 0;
+        double at_high = at(w, high), x = guess(f, low, high), last = high, at_last = at_high;
+        bool sure = low == 0.0;  // whether the margin is above zero at the low end
         for (int k = 0; k < kHalvings && at_high < -close && high - low > 1e-15; ++k) {
-            double middle = low + (high - low) * (at_low + 0.5 * close) / (at_low - at_high);  // aims a little below zero
-            if (!(low < middle && middle < high)) middle = 0.5 * (low + high);
-            const double value = at(w, middle);
-            if (value < 0.0) {
-                high = middle, at_high = value;
-                if (side < 0) at_low *= 0.5;
-                side = -1;
-            } else {
-                low = middle, at_low = value;
-                if (side > 0) at_high *= 0.5;
-                side = 1;
+            if (!(low < x && x < high)) {
+                x = sure || k < 3 ? 0.5 * (low + high) : 0.0;
+                if (x == 0.0) low = 0.0, x = 0.5 * high, sure = true;
             }
+            const double value = at(w, x), slope = (value - at_last) / (x - last);
+            if (value < 0.0) high = x, at_high = value;
+            else low = x, sure = true;
+            last = x, at_last = value;
+            x = slope < 0.0 ? x - (value + 0.5 * close) / slope : 0.5 * (low + high);
+            if (k % 8 == 7) x = 0.5 * (low + high);
         }
         return high;
+    }
+
+    // Where the cubic through the values at the stages falls below zero.
+    static double guess(const Fall& f, double low, double high) {
+        const double* v = f.values;
+        double c[4] = {v[0], v[1], v[2], v[3]};  // divided differences
+        for (int k = 1; k < 4; ++k)
+            for (int j = 3; j >= k; --j) c[j] = (c[j] - c[j - 1]) / (Flow::nodes[j] - Flow::nodes[j - k]);
+        const auto value = [&](double x) { return c[0] + x * (c[1] + (x - Flow::nodes[1]) * (c[2] + (x - Flow::nodes[2]) * c[3])); };
+        double a = low, b = high;
+        for (int k = 0; k < 24; ++k) {
+            const double middle = 0.5 * (a + b);
+            (value(middle) < 0.0 ? b : a) = middle;
+        }
+        return 0.5 * (a + b);
     }
 
     void watch() {
@@ -600,7 +614,7 @@ class Run {
         const double before = kinetic();
         settle_on(mode_.contact, still);
         r_.lost += before - kinetic();
-        length_ = lesser(length_, 0.02 / pace_);
+        length_ = lesser(length_, kAfter / pace_);
         flew_ |= n == 0, slid_ |= c.stuck.size() < n, rocked_ |= n > 0 && n < 3;
         if (mode_.resting()) s_.velocity = s_.spin = {};
     }

@@ -145,20 +145,20 @@ def _normal_row(problem: Problem, share: dict[int, float]) -> tuple[Wrench, floa
 
 def _stick(problem: Problem, stuck: tuple[int, ...], columns: list[Wrench], rows: list[tuple[Wrench, float]]) -> None:
     """Add the forces along the ground that make vertices stick: two, and a couple that keeps them from turning."""
-    points, up, centre = problem.body.points, problem.axes[2], ZERO
+    points, up, share = problem.body.points, problem.axes[2], 1.0 / len(stuck)
+    acts = moves = known = ZERO  # means: the matrix is symmetric where the forces are at the vertices
     for i in stuck:
-        centre = added(centre, 1.0 / len(stuck), problem.place(i))
-    first, other = stuck[0], stuck[len(stuck) // 2]
+        acts, moves = added(acts, share, problem.place(i)), added(moves, share, points[i])
+        known = added(known, share, problem.bias[i]) if problem.bias else known
     for axis in problem.axes[:2]:
-        columns.append((axis, cross(centre, axis)))
-        known = dot(axis, problem.bias[first]) if problem.bias else 0.0
-        rows.append(((axis, cross(points[first], axis)), known))
+        columns.append((axis, cross(acts, axis)))
+        rows.append(((axis, cross(moves, axis)), dot(axis, known)))
     if len(stuck) > 1:
-        arm = minus(points[other], points[first])
-        across = unit(cross(up, arm))
+        first, other = stuck[0], stuck[len(stuck) // 2]
+        across = cross(up, minus(points[other], points[first]))
+        turn = dot(across, minus(problem.bias[other], problem.bias[first])) if problem.bias else 0.0
         columns.append((ZERO, up))
-        known = dot(across, minus(problem.bias[other], problem.bias[first])) if problem.bias else 0.0
-        rows.append(((ZERO, cross(arm, across)), known))
+        rows.append(((ZERO, up), turn / dot(across, across)))
 
 
 def _eliminated(problem: Problem, columns: list[Wrench], rows: list[tuple[Wrench, float]]) -> list[float] | None:

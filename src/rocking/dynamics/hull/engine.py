@@ -629,7 +629,7 @@ class HullEngine:
         before = energies(self.body, self.state, ZERO)[0]
         self._settle_on(found.contact, tuple(i for i in found.contact.members if i not in moving))
         self.history.lost += before - energies(self.body, self.state, ZERO)[0]
-        self.length = min(self.length, 0.02 / self.pace)
+        self.length = min(self.length, 0.1 / self.pace)
         made.flew |= not found.contact.members
         made.slid |= any(i not in found.contact.stuck for i in found.contact.members)
         made.rocked |= 0 < len(found.contact.members) < 3
