@@ -352,6 +352,15 @@ class Run {
         const double close = w.kind == kGap ? 0.5 * kGrazed * b_.size : w.kind == kShelf ? kClosed * b_.size : w.kind == kSlipping ? 1e-3 * kSlip * speed_ : slack_;
         double at_high = at(w, high), x = guess(f, low, high), last = high, at_last = at_high;
         bool sure = low == 0.0;  // whether the margin is above zero at the low end
+        if (sure && f.values[0] == 0.0)  // it has just left: where is it above the ground?
+            for (double up = 0.5 * high; up > 1e-6 * high; up *= 0.5) {
+                const double value = at(w, up);
+                if (value < 0.0) high = last = up, at_high = at_last = value;
+                else {
+                    low = up;
+                    break;
+                }
+            }
         for (int k = 0; k < kHalvings && at_high < -close && high - low > 1e-15; ++k) {
             if (!(low < x && x < high)) {
                 x = sure || k < 3 ? 0.5 * (low + high) : 0.0;

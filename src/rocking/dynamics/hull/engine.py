@@ -455,9 +455,17 @@ class HullEngine:
         sizes = {"gap": 0.5 * _GRAZED * self.body.size, "shelf": _CLOSED * self.body.size}
         close = sizes.get(kind, 1e-3 * _SLIP * self.speed if kind == "slip" else self.slack)
         at_low, at_high = self._at(kind, i, to(low)), self._at(kind, i, to(high))
-        if at_low < 0.0:
+        if at_low < 0.0 < low:
             low, high, at_high = 0.0, low, at_low
             at_low = self._at(kind, i, to(low))
+        if at_low <= 0.0:
+            # it has just left: where is it above the ground?
+            for k in range(1, 20):
+                value = self._at(kind, i, to(bracket[1] * 0.5**k))
+                if value > 0.0:
+                    low, at_low = bracket[1] * 0.5**k, value
+                    break
+                high, at_high = bracket[1] * 0.5**k, value
         at_low = max(at_low, 0.0)
         side = 0
         for _ in range(_HALVINGS):
