@@ -291,7 +291,7 @@ class HullEngine:
         loose = [i for i in self.mode.contact.members if i not in self.mode.contact.stuck]
         paths = [
             sum(
-                w * math.hypot(*point_velocity(self.body, s, i)[:2])
+                w * slip_speed(self.body, s, i)
                 for w, (_, s, _) in zip(_PATH, result.samples, strict=True)
             )
             for i in loose
@@ -361,7 +361,7 @@ class HullEngine:
         self.history.steps += 1
         moving = self.stretch < self.ground.motion.count
         left = (float(self.ground.motion.times[self.stretch + 1]) if moving else math.inf) - self.time
-        whole = min(self.length, left, 2e-3 / self.pace if self.mode.starts else left)
+        whole = min(self.length, left)
         if whole < left < 2.0 * whole:
             whole = 0.5 * left
         coefficients = self.ground.field(self.stretch, self.time, whole)
@@ -379,6 +379,11 @@ class HullEngine:
                 self.length = 0.25 * whole
             else:
                 self._shocked(self._touching())
+            return
+        fast = max((slip_speed(body, result.state, i) for i in self.mode.starts), default=0.0) / (_SLIDES * self.speed)
+        if fast > 2.0 and whole * self.pace > 2e-3:
+            # the direction of what only starts to slide is that of its start
+            self.length = whole * max(1.5 / fast, 0.1)
             return
         growth = 0.9 * (self.settings.tolerance / max(result.error, 1e-300)) ** 0.2
         if result.error > self.settings.tolerance and whole * self.pace > 1e-10:
@@ -645,9 +650,7 @@ class HullEngine:
             self.state = self.state._replace(velocity=ZERO, spin=ZERO)
 
     def _slip(self, i: int) -> float:
-        """Return the speed of a vertex along the ground."""
-        x, y, _ = point_velocity(self.body, self.state, i)
-        return math.hypot(x, y)
+        return slip_speed(self.body, self.state, i)
 
     def _settle_on(self, contact: HullContact, still: tuple[int, ...] = ()) -> None:
         """Take drift and rounding out of the attitude, the place and the velocities; still: which have no slip."""
@@ -785,6 +788,12 @@ class HullEngine:
         if len(self.history.events) > self.settings.most_events:
             self.ended = Status.TOO_MANY_EVENTS
         return self.ended is not None
+
+
+def slip_speed(body: HullBody, state: State, i: int) -> float:
+    """Return the speed of a vertex along the ground."""
+    x, y, _ = point_velocity(body, state, i)
+    return math.hypot(x, y)
 
 
 def levelled(body: HullBody, attitude: tuple[float, ...], members: tuple[int, ...]) -> tuple[float, ...]:
