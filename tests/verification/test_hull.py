@@ -1,6 +1,7 @@
 """Bodies on the vertices of their hull: steps, contact, impacts and ends of histories against exact values and engines.
 
-REF numbers: see CONTRIBUTING.md. With ROCKING_CAMPAIGN=1 thirty random hulls are shaken by three motions each.
+REF numbers: see CONTRIBUTING.md. With ROCKING_CAMPAIGN=1 the reference engine shakes thirty random hulls, the
+compiled one a thousand, by ten records each.
 """
 
 import math
@@ -13,7 +14,7 @@ from scipy.spatial import ConvexHull
 import rocking as rk
 from rocking.bodies.solid import Solid, box
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.hull import HullBody, HullEngine, HullGround, HullSettings, standing
+from rocking.dynamics.hull import HullBody, HullEngine, HullGround, HullSettings, fast_engine, hull_histories, standing
 from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear
 from rocking.dynamics.hull.engine import HullEventKind
 from rocking.dynamics.hull.motion import HullMode, State, energies, step
@@ -29,7 +30,8 @@ pytestmark = pytest.mark.verifies(room="rocking in space")
 G = rk.conventions.g
 FINE = HullSettings(tolerance=1e-14)
 TOWER = (1.0, 1.3, 4.0)
-HULLS = 30 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 2
+CAMPAIGN = os.environ.get("ROCKING_CAMPAIGN") == "1"
+HULLS = 30 if CAMPAIGN else 2
 
 
 def _rocking(body, tilt, azimuth=0.0, spin=(0.0, 0.0, 0.0)):
@@ -62,6 +64,18 @@ def _hull_of(rng, count=10):
     first /= mass
     second -= mass * np.outer(first, first)
     return HullBody(points, 2500.0 * mass, first + origin, 2500.0 * (np.trace(second) * np.eye(3) - second))
+
+
+def _upright(body, facet=None):
+    """The body in axes in which a facet is its base; the one with the lowest centre of mass if None."""
+    facet = int(np.argmin(body.hull.heights)) if facet is None else facet
+    turn = np.array(frame(standing(body, facet=facet).attitude))
+    return HullBody(body.vertices @ turn.T, body.mass, turn @ body.centre, turn @ body.inertia @ turn.T)
+
+
+def _noise(rng, count, size):
+    """A ground with three components of noise, the vertical one a third."""
+    return HullGround(*(GroundMotion(rng.normal(size=count) * a, 0.02) for a in (size, size, size / 3.0)))
 
 
 # ---- steps ----------------------------------------------------------------------------------------------------------
@@ -372,3 +386,63 @@ def test_bad_bodies_and_grounds_are_refused():
         HullGround(slope=2.0)
     with pytest.raises(InvalidValueError, match="restitution"):
         HullEngine(_box(1, 1, 1, 1.0), HullGround(), "wrong").run(standing(_box(1, 1, 1, 1.0)))
+
+
+# ---- the compiled engine ---------------------------------------------------------------------------------------------
+
+needs_engine = pytest.mark.skipif(not fast_engine.available(), reason="the compiled engine was not built")
+
+
+@needs_engine
+@pytest.mark.verifies("second engine", "the compiled engine", within="1e-8", control="within")
+def test_the_compiled_engine_is_the_reference():
+    """Shaken, with and without sliding: outcomes, peaks and losses; a ground 1e-4 stronger moves it elsewhere."""
+    rng = np.random.default_rng(0)
+    body, ground = _upright(_hull_of(rng)), _noise(rng, 12, 12.0)
+    choices = {"restitution": 0.9, "friction": [math.inf, 0.5], "settings": HullSettings(tolerance=1e-11)}
+    made = {engine: hull_histories(body, ground, engine=engine, **choices) for engine in ("reference", "fast")}
+    for name in ("outcome", "status", "pose", "uplifts"):
+        np.testing.assert_array_equal(made["fast"][name], made["reference"][name])
+    assert made["fast"]["peak_tilt"].min() > 1e-3
+    for name in ("peak_tilt", "peak_spin", "first_uplift", "lost"):
+        np.testing.assert_allclose(made["fast"][name], made["reference"][name], rtol=1e-8, atol=1e-10)
+    other = hull_histories(body, ground, scales=1.0001, engine="fast", **choices)
+    assert np.abs(other["peak_tilt"] / made["reference"]["peak_tilt"] - 1.0).min() > 1e-6
+
+
+@needs_engine
+@pytest.mark.verifies("invariant", "threads and order of rows", within="bits", control="within")
+def test_histories_have_the_same_bits_whatever_the_threads_and_their_order():
+    """One, two and five threads, bodies and scales the other way round; another scale has other bits."""
+    rng = np.random.default_rng(8)
+    bodies = [_upright(_hull_of(rng)) for _ in range(3)]
+    ground, scales = _noise(rng, 30, 5.0), [0.7, 1.0]
+    choices = {"friction": [math.inf, 0.4], "settings": HullSettings(tolerance=1e-8), "engine": "fast"}
+    one = hull_histories(bodies, ground, scales=scales, threads=1, **choices)
+    for threads in (2, 5):
+        other = hull_histories(bodies[::-1], ground, scales=scales[::-1], threads=threads, **choices)
+        for name in one.values:
+            np.testing.assert_array_equal(one[name], other[name][::-1, :, ::-1])
+    assert not np.array_equal(one["peak_tilt"][:, :, 0], one["peak_tilt"][:, :, 1])
+
+
+@needs_engine
+@pytest.mark.verifies("invariant", "a result for every hull", within="0.1 %", control="within")
+def test_random_hulls_have_a_result_in_the_compiled_engine():
+    """1,000 hulls of 6 to 24 points by 10 records under three laws of friction; a history of 2 events has none."""
+    rng = np.random.default_rng(17)
+    records = [_noise(rng, 200 if CAMPAIGN else 40, size) for size in np.linspace(3.0, 9.0, 10 if CAMPAIGN else 3)]
+    bodies = [_upright(_hull_of(rng, int(rng.integers(6, 25)))) for _ in range(1000 if CAMPAIGN else 20)]
+    settings = HullSettings(tolerance=1e-8)
+    status, codes = [], []
+    for k, friction in enumerate((math.inf, 0.7, 0.3)):
+        law = ("housner-3d", 0.9, 0.8)[k]
+        batch = hull_histories(bodies[k::3], records, law, friction, settings=settings, engine="fast")
+        status.append(batch["status"].ravel())
+        codes.append(batch["outcome"].ravel())
+    found, moved = np.concatenate(status), np.concatenate(codes)
+    print({int(code): int(n) for code, n in zip(*np.unique(found, return_counts=True), strict=True)})
+    assert np.mean(found == Status.GOOD.code) >= 0.999
+    assert np.mean(moved != Outcome.NO_UPLIFT.code) > 0.5  # at rest nothing would be shown
+    few = hull_histories(bodies[0], records[-1], settings=HullSettings(most_events=2), engine="fast")
+    assert few["status"].item() == Status.TOO_MANY_EVENTS.code

@@ -290,10 +290,7 @@ class HullEngine:
         """Add the path of the vertex that slides most: exact for cubics at the four stages that are kept."""
         loose = [i for i in self.mode.contact.members if i not in self.mode.contact.stuck]
         paths = [
-            sum(
-                w * slip_speed(self.body, s, i)
-                for w, (_, s, _) in zip(_PATH, result.samples, strict=True)
-            )
+            sum(w * slip_speed(self.body, s, i) for w, (_, s, _) in zip(_PATH, result.samples, strict=True))
             for i in loose
         ]
         self.history.sliding_distance += span * max(paths, default=0.0)

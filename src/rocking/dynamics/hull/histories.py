@@ -195,7 +195,7 @@ def _numbers(body: HullBody, start: SpatialStart) -> FloatArray:
 
 def _state(row: FloatArray) -> State:
     q, x, v, w = (tuple(row[a:b].tolist()) for a, b in ((0, 4), (4, 7), (7, 10), (10, 13)))
-    return State(x, q, v, w)  # type: ignore[arg-type]
+    return State(x, q, v, w)
 
 
 def _scaled(ground: HullGround, scale: float) -> HullGround:
