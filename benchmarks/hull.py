@@ -7,6 +7,7 @@ median over the histories that rock at least a fifth of the time, as MuJoCo has 
 import time
 from dataclasses import dataclass
 from importlib import import_module
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -26,8 +27,11 @@ SETTINGS = HullSettings(tolerance=1e-8)
 SCENE = """
 <mujoco>
   <compiler inertiafromgeom="false" balanceinertia="false"/>
-  <option timestep="{step}" gravity="0 0 -{gravity}" cone="elliptic" impratio="{ratio}" iterations="100" tolerance="1e-14"/>
-  <default><geom condim="3" friction="{friction} 0 0" solref="{soft} {damping}" solimp="{stiff} {stiff} 0.001 0.5 2"/></default>
+  <option timestep="{step}" gravity="0 0 -{gravity}" cone="elliptic" impratio="{ratio}"
+          iterations="100" tolerance="1e-14"/>
+  <default>
+    <geom condim="3" friction="{friction} 0 0" solref="{soft} {damping}" solimp="{stiff} {stiff} 0.001 0.5 2"/>
+  </default>
   <asset><mesh name="hull" vertex="{vertices}" inertia="convex"/></asset>
   <worldbody>
     <geom type="plane" size="50 50 1"/>
@@ -135,7 +139,7 @@ def main() -> None:
     """Print the comparison."""
     hulls = cases()
     coarse = [peer(case, STEPS[0]) for case in hulls]
-    for step, half in zip(STEPS[:-1], STEPS[1:], strict=True):
+    for step, half in pairwise(STEPS):
         fine = [peer(case, half) for case in hulls]
         agree = np.mean([a[0] == b[0] for a, b in zip(coarse, fine, strict=True)])
         print(f"MuJoCo at {step:.3g} s and half of it: {agree:.0%} of verdicts agree", flush=True)
