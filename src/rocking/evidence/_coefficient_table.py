@@ -6,7 +6,7 @@ from typing import Any
 
 from rocking.bodies import Body
 from rocking.conventions import Foot
-from rocking.evidence.calibration import CALIBRATED_RANGE, Prediction, calibrate, interval_for
+from rocking.evidence.calibration import CALIBRATED_RANGE, PredictedCoefficient, calibrate, interval_for
 from rocking.restitution import Implication, RestitutionModel, implied, model, models
 
 CALIBRATED = "calibrated"
@@ -103,7 +103,7 @@ def coefficient_table(
 
 
 def _row(
-    body: Body, onto: Foot, name: str, title: str, interval: Prediction, warnings: tuple[str, ...]
+    body: Body, onto: Foot, name: str, title: str, interval: PredictedCoefficient, warnings: tuple[str, ...]
 ) -> CoefficientRow:
     value, low, high = float(interval.coefficient), float(interval.low), float(interval.high)
     implication = implied(body, value, onto=onto)

@@ -43,7 +43,7 @@ _SAMPLES = 4000
 
 
 @dataclass(frozen=True, eq=False)
-class Prediction:
+class PredictedCoefficient:
     """Coefficients of restitution with their intervals."""
 
     coefficient: FloatArray  # expected coefficient [-]
@@ -90,7 +90,7 @@ class Calibration:
         facts = self.summary
         return Interface(ShiftedImpulse(k=facts["k"]["mean"]), eta=facts["eta"]["mean"])
 
-    def predict(self, body: Body | Any, *, onto: Foot = "right") -> Prediction:
+    def predict(self, body: Body | Any, *, onto: Foot = "right") -> PredictedCoefficient:
         """Return the posterior predictive coefficient of a body, or of rectangles by slenderness.
 
         Parameters
@@ -102,7 +102,7 @@ class Calibration:
 
         Returns
         -------
-        Prediction
+        PredictedCoefficient
             Mean, 95 % interval for a single measured body, standard deviation; within [0, energy bound].
 
         Raises
@@ -122,7 +122,7 @@ class Calibration:
             ratios = checks.positive_array("slenderness_ratio", body)
             values, shape = self._of_ratios(np.ascontiguousarray(ratios).tobytes()), ratios.shape
         mean, low, high, spread = (each.reshape(shape).copy() for each in values)
-        return Prediction(mean, low, high, spread)
+        return PredictedCoefficient(mean, low, high, spread)
 
     @lru_cache(maxsize=16)  # noqa: B019 - there is one calibration, and pictures ask it for the same ratios again
     def _of_ratios(self, ratios: bytes) -> tuple[FloatArray, ...]:
@@ -288,7 +288,7 @@ def normalised(log_weight: FloatArray) -> FloatArray:
 
 def interval_for(
     model: RestitutionModel, body: Body, *, onto: Foot = "right", measurements: DataSet | None = None
-) -> Prediction:
+) -> PredictedCoefficient:
     """Return a model's coefficient with an interval from its own misfit to the measurements.
 
     The interval is the coefficient plus and minus the normal quantile of the scatter around the model's own
@@ -307,7 +307,7 @@ def interval_for(
 
     Returns
     -------
-    Prediction
+    PredictedCoefficient
         Coefficient and interval, within [0, energy bound].
     """
     data = all_measurements() if measurements is None else measurements
@@ -320,7 +320,7 @@ def interval_for(
     sd = scatter(r, floor, slope)
     reach = 1.959963984540054 * sd
     top = np.maximum(bound, r)
-    return Prediction(r, np.clip(r - reach, 0.0, None), np.minimum(r + reach, top.reshape(())), sd)
+    return PredictedCoefficient(r, np.clip(r - reach, 0.0, None), np.minimum(r + reach, top.reshape(())), sd)
 
 
 @lru_cache(maxsize=1024)

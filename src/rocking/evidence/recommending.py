@@ -13,7 +13,7 @@ from rocking.bodies import Body, Solid
 from rocking.conventions import FEET, FloatArray, Foot
 from rocking.errors import GeometryError, InvalidValueError, PlausibilityWarning, RockingError
 from rocking.evidence._coefficient_table import CALIBRATED, default_models
-from rocking.evidence.calibration import Calibration, Prediction, calibrate, calibrate_on, interval_for
+from rocking.evidence.calibration import Calibration, PredictedCoefficient, calibrate, calibrate_on, interval_for
 from rocking.evidence.judgement import Judgement, Standing, TrackRecord, judge
 from rocking.evidence.likelihood import scatter
 from rocking.evidence.measurements import DataSet, all_measurements
@@ -48,7 +48,7 @@ def recommendation_for(
     judged = judge(admitted, ratios, data)
     posterior = _posterior(data)
     title = f"default, fitted to the measurements: {posterior.model().label}"
-    predicted: list[tuple[str, str, dict[Foot, Prediction], TrackRecord, tuple[str, ...]]] = [
+    predicted: list[tuple[str, str, dict[Foot, PredictedCoefficient], TrackRecord, tuple[str, ...]]] = [
         (CALIBRATED, title, _both(given, posterior.predict), judged.calibrated, ())
     ]
     for each, record in zip(admitted, judged.models, strict=True):
@@ -121,13 +121,13 @@ def _concerns(which: RestitutionModel, body: Body) -> tuple[str, ...]:
     return (f"{words} {', '.join(found)}; rigid bodies that move alike should not differ",) if found else ()
 
 
-def _both(body: Body, predict: Any) -> dict[Foot, Prediction]:
+def _both(body: Body, predict: Any) -> dict[Foot, PredictedCoefficient]:
     right = predict(body, onto="right")
     return {"left": right if body.is_symmetric and _is_rectangle(body) else predict(body, onto="left"), "right": right}
 
 
 def _row(
-    name: str, title: str, intervals: dict[Foot, Prediction], record: TrackRecord, concerns: tuple[str, ...]
+    name: str, title: str, intervals: dict[Foot, PredictedCoefficient], record: TrackRecord, concerns: tuple[str, ...]
 ) -> ModelForBody:
     values, low, high = (
         {str(foot): float(getattr(each, key)) for foot, each in intervals.items()}

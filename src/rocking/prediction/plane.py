@@ -1,0 +1,271 @@
+"""What is drawn for a plane body on a floor with friction, and what becomes of it by the compiled engine."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from rocking import checks, plausibility
+from rocking.bodies import Body, Solid
+from rocking.conventions import FEET, BoolArray, FloatArray, IntArray
+from rocking.dynamics._simulate import components_of
+from rocking.dynamics.contact.batch import RowsWithContact
+from rocking.dynamics.parameters import coefficients_of
+from rocking.dynamics.settings import Settings, processors
+from rocking.errors import InvalidValueError
+from rocking.evidence import calibrate, restitution_distribution
+from rocking.motions.components import rotated, with_vertical
+from rocking.motions.motion import GroundMotion
+from rocking.motions.pulse import Pulse
+from rocking.outcome import Outcome, overturned
+from rocking.prediction.uncertain import Uncertain
+from rocking.restitution import ImpactGeometry, RestitutionModel
+from rocking.restitution.shifted_impulse import shifted
+
+MEASURED, COMPLEMENTARITY = "measured", "complementarity"
+"""Restitution by what the published measurements say of a body; by the laws of contact at the corners alone."""
+
+FRICTION = (0.3, 0.8)
+BASE = 0.02
+CENTRE = (0.97, 1.03)
+"""What serves where nobody says otherwise: friction, share of the base within which feet lie, factor on the height."""
+
+DIRECTIONS = 36
+"""Over half a turn, to which azimuths are rounded: a motion of two components is turned into each that was drawn."""
+
+NOT_SAMPLED = (
+    "placement: the ground is level and the body stands flat on both feet",
+    "density: what rocks does not depend on it, unless it differs from place to place (that is what centre is for)",
+)
+
+_WHY = {
+    "restitution": "the posterior of the published measurements with the scatter of single bodies",
+    "friction": "dry stone, concrete, wood and metal: tables differ by as much for one pair of them (EN 12812, BS 5975)",
+    "base": "how far each foot lies inside of the drawn base, for chipped or rounded edges: up to 2 % of its width",
+    "centre": "factor on the height of the centre: what is inside is rarely homogeneous",
+    "polarity": "as recorded or mirrored: which way round the body will stand is not known",
+    "azimuth": "which way round the body stands to the two components is not known",
+}
+_WIDTHS = {"restitution": 1, "friction": 1, "base": 2, "centre": 1, "polarity": 1, "azimuth": 1}
+
+
+@dataclass(frozen=True, eq=False)
+class Histories:
+    """What became of bodies under one motion, one entry a body."""
+
+    uplift: FloatArray  # 1 where it rocked, 0 where not, NaN without a result
+    sliding: FloatArray  # how far it slid [m]
+    overturning: FloatArray  # 1 where it overturned
+    peak: FloatArray  # largest rotation, without its sign [rad]
+
+
+class Mechanics(Protocol):
+    """What a prediction asks of bodies on an engine: which numbers they take, and what becomes of them."""
+
+    @property
+    def inputs(self) -> Mapping[str, Uncertain]:
+        """What is sampled, by name, what is fixed too."""
+
+    @property
+    def widths(self) -> Mapping[str, int]:
+        """How many numbers from 0 to 1 each input takes that is not fixed."""
+
+    @property
+    def assumed(self) -> Sequence[str]:
+        """What was assumed, in words."""
+
+    @property
+    def names(self) -> Sequence[str]:
+        """Names of the motions."""
+
+    def values(self, draws: FloatArray) -> Mapping[str, FloatArray]:
+        """Return what draws from the unit cube mean, by input; one row a body."""
+
+    def run(self, draws: FloatArray, motion: int, factor: FloatArray, threads: int | None) -> Histories:
+        """Return what becomes of bodies under a motion times a factor."""
+
+
+class PlaneMechanics:
+    """A plane body that may slide, hop and fly."""
+
+    def __init__(self, body: Body, motions: Any, given: Mapping[str, Any], settings: Settings) -> None:
+        known: object = body
+        if isinstance(known, Solid):
+            raise InvalidValueError("body must be plane: take solid.in_plane(azimuth), one direction of a body in space")
+        if not isinstance(known, Body):
+            raise InvalidValueError(f"body must be a Block, Section or MassPoints, got {body!r:.60}")
+        self.body, self._settings = body, settings
+        self._motions = _several(motions)
+        self.names = [_parts(self._motions[k])[0].name for k in range(len(self._motions))]
+        turns = any(isinstance(self._motions[k], Mapping) for k in range(len(self._motions)))
+        left, right = (body.side(foot, settings.gravity) for foot in FEET)
+        self._levers, self._height = np.array([left.half_width, right.half_width]), right.centre_height
+        self._spread = body.moment_of_inertia / body.mass
+        most = 0.9 * float(self._levers.min())
+        usual: dict[str, Any] = {
+            "friction": FRICTION, "base": (0.0, min(BASE * float(self._levers.sum()), most)),
+            "centre": CENTRE,
+            "polarity": [-1.0, 1.0, -1.0, 1.0], "azimuth": (0.0, 2.0 * math.pi),
+        }  # fmt: skip
+        limits = {
+            "friction": (0.01, 10.0, "-"), "base": (0.0, most, "m"), "centre": (0.5, 1.5, "-"),
+            "polarity": (-1.0, 1.0, "-"), "azimuth": (-4.0 * math.pi, 4.0 * math.pi, "rad"),
+        }  # fmt: skip
+        self.inputs: dict[str, Uncertain] = {}
+        self.assumed: list[str] = list(body.assumed)
+        for name, (low, high, unit) in limits.items():
+            told = given.get(name)
+            if name == "azimuth" and not turns:
+                if told is not None:
+                    raise InvalidValueError('azimuth goes with motions of two components, {"x": ..., "y": ...}')
+                continue
+            self.inputs[name] = Uncertain.of(name, usual[name] if told is None else told, low, high, unit)
+            if told is None:
+                self.assumed.append(f"{name}: {self._words(name)} ({_WHY[name]})")
+        if not np.isin(self.inputs["polarity"].quantile(np.linspace(0.0, 1.0, 33)), (-1.0, 1.0)).all():
+            raise InvalidValueError(f"polarity must be 1, -1 or both as a sample, got {given['polarity']!r:.60}")
+        plausibility.warn(plausibility.of_friction(float(self.inputs["friction"].quantile(np.array([0.5]))[0])))
+        self._set_restitution(given.get("restitution"))
+        self.assumed += NOT_SAMPLED
+        self.widths = {name: _WIDTHS[name] for name, each in self.inputs.items() if not each.fixed}
+
+    def _words(self, name: str) -> str:
+        return "1 or -1, each as likely" if name == "polarity" else self.inputs[name].words
+
+    def _set_restitution(self, told: Any) -> None:
+        """Take coefficients onto both feet for probabilities, and whether they follow the base."""
+        words: str
+        if told is None or told == MEASURED:
+            found = restitution_distribution(self.body)
+            self._tables = [found.tables[foot] for foot in FEET]
+            words = f"{self._tables[1][25]:.3f} to {self._tables[1][-26]:.3f} onto the right foot in 95 % of draws"
+            words += ", outside of the slendernesses that were measured" if found.extrapolated else ""
+            self._follows, fixed = True, False
+            self.assumed.append(f"restitution: {words} ({_WHY['restitution']})")
+        elif told == COMPLEMENTARITY:
+            words, self._follows, fixed = "by complementarity alone", False, True
+            self._tables = [np.full(2, np.nan)] * 2
+        elif isinstance(told, (str, RestitutionModel)):
+            pair, words = coefficients_of(told, self.body)
+            self._tables, self._follows, fixed = [np.full(2, pair[foot]) for foot in FEET], True, True
+        elif isinstance(told, Mapping) and set(told) == set(FEET):
+            pair, words = coefficients_of(told, self.body)
+            self._tables, self._follows, fixed = [np.full(2, pair[foot]) for foot in FEET], False, True
+        else:
+            one = Uncertain.of("restitution", told, 0.0, 10.0)
+            levels = np.linspace(0.0, 1.0, 1025)
+            levels[[0, -1]] = 0.25 / 1025, 1.0 - 0.25 / 1025
+            self._tables, self._follows, fixed, words = [one.quantile(levels)] * 2, False, one.fixed, one.words
+        if self._follows:
+            self.assumed.append("restitution follows base and centre as the shifted impulse of the calibrated model does")
+        at = np.linspace(0.0, 1.0, self._tables[1].size)
+        right = self._tables[1]
+        self.inputs = {"restitution": Uncertain(words, lambda u: np.interp(u, at, right), fixed), **self.inputs}
+
+    def _probabilities(self, draws: FloatArray) -> dict[str, FloatArray]:
+        """Return the columns of each input; one half of what is fixed, whatever it then means."""
+        found, at = {}, 0
+        for name in self.inputs:
+            width = self.widths.get(name, 0)
+            found[name] = draws[:, at : at + width] if width else np.full((len(draws), _WIDTHS[name]), 0.5)
+            at += width
+        return found
+
+    def values(self, draws: FloatArray) -> dict[str, FloatArray]:
+        """Return what draws mean, by input; two columns of the base, left and right."""
+        levels = self._probabilities(draws)
+        return {name: each.quantile(levels[name]) for name, each in self.inputs.items()}
+
+    def run(self, draws: FloatArray, motion: int, factor: FloatArray, threads: int | None) -> Histories:
+        """Return what becomes of bodies under a motion times a factor."""
+        levels, drawn = self._probabilities(draws), self.values(draws)
+        segments, number, mirrored = self._ground(motion, drawn)
+        levers = self._levers - drawn["base"]
+        height = self._height * drawn["centre"][:, 0]
+        coefficients = self._coefficients(levels["restitution"][:, 0], levers, height)
+        levers, coefficients = _turned(levers, mirrored), _turned(coefficients, mirrored)
+        rows: dict[str, FloatArray] = {
+            "friction": drawn["friction"][:, 0], "scale": factor,
+            "rotation": np.zeros(len(draws)), "velocity": np.zeros(len(draws)),
+        }  # fmt: skip
+        for k, foot in enumerate(FEET):
+            square = levers[:, k] ** 2 + height**2
+            inertia = self._spread + square
+            rows[f"alpha_{foot}"] = np.arctan2(levers[:, k], height)
+            rows[f"p_{foot}"] = np.sqrt(self._settings.gravity * np.sqrt(square) / inertia)  # Eq. 26
+            rows[f"q_{foot}"] = square / inertia  # Eq. 27
+            rows[f"r_{foot}"] = coefficients[:, k]
+        found = RowsWithContact(segments, self._settings, "auto").run(rows, number, threads or processors())
+        failed = np.asarray(found["outcome"]) == Outcome.FAILED.code
+        rose = np.isfinite(found["first_uplift"]) | (found["peak_rotation"] != 0.0)
+        return Histories(
+            np.where(failed, np.nan, rose), np.where(failed, np.nan, found["sliding_distance"]),
+            overturned(found["outcome"]), np.abs(found["peak_rotation"]),
+        )  # fmt: skip
+
+    def _ground(self, motion: int, drawn: Mapping[str, FloatArray]) -> tuple[list[Any], IntArray, BoolArray]:
+        """Return the motion in all directions that were drawn, which of them each body has, and whom it mirrors."""
+        first, second, upright = _parts(self._motions[motion])
+        mirrored = drawn["polarity"][:, 0] < 0.0
+        if second is None:
+            return [_whole(first, upright).segments()], np.zeros(mirrored.size, np.int64), mirrored
+        step = np.rint(drawn["azimuth"][:, 0] * DIRECTIONS / math.pi).astype(np.int64)
+        wanted, number = np.unique(step % DIRECTIONS, return_inverse=True)
+        turned = [rotated(first, second, math.pi * k / DIRECTIONS)[0] for k in wanted.tolist()]
+        half_a_turn = (step // DIRECTIONS) % 2 == 1
+        return [_whole(each, upright).segments() for each in turned], number, mirrored ^ half_a_turn
+
+    def _coefficients(self, level: FloatArray, levers: FloatArray, height: FloatArray) -> FloatArray:
+        """Return the coefficients landing left and right, within what energy allows."""
+        found = np.empty_like(levers)
+        for new, table in enumerate(self._tables):
+            old = 1 - new
+            r = np.interp(level, np.linspace(0.0, 1.0, table.size), table)
+            if self._follows:
+                k = np.asarray(calibrate().summary["k"]["mean"])
+                now = shifted(self._impact(levers[:, old], levers[:, new], height), k)
+                before = shifted(self._impact(self._levers[old], self._levers[new], self._height), k)
+                r = r * np.maximum(now, 0.0) / np.maximum(before, 1e-3)
+            inertia = self._spread + height[:, None] ** 2 + levers**2
+            found[:, new] = np.clip(r, 0.0, np.sqrt(inertia[:, old] / inertia[:, new]))  # Eq. 29
+        return found
+
+    def _impact(self, old: Any, new: Any, height: Any) -> ImpactGeometry:
+        half = 0.5 * self._spread
+        return ImpactGeometry(height, old, new, half, half)
+
+
+def _turned(pairs: FloatArray, mirrored: BoolArray) -> FloatArray:
+    return np.where(mirrored[:, None], pairs[:, ::-1], pairs)
+
+
+def _whole(along: Any, upright: Any) -> Any:
+    return along if upright is None else with_vertical(along, upright)
+
+
+def _several(motions: Any) -> Any:
+    """Return motions by number: one, several, or a set that makes them when they are asked for."""
+    if isinstance(motions, (Mapping, GroundMotion, Pulse)) or not hasattr(motions, "__getitem__"):
+        motions = [motions]
+    if isinstance(motions, str) or not len(motions):
+        raise InvalidValueError(f"motions must be one or more records, pulses or pairs x and y, got {motions!r:.60}")
+    return motions
+
+
+def _parts(motion: Any) -> tuple[Any, Any, Any]:
+    """Return what moves the ground along x, across it and upwards."""
+    if not isinstance(motion, (Mapping, GroundMotion, Pulse)):
+        raise InvalidValueError(f"motions must be records, pulses or pairs x and y, got {motion!r:.60}")
+    x, y, z = components_of(motion) if isinstance(motion, Mapping) else (motion, None, None)
+    if x is None:
+        raise InvalidValueError("a motion of components has one along x, got none")
+    if y is not None and not (isinstance(x, GroundMotion) and isinstance(y, GroundMotion)):
+        raise InvalidValueError("two components are two records; sample the pulses first")
+    return x, y, z
+
+
+def whole_settings(gravity: float, bounce: float, bounce_law: str) -> Settings:
+    """Return how to integrate with friction, which every body has its own of."""
+    return Settings(gravity=gravity, friction=0.5, bounce=checks.number("bounce", bounce), bounce_law=bounce_law)

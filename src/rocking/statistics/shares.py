@@ -1,0 +1,153 @@
+"""What share of an answer's variance each of its inputs explains: Sobol indices, by Saltelli's design."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+
+REPETITIONS = 1000
+"""Bootstrap samples of an interval."""
+
+
+@dataclass(frozen=True)
+class VarianceShare:
+    """Share of the variance of an answer that one input explains.
+
+    Parameters
+    ----------
+    first : float
+        First-order index: what would go if this input alone were known [-].
+    first_low, first_high : float
+        Ends of its 95 % interval [-].
+    total : float
+        Total index: what would stay if everything but this input were known [-].
+    total_low, total_high : float
+        Ends of its 95 % interval [-].
+    """
+
+    first: float
+    first_low: float
+    first_high: float
+    total: float
+    total_low: float
+    total_high: float
+
+
+@dataclass(frozen=True, eq=False)
+class SaltelliDesign:
+    """Points of the unit cube at which an answer is asked: two samples, and mixtures of them for every input.
+
+    Parameters
+    ----------
+    count : int
+        Points of either sample, a power of two [-].
+    inputs : dict of str to int
+        How many numbers from 0 to 1 each input takes.
+    seed : int
+        Of the scrambled Sobol sequence; the same one gives the same points.
+
+    Raises
+    ------
+    InvalidValueError
+        If the count is no power of two.
+
+    Examples
+    --------
+    >>> design = SaltelliDesign(512, {"large": 1, "small": 1}, seed=1)
+    >>> answer = design.points @ [2.0, 1.0]
+    >>> {name: round(share.first, 1) for name, share in design.shares(answer).items()}
+    {'large': 0.8, 'small': 0.2}
+    """
+
+    count: int
+    inputs: Mapping[str, int]
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        """Check the count."""
+        count = checks.whole("count", self.count, 2, 1 << 24)
+        if count & (count - 1):
+            near = 1 << count.bit_length()
+            raise InvalidValueError(f"count must be a power of two, such as {near // 2} or {near}, got {count}")
+
+    @property
+    def points(self) -> FloatArray:
+        """The two samples one after the other, then for each input the first sample with that input of the second."""
+        from scipy.stats.qmc import Sobol
+
+        size = sum(self.inputs.values())
+        if not size:
+            return np.empty((2 * self.count, 0))
+        both = Sobol(2 * size, scramble=True, seed=self.seed).random(self.count)
+        first, second = both[:, :size], both[:, size:]
+        mixed, at = [], 0
+        for width in self.inputs.values():
+            one = first.copy()
+            one[:, at : at + width] = second[:, at : at + width]
+            mixed.append(one)
+            at += width
+        return np.vstack([first, second, *mixed])
+
+    def shares(self, answers: FloatArray, repetitions: int = REPETITIONS) -> dict[str, VarianceShare]:
+        """Return the shares of the inputs by Jansen's estimators (1999), intervals by drawing points again.
+
+        Parameters
+        ----------
+        answers : ndarray, shape (points,) or (points, cases)
+            What was found at `points`; with several cases, such as motions, which of them it is counts as an input
+            more, `case`, all of them equally likely [any unit]. A point without an answer, NaN, is left out.
+        repetitions : int
+            Bootstrap samples.
+
+        Returns
+        -------
+        dict of str to VarianceShare
+            By input; all zero where nothing varies.
+
+        Raises
+        ------
+        InvalidValueError
+            If there is not an answer for each point.
+        """
+        found = np.asarray(answers, dtype=np.float64)
+        found = found[:, None] if found.ndim == 1 else found
+        rows = (2 + len(self.inputs)) * self.count
+        if found.ndim != 2 or len(found) != rows:
+            raise InvalidValueError(f"answers must be one for each of {rows} points, got shape {found.shape}")
+        stacked = found.reshape(2 + len(self.inputs), self.count, -1)
+        stacked = stacked[:, ~np.isnan(stacked).any(axis=(0, 2))]
+        random, kept = np.random.default_rng(self.seed), stacked.shape[1]
+        if not kept:
+            raise InvalidValueError("no point of the design has all its answers")
+        drawn = random.multinomial(kept, np.full(kept, 1.0 / kept), size=checks.whole("repetitions", repetitions, 1))
+        weights = np.vstack([np.ones(kept), drawn]) / kept
+        names = [*self.inputs, *(["case"] if stacked.shape[2] > 1 else [])]
+        return {
+            name: VarianceShare(*(float(v) for pair in both for v in (pair[0], *np.quantile(pair[1:], (0.025, 0.975)))))
+            for name, both in zip(names, _estimates(stacked, weights), strict=True)
+        }
+
+
+def _estimates(stacked: FloatArray, weights: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
+    """First-order and total indices of every input, then of the case, for each row of weights."""
+    first, second, mixed = stacked[0], stacked[1], stacked[2:]
+    mean = weights @ (0.5 * (first + second).mean(axis=1))
+    variance = weights @ (0.5 * (first**2 + second**2).mean(axis=1)) - mean**2
+    middle = stacked.mean(axis=2)  # over the cases
+    of_middle = weights @ (0.5 * (middle[0] ** 2 + middle[1] ** 2)) - mean**2
+    scale = np.where(variance > 1e-12 * (1.0 + mean**2), variance, np.inf)
+    found = []
+    for k, one in enumerate(mixed):
+        apart = weights @ (0.5 * (middle[1] - middle[2 + k]) ** 2)
+        total = weights @ (0.5 * ((first - one) ** 2).mean(axis=1))
+        found.append(((of_middle - apart) / scale, total / scale))  # Eq. 261, 262
+    if stacked.shape[2] > 1:
+        alone = ((weights @ first) * (weights @ second)).mean(axis=1)
+        alone -= (weights @ middle[0]) * (weights @ middle[1])
+        within = weights @ (0.5 * (first.var(axis=1) + second.var(axis=1)))
+        found.append((alone / scale, within / scale))
+    return found
