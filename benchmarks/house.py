@@ -26,6 +26,7 @@ FLOORS = (
     ("dynamics",),
     ("studies",),
     ("evidence",),
+    ("prediction",),
     ("spec",),
     ("campaigns",),
     ("plots",),

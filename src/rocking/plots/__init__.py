@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rocking.plots.inventory import inventory_picture
     from rocking.plots.overturning_map import overturning_map_picture, refined_map_picture
     from rocking.plots.paper_figures import paper_figure
+    from rocking.plots.prediction import prediction_picture
     from rocking.plots.regimes import regime_map_picture, regimes_picture
     from rocking.plots.response import response_picture
     from rocking.plots.rocking_spectrum import rocking_spectrum_picture
@@ -48,6 +49,7 @@ __all__ = [
     "new_figure",
     "overturning_map_picture",
     "paper_figure",
+    "prediction_picture",
     "record_set_picture",
     "refined_map_picture",
     "regime_map_picture",
@@ -74,6 +76,7 @@ _OTHERS = {
     "measures_picture": "cloud",
     "new_figure": "style",
     "paper_figure": "paper_figures",
+    "prediction_picture": "prediction",
     "record_set_picture": "ground_motion",
     "refined_map_picture": "overturning_map",
     "regime_map_picture": "regimes",

@@ -13,7 +13,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Motion
 from rocking.prediction.forecast import Chance, EndsOfRange, Growth, Prediction
 from rocking.prediction.plane import Mechanics, PlaneMechanics, whole_settings
-from rocking.statistics.counts import share_interval
+from rocking.statistics.counts import LEAST_CLUSTERS, share_interval
 from rocking.statistics.shares import REPETITIONS, SaltelliDesign
 
 COUNT = 128
@@ -174,7 +174,7 @@ def _chance(happened: FloatArray, seed: int) -> Chance:
     each = np.where(known > 0, hits / np.maximum(known, 1), np.nan)
     ends = np.array([share_interval(h, n) if n else (0.0, 1.0) for h, n in zip(hits.tolist(), known.tolist(), strict=True)])
     seen = each[known > 0]
-    value = float(seen.mean())
+    value = float(seen.mean())  # Eq. 258
     # bodies are the same under all motions: as many independent histories as the scatter of their means says
     bodies = np.nanmean(happened[~np.isnan(happened).all(axis=1)][:, known > 0], axis=1)
     spread = float(bodies.var()) / bodies.size
@@ -183,26 +183,30 @@ def _chance(happened: FloatArray, seed: int) -> Chance:
     within = float(np.mean(seen * (1.0 - seen) / known[known > 0]))
     between = max(float(seen.var(ddof=1)) - within, 0.0) ** 0.5 if seen.size > 1 else np.nan  # Eq. 260
     wide = (np.nan, np.nan)
-    if seen.size > 1:
+    if seen.size >= LEAST_CLUSTERS:
         random = np.random.default_rng(seed)
         drawn = random.multinomial(seen.size, np.full(seen.size, 1.0 / seen.size), size=REPETITIONS) @ seen / seen.size
-        noise = random.beta(value * trials + 0.5, (1.0 - value) * trials + 0.5, size=REPETITIONS) - value
-        wide = tuple(np.clip(np.quantile(drawn + noise, (0.025, 0.975)), 0.0, 1.0).tolist())
+        ends_of_means = np.quantile(drawn, (0.025, 0.975))
+        wide = (min(low, float(ends_of_means[0])), max(high, float(ends_of_means[1])))
     return Chance(value, low, high, between, *wide, each, ends[:, 0], ends[:, 1])
 
 
 def _ends(mechanics: Mechanics, points: FloatArray, falls: FloatArray) -> dict[str, EndsOfRange]:
     """Return the probability of overturning in the lowest and the highest fifth of each input's draws."""
     values, found, at = mechanics.values(points), {}, 0
-    whole = np.nanmean(np.where(np.isnan(falls).all(axis=1, keepdims=True), 0.0, falls), axis=1)
     for name, width in mechanics.widths.items():
         level = points[:, at : at + width].sum(axis=1)
         at += width
         order, part = np.argsort(level, kind="stable"), max(1, int(FIFTH * len(points)))
-        ends = (order[:part], order[-part:])
-        means = [float(values[name][end].mean()) for end in ends]
-        found[name] = EndsOfRange(means[0], float(whole[ends[0]].mean()), means[1], float(whole[ends[1]].mean()))
+        low, high = order[:part], order[-part:]
+        ends = [(float(values[name][end].mean()), _mean(falls[end])) for end in (low, high)]
+        found[name] = EndsOfRange(*ends[0], *ends[1])
     return found
+
+
+def _mean(happened: FloatArray) -> float:
+    known = happened[~np.isnan(happened)]
+    return float(known.mean()) if known.size else np.nan
 
 
 def _growth(found: Mapping[str, FloatArray], count: int, names: Sequence[str]) -> Growth:

@@ -41,7 +41,7 @@ class Chance:
     between : float
         Standard deviation of the probability from motion to motion, without what sampling adds; NaN of one motion [-].
     wide_low, wide_high : float
-        Ends of the 95 % interval if other motions like these might come; NaN of one motion [-].
+        Ends of the 95 % interval if other motions like these might come; NaN of fewer than five motions [-].
     per_motion, per_motion_low, per_motion_high : ndarray
         Probability under each motion, and its exact 95 % interval from the number of bodies [-].
     """

@@ -107,7 +107,7 @@ class PlaneMechanics:
         usual: dict[str, Any] = {
             "friction": FRICTION, "base": (0.0, min(BASE * float(self._levers.sum()), most)),
             "centre": CENTRE,
-            "polarity": [-1.0, 1.0, -1.0, 1.0], "azimuth": (0.0, 2.0 * math.pi),
+            "polarity": {"values": [-1.0, 1.0]}, "azimuth": (0.0, 2.0 * math.pi),
         }  # fmt: skip
         limits = {
             "friction": (0.01, 10.0, "-"), "base": (0.0, most, "m"), "centre": (0.5, 1.5, "-"),

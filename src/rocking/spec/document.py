@@ -249,6 +249,21 @@ class FragilityTable(JobTable):
     factor: Positive | None = _key("factor on all motions of a cloud [-]")
 
 
+class PredictTable(JobTable):
+    """What is not known of a body: a number, [low, high], more numbers, or a table of a distribution."""
+
+    restitution: Any = _key('"measured" (usual), a model, "complementarity", or a coefficient [-]')
+    friction: Any = _key("coefficient of friction; [0.3, 0.8] if not given [-]")
+    base: Any = _key("how far feet lie inside of the drawn base; up to 2 % of its width if not given [m]")
+    centre: Any = _key("factor on the height of the centre of mass; [0.97, 1.03] if not given [-]")
+    polarity: Any = _key("1 as recorded, -1 mirrored; both alike if not given")
+    azimuth: Any = _key("of the body's plane, with motions of two components; any if not given [rad]")
+    sliding_beyond: Positive = _key("distance from which it is said to slide [m]", 0.01)
+    count: int = _key("bodies drawn for each motion, a power of two", 128, ge=4, le=1 << 20)
+    shares: bool = _key("find which input matters how much", True)
+    seed: Seed = _key("seed of the draws", 0)
+
+
 class SettingsTable(JobTable):
     """How to integrate: what is left out has its usual value."""
 
@@ -437,4 +452,25 @@ class ResponseDocument(ResponseTables):
     @model_validator(mode="after")
     def _moves(self) -> "ResponseDocument":
         check_start(self.motion is not None, self.response.free)
+        return self
+
+
+class PredictionDocument(JobTable):
+    """A file that asks how likely a body is to overturn."""
+
+    predict: PredictTable = Field(default_factory=PredictTable)
+    body: dict[str, Any]
+    motion: ComponentsTable | None = None
+    motions: Annotated[list[MotionTable], BeforeValidator(in_list)] = Field(default_factory=list)
+    settings: StudySettingsTable = Field(default_factory=StudySettingsTable)
+
+    @model_validator(mode="after")
+    def _whole(self) -> "PredictionDocument":
+        if (self.motion is None) == (not self.motions):
+            raise refused("give [[motions]], or [motion] with x and y, and not both")
+        odd = sorted(self.settings.model_fields_set - {"gravity", "friction", "bounce", "bounce_law"})
+        if odd:
+            raise refused(f"settings.{odd[0]} does not go with a prediction, which has one engine")
+        if self.settings.friction is not None and self.predict.friction is not None:
+            raise refused("predict.friction and settings.friction say the same: leave one out")
         return self

@@ -1,0 +1,175 @@
+"""`rocking predict`: how likely a body is to rock, to slide or to overturn, as far as it is known."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rocking.cli import options
+from rocking.cli.exports import PICTURES, Export, Exports, draw
+from rocking.cli.page import Page, bar, deliver
+from rocking.conventions import percent
+from rocking.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from rocking.prediction import Prediction
+    from rocking.spec.document import PredictionDocument
+    from rocking.spec.reading import InputFiles
+
+TABLES = ("body", "motion", "settings", "predict")
+COUNT, SEED = 20, 1
+"""Synthetic motions, where nobody says otherwise."""
+
+EXPORTS = {
+    "picture": Export(PICTURES, draw, "matplotlib"),
+    "csv": Export((".csv",), lambda answer, path: answer.found.to_csv(path)),
+    "netcdf": Export((".nc",), lambda answer, path: _netcdf(answer, path), "h5netcdf"),
+}
+
+
+def _netcdf(answer: "PredictionAnswer", path: Path) -> None:
+    from rocking.tables import to_netcdf
+
+    to_netcdf(answer.found.to_xarray(), path)
+
+
+def predict(
+    context: typer.Context,
+    body: options.BodyFile = None,
+    record: Annotated[
+        list[str] | None,
+        typer.Argument(help="Record files, file#COMPONENT, or pulses such as sine:amplitude=1,period=0.5."),
+    ] = None,
+    motion: Annotated[
+        list[str] | None,
+        typer.Option(help="The same, as an option; again for more; or x=FILE and y=FILE, two components of one motion."),
+    ] = None,
+    synthetic: Annotated[
+        str | None,
+        typer.Option(
+            help="Family of motions in their place: firm-ground, soft-ground, kanai-tajimi, point-source, pulse-like."
+        ),
+    ] = None,
+    count: Annotated[int | None, typer.Option(help="How many synthetic motions, 20 if not given.")] = None,
+    seed: Annotated[int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.")] = None,
+    restitution: Annotated[
+        str | None,
+        typer.Option(help="Model or coefficient; what the published measurements say of the body if not given."),
+    ] = None,
+    friction: Annotated[
+        float | None, typer.Option(help=r"Coefficient of friction, if it is known; 0.3 to 0.8 if not \[-].")
+    ] = None,
+    width: options.Width = None,
+    height: options.Height = None,
+    depth: options.Depth = None,
+    density: options.Density = None,
+    mass: options.Mass = None,
+    centre: options.Centre = None,
+    moment_of_inertia: options.Moment = None,
+    units: options.Units = None,
+    sets: options.Set = None,
+    threads: options.Threads = None,
+    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    as_json: options.AsJson = False,
+) -> None:
+    """Print how likely a body is to rock, slide or overturn, what decides it, and whether it can be predicted at all."""
+    from rocking.cli.arguments import as_typed, document_file
+    from rocking.spec.prediction import PredictionProblem
+
+    exports = Exports.of(out, EXPORTS)
+    if file := document_file(context, body, ("predict",), ["threads"]):
+        document, inputs = _in_file(file, sets)
+    else:
+        document, inputs = _typed(context)
+    with as_typed():
+        problem = PredictionProblem.of(document, inputs)
+        with bar("motions", len(problem.motions), quiet=as_json) as progress:
+            found = problem.answer(lambda done: progress(1), threads)
+    deliver(PredictionAnswer(found), exports, as_json=as_json)
+
+
+def _in_file(file: Path, sets: list[str] | None) -> "tuple[PredictionDocument, InputFiles]":
+    from rocking.cli.arguments import parsed_sets, with_sets
+    from rocking.spec.document import PredictionDocument
+    from rocking.spec.reading import InputFiles, checked, located, tables_in
+
+    with located(str(file)):
+        tables = dict(tables_in(file) or {})
+        lists = "motion" not in tables
+        document = checked(PredictionDocument, with_sets(tables, parsed_sets(sets, TABLES), lists=lists))
+    return document, InputFiles(file.parent)
+
+
+def _typed(context: typer.Context) -> "tuple[PredictionDocument, InputFiles]":
+    from rocking.cli.arguments import NO_MOTION, Arguments, hinted
+    from rocking.cli.study import family, in_lists
+    from rocking.spec.document import PredictionDocument
+    from rocking.spec.reading import CommandFiles, checked
+
+    arguments = Arguments(context, *TABLES)
+    body, named = arguments.body_and_motions()
+    told = {name: arguments.options[name] for name in ("restitution", "friction")}
+    if told["restitution"] is not None:
+        try:
+            told["restitution"] = float(told["restitution"])
+        except ValueError:
+            pass  # the name of a model
+    with hinted(body, named[0].partition("=")[2] or named[0] if named else None):
+        document: dict[str, Any] = {
+            "body": arguments.body_table(body),
+            "predict": arguments.table("predict", told),
+            "settings": arguments.table("settings", {}),
+        }
+        synthetic = family(arguments, {"count": COUNT, "seed": SEED})
+        if synthetic is not None and "synthetic" not in synthetic:
+            raise InvalidValueError(f"{NO_MOTION}, or --synthetic firm-ground")
+        if any(word.startswith(("x=", "y=", "z=")) for word in named):
+            document["motion"] = arguments.components(named)
+        elif synthetic is None:
+            document["motions"] = [in_lists(arguments.motion_table(word)) for word in named]
+        else:
+            document["motions"] = [synthetic]
+        return checked(PredictionDocument, document), CommandFiles(Path())
+
+
+@dataclass(frozen=True)
+class PredictionAnswer:
+    """What is foreseen of a body."""
+
+    found: "Prediction"
+
+    def facts(self) -> dict[str, Any]:
+        return self.found.as_dict()
+
+    def draw(self) -> Any:
+        from rocking.plots import prediction_picture
+
+        return prediction_picture(self.found)
+
+    def show(self, page: Page) -> None:
+        found = self.found
+        page.line(found.verdict, style="bold")
+        for line in found.sentences[1:]:
+            page.line(line)
+        page.line()
+        head = ("motion", *found.chances)
+        rows = [
+            (name, *(percent(round(float(chance.per_motion[k]), 4)) for chance in found.chances.values()))
+            for k, name in enumerate(found.motions)
+        ]
+        page.table(head, rows, head[:1])
+        page.line()
+        if found.shares:
+            head = ("what is not known", "alone", "95 %", "with the others", "95 %")
+            named = {("motion" if name == "case" else name): share for name, share in found.shares.items()}
+            page.table(head, [
+                (name, f"{s.first:.2f}", f"{s.first_low:.2f} to {s.first_high:.2f}", f"{s.total:.2f}",
+                 f"{s.total_low:.2f} to {s.total_high:.2f}")
+                for name, s in sorted(named.items(), key=lambda pair: -pair[1].total)
+            ], head[:1])  # fmt: skip
+            page.line("Shares of the variance of whether it overturns (Sobol indices).")
+            page.line()
+        assumed = {each.partition(":")[0] for each in found.assumed}
+        page.facts([(name, words) for name, words in found.inputs.items() if name not in assumed])
+        page.facts([("assumed", each) for each in found.assumed])

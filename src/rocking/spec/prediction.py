@@ -1,0 +1,49 @@
+"""A body of which not everything is known, and what moves it: the problem of a prediction, and its answer."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rocking.bodies import Body
+from rocking.prediction import Prediction, predict
+from rocking.prediction.plane import COMPLEMENTARITY, MEASURED
+from rocking.spec.construction import body_of, motion_of, motions_of, restitutions_of
+from rocking.spec.reading import InputFiles, located
+
+if TYPE_CHECKING:
+    from rocking.spec.document import PredictionDocument
+
+
+@dataclass(frozen=True)
+class PredictionProblem:
+    """Everything that a prediction depends on."""
+
+    body: Body
+    motions: Any  # by number
+    options: dict[str, Any]  # as `predict` takes them
+
+    @classmethod
+    def of(cls, document: "PredictionDocument", inputs: InputFiles) -> "PredictionProblem":
+        """Return what a file describes; inputs: files that it may name."""
+        from rocking.spec.document import RestitutionTable
+
+        with located("body"):
+            body = body_of(document.body, inputs)
+        motions: Any
+        if document.motion is None:
+            motions = motions_of(document.motions, inputs)
+        else:
+            along = document.motion.components or {"x": document.motion}
+            with located("motion"):
+                motions = [{axis: motion_of(each, inputs).scaled(each.scale) for axis, each in along.items()}]
+        ground = document.settings.model_dump(exclude_none=True, exclude={"engine"})
+        options = {**document.predict.model_dump(exclude_none=True), **ground}
+        model = options.get("restitution")
+        if isinstance(model, str) and model not in {MEASURED, COMPLEMENTARITY}:
+            table = RestitutionTable(model=model)
+            options["restitution"] = next(iter(restitutions_of(table, 0, [body], inputs).values()))
+        return cls(body, motions, options)
+
+    def answer(self, progress: Callable[[int], None] | None = None, threads: int | None = None) -> Prediction:
+        """Compute it."""
+        return predict(self.body, self.motions, **self.options, threads=threads, progress=progress)
