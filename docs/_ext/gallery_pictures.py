@@ -57,6 +57,7 @@ SECTIONS = {
         "does_the_restitution_model_matter",
         "incremental_analysis_with_resurrection",
         "which_intensity_measure",
+        "how_likely_it_overturns",
     ],
     "space": [
         "solid_statue",

@@ -36,6 +36,7 @@ ROOMS = {
     "rocking.campaigns": "Campaigns",
     "rocking.campaigns.jobs": "Jobs of campaigns",
     "rocking.evidence": "Evidence",
+    "rocking.prediction": "Predictions",
     "rocking.statistics": "Statistics",
     "rocking.plots": "Pictures",
     "rocking.reports": "Reports",

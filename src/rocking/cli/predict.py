@@ -43,7 +43,9 @@ def predict(
     ] = None,
     motion: Annotated[
         list[str] | None,
-        typer.Option(help="The same, as an option; again for more; or x=FILE and y=FILE, two components of one motion."),
+        typer.Option(
+            help="The same, as an option; again for more; or x=FILE and y=FILE, two components of one motion."
+        ),
     ] = None,
     synthetic: Annotated[
         str | None,

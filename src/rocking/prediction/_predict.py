@@ -172,7 +172,9 @@ def _chance(happened: FloatArray, seed: int) -> Chance:
     known = (~np.isnan(happened)).sum(axis=0)
     hits = np.nansum(happened, axis=0)
     each = np.where(known > 0, hits / np.maximum(known, 1), np.nan)
-    ends = np.array([share_interval(h, n) if n else (0.0, 1.0) for h, n in zip(hits.tolist(), known.tolist(), strict=True)])
+    ends = np.array(
+        [share_interval(h, n) if n else (0.0, 1.0) for h, n in zip(hits.tolist(), known.tolist(), strict=True)]
+    )
     seen = each[known > 0]
     value = float(seen.mean())  # Eq. 258
     # bodies are the same under all motions: as many independent histories as the scatter of their means says

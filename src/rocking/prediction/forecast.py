@@ -109,7 +109,9 @@ class Growth:
             return "It does not rock: nothing grows."
         of = f"{self.lost} of {self.rocking} pairs of histories that differ by one part in a million in scale"
         if not self.lost:
-            return f"Each response can be predicted: none of {self.rocking} such pairs ends differently or differs by 1 %."
+            return (
+                f"Each response can be predicted: none of {self.rocking} such pairs ends differently or differs by 1 %."
+            )
         share = f"{len(self.motions_lost)} of {self.motions} motions"
         return (
             f"Under {share} this response cannot be predicted; its distribution can: {of} end differently or differ by "
@@ -177,7 +179,9 @@ class Prediction:
         for name, word in EVENTS.items():
             if name != "overturning":
                 far = f" by {1000.0 * self.sliding_beyond:g} mm or more" if name == "sliding" else ""
-                found.append(f"{_said(word + far, self.chances[name])[:1].upper()}{_said(word + far, self.chances[name])[1:]}.")
+                found.append(
+                    f"{_said(word + far, self.chances[name])[:1].upper()}{_said(word + far, self.chances[name])[1:]}."
+                )
         movers = sorted(self.ends.items(), key=lambda pair: -abs(pair[1].probability_high - pair[1].probability_low))
         for name, each in movers[:2]:
             if each.probability_low != each.probability_high:

@@ -52,7 +52,7 @@ _WIDTHS = {"restitution": 1, "friction": 1, "base": 2, "centre": 1, "polarity": 
 
 
 @dataclass(frozen=True, eq=False)
-class Histories:
+class Endings:
     """What became of bodies under one motion, one entry a body."""
 
     uplift: FloatArray  # 1 where it rocked, 0 where not, NaN without a result
@@ -83,7 +83,7 @@ class Mechanics(Protocol):
     def values(self, draws: FloatArray) -> Mapping[str, FloatArray]:
         """Return what draws from the unit cube mean, by input; one row a body."""
 
-    def run(self, draws: FloatArray, motion: int, factor: FloatArray, threads: int | None) -> Histories:
+    def run(self, draws: FloatArray, motion: int, factor: FloatArray, threads: int | None) -> Endings:
         """Return what becomes of bodies under a motion times a factor."""
 
 
@@ -93,7 +93,9 @@ class PlaneMechanics:
     def __init__(self, body: Body, motions: Any, given: Mapping[str, Any], settings: Settings) -> None:
         known: object = body
         if isinstance(known, Solid):
-            raise InvalidValueError("body must be plane: take solid.in_plane(azimuth), one direction of a body in space")
+            raise InvalidValueError(
+                "body must be plane: take solid.in_plane(azimuth), one direction of a body in space"
+            )
         if not isinstance(known, Body):
             raise InvalidValueError(f"body must be a Block, Section or MassPoints, got {body!r:.60}")
         self.body, self._settings = body, settings
@@ -159,7 +161,9 @@ class PlaneMechanics:
             levels[[0, -1]] = 0.25 / 1025, 1.0 - 0.25 / 1025
             self._tables, self._follows, fixed, words = [one.quantile(levels)] * 2, False, one.fixed, one.words
         if self._follows:
-            self.assumed.append("restitution follows base and centre as the shifted impulse of the calibrated model does")
+            self.assumed.append(
+                "restitution follows base and centre as the shifted impulse of the calibrated model does"
+            )
         at = np.linspace(0.0, 1.0, self._tables[1].size)
         right = self._tables[1]
         self.inputs = {"restitution": Uncertain(words, lambda u: np.interp(u, at, right), fixed), **self.inputs}
@@ -178,7 +182,7 @@ class PlaneMechanics:
         levels = self._probabilities(draws)
         return {name: each.quantile(levels[name]) for name, each in self.inputs.items()}
 
-    def run(self, draws: FloatArray, motion: int, factor: FloatArray, threads: int | None) -> Histories:
+    def run(self, draws: FloatArray, motion: int, factor: FloatArray, threads: int | None) -> Endings:
         """Return what becomes of bodies under a motion times a factor."""
         levels, drawn = self._probabilities(draws), self.values(draws)
         segments, number, mirrored = self._ground(motion, drawn)
@@ -200,7 +204,7 @@ class PlaneMechanics:
         found = RowsWithContact(segments, self._settings, "auto").run(rows, number, threads or processors())
         failed = np.asarray(found["outcome"]) == Outcome.FAILED.code
         rose = np.isfinite(found["first_uplift"]) | (found["peak_rotation"] != 0.0)
-        return Histories(
+        return Endings(
             np.where(failed, np.nan, rose), np.where(failed, np.nan, found["sliding_distance"]),
             overturned(found["outcome"]), np.abs(found["peak_rotation"]),
         )  # fmt: skip
@@ -249,7 +253,7 @@ def _several(motions: Any) -> Any:
     """Return motions by number: one, several, or a set that makes them when they are asked for."""
     if isinstance(motions, (Mapping, GroundMotion, Pulse)) or not hasattr(motions, "__getitem__"):
         motions = [motions]
-    if isinstance(motions, str) or not len(motions):
+    if isinstance(motions, str) or not motions:
         raise InvalidValueError(f"motions must be one or more records, pulses or pairs x and y, got {motions!r:.60}")
     return motions
 

@@ -129,6 +129,8 @@ class Uncertain:
     def _of_ppf(cls, name: str, given: Any, ends: tuple[float, float], unit: str) -> "Uncertain":
         nearly = np.asarray(given.ppf(np.array([1e-6, 1.0 - 1e-6])), dtype=np.float64)
         if not (np.isfinite(nearly).all() and ends[0] <= nearly[0] <= nearly[1] <= ends[1]):
-            raise InvalidValueError(f"{name} must be within [{ends[0]:g}, {ends[1]:g}], got {nearly[0]:g} to {nearly[1]:g}")
+            raise InvalidValueError(
+                f"{name} must be within [{ends[0]:g}, {ends[1]:g}], got {nearly[0]:g} to {nearly[1]:g}"
+            )
         words = f"of a distribution, nearly all from {nearly[0]:.4g} to {nearly[1]:.4g}{unit}"
         return cls(words, lambda u: np.clip(np.asarray(given.ppf(u), dtype=np.float64), *ends))

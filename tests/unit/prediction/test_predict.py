@@ -96,7 +96,8 @@ def test_azimuths_of_two_components():
 def test_the_same_seed_gives_the_same_answer_on_any_number_of_threads():
     motions = [noise_motion(k, peak=5.0) for k in range(3)]
     one, two, other = (
-        predict(BLOCK, motions, count=32, seed=seed, threads=threads).as_dict() for seed, threads in ((1, 1), (1, 2), (2, 1))
+        predict(BLOCK, motions, count=32, seed=seed, threads=threads).as_dict()
+        for seed, threads in ((1, 1), (1, 2), (2, 1))
     )
     assert plain(one) == plain(two)
     assert plain(one) != plain(other)

@@ -24,7 +24,9 @@ def ishigami(u, a=7.0, b=0.1):
     return values, first, total
 
 
-@pytest.mark.verifies("closed form", "Ishigami's function", within="0.03", control="test_answers_that_were_mixed_up_have_other_indices")
+@pytest.mark.verifies(
+    "closed form", "Ishigami's function", within="0.03", control="test_answers_that_were_mixed_up_have_other_indices"
+)
 def test_indices_of_ishigami():
     """First-order and total indices, within their intervals."""
     values, first, total = ishigami(ISHIGAMI.points)

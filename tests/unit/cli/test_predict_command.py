@@ -1,0 +1,95 @@
+"""`rocking predict`: the same as in Python, from options and from a file; files, refusals."""
+
+import json
+
+import pytest
+
+import rocking as rk
+from rocking.cli.page import plain
+from rocking.prediction import predict
+
+COMMAND = "predict"
+SIZE = ("--width", "0.5", "--height", "2")
+PULSE = "sine:amplitude=4.2,period=0.8"
+FEW = ("--set", "predict.count=16")
+FILE = """
+[body]
+units = "cm"
+width = 50
+height = 200
+[motions]
+pulse = "sine:amplitude=4.2,period=0.8"
+[predict]
+friction = { mean = 0.5, deviation = 0.1 }
+restitution = 0.9
+count = 16
+"""
+
+
+def test_json_is_the_python_call(run):
+    code, out, err = run(
+        *SIZE, PULSE, "--friction", "0.6", "--restitution", "ked", *FEW, "--set", "predict.base=[0,0.01]", "--json"
+    )
+    assert (code, err) == (0, "")
+    found = predict(
+        rk.Block(width=0.5, height=2.0),
+        rk.pulses.sine(4.2, 0.8),
+        friction=0.6,
+        restitution="ked",
+        base=(0, 0.01),
+        count=16,
+    )
+    assert json.loads(out) == plain(found.as_dict())
+
+
+def test_a_file_says_everything(run, tmp_path):
+    path = tmp_path / "question.toml"
+    path.write_text(FILE, "utf-8")
+    code, out, _ = run(str(path), "--set", "predict.seed=3", "--json")
+    assert code == 0
+    found = predict(
+        rk.Block(width=0.5, height=2.0), rk.pulses.sine(4.2, 0.8), friction={"mean": 0.5, "deviation": 0.1},
+        restitution=0.9, count=16, seed=3,
+    )  # fmt: skip
+    assert json.loads(out)["probability"] == plain(found.as_dict())["probability"]
+
+
+def test_what_is_printed_and_written(run, tmp_path):
+    picture, table = tmp_path / "found.png", tmp_path / "found.csv"
+    code, out, _ = run(
+        *SIZE, PULSE, "--motion", "sine:amplitude=1,period=0.8", *FEW, "--out", str(picture), "--out", str(table)
+    )
+    assert code == 0
+    assert out.startswith("It ")
+    assert "assumed:      placement" in out
+    assert "Sobol" in out
+    assert picture.stat().st_size > 10_000
+    assert len(table.read_text("utf-8").splitlines()) == 3
+
+
+def test_two_components_have_an_azimuth(run, tmp_path):
+    for name in ("ns", "ew"):
+        text = "\n".join(f"{0.01 * k:.2f} {(4.0 if name == 'ns' else 1.0) * (-1) ** (k // 40):.1f}" for k in range(160))
+        (tmp_path / f"{name}.txt").write_text(text, "utf-8")
+    along = [f"--motion={axis}={tmp_path / name}.txt" for axis, name in (("x", "ns"), ("y", "ew"))]
+    code, out, _ = run(*SIZE, *along, "--units", "m/s2", *FEW, "--json")
+    assert code == 0
+    assert "azimuth" in json.loads(out)["inputs"]
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        ((*SIZE,), "what moves the ground?"),
+        ((*SIZE, PULSE, "--friction", "0.5", "--set", "predict.friction=0.4"), "say the same"),
+        ((*SIZE, PULSE, "--set", "predict.fricton=0.4"), "friction"),
+        ((*SIZE, PULSE, "--set", "predict.count=100"), "power of two"),
+        ((*SIZE, PULSE, "--set", "settings.linear=true"), "settings.linear"),
+        ((*SIZE, PULSE, "--friction", "-1"), "friction"),
+        ((*SIZE, PULSE, "--restitution", "hausner"), "housner"),
+    ],
+)
+def test_refusals(run, words, why):
+    code, _, err = run(*words)
+    assert code == 2
+    assert why in err
