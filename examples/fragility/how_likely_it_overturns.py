@@ -1,5 +1,5 @@
 """How likely is it that it overturns?
-====================================
+==================================
 
 Nobody knows the friction under a cabinet, nor how its edges are worn, nor what an impact costs. How likely does it
 overturn all the same, and which of these should be measured first? For engineers and conservators.

@@ -43,7 +43,7 @@ def cases():
 
 @pytest.fixture(scope="module")
 def outcomes():
-    """Probabilities, those that take the friction for known, what then happened, which motion it was, and its PGA, PGV."""
+    """Probabilities, those that take the friction for known, what happened, which motion it was, its PGA and PGV."""
     rows = []
     for body, number, motion, (left, right), friction, restitution, sign in cases():
         truly = body.with_feet(body.feet[0] + left, body.feet[1] - right)

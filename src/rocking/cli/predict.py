@@ -1,5 +1,6 @@
 """`rocking predict`: how likely a body is to rock, to slide or to overturn, as far as it is known."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -21,17 +22,18 @@ TABLES = ("body", "motion", "settings", "predict")
 COUNT, SEED = 20, 1
 """Synthetic motions, where nobody says otherwise."""
 
-EXPORTS = {
-    "picture": Export(PICTURES, draw, "matplotlib"),
-    "csv": Export((".csv",), lambda answer, path: answer.found.to_csv(path)),
-    "netcdf": Export((".nc",), lambda answer, path: _netcdf(answer, path), "h5netcdf"),
-}
-
 
 def _netcdf(answer: "PredictionAnswer", path: Path) -> None:
     from rocking.tables import to_netcdf
 
     to_netcdf(answer.found.to_xarray(), path)
+
+
+EXPORTS = {
+    "picture": Export(PICTURES, draw, "matplotlib"),
+    "csv": Export((".csv",), lambda answer, path: answer.found.to_csv(path)),
+    "netcdf": Export((".nc",), _netcdf, "h5netcdf"),
+}
 
 
 def predict(
@@ -75,7 +77,7 @@ def predict(
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print how likely a body is to rock, slide or overturn, what decides it, and whether it can be predicted at all."""
+    """Print how likely a body is to rock, slide or overturn, what decides it, and whether that can be predicted."""
     from rocking.cli.arguments import as_typed, document_file
     from rocking.spec.prediction import PredictionProblem
 
@@ -113,10 +115,8 @@ def _typed(context: typer.Context) -> "tuple[PredictionDocument, InputFiles]":
     body, named = arguments.body_and_motions()
     told = {name: arguments.options[name] for name in ("restitution", "friction")}
     if told["restitution"] is not None:
-        try:
+        with suppress(ValueError):  # the name of a model
             told["restitution"] = float(told["restitution"])
-        except ValueError:
-            pass  # the name of a model
     with hinted(body, named[0].partition("=")[2] or named[0] if named else None):
         document: dict[str, Any] = {
             "body": arguments.body_table(body),

@@ -217,13 +217,12 @@ def _growth(found: Mapping[str, FloatArray], count: int, names: Sequence[str]) -
     (peak, rose, fell), (peaks, _, falls) = (
         [found[name][rows] for name in ("peak", "uplift", "overturning")] for rows in (slice(pairs), slice(count, None))
     )
-    rocks = (rose == 1.0) & np.isfinite(peak) & np.isfinite(peaks)
+    rocks = (rose == 1.0) & np.isfinite(fell) & np.isfinite(falls)
     largest = np.maximum(np.maximum(peak, peaks), 1e-300)
     apart = np.where(rocks, np.abs(peak - peaks) / largest, 0.0)
     standing = rocks & (fell == 0.0) & (falls == 0.0)
     lost = rocks & ((fell != falls) | (standing & (apart > REPRODUCED)))
     growth = apart[standing] / CHANGE
-    return Growth(
-        pairs, int(rocks.sum()), int(lost.sum()), tuple(name for name, bad in zip(names, lost.any(axis=0), strict=True) if bad),
-        len(names), float(np.median(growth)) if growth.size else np.nan,
-    )  # fmt: skip
+    names_lost = tuple(name for name, bad in zip(names, lost.any(axis=0), strict=True) if bad)
+    median = float(np.median(growth)) if growth.size else np.nan
+    return Growth(pairs, int(rocks.sum()), int(lost.sum()), names_lost, len(names), median)

@@ -179,9 +179,8 @@ class Prediction:
         for name, word in EVENTS.items():
             if name != "overturning":
                 far = f" by {1000.0 * self.sliding_beyond:g} mm or more" if name == "sliding" else ""
-                found.append(
-                    f"{_said(word + far, self.chances[name])[:1].upper()}{_said(word + far, self.chances[name])[1:]}."
-                )
+                said = _said(word + far, self.chances[name])
+                found.append(f"{said[:1].upper()}{said[1:]}.")
         movers = sorted(self.ends.items(), key=lambda pair: -abs(pair[1].probability_high - pair[1].probability_low))
         for name, each in movers[:2]:
             if each.probability_low != each.probability_high:
@@ -290,7 +289,8 @@ def _said(word: str, chance: Chance) -> str:
     wide = ""
     if not math.isnan(chance.wide_low):
         wide = f"; {percent(chance.wide_low)} to {percent(chance.wide_high)} under other motions like these"
-    return f"it {word} with a probability of {percent(chance.value)} ({percent(chance.low)} to {percent(chance.high)}{wide})"
+    ends = f"{percent(chance.low)} to {percent(chance.high)}"
+    return f"it {word} with a probability of {percent(chance.value)} ({ends}{wide})"
 
 
 def _told(name: str) -> str:

@@ -42,7 +42,7 @@ NOT_SAMPLED = (
 
 _WHY = {
     "restitution": "the posterior of the published measurements with the scatter of single bodies",
-    "friction": "dry stone, concrete, wood and metal: tables differ by as much for one pair of them (EN 12812, BS 5975)",
+    "friction": "dry stone, concrete, wood and metal: EN 12812 and BS 5975 differ by as much for one pair of them",
     "base": "how far each foot lies inside of the drawn base, for chipped or rounded edges: up to 2 % of its width",
     "centre": "factor on the height of the centre: what is inside is rarely homogeneous",
     "polarity": "as recorded or mirrored: which way round the body will stand is not known",
@@ -237,7 +237,7 @@ class PlaneMechanics:
         return found
 
     def _impact(self, old: Any, new: Any, height: Any) -> ImpactGeometry:
-        half = 0.5 * self._spread
+        half = np.asarray(0.5 * self._spread)
         return ImpactGeometry(height, old, new, half, half)
 
 

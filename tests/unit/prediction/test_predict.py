@@ -83,6 +83,7 @@ def test_measured_restitution_is_the_posterior():
 
 @pytest.mark.verifies("invariant", "one component alone, and half a turn as the mirrored motion", within="1e-9")
 def test_azimuths_of_two_components():
+    """A quarter turn is the other component, half a turn the body seen from behind."""
     x, y = (noise_motion(k, peak=5.0) for k in (5, 6))
     pair = {"x": x, "y": y}
     across = peaks(mechanics(BODY, pair, azimuth=0.5 * math.pi)).peak
@@ -118,7 +119,7 @@ def test_the_input_that_decides_has_the_share():
     assert 0.1 < found.chances["overturning"].value < 0.9
     assert found.shares["friction"].first > 0.6
     ends = found.ends["friction"]
-    assert ends.low < 0.25 < 0.6 < ends.high  # tan alpha
+    assert ends.low < math.tan(BLOCK.slenderness_angle) < ends.high
     assert (ends.probability_low, ends.probability_high) == (0.0, 1.0)
 
 
@@ -179,6 +180,7 @@ def test_inputs(given, share, value):
 
 @pytest.mark.verifies("closed form", "the truncated normal distribution of SciPy", within="1e-12")
 def test_a_normal_is_cut_where_values_make_no_sense():
+    """Quantiles on condition that friction is not negative."""
     found = Uncertain.of("friction", {"mean": 0.3, "deviation": 0.2}, 0.0, 10.0)
     cut = scipy.stats.truncnorm(-1.5, (10.0 - 0.3) / 0.2, 0.3, 0.2)
     levels = np.linspace(0.0, 1.0, 11)[1:-1]
