@@ -1,0 +1,106 @@
+"""How often predictions are right: bodies whose base, friction and restitution are hidden, resumed where it stopped.
+
+`make predictions` foresees 2,000 of them with 256 histories each (3 minutes), keeps every one in
+build/predictions.jsonl, and prints scores beside those of a plain logistic in PGA and PGV and of a prediction that
+takes the friction, which decides most, for known.
+"""
+
+import hashlib
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import rocking as rk
+from rocking.motions.integrals import peak_ground_velocity
+from rocking.prediction import predict
+from rocking.restitution.implied import energy_bound
+from rocking.statistics.scores import Forecasts, logistic_left_out
+
+ROOT = Path(__file__).parents[1]
+RESTITUTION = {"mean": 0.88, "deviation": 0.04}
+BASE, FRICTION, TAKEN_FOR_KNOWN = 0.1, (0.1, 0.8), 0.45
+"""Of the half width at most; and from below to above what keeps these bodies from sliding, so that it decides most."""
+
+KEYS = ("said", "ignorant", "fell", "motion", "pga", "pgv")
+"""Probability, that of the prediction that takes the friction for known, what happened, and under which motion."""
+
+
+def foreseen(number: int, count: int, motions: int) -> dict[str, float]:
+    """Return the probabilities of one body, what then happened to it, and what shook it, by `KEYS`.
+
+    What happened is of a body made with its true feet, simulated by itself.
+    """
+    random, which = np.random.default_rng([17, number]), number % motions
+    shape = (rk.pulses.sine, rk.pulses.cosine, rk.pulses.ricker, rk.pulses.antisymmetric_ricker)[which % 4]
+    shaking = np.random.default_rng([71, which])
+    motion = shape(shaking.uniform(2.0, 9.0), shaking.uniform(0.4, 1.2))
+    height = random.uniform(0.8, 2.5)
+    body = rk.Block(width=height * random.uniform(0.2, 0.35), height=height)
+    left, right = random.uniform(0.0, BASE * body.half_width, 2)
+    truly = body.with_feet(body.feet[0] + left, body.feet[1] - right)
+    coefficient = float(np.clip(random.normal(*RESTITUTION.values()), 0.0, 1.0))
+    coefficients = {foot: min(coefficient, energy_bound(truly, foot)) for foot in ("left", "right")}
+    friction, sign = random.uniform(*FRICTION), 1.0 if random.random() < 0.5 else -1.0
+    fell = rk.simulate_many(truly, motion, coefficients, friction=friction, scale=sign, threads=1).overturned.item()
+    known: dict[str, Any] = {"restitution": RESTITUTION, "base": (0.0, BASE * body.half_width), "centre": 1.0}
+    known |= {"shares": False, "seed": number, "threads": 1}
+    found = [
+        predict(body, motion, friction=mu, count=n, **known)
+        for mu, n in ((FRICTION, count), (TAKEN_FOR_KNOWN, count // 2))
+    ]
+    # a share of a finite sample is never quite certain
+    said = [(each.chances["overturning"].value * each.count + 0.5) / (each.count + 1.0) for each in found]
+    sampled = motion.sampled(0.005)
+    return dict(zip(KEYS, (*said, fell, which, sampled.peak, peak_ground_velocity(sampled)), strict=True))
+
+
+def scored(rows: list[dict[str, float]]) -> dict[str, Forecasts]:
+    """Return the scores of the predictions, of those that take the friction for known, and of the logistic."""
+    said, ignorant, fell, motion, pga, pgv = (np.array([row[key] for row in rows]) for key in KEYS)
+    logistic = logistic_left_out(np.log(np.column_stack([pga, pgv])), fell, motion)
+    given = {"predict": said, "friction taken for known": ignorant, "logistic, a motion left out": logistic}
+    return {name: Forecasts(each, fell, motion) for name, each in given.items()}
+
+
+def resumed(path: Path, cases: int, count: int, motions: int) -> Iterator[dict[str, float]]:
+    """Give every case, those of an earlier run from its file unless what computes them has changed."""
+    folders = [ROOT / "src" / "rocking" / each for each in ("prediction", "dynamics/contact", "evidence")]
+    sources = sorted([Path(__file__), *(file for folder in folders for file in folder.rglob("*.py"))])
+    digest = hashlib.sha256(b"".join(file.read_bytes() for file in sources)).hexdigest()
+    head = json.dumps({"sources": digest, "count": count, "motions": motions})
+    lines = path.read_text("utf-8").splitlines() if path.exists() else []
+    kept = lines[1:] if lines[:1] == [head] else []
+    if kept and not kept[-1].endswith("}"):
+        kept.pop()  # it was stopped while it wrote
+    path.parent.mkdir(exist_ok=True)
+    path.write_text("\n".join([head, *kept]) + "\n", "utf-8")
+    yield from map(json.loads, kept[:cases])
+    with path.open("a", encoding="utf-8") as file:
+        for number in range(len(kept), cases):
+            row = foreseen(number, count, motions)
+            file.write(f"{json.dumps(row)}\n")
+            file.flush()
+            yield row
+
+
+def main(cases: int = 2000, count: int = 256, motions: int = 100) -> None:
+    """Print the scores."""
+    rows = list(resumed(ROOT / "build" / "predictions.jsonl", cases, count, motions))
+    found = scored(rows)
+    print("| forecast | Brier | logarithmic | balanced accuracy | calibration z |\n|---|---|---|---|---|")
+    for name, each in found.items():
+        cells = [
+            f"{s.value:.4f} ({s.low:.4f} to {s.high:.4f})"
+            for s in (each.brier, each.logarithmic, each.balanced_accuracy)
+        ]
+        print(f"| {name} | {' | '.join(cells)} | {each.calibration:.2f} |")
+    print("\n| said | happened | 95 % | bodies |\n|---|---|---|---|")
+    for step in found["predict"].reliability():
+        print(f"| {step.predicted:.3f} | {step.observed:.3f} | {step.low:.3f} to {step.high:.3f} | {step.count} |")
+
+
+if __name__ == "__main__":
+    main()
