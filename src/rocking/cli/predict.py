@@ -39,30 +39,20 @@ EXPORTS = {
 def predict(
     context: typer.Context,
     body: options.BodyFile = None,
-    record: Annotated[
-        list[str] | None,
-        typer.Argument(help="Record files, file#COMPONENT, or pulses such as sine:amplitude=1,period=0.5."),
-    ] = None,
+    record: Annotated[list[str] | None, typer.Argument(help="Record files, file#COMPONENT, or pulses.")] = None,
     motion: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="The same, as an option; again for more; or x=FILE and y=FILE, two components of one motion."
-        ),
+        list[str] | None, typer.Option(help="The same; again for more; or x=FILE and y=FILE, two components of one.")
     ] = None,
     synthetic: Annotated[
-        str | None,
-        typer.Option(
-            help="Family of motions in their place: firm-ground, soft-ground, kanai-tajimi, point-source, pulse-like."
-        ),
+        str | None, typer.Option(help="Family of motions in their place, such as firm-ground.")
     ] = None,
     count: Annotated[int | None, typer.Option(help="How many synthetic motions, 20 if not given.")] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.")] = None,
     restitution: Annotated[
-        str | None,
-        typer.Option(help="Model or coefficient; what the published measurements say of the body if not given."),
+        str | None, typer.Option(help="Model or coefficient; what measurements say of the body if not given.")
     ] = None,
     friction: Annotated[
-        float | None, typer.Option(help=r"Coefficient of friction, if it is known; 0.3 to 0.8 if not \[-].")
+        float | None, typer.Option(help=r"Coefficient of friction; 0.3 to 0.8 if not given \[-].")
     ] = None,
     width: options.Width = None,
     height: options.Height = None,

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
     from rocking.tables import Table
 
-EVENTS = {"uplift": "rocks", "sliding": "slides", "overturning": "overturns"}
-
 _VERDICTS = (
     (0.01, "will almost certainly stay standing"),
     (1.0 / 3.0, "will probably stay standing"),
@@ -30,27 +28,13 @@ _VERDICTS = (
 
 @dataclass(frozen=True, eq=False)
 class Chance:
-    """How likely something is.
+    """How likely something is, with 95 % intervals [-]."""
 
-    Parameters
-    ----------
-    value : float
-        Probability over all motions, each as likely [-].
-    low, high : float
-        Ends of the 95 % interval from the number of bodies drawn, under these motions [-].
-    between : float
-        Standard deviation of the probability from motion to motion, without what sampling adds; NaN of one motion [-].
-    wide_low, wide_high : float
-        Ends of the 95 % interval if other motions like these might come; NaN of fewer than five motions [-].
-    per_motion, per_motion_low, per_motion_high : ndarray
-        Probability under each motion, and its exact 95 % interval from the number of bodies [-].
-    """
-
-    value: float
-    low: float
+    value: float  # over all motions, each as likely
+    low: float  # low, high: from the number of bodies drawn, under these motions
     high: float
-    between: float
-    wide_low: float
+    between: float  # standard deviation from motion to motion, without what sampling adds; NaN of one motion
+    wide_low: float  # wide_low, wide_high: if other motions like these came; NaN of fewer than five motions
     wide_high: float
     per_motion: FloatArray
     per_motion_low: FloatArray
@@ -59,17 +43,9 @@ class Chance:
 
 @dataclass(frozen=True)
 class EndsOfRange:
-    """How likely overturning is where an input is low, and where it is high.
+    """How likely overturning is in the lowest and in the highest fifth of the draws of an input."""
 
-    Parameters
-    ----------
-    low, probability_low : float
-        Mean of the input in the lowest fifth of its draws [its unit], and the probability there [-].
-    high, probability_high : float
-        The same for the highest fifth.
-    """
-
-    low: float
+    low: float  # mean of the input there
     probability_low: float
     high: float
     probability_high: float
@@ -77,30 +53,14 @@ class EndsOfRange:
 
 @dataclass(frozen=True)
 class Growth:
-    """What becomes of a small difference: pairs of histories whose motions differ by one part in a million.
+    """What becomes of a small difference: pairs of histories whose motions differ by one part in a million."""
 
-    Parameters
-    ----------
-    pairs : int
-        Pairs under each motion.
-    rocking : int
-        How many of all pairs rocked.
-    lost : int
-        How many of these end differently, or differ by more than 1 % in their peaks.
-    motions_lost : tuple of str
-        Motions under which that happened to a pair at least.
-    motions : int
-        How many motions there are.
-    median : float
-        Median of the relative change of the peak over that of the motion; NaN where nothing rocks on [-].
-    """
-
-    pairs: int
-    rocking: int
-    lost: int
-    motions_lost: tuple[str, ...]
-    motions: int
-    median: float
+    pairs: int  # under each motion
+    rocking: int  # how many of all pairs rocked
+    lost: int  # how many of these end differently, or differ by more than 1 % in their peaks
+    motions_lost: tuple[str, ...]  # motions under which that happened to a pair at least
+    motions: int  # how many motions there are
+    median: float  # of the relative change of the peak over that of the motion; NaN where nothing rocks on [-]
 
     @property
     def sentence(self) -> str:
@@ -168,19 +128,16 @@ class Prediction:
         """What will become of it, in words and with its probability."""
         chance = self.chances["overturning"]
         words = next(text for most, text in _VERDICTS if chance.value < most)
-        if not chance.low <= 0.5 <= chance.high or words == _VERDICTS[2][1]:
-            return f"It {words}: {_said('overturns', chance)}."
-        return f"It may overturn or not: {_said('overturns', chance)}."
+        if chance.low <= 0.5 <= chance.high:
+            words = "may overturn or not"
+        return f"It {words}: {_said('overturns', chance)}."
 
     @property
     def sentences(self) -> tuple[str, ...]:
         """Verdict, the other probabilities, what would change the answer, and whether it can be predicted at all."""
-        found = [self.verdict]
-        for name, word in EVENTS.items():
-            if name != "overturning":
-                far = f" by {1000.0 * self.sliding_beyond:g} mm or more" if name == "sliding" else ""
-                said = _said(word + far, self.chances[name])
-                found.append(f"{said[:1].upper()}{said[1:]}.")
+        far = f"slides by {1000.0 * self.sliding_beyond:g} mm or more"
+        both = [_said("rocks", self.chances["uplift"]), _said(far, self.chances["sliding"])]
+        found = [self.verdict, *(f"I{said[1:]}." for said in both)]
         movers = sorted(self.ends.items(), key=lambda pair: -abs(pair[1].probability_high - pair[1].probability_low))
         for name, each in movers[:2]:
             if each.probability_low != each.probability_high:
@@ -207,21 +164,24 @@ class Prediction:
         dict
             NaN where something does not exist.
         """
+        plain = (
+            "verdict",
+            "body",
+            "motions",
+            "sliding_beyond",
+            "inputs",
+            "assumed",
+            "count",
+            "histories",
+            "failed",
+            "seed",
+        )
         return {
-            "body": self.body,
-            "motions": list(self.motions),
-            "verdict": self.verdict,
-            "probability": {name: _plain(chance) for name, chance in self.chances.items()},
-            "sliding_beyond_m": self.sliding_beyond,
-            "shares_of_overturning": {_told(name): asdict(share) for name, share in self.shares.items()},
-            "ends_of_inputs": {name: asdict(each) for name, each in self.ends.items()},
+            **{name: getattr(self, name) for name in plain},
+            "probability": {name: vars(chance) for name, chance in self.chances.items()},
+            "shares": {_told(name): asdict(share) for name, share in self.shares.items()},
+            "ends": {name: asdict(each) for name, each in self.ends.items()},
             "growth": {**asdict(self.growth), "sentence": self.growth.sentence},
-            "inputs": dict(self.inputs),
-            "assumed": list(self.assumed),
-            "count": self.count,
-            "histories": self.histories,
-            "failed": self.failed,
-            "seed": self.seed,
         }
 
     def exported(self) -> "Table":
@@ -295,7 +255,3 @@ def _said(word: str, chance: Chance) -> str:
 
 def _told(name: str) -> str:
     return "motion" if name == "case" else name
-
-
-def _plain(chance: Chance) -> dict[str, Any]:
-    return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in vars(chance).items()}

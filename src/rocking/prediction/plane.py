@@ -1,7 +1,7 @@
 """What is drawn for a plane body on a floor with friction, and what becomes of it by the compiled engine."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -27,10 +27,8 @@ from rocking.restitution.shifted_impulse import shifted
 MEASURED, COMPLEMENTARITY = "measured", "complementarity"
 """Restitution by what the published measurements say of a body; by the laws of contact at the corners alone."""
 
-FRICTION = (0.3, 0.8)
 BASE = 0.02
-CENTRE = (0.97, 1.03)
-"""What serves where nobody says otherwise: friction, share of the base within which feet lie, factor on the height."""
+"""Share of the base within which feet lie where nobody says otherwise."""
 
 DIRECTIONS = 36
 """Over half a turn, to which azimuths are rounded: a motion of two components is turned into each that was drawn."""
@@ -40,15 +38,14 @@ NOT_SAMPLED = (
     "density: what rocks does not depend on it, unless it differs from place to place (that is what centre is for)",
 )
 
+_WIDTHS = {"restitution": 1, "friction": 1, "base": 2, "centre": 1, "polarity": 1, "azimuth": 1}
 _WHY = {
-    "restitution": "the posterior of the published measurements with the scatter of single bodies",
     "friction": "dry stone, concrete, wood and metal: EN 12812 and BS 5975 differ by as much for one pair of them",
     "base": "how far each foot lies inside of the drawn base, for chipped or rounded edges: up to 2 % of its width",
     "centre": "factor on the height of the centre: what is inside is rarely homogeneous",
     "polarity": "as recorded or mirrored: which way round the body will stand is not known",
     "azimuth": "which way round the body stands to the two components is not known",
 }
-_WIDTHS = {"restitution": 1, "friction": 1, "base": 2, "centre": 1, "polarity": 1, "azimuth": 1}
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,21 +61,10 @@ class Endings:
 class Mechanics(Protocol):
     """What a prediction asks of bodies on an engine: which numbers they take, and what becomes of them."""
 
-    @property
-    def inputs(self) -> Mapping[str, Uncertain]:
-        """What is sampled, by name, what is fixed too."""
-
-    @property
-    def widths(self) -> Mapping[str, int]:
-        """How many numbers from 0 to 1 each input takes that is not fixed."""
-
-    @property
-    def assumed(self) -> Sequence[str]:
-        """What was assumed, in words."""
-
-    @property
-    def names(self) -> Sequence[str]:
-        """Names of the motions."""
+    inputs: dict[str, Uncertain]  # what is sampled, and what is known, by name
+    widths: dict[str, int]  # how many numbers from 0 to 1 each input takes that is not known
+    assumed: list[str]  # what was assumed, in words
+    names: list[str]  # of the motions
 
     def values(self, draws: FloatArray) -> Mapping[str, FloatArray]:
         """Return what draws from the unit cube mean, by input; one row a body."""
@@ -99,33 +85,32 @@ class PlaneMechanics:
         if not isinstance(known, Body):
             raise InvalidValueError(f"body must be a Block, Section or MassPoints, got {body!r:.60}")
         self.body, self._settings = body, settings
-        self._motions = _several(motions)
-        self.names = [_parts(self._motions[k])[0].name for k in range(len(self._motions))]
-        turns = any(isinstance(self._motions[k], Mapping) for k in range(len(self._motions)))
+        self._motions, self.names, turns = _several(motions), [], False
+        for k in range(len(self._motions)):
+            along, across, _ = _parts(self._motions[k])
+            self.names.append(along.name)
+            turns |= across is not None
+        if not turns and given.get("azimuth") is not None:
+            raise InvalidValueError('azimuth goes with motions of two components, {"x": ..., "y": ...}')
         left, right = (body.side(foot, settings.gravity) for foot in FEET)
         self._levers, self._height = np.array([left.half_width, right.half_width]), right.centre_height
         self._spread = body.moment_of_inertia / body.mass
-        most = 0.9 * float(self._levers.min())
-        usual: dict[str, Any] = {
-            "friction": FRICTION, "base": (0.0, min(BASE * float(self._levers.sum()), most)),
-            "centre": CENTRE,
-            "polarity": {"values": [-1.0, 1.0]}, "azimuth": (0.0, 2.0 * math.pi),
-        }  # fmt: skip
-        limits = {
-            "friction": (0.01, 10.0, "-"), "base": (0.0, most, "m"), "centre": (0.5, 1.5, "-"),
-            "polarity": (-1.0, 1.0, "-"), "azimuth": (-4.0 * math.pi, 4.0 * math.pi, "rad"),
-        }  # fmt: skip
+        most, turn = 0.9 * float(self._levers.min()), 2.0 * math.pi
+        # usual value, least and largest that make sense, unit
+        known_limits: dict[str, tuple[Any, float, float, str]] = {
+            "friction": ((0.3, 0.8), 0.01, 10.0, "-"),
+            "base": ((0.0, min(BASE * float(self._levers.sum()), most)), 0.0, most, "m"),
+            "centre": ((0.97, 1.03), 0.5, 1.5, "-"),
+            "polarity": ({"values": [-1.0, 1.0]}, -1.0, 1.0, "-"),
+            **({"azimuth": ((0.0, turn), -turn, turn, "rad")} if turns else {}),
+        }
         self.inputs: dict[str, Uncertain] = {}
-        self.assumed: list[str] = list(body.assumed)
-        for name, (low, high, unit) in limits.items():
+        self.assumed = list(body.assumed)
+        for name, (usual, low, high, unit) in known_limits.items():
             told = given.get(name)
-            if name == "azimuth" and not turns:
-                if told is not None:
-                    raise InvalidValueError('azimuth goes with motions of two components, {"x": ..., "y": ...}')
-                continue
-            self.inputs[name] = Uncertain.of(name, usual[name] if told is None else told, low, high, unit)
+            self.inputs[name] = Uncertain.of(name, usual if told is None else told, low, high, unit)
             if told is None:
-                self.assumed.append(f"{name}: {self._words(name)} ({_WHY[name]})")
+                self.assumed.append(f"{name}: {self.inputs[name].words} ({_WHY[name]})")
         if not np.isin(self.inputs["polarity"].quantile(np.linspace(0.0, 1.0, 33)), (-1.0, 1.0)).all():
             raise InvalidValueError(f"polarity must be 1, -1 or both as a sample, got {given['polarity']!r:.60}")
         plausibility.warn(plausibility.of_friction(float(self.inputs["friction"].quantile(np.array([0.5]))[0])))
@@ -133,28 +118,26 @@ class PlaneMechanics:
         self.assumed += NOT_SAMPLED
         self.widths = {name: _WIDTHS[name] for name, each in self.inputs.items() if not each.fixed}
 
-    def _words(self, name: str) -> str:
-        return "1 or -1, each as likely" if name == "polarity" else self.inputs[name].words
-
     def _set_restitution(self, told: Any) -> None:
         """Take coefficients onto both feet for probabilities, and whether they follow the base."""
-        words: str
-        if told is None or told == MEASURED:
+        word = told if isinstance(told, str) else MEASURED if told is None else ""
+        if word == MEASURED:
             found = restitution_distribution(self.body)
             self._tables = [found.tables[foot] for foot in FEET]
             words = f"{self._tables[1][25]:.3f} to {self._tables[1][-26]:.3f} onto the right foot in 95 % of draws"
             words += ", outside of the slendernesses that were measured" if found.extrapolated else ""
             self._follows, fixed = True, False
-            self.assumed.append(f"restitution: {words} ({_WHY['restitution']})")
-        elif told == COMPLEMENTARITY:
+            self.assumed.append(f"restitution: {words} (the published measurements, with the scatter of single bodies)")
+        elif word == COMPLEMENTARITY:
             words, self._follows, fixed = "by complementarity alone", False, True
             self._tables = [np.full(2, np.nan)] * 2
-        elif isinstance(told, (str, RestitutionModel)):
+        elif word or isinstance(told, RestitutionModel) or (isinstance(told, Mapping) and set(told) == set(FEET)):
             pair, words = coefficients_of(told, self.body)
-            self._tables, self._follows, fixed = [np.full(2, pair[foot]) for foot in FEET], True, True
-        elif isinstance(told, Mapping) and set(told) == set(FEET):
-            pair, words = coefficients_of(told, self.body)
-            self._tables, self._follows, fixed = [np.full(2, pair[foot]) for foot in FEET], False, True
+            self._tables, self._follows, fixed = (
+                [np.full(2, pair[foot]) for foot in FEET],
+                not isinstance(told, Mapping),
+                True,
+            )
         else:
             one = Uncertain.of("restitution", told, 0.0, 10.0)
             levels = np.linspace(0.0, 1.0, 1025)

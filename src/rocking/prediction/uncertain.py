@@ -20,52 +20,16 @@ _HINT = (
 
 @dataclass(frozen=True, eq=False)
 class Uncertain:
-    """A number that is known, or its distribution.
-
-    Parameters
-    ----------
-    words : str
-        What it is, for people.
-    quantile : callable
-        Takes probabilities from 0 to 1, returns the values that are not exceeded with them.
-    fixed : bool
-        Whether it is one number.
-    """
+    """A number that is known, or its distribution."""
 
     words: str
-    quantile: Callable[[FloatArray], FloatArray]
-    fixed: bool = False
+    quantile: Callable[[FloatArray], FloatArray]  # values that are not exceeded with probabilities
+    fixed: bool = False  # whether it is one number
 
     @classmethod
     def of(cls, name: str, given: Any, low: float, high: float, unit: str = "-") -> "Uncertain":
-        """Return what was given: a number, a range, a distribution or a sample.
+        """Return what was given; low, high: least and largest value that make sense, where distributions are cut.
 
-        Parameters
-        ----------
-        name : str
-            What it is called, for errors.
-        given : float, pair, sequence, mapping or frozen distribution of scipy.stats
-            A number; ``(low, high)``, all between alike; three numbers or more, a sample; ``{"low", "high"}``;
-            ``{"mean", "deviation"}``, normal; ``{"median", "dispersion"}``, lognormal; ``{"values"}``, a sample; or
-            anything with a method `ppf`. Normal and lognormal are cut where values make no sense.
-        low, high : float
-            Least and largest value that make sense.
-        unit : str
-            Unit, for words and errors.
-
-        Returns
-        -------
-        Uncertain
-            Words and quantiles.
-
-        Raises
-        ------
-        InvalidValueError
-            If it is none of these, or a value makes no sense.
-
-        Examples
-        --------
-        >>> import numpy as np
         >>> found = Uncertain.of("friction", (0.4, 0.8), 0.0, 10.0)
         >>> found.words, found.quantile(np.array([0.25])).tolist()
         ('from 0.4 to 0.8, all alike', [0.5])

@@ -15,24 +15,12 @@ REPETITIONS = 1000
 
 @dataclass(frozen=True)
 class VarianceShare:
-    """Share of the variance of an answer that one input explains.
+    """Share of the variance of an answer that one input explains, with 95 % intervals [-]."""
 
-    Parameters
-    ----------
-    first : float
-        First-order index: what would go if this input alone were known [-].
-    first_low, first_high : float
-        Ends of its 95 % interval [-].
-    total : float
-        Total index: what would stay if everything but this input were known [-].
-    total_low, total_high : float
-        Ends of its 95 % interval [-].
-    """
-
-    first: float
+    first: float  # first-order index: what would go if this input alone were known
     first_low: float
     first_high: float
-    total: float
+    total: float  # total index: what would stay if everything but this input were known
     total_low: float
     total_high: float
 
@@ -41,31 +29,15 @@ class VarianceShare:
 class SaltelliDesign:
     """Points of the unit cube at which an answer is asked: two samples, and mixtures of them for every input.
 
-    Parameters
-    ----------
-    count : int
-        Points of either sample, a power of two [-].
-    inputs : dict of str to int
-        How many numbers from 0 to 1 each input takes.
-    seed : int
-        Of the scrambled Sobol sequence; the same one gives the same points.
-
-    Raises
-    ------
-    InvalidValueError
-        If the count is no power of two.
-
-    Examples
-    --------
     >>> design = SaltelliDesign(512, {"large": 1, "small": 1}, seed=1)
     >>> answer = design.points @ [2.0, 1.0]
     >>> {name: round(share.first, 1) for name, share in design.shares(answer).items()}
     {'large': 0.8, 'small': 0.2}
     """
 
-    count: int
-    inputs: Mapping[str, int]
-    seed: int = 0
+    count: int  # points of either sample, a power of two
+    inputs: Mapping[str, int]  # how many numbers from 0 to 1 each input takes
+    seed: int = 0  # of the scrambled Sobol sequence
 
     def __post_init__(self) -> None:
         """Check the count."""
@@ -93,25 +65,10 @@ class SaltelliDesign:
         return np.vstack([first, second, *mixed])
 
     def shares(self, answers: FloatArray, repetitions: int = REPETITIONS) -> dict[str, VarianceShare]:
-        """Return the shares of the inputs by Jansen's estimators (1999), intervals by drawing points again.
+        """Return the shares of the inputs by Jansen's estimators (1999), all zero where nothing varies.
 
-        Parameters
-        ----------
-        answers : ndarray, shape (points,) or (points, cases)
-            What was found at `points`; with several cases, such as motions, which of them it is counts as an input
-            more, `case`, all of them equally likely [any unit]. A point without an answer, NaN, is left out.
-        repetitions : int
-            Bootstrap samples.
-
-        Returns
-        -------
-        dict of str to VarianceShare
-            By input; all zero where nothing varies.
-
-        Raises
-        ------
-        InvalidValueError
-            If there is not an answer for each point.
+        answers: what was found at `points`; with several columns, such as motions, which of them it is counts as one
+        input more, `case`. A point without an answer, NaN, is left out.
         """
         found = np.asarray(answers, dtype=np.float64)
         found = found[:, None] if found.ndim == 1 else found

@@ -153,7 +153,7 @@ def test_results_out(tmp_path):
     assert isinstance(found, Prediction)
     facts = json.loads(json.dumps(plain(found.as_dict())))
     assert facts["probability"]["overturning"]["per_motion"][1] == 0.0
-    assert "motion" in facts["shares_of_overturning"]
+    assert "motion" in facts["shares"]
     dataset = found.to_xarray()
     assert dataset["overturning"].sizes == {"motion": 2}
     assert dataset["input_total"].attrs["units"] == "1"
