@@ -65,7 +65,10 @@ class SaltelliDesign:
         return np.vstack([first, second, *mixed])
 
     def shares(self, answers: FloatArray, repetitions: int = REPETITIONS) -> dict[str, VarianceShare]:
-        """Return the shares of the inputs by Jansen's estimators (1999), all zero where nothing varies.
+        """Return the shares of the inputs, all zero where nothing varies.
+
+        First-order indices by Saltelli's estimator (2010), exactly zero where an input does nothing, total ones by
+        Jansen's (1999); intervals by drawing the points again.
 
         answers: what was found at `points`; with several columns, such as motions, which of them it is counts as one
         input more, `case`. A point without an answer, NaN, is left out.
@@ -95,13 +98,12 @@ def _estimates(stacked: FloatArray, weights: FloatArray) -> list[tuple[FloatArra
     mean = weights @ (0.5 * (first + second).mean(axis=1))
     variance = weights @ (0.5 * (first**2 + second**2).mean(axis=1)) - mean**2
     middle = stacked.mean(axis=2)  # over the cases
-    of_middle = weights @ (0.5 * (middle[0] ** 2 + middle[1] ** 2)) - mean**2
     scale = np.where(variance > 1e-12 * (1.0 + mean**2), variance, np.inf)
     found = []
     for k, one in enumerate(mixed):
-        apart = weights @ (0.5 * (middle[1] - middle[2 + k]) ** 2)
-        total = weights @ (0.5 * ((first - one) ** 2).mean(axis=1))
-        found.append(((of_middle - apart) / scale, total / scale))  # Eq. 261, 262
+        step = middle[2 + k] - middle[0]
+        alone = weights @ (middle[1] * step) - mean * (weights @ step)  # Eq. 261
+        found.append((alone / scale, weights @ (0.5 * ((first - one) ** 2).mean(axis=1)) / scale))  # Eq. 262
     if stacked.shape[2] > 1:
         alone = ((weights @ first) * (weights @ second)).mean(axis=1)
         alone -= (weights @ middle[0]) * (weights @ middle[1])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rocking.errors import InvalidValueError
-from rocking.statistics.shares import SaltelliDesign
+from rocking.statistics.shares import SaltelliDesign, VarianceShare
 
 pytestmark = pytest.mark.verifies(room="statistics")
 ISHIGAMI = SaltelliDesign(1024, {"x": 1, "y": 1, "z": 1}, seed=3)
@@ -74,6 +74,12 @@ def test_a_point_without_an_answer_is_left_out():
     values, first, _ = ishigami(ISHIGAMI.points)
     values[[5, 3000]] = np.nan
     assert ISHIGAMI.shares(values)["y"].first == pytest.approx(first["y"], abs=0.03)
+
+
+def test_an_input_that_does_nothing_has_no_share():
+    """Exactly, however few points there are."""
+    design = SaltelliDesign(8, {"x": 1, "idle": 1}, seed=1)
+    assert design.shares(design.points[:, 0] ** 2)["idle"] == VarianceShare(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def test_what_does_not_vary_has_no_shares():
