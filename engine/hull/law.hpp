@@ -4,7 +4,7 @@
 
 namespace rocking::hull {
 
-enum Code : int { kHousner = 0, kCoefficient = 2, kKed = 3 };
+enum Code : int { kHousner = 0, kPosition = 1, kCoefficient = 2, kKed = 3 };
 constexpr double kFlat = 1e-7;
 
 struct Law {
@@ -16,6 +16,7 @@ struct Law {
         const double height = 1.0 / norm(b.facets[base]);
         const Vec down = height * b.facets[base], step = now - old;
         if (code == kHousner || height - dot(down, old) > kFlat * b.size || height - dot(down, now) > kFlat * b.size) return 1.0;
+        if (code == kPosition) return coefficient;
         return lesser(greater(code == kKed ? by_azimuth(b, step) : by_coefficient(b, step, down, height), 0.0), 1.0);
     }
 

@@ -98,7 +98,7 @@ class Library {
     }
 
   private:
-    // Numbers: coefficient, scale, horizon, friction; axes of the plane; half sizes of the shelf; attitude, place, velocity,
+    // Numbers: coefficient or position, scale, horizon, friction; axes of the plane; half sizes of the shelf; attitude, place, velocity,
     // spin; gravity. Choices: body, motion, law.
     Result one(const double* v, const Whole* c, const Settings& set) const {
         for (int k = 0; k < kNumbers; ++k)
@@ -106,7 +106,7 @@ class Library {
         const auto there = [](Whole k, const auto& all) { return k >= 0 && k < static_cast<Whole>(all.size()); };
         if (!there(c[0], bodies_) || !there(c[1], motions_) || !bodies_[c[0]]->usable || !(v[3] >= 0.0 && v[13] > 0.0 && v[14] > 0.0 && v[28] > 0.0)) return {};
         const Body& b = *bodies_[c[0]];
-        if (!(c[2] == kHousner || (c[2] == kCoefficient && v[0] >= 0.0 && v[0] <= 1.0) || (c[2] == kKed && b.intervals > 0))) return {};
+        if (!(c[2] == kHousner || ((c[2] == kCoefficient || c[2] == kPosition) && v[0] >= 0.0 && v[0] <= 1.0) || (c[2] == kKed && b.intervals > 0))) return {};
         Ground g;
         g.motion = &motions_[c[1]], g.scale = v[1], g.gravity = v[28], g.level = mat(v + 4), g.shelf[0] = v[13], g.shelf[1] = v[14];
         g.weight = g.level * Vec{0.0, 0.0, -g.gravity};

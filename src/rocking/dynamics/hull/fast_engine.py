@@ -21,7 +21,7 @@ FLOATS = (
 WHOLES = (
     "outcome", "status", "pose", "impacts", "uplifts", "events", "steps", "held", "replaced", "still_rocking",
 )  # fmt: skip
-HOUSNER, COEFFICIENT, KED = 0, 2, 3
+HOUSNER, POSITION, COEFFICIENT, KED = range(4)
 MOST_POWERS = 8
 
 _COMPILED = CompiledEngine(

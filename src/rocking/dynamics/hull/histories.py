@@ -3,17 +3,18 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from rocking import checks
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.hull import fast_engine
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.engine import HullEngine, HullEventKind, HullHistory, HullSettings
 from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.motion import State
+from rocking.dynamics.hull.restitution import ImpulsePosition
 from rocking.dynamics.hull.vectors import applied, cross, dot, frame, scaled
 from rocking.dynamics.settings import check_threads, processors
 from rocking.dynamics.space.attitude import SpatialStart
@@ -78,7 +79,7 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
         Bodies.
     grounds : HullGround or sequence of them
         What they stand on, and how that moves.
-    restitution : {"housner-3d", "ked-3d"}, float or list of them
+    restitution : {"housner-3d", "ked-3d"}, ImpulsePosition, float or list of them
         What an impact costs, as `HullEngine` takes it.
     friction : float or array_like
         Coulomb coefficients; infinite for vertices that never slide [-].
@@ -124,28 +125,51 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     if any(code == fast_engine.KED and body.solid is None for code, _ in codes for body in several):
         raise InvalidValueError("restitution 'ked-3d' needs the distribution of mass: give the HullBody its solid")
     shape = (len(several), len(under), factors.size, len(laws), frictions.size, len(starts))
-    states = np.array([[_numbers(body, each) for each in starts] for body in several])
-    planes = np.array(
-        [np.concatenate([np.ravel(g.level), g.shelf or (math.inf, math.inf), [g.gravity]]) for g in under]
-    )
+    states = np.array([[state_of(body, each) for each in starts] for body in several])
     body, ground, scale, law, mu, first = np.unravel_index(np.arange(int(np.prod(shape))), shape)
-    numbers = np.column_stack([
-        np.array([r for _, r in codes])[law], factors[scale], np.full(len(body), float(horizon)), frictions[mu],
-        planes[ground, :11], states[body, first], planes[ground, 11],
-    ])  # fmt: skip
-    choices = np.column_stack([body, ground, np.array([code for code, _ in codes])[law]]).astype(np.int64)
+    code, coefficient = np.array([code for code, _ in codes]), np.array([value for _, value in codes])
+    rows = HullRows(body, ground, code[law], coefficient[law], factors[scale], frictions[mu], states[body, first])
     if fast_engine.chosen(engine) == "fast":
-        ked = any(code == fast_engine.KED for code, _ in codes)
-        library = fast_engine.library_of(several, [g.motion for g in under], ked=ked)
-        values = fast_engine.run_rows(library, numbers, choices, settings, threads or processors())
+        values = rows.run(several, under, settings, float(horizon), threads)
         return HullBatch(shape, values, "fast (Dormand-Prince with complementarity, compiled)")
-    rows = []
+    results = []
     for k in range(len(body)):
         scaled_ground = _scaled(under[ground[k]], float(factors[scale[k]]))
         run = HullEngine(several[body[k]], scaled_ground, laws[law[k]], float(frictions[mu[k]]), settings)
-        rows.append(results_of(run.run(_state(numbers[k, 15:28]), float(horizon))))
-    values = fast_engine.named(np.array([r for r, _ in rows]), np.array([c for _, c in rows], np.int64))
+        results.append(results_of(run.run(_state(rows.state[k]), float(horizon))))
+    values = fast_engine.named(np.array([r for r, _ in results]), np.array([c for _, c in results], np.int64))
     return HullBatch(shape, values, "reference, row by row")
+
+
+class HullRows(NamedTuple):
+    """Histories for the compiled engine, one entry each."""
+
+    body: IntArray  # body, ground: numbers of both
+    ground: IntArray
+    law: IntArray
+    coefficient: FloatArray  # of laws that have one
+    scale: FloatArray
+    friction: FloatArray
+    state: FloatArray  # attitude, place, velocity and angular velocity, (n, 13)
+
+    def run(
+        self,
+        bodies: Sequence[HullBody | None],
+        grounds: Sequence[HullGround],
+        settings: HullSettings,
+        horizon: float = 0.0,
+        threads: int | None = None,
+    ) -> dict[str, np.ndarray]:
+        """Return the results by name."""
+        planes = np.array([[*np.ravel(g.level), *(g.shelf or (math.inf, math.inf)), g.gravity] for g in grounds])
+        numbers = np.column_stack([
+            self.coefficient, self.scale, np.full(len(self.body), horizon), self.friction, planes[self.ground, :11],
+            self.state, planes[self.ground, 11],
+        ])  # fmt: skip
+        choices = np.column_stack([self.body, self.ground, self.law]).astype(np.int64)
+        ked = bool((self.law == fast_engine.KED).any())
+        library = fast_engine.library_of(bodies, [g.motion for g in grounds], ked=ked)
+        return fast_engine.run_rows(library, numbers, choices, settings, threads or processors())
 
 
 def results_of(history: HullHistory) -> tuple[list[float], list[int]]:
@@ -177,12 +201,14 @@ def _code(law: Any) -> tuple[int, float]:
         return fast_engine.HOUSNER, 0.0
     if law in ("ked", "ked-3d"):
         return fast_engine.KED, 0.0
+    if isinstance(law, ImpulsePosition):
+        return fast_engine.POSITION, law.k
     if isinstance(law, (int, float)):
         return fast_engine.COEFFICIENT, checks.within("restitution", float(law), 0.0, 1.0)
     raise InvalidValueError(f"restitution must be 'housner-3d', 'ked-3d' or a number, got {law!r:.60}")
 
 
-def _numbers(body: HullBody, start: SpatialStart) -> FloatArray:
+def state_of(body: HullBody, start: SpatialStart) -> FloatArray:
     """Return attitude, place, velocity and angular velocity of a start; NaN for one that is none."""
     if not start.valid:
         return np.full(13, np.nan)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,12 +18,34 @@ ImpulseLaw = Callable[[Vector, Vector], float]
 """Position k of the impulse of a step between two points of the body, from its centre of mass; 1 at the new one [-]."""
 
 
+@dataclass(frozen=True)
+class ImpulsePosition:
+    """Restitution as the position k of the impulse of every landing on the base, in any direction.
+
+    Parameters
+    ----------
+    k : float
+        From 0, at the middle of the step, to 1, at the new vertex: Housner's impact [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If k is outside of [0, 1].
+    """
+
+    k: float
+
+    def __post_init__(self) -> None:
+        """Check the value."""
+        object.__setattr__(self, "k", checks.within("k", self.k, 0.0, 1.0))
+
+
 def law_of(restitution: Any, body: HullBody, base: int) -> ImpulseLaw:
     """Return a law of impacts.
 
     Parameters
     ----------
-    restitution : {"housner-3d", "ked-3d"} or float
+    restitution : {"housner-3d", "ked-3d"}, ImpulsePosition or float
         Housner's impact (k = 1); the pivot-consistent KED, which needs the body's solid; or the coefficient of a
         landing of the whole base in any direction [-].
     body : HullBody
@@ -47,6 +70,8 @@ def law_of(restitution: Any, body: HullBody, base: int) -> ImpulseLaw:
             raise InvalidValueError("restitution 'ked-3d' needs the distribution of mass: give the HullBody its solid")
         position = impulse_position(body.solid)
         return _on_base(body, base, lambda step: position.at(np.array(step)))
+    if isinstance(restitution, ImpulsePosition):
+        return _on_base(body, base, lambda _step: restitution.k)
     if isinstance(restitution, (int, float)):
         r = checks.within("restitution", float(restitution), 0.0, 1.0)
         return _on_base(body, base, _Coefficient(body, base, r).at)
