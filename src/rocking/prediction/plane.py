@@ -24,9 +24,6 @@ from rocking.prediction.uncertain import Uncertain
 from rocking.restitution import ImpactGeometry, RestitutionModel
 from rocking.restitution.shifted_impulse import shifted
 
-MEASURED, COMPLEMENTARITY = "measured", "complementarity"
-"""Restitution by what the published measurements say of a body; by the laws of contact at the corners alone."""
-
 BASE = 0.02
 """Share of the base within which feet lie where nobody says otherwise."""
 
@@ -38,85 +35,41 @@ NOT_SAMPLED = (
     "density: what rocks does not depend on it, unless it differs from place to place (that is what centre is for)",
 )
 
-_WIDTHS = {"restitution": 1, "friction": 1, "base": 2, "centre": 1, "polarity": 1, "azimuth": 1}
 _WHY = {
-    "friction": "dry stone, concrete, wood and metal: EN 12812 and BS 5975 differ by as much for one pair of them",
+    "friction": FRICTION_WHY,
     "base": "how far each foot lies inside of the drawn base, for chipped or rounded edges: up to 2 % of its width",
-    "centre": "factor on the height of the centre: what is inside is rarely homogeneous",
+    "centre": CENTRE_WHY,
     "polarity": "as recorded or mirrored: which way round the body will stand is not known",
-    "azimuth": "which way round the body stands to the two components is not known",
+    "azimuth": AZIMUTH_WHY,
 }
 
 
-@dataclass(frozen=True, eq=False)
-class Endings:
-    """What became of bodies under one motion, one entry a body."""
-
-    uplift: FloatArray  # 1 where it rocked, 0 where not, NaN without a result
-    sliding: FloatArray  # how far it slid [m]
-    overturning: FloatArray  # 1 where it overturned
-    peak: FloatArray  # largest rotation, without its sign [rad]
-
-
-class Mechanics(Protocol):
-    """What a prediction asks of bodies on an engine: which numbers they take, and what becomes of them."""
-
-    inputs: dict[str, Uncertain]  # what is sampled, and what is known, by name
-    widths: dict[str, int]  # how many numbers from 0 to 1 each input takes that is not known
-    assumed: list[str]  # what was assumed, in words
-    names: list[str]  # of the motions
-
-    def values(self, draws: FloatArray) -> Mapping[str, FloatArray]:
-        """Return what draws from the unit cube mean, by input; one row a body."""
-
-    def run(self, draws: FloatArray, motion: int, factor: FloatArray, threads: int | None) -> Endings:
-        """Return what becomes of bodies under a motion times a factor."""
-
-
-class PlaneMechanics:
+class PlaneMechanics(Mechanics):
     """A plane body that may slide, hop and fly."""
 
+    widths_of, why = {"base": 2}, _WHY
+
     def __init__(self, body: Body, motions: Any, given: Mapping[str, Any], settings: Settings) -> None:
-        known: object = body
-        if isinstance(known, Solid):
-            raise InvalidValueError(
-                "body must be plane: take solid.in_plane(azimuth), one direction of a body in space"
-            )
-        if not isinstance(known, Body):
-            raise InvalidValueError(f"body must be a Block, Section or MassPoints, got {body!r:.60}")
+        super().__init__(motions, given)
         self.body, self._settings = body, settings
-        self._motions, self.names, turns = _several(motions), [], False
-        for k in range(len(self._motions)):
-            along, across, _ = _parts(self._motions[k])
-            self.names.append(along.name)
-            turns |= across is not None
-        if not turns and given.get("azimuth") is not None:
+        if not self._turns and given.get("azimuth") is not None:
             raise InvalidValueError('azimuth goes with motions of two components, {"x": ..., "y": ...}')
         left, right = (body.side(foot, settings.gravity) for foot in FEET)
         self._levers, self._height = np.array([left.half_width, right.half_width]), right.centre_height
         self._spread = body.moment_of_inertia / body.mass
         most, turn = 0.9 * float(self._levers.min()), 2.0 * math.pi
-        # usual value, least and largest that make sense, unit
-        known_limits: dict[str, tuple[Any, float, float, str]] = {
-            "friction": ((0.3, 0.8), 0.01, 10.0, "-"),
+        self.assumed += body.assumed
+        self._take({
+            "friction": FRICTION,
             "base": ((0.0, min(BASE * float(self._levers.sum()), most)), 0.0, most, "m"),
-            "centre": ((0.97, 1.03), 0.5, 1.5, "-"),
+            "centre": CENTRE,
             "polarity": ({"values": [-1.0, 1.0]}, -1.0, 1.0, "-"),
-            **({"azimuth": ((0.0, turn), -turn, turn, "rad")} if turns else {}),
-        }
-        self.inputs: dict[str, Uncertain] = {}
-        self.assumed = list(body.assumed)
-        for name, (usual, low, high, unit) in known_limits.items():
-            told = given.get(name)
-            self.inputs[name] = Uncertain.of(name, usual if told is None else told, low, high, unit)
-            if told is None:
-                self.assumed.append(f"{name}: {self.inputs[name].words} ({_WHY[name]})")
+            **({"azimuth": ((0.0, turn), -turn, turn, "rad")} if self._turns else {}),
+        })  # fmt: skip
         if not np.isin(self.inputs["polarity"].quantile(np.linspace(0.0, 1.0, 33)), (-1.0, 1.0)).all():
             raise InvalidValueError(f"polarity must be 1, -1 or both as a sample, got {given['polarity']!r:.60}")
-        plausibility.warn(plausibility.of_friction(float(self.inputs["friction"].quantile(np.array([0.5]))[0])))
         self._set_restitution(given.get("restitution"))
         self.assumed += NOT_SAMPLED
-        self.widths = {name: _WIDTHS[name] for name, each in self.inputs.items() if not each.fixed}
 
     def _set_restitution(self, told: Any) -> None:
         """Take coefficients onto both feet for probabilities, and whether they follow the base."""
@@ -151,23 +104,9 @@ class PlaneMechanics:
         right = self._tables[1]
         self.inputs = {"restitution": Uncertain(words, lambda u: np.interp(u, at, right), fixed), **self.inputs}
 
-    def _probabilities(self, draws: FloatArray) -> dict[str, FloatArray]:
-        """Return the columns of each input; one half of what is fixed, whatever it then means."""
-        found, at = {}, 0
-        for name in self.inputs:
-            width = self.widths.get(name, 0)
-            found[name] = draws[:, at : at + width] if width else np.full((len(draws), _WIDTHS[name]), 0.5)
-            at += width
-        return found
-
-    def values(self, draws: FloatArray) -> dict[str, FloatArray]:
-        """Return what draws mean, by input; two columns of the base, left and right."""
-        levels = self._probabilities(draws)
-        return {name: each.quantile(levels[name]) for name, each in self.inputs.items()}
-
     def run(self, draws: FloatArray, motion: int, factor: FloatArray, threads: int | None) -> Endings:
         """Return what becomes of bodies under a motion times a factor."""
-        levels, drawn = self._probabilities(draws), self.values(draws)
+        levels, drawn = self.probabilities(draws), self.values(draws)
         segments, number, mirrored = self._ground(motion, drawn)
         levers = self._levers - drawn["base"]
         height = self._height * drawn["centre"][:, 0]
@@ -194,7 +133,7 @@ class PlaneMechanics:
 
     def _ground(self, motion: int, drawn: Mapping[str, FloatArray]) -> tuple[list[Any], IntArray, BoolArray]:
         """Return the motion in all directions that were drawn, which of them each body has, and whom it mirrors."""
-        first, second, upright = _parts(self._motions[motion])
+        first, second, upright = parts(self._motions[motion])
         mirrored = drawn["polarity"][:, 0] < 0.0
         if second is None:
             return [_whole(first, upright).segments()], np.zeros(mirrored.size, np.int64), mirrored
@@ -230,27 +169,6 @@ def _turned(pairs: FloatArray, mirrored: BoolArray) -> FloatArray:
 
 def _whole(along: Any, upright: Any) -> Any:
     return along if upright is None else with_vertical(along, upright)
-
-
-def _several(motions: Any) -> Any:
-    """Return motions by number: one, several, or a set that makes them when they are asked for."""
-    if isinstance(motions, (Mapping, GroundMotion, Pulse)) or not hasattr(motions, "__getitem__"):
-        motions = [motions]
-    if isinstance(motions, str) or not motions:
-        raise InvalidValueError(f"motions must be one or more records, pulses or pairs x and y, got {motions!r:.60}")
-    return motions
-
-
-def _parts(motion: Any) -> tuple[Any, Any, Any]:
-    """Return what moves the ground along x, across it and upwards."""
-    if not isinstance(motion, (Mapping, GroundMotion, Pulse)):
-        raise InvalidValueError(f"motions must be records, pulses or pairs x and y, got {motion!r:.60}")
-    x, y, z = components_of(motion) if isinstance(motion, Mapping) else (motion, None, None)
-    if x is None:
-        raise InvalidValueError("a motion of components has one along x, got none")
-    if y is not None and not (isinstance(x, GroundMotion) and isinstance(y, GroundMotion)):
-        raise InvalidValueError("two components are two records; sample the pulses first")
-    return x, y, z
 
 
 def whole_settings(gravity: float, bounce: float, bounce_law: str) -> Settings:

@@ -105,6 +105,22 @@ class Polytope:
         across = np.cross(self.normals[facet], arms[0])
         return corners[np.argsort(np.arctan2(arms @ across, arms @ arms[0]))]
 
+    @cached_property
+    def borders(self) -> tuple[IntArray, IntArray, IntArray]:
+        """Corners of all facets, counter-clockwise seen from outside, the facets beyond their edges, where each starts.
+
+        A corner is followed by the facet that lies beyond the edge which starts there.
+        """
+        order, first = self._by_facet
+        edge, side = np.divmod(order, 2)
+        owner = np.repeat(np.arange(len(self.normals)), np.diff(first))
+        corner = self.ends[edge, side]
+        arms = self.vertices[corner] - (np.add.reduceat(self.vertices[corner], first[:-1]) / np.diff(first)[:, None])[owner]
+        ahead = arms[np.lexsort((corner, owner))[first[:-1]]][owner]
+        across = np.cross(self.normals[owner], ahead)
+        turned = np.lexsort((np.arctan2((arms * across).sum(axis=1), (arms * ahead).sum(axis=1)), owner))
+        return corner[turned], self.sides[edge, 1 - side][turned], first
+
     def descent(self, vertex: int, down: FloatArray) -> int:
         """Return the stable facet to which the steepest descent of the centre leads, from a contact on a vertex.
 
@@ -118,16 +134,41 @@ class Polytope:
             if self.stable[facet]:
                 return facet
             edges, side = self.edges_of(facet)
-            outside = self.inward[edges, side] <= 0.0
-            facing = np.flatnonzero(outside & (self.beyond[edges, 0] <= 0.0) & (self.beyond[edges, 1] >= 0.0))
-            if len(facing):
-                facet = int(self.sides[edges[facing[0]], 1 - side[facing[0]]])
-                continue
-            corners = np.unique(self.ends[edges])
-            foot = self.heights[facet] * self.normals[facet]
-            nearest = np.argmin(((self.vertices[corners] - foot) ** 2).sum(axis=1))
-            facet = self._swung(int(corners[nearest]), self.normals[facet])
+            facing = np.flatnonzero(self._facing[edges, side])
+            facet = int(self.sides[edges[facing[0]], 1 - side[facing[0]]]) if len(facing) else self._tipped(facet)
         raise GeometryError(_ENDLESS)
+
+    @cached_property
+    def rolls(self) -> IntArray:
+        """The stable facet to which the steepest descent leads from each facet; shape (f,)."""
+        order, first = self._by_facet
+        edge, side = np.divmod(order, 2)
+        owner = np.repeat(np.arange(len(self.normals)), np.diff(first))
+        hits = np.flatnonzero(self._facing[edge, side])
+        found, place = np.unique(owner[hits], return_index=True)
+        following = np.arange(len(self.normals))
+        following[found] = self.sides[edge, 1 - side][hits[place]]
+        for facet in np.setdiff1d(np.flatnonzero(~self.stable), found).tolist():
+            following[facet] = self._tipped(facet)
+        following[self.stable] = np.flatnonzero(self.stable)
+        for _ in range(len(self.normals).bit_length()):
+            following = following[following]
+        if not self.stable[following].all():
+            raise GeometryError(_ENDLESS)
+        return following
+
+    @cached_property
+    def _facing(self) -> BoolArray:
+        """Over which edges, left or right, the centre's foot leaves a facet between their ends; shape (e, 2)."""
+        outside: BoolArray = (self.inward <= 0.0) & ((self.beyond[:, :1] <= 0.0) & (self.beyond[:, 1:] >= 0.0))
+        return outside
+
+    def _tipped(self, facet: int) -> int:
+        """Return where the descent leads from a facet that it leaves over a corner."""
+        corners = np.unique(self.ends[self.edges_of(facet)[0]])
+        foot = self.heights[facet] * self.normals[facet]
+        nearest = np.argmin(((self.vertices[corners] - foot) ** 2).sum(axis=1))
+        return self._swung(int(corners[nearest]), self.normals[facet])
 
     def _swung(self, vertex: int, down: FloatArray) -> int:
         """Return the facet that the steepest descent reaches first."""

@@ -117,7 +117,7 @@ class HullBody:
         hull = self.hull
         order = np.lexsort((np.arange(len(hull.heights)), hull.heights))
         number = {int(facet): k for k, facet in enumerate(order[hull.stable[order]])}
-        return [number[hull.rolled(facet)] for facet in range(len(hull.heights))]
+        return [number[facet] for facet in hull.rolls.tolist()]
 
     def under(self, up: Vector) -> int:
         """Return the facet through which the vertical through the centre of mass leaves the hull, downward.

@@ -67,18 +67,11 @@ def named(results: FloatArray, counts: IntArray) -> dict[str, np.ndarray]:
 
 
 def _tables(body: HullBody) -> dict[str, Any]:
-    hull, count = body.hull, len(body.facets)
-    beside = [hull.sides[edges, 1 - side] for edges, side in map(hull.edges_of, range(count))]
-    corners = [hull.corners(facet) for facet in range(count)]
+    corners, beyond, first = body.hull.borders
     return {
         "vertices": np.array(body.points), "facets": np.array(body.facets), "poses": np.array(body.poses, np.int64),
-        "first": _starts(beside), "beside": np.concatenate(beside).astype(np.int64),
-        "first_corner": _starts(corners), "corners": np.concatenate(corners).astype(np.int64),
+        "first": first, "beside": beyond, "first_corner": first, "corners": corners,
     }  # fmt: skip
-
-
-def _starts(lists: Sequence[IntArray]) -> IntArray:
-    return np.cumsum([0, *map(len, lists)], dtype=np.int64)
 
 
 def _positions(body: HullBody, *, ked: bool) -> FloatArray:
