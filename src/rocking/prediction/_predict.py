@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 
 from rocking import checks, conventions
-from rocking.bodies import Body
+from rocking.bodies import Body, Solid
 from rocking.conventions import FloatArray
 from rocking.dynamics.settings import check_progress, check_threads
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Motion
 from rocking.prediction.forecast import Chance, EndsOfRange, Growth, Prediction
-from rocking.prediction.plane import Mechanics, PlaneMechanics, whole_settings
+from rocking.prediction.mechanics import Mechanics
 from rocking.statistics.counts import LEAST_CLUSTERS, share_interval
 from rocking.statistics.shares import REPETITIONS, SaltelliDesign
 
@@ -120,7 +120,7 @@ def predict(  # noqa: PLR0913 - everything that is not known is an argument
     }  # fmt: skip
     half = checks.whole("count", count, 4, 1 << 24) // 2
     least = checks.positive("sliding_beyond", sliding_beyond, "m")
-    mechanics = PlaneMechanics(body, motions, given, whole_settings(gravity, bounce, bounce_law))
+    mechanics = _mechanics(body, motions, given, gravity, bounce, bounce_law)
     design = SaltelliDesign(half, mechanics.widths, checks.whole("seed", seed))
     points = design.points if shares else design.points[: 2 * half]
     found = _counted(mechanics, points, least, threads, progress)
@@ -144,6 +144,23 @@ def predict(  # noqa: PLR0913 - everything that is not known is an argument
         failed=failed,
         seed=design.seed,
     )
+
+
+def _mechanics(
+    body: Any, motions: Any, given: Mapping[str, Any], gravity: float, bounce: float, bounce_law: str
+) -> Mechanics:
+    """Return what a body is on its engine."""
+    if isinstance(body, Solid):
+        from rocking.prediction.space import SpaceMechanics
+
+        if bounce:
+            raise InvalidValueError(f"bounce is of plane bodies: in space corners do not bounce, got {bounce:g}")
+        return SpaceMechanics(body, motions, given, gravity)
+    if not isinstance(body, Body):
+        raise InvalidValueError(f"body must be a Block, Section, MassPoints or Solid, got {body!r:.60}")
+    from rocking.prediction.plane import PlaneMechanics, whole_settings
+
+    return PlaneMechanics(body, motions, given, whole_settings(gravity, bounce, bounce_law))
 
 
 def _counted(

@@ -2,24 +2,32 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from rocking import checks, plausibility
-from rocking.bodies import Body, Solid
+from rocking import checks
+from rocking.bodies import Body
 from rocking.conventions import FEET, BoolArray, FloatArray, IntArray
-from rocking.dynamics._simulate import components_of
 from rocking.dynamics.contact.batch import RowsWithContact
 from rocking.dynamics.parameters import coefficients_of
 from rocking.dynamics.settings import Settings, processors
 from rocking.errors import InvalidValueError
 from rocking.evidence import calibrate, restitution_distribution
 from rocking.motions.components import rotated, with_vertical
-from rocking.motions.motion import GroundMotion
-from rocking.motions.pulse import Pulse
 from rocking.outcome import Outcome, overturned
+from rocking.prediction.mechanics import (
+    AZIMUTH_WHY,
+    CENTRE,
+    CENTRE_WHY,
+    COMPLEMENTARITY,
+    FRICTION,
+    FRICTION_WHY,
+    MEASURED,
+    Endings,
+    Mechanics,
+    parts,
+)
 from rocking.prediction.uncertain import Uncertain
 from rocking.restitution import ImpactGeometry, RestitutionModel
 from rocking.restitution.shifted_impulse import shifted

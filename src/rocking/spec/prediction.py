@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rocking.bodies import Body
 from rocking.prediction import Prediction, predict
-from rocking.prediction.plane import COMPLEMENTARITY, MEASURED
+from rocking.prediction.mechanics import COMPLEMENTARITY, MEASURED
 from rocking.spec.construction import body_of, motion_of, motions_of, restitutions_of
 from rocking.spec.reading import InputFiles, located
 

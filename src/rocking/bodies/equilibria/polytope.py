@@ -115,7 +115,10 @@ class Polytope:
         edge, side = np.divmod(order, 2)
         owner = np.repeat(np.arange(len(self.normals)), np.diff(first))
         corner = self.ends[edge, side]
-        arms = self.vertices[corner] - (np.add.reduceat(self.vertices[corner], first[:-1]) / np.diff(first)[:, None])[owner]
+        arms = (
+            self.vertices[corner]
+            - (np.add.reduceat(self.vertices[corner], first[:-1]) / np.diff(first)[:, None])[owner]
+        )
         ahead = arms[np.lexsort((corner, owner))[first[:-1]]][owner]
         across = np.cross(self.normals[owner], ahead)
         turned = np.lexsort((np.arctan2((arms * across).sum(axis=1), (arms * ahead).sum(axis=1)), owner))

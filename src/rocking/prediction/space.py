@@ -1,0 +1,185 @@
+"""What is drawn for a body in space on the vertices of its hull, and what becomes of it by the compiled engine."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from rocking.bodies import Block, Solid
+from rocking.conventions import FloatArray, percent
+from rocking.dynamics.hull import HullBody, HullGround, HullSettings, fast_engine, standing
+from rocking.dynamics.hull.histories import HullRows
+from rocking.dynamics.space.attitude import product, turn
+from rocking.errors import InvalidValueError
+from rocking.evidence import restitution_distribution
+from rocking.outcome import Status
+from rocking.portable import times
+from rocking.prediction.mechanics import (
+    AZIMUTH_WHY,
+    CENTRE,
+    CENTRE_WHY,
+    FRICTION,
+    FRICTION_WHY,
+    MEASURED,
+    Endings,
+    Mechanics,
+    parts,
+)
+from rocking.prediction.uncertain import Uncertain
+
+INSIDE, ABOVE, THICK = 0.01, 0.005, 0.005
+"""How far corners of the base lie inside of the drawn ones, over its mean radius, and how high points are that touch
+too, over the height, where nobody says otherwise; at most so high [m]."""
+
+ANOTHER = math.cos(math.radians(10.0))
+"""Cosine of the angle from which on a stable pose is another way to stand: rough bodies have many that are alike."""
+
+_UPRIGHT = -1.0 + 1e-12
+_SETTINGS = HullSettings(tolerance=1e-8)
+
+NOT_SAMPLED = (
+    "placement: the ground is level and the body stands by itself",
+    "density: what rocks does not depend on it, unless it differs from place to place (that is what centre is for)",
+)
+
+_WHY = {
+    "friction": FRICTION_WHY,
+    "base": "below zero: how far its corners lie inside of the drawn ones, for wear and chips; above zero: how high "
+    "points lie that touch the ground too, for what a scan or a floor is uneven by",
+    "centre": CENTRE_WHY,
+    "azimuth": AZIMUTH_WHY,
+}
+_LAWS = {
+    "housner": fast_engine.HOUSNER, "housner-3d": fast_engine.HOUSNER,
+    "ked": fast_engine.KED, "ked-3d": fast_engine.KED,
+}  # fmt: skip
+
+
+class SpaceMechanics(Mechanics):
+    """A body in space that may slide, hop, fly and fall onto another side."""
+
+    why = _WHY
+
+    def __init__(self, solid: Solid, motions: Any, given: Mapping[str, Any], gravity: float) -> None:
+        super().__init__(motions, given)
+        if given.get("polarity") is not None:
+            raise InvalidValueError("polarity is of plane bodies: in space azimuth turns a body to either side")
+        if solid.equilibria().settling((0.0, 0.0, -1.0)).down[2] > _UPRIGHT:
+            solid = solid.settled()
+        self._gravity, self._solid, found = gravity, solid, solid.equilibria()
+        self._pose, self._mass, self._flat = found.settling((0.0, 0.0, -1.0)), found.mass, found.flatness
+        turned = self._pose.rotation
+        self._corners, self._surface = (times(each, turned.T) for each in (found.hull.vertices, found.surface))
+        self._inertia = times(times(turned, solid.local_moments.inertia), turned.T)
+        self._shapes: dict[tuple[float, float], _Shape] = {}
+        radius, height = float(np.linalg.norm(self._pose.support, axis=1).mean()), self._pose.height
+        turn_round = 2.0 * math.pi
+        self.assumed += solid.assumed
+        self._take({
+            "friction": FRICTION,
+            "base": ((-INSIDE * radius, min(ABOVE * height, THICK)), -0.5 * radius, 0.5 * height, "m"),
+            "centre": CENTRE,
+            "azimuth": ((0.0, turn_round), -turn_round, turn_round, "rad"),
+        })  # fmt: skip
+        self._set_restitution(given.get("restitution"))
+        self.assumed += NOT_SAMPLED
+
+    def _set_restitution(self, told: Any) -> None:
+        """Take a law of impacts, and the distribution of its number."""
+        word = told if isinstance(told, str) else MEASURED if told is None else ""
+        if word == MEASURED:
+            self._law, (found, words) = fast_engine.POSITION, self._measured()
+            at = np.linspace(0.0, 1.0, found.size)
+            one = Uncertain(words, lambda u: np.interp(u, at, found))
+            self.assumed.append(f"restitution: {words} (the published measurements, with the scatter of single bodies)")
+        elif word:
+            if word not in _LAWS:
+                names = ", ".join([MEASURED, *_LAWS])
+                raise InvalidValueError(f"restitution in space must be one of {names}, or a coefficient, got {word!r}")
+            self._law, one = _LAWS[word], Uncertain(word, lambda u: np.zeros(u.shape), fixed=True)
+        else:
+            self._law, one = fast_engine.COEFFICIENT, Uncertain.of("restitution", told, 0.0, 1.0)
+        self.inputs = {"restitution": one, **self.inputs}
+
+    def _measured(self) -> tuple[FloatArray, str]:
+        """Return quantiles of the position k of the impulse, as measured, over the nearest edge of the base."""
+        support, nearest = self._pose.support, int(np.argmin(self._pose.edge_distances))
+        chord = np.roll(support, -1, axis=0)[nearest] - support[nearest]
+        edge = np.append(chord / np.linalg.norm(chord), 0.0)
+        reach = support @ np.array([edge[1], -edge[0]])  # outward across the edge
+        new, old, height = float(reach.max()), float(-reach.min()), self._pose.height
+        inertia = float(edge @ self._inertia @ edge)
+        plane = Block(
+            width=old + new, height=2.0 * height, mass=self._mass, centre=(old, height), moment_of_inertia=inertia
+        )
+        found = restitution_distribution(plane)
+        r = found.tables["right"]
+        ahead = (inertia / self._mass + height**2) * (1.0 - r) / (r * new + old)  # Eq. 4
+        k = np.clip((2.0 * ahead - (new - old)) / (new + old), 0.0, 1.0)  # Eq. 104
+        words = f"{r[25]:.3f} to {r[-26]:.3f} over the edge that is nearest to the centre in 95 % of draws"
+        if (k == 1.0).any():
+            words += (
+                f", of which {percent(float((k == 1.0).mean()))} lose more than Housner's impact and are taken as that"
+            )
+        return k, words + (", outside of the slendernesses that were measured" if found.extrapolated else "")
+
+    def run(self, draws: FloatArray, motion: int, factor: FloatArray, threads: int | None) -> Endings:
+        """Return what becomes of bodies under a motion times a factor."""
+        drawn = {name: values[:, 0] for name, values in self.values(draws).items()}
+        shapes = [self._shape(*pair) for pair in zip(drawn["base"].tolist(), drawn["centre"].tolist(), strict=True)]
+        several = list(dict.fromkeys(shapes))
+        number = {shape: k for k, shape in enumerate(several)}
+        place = np.array([number[shape] for shape in shapes])
+        ground = HullGround(*parts(self._motions[motion]), gravity=self._gravity)
+        turned = zip(shapes, drawn["azimuth"].tolist(), strict=True)
+        state = np.array([shape.state(azimuth) for shape, azimuth in turned])
+        rows = HullRows(
+            place, np.zeros(place.size, np.int64), np.full(place.size, self._law), drawn["restitution"], factor,
+            drawn["friction"], state,
+        )  # fmt: skip
+        found = rows.run([shape.body for shape in several], [ground], _SETTINGS, threads=threads)
+        known = found["status"] == Status.GOOD.code
+        pairs = zip(shapes, found["pose"].tolist(), strict=True)
+        elsewhere = np.array([shape.left(pose) for shape, pose in pairs], dtype=np.float64)
+        columns = (np.isfinite(found["first_uplift"]), found["sliding_distance"], elsewhere, found["peak_tilt"])
+        return Endings(*(np.where(known, each, np.nan) for each in columns))
+
+    def _shape(self, base: float, centre: float) -> "_Shape":
+        """Return the body with a base and a centre, as it stands."""
+        key = (base, centre)
+        if key not in self._shapes:
+            points, height = self._corners.copy(), self._pose.height
+            if base > 0.0:
+                near = self._surface[self._surface[:, 2] + height <= max(base, self._flat)]
+                points = np.concatenate([points, near])
+                points[points[:, 2] + height <= max(base, self._flat), 2] = -height
+            else:
+                corners = points[:, 2] + height <= self._flat
+                far = np.linalg.norm(points[corners, :2], axis=1, keepdims=True)
+                points[corners, :2] *= 1.0 + np.maximum(base / far, -0.9)
+            middle = np.array([0.0, 0.0, (centre - 1.0) * height])
+            self._shapes[key] = _Shape(HullBody(points, self._mass, middle, self._inertia, self._solid))
+        return self._shapes[key]
+
+
+class _Shape:
+    """A body as it stands, and which of its poses are others than that one."""
+
+    def __init__(self, body: HullBody) -> None:
+        self.body = body
+        facet = int(body.hull.rolls[body.under((0.0, 0.0, 1.0))])
+        self.start, self._facet = standing(body, facet=facet), facet
+
+    def state(self, azimuth: float) -> list[float]:
+        """Return attitude, place and velocities at the start."""
+        attitude = product(turn([0.0, 0.0, 1.0], azimuth), np.array(self.start.attitude))
+        return [*attitude.tolist(), *self.start.place, *self.start.velocity, *self.start.spin]
+
+    def left(self, pose: int) -> bool:
+        """Return whether a pose, by its number, is another one than that in which it stood."""
+        if pose < 0:
+            return False
+        hull, numbers = self.body.hull, np.array(self.body.poses)
+        facet = int(np.flatnonzero(hull.stable & (numbers == pose))[0])
+        return float(hull.normals[facet] @ hull.normals[self._facet]) < ANOTHER
