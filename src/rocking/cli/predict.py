@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking.cli import options
-from rocking.cli.exports import PICTURES, Export, Exports, draw
+from rocking.cli.exports import Export, Exports, draw
 from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import percent
 from rocking.errors import InvalidValueError
@@ -29,8 +29,15 @@ def _netcdf(answer: "PredictionAnswer", path: Path) -> None:
     to_netcdf(answer.found.to_xarray(), path)
 
 
+def _report(answer: "PredictionAnswer", path: Path) -> None:
+    from rocking.reports import prediction_report
+
+    prediction_report(answer.found, path, name=answer.name)
+
+
 EXPORTS = {
-    "picture": Export(PICTURES, draw, "matplotlib"),
+    "picture": Export((".png", ".svg"), draw, "matplotlib"),
+    "report": Export((".pdf", ".html"), _report, "matplotlib"),
     "csv": Export((".csv",), lambda answer, path: answer.found.to_csv(path)),
     "netcdf": Export((".nc",), _netcdf, "h5netcdf"),
 }
@@ -80,7 +87,8 @@ def predict(
         problem = PredictionProblem.of(document, inputs)
         with bar("motions", len(problem.motions), quiet=as_json) as progress:
             found = problem.answer(lambda done: progress(1), threads)
-    deliver(PredictionAnswer(found), exports, as_json=as_json)
+    repairs = tuple(getattr(problem.body, "repairs", ()))
+    deliver(PredictionAnswer(found, Path(body or "").stem, repairs), exports, as_json=as_json)
 
 
 def _in_file(file: Path, sets: list[str] | None) -> "tuple[PredictionDocument, InputFiles]":
@@ -130,6 +138,8 @@ class PredictionAnswer:
     """What is foreseen of a body."""
 
     found: "Prediction"
+    name: str = ""  # of the body
+    repairs: tuple[str, ...] = ()  # what a scan needed
 
     def facts(self) -> dict[str, Any]:
         return self.found.as_dict()
@@ -165,3 +175,4 @@ class PredictionAnswer:
         assumed = {each.partition(":")[0] for each in found.assumed}
         page.facts([(name, words) for name, words in found.inputs.items() if name not in assumed])
         page.facts([("assumed", each) for each in found.assumed])
+        page.warn(self.repairs)

@@ -29,7 +29,7 @@ FIFTH = 0.2
 
 
 def predict(  # noqa: PLR0913 - everything that is not known is an argument
-    body: Body,
+    body: Body | Solid,
     motions: Motion | Mapping[str, Motion] | Sequence[Any],
     *,
     restitution: Any = None,
@@ -58,24 +58,26 @@ def predict(  # noqa: PLR0913 - everything that is not known is an argument
 
     Parameters
     ----------
-    body : Block, Section or MassPoints
-        The body as it is drawn; of a solid ``solid.in_plane(azimuth)``.
+    body : Block, Section, MassPoints or Solid
+        The body as it is drawn. A solid stands in space on the vertices of its hull, in the pose into which it settles.
     motions : GroundMotion, Pulse, or mapping with x, y and z, or a sequence of them
         Under which it stands, each as likely; with y, the body stands at an azimuth to both components.
     restitution : str, RestitutionModel or input, optional
         "measured", what the published measurements say of the body with the scatter of single bodies, if not given; a
         model or its name; a coefficient, onto both feet; ``{"left": .., "right": ..}``; or "complementarity", nothing
-        but the laws of contact at the corners [-].
+        but the laws of contact at the corners. Of a solid "measured", "housner-3d", "ked-3d" or a coefficient [-].
     friction : input, optional
         Coulomb's coefficient, from 0.3 to 0.8 if not given [-].
     base : input, optional
-        How far either foot lies inside of the drawn base, by itself; up to 2 % of its width if not given [m].
+        How far either foot lies inside of the drawn base, by itself; up to 2 % of its width if not given. Of a solid
+        below zero how far the corners of its base lie inside, up to 1 % of its mean radius, and above zero how high
+        points are that touch the ground too, up to 0.5 % of the height of the centre and 5 mm [m].
     centre : input, optional
         Factor on the height of the centre of mass, from 0.97 to 1.03 if not given [-].
     polarity : input, optional
-        1 as recorded, -1 mirrored; both alike if not given [-].
+        1 as recorded, -1 mirrored; both alike if not given; of plane bodies [-].
     azimuth : input, optional
-        Of the body's plane from x towards y, with motions of two components; any if not given [rad].
+        Of the body's plane, or of its x axis, from x towards y; any if not given. With one component, of solids [rad].
     sliding_beyond : float
         How far it slides at least where it is said to slide [m].
     count : int
@@ -85,7 +87,7 @@ def predict(  # noqa: PLR0913 - everything that is not known is an argument
     seed : int
         Seed of the draws: the same one gives the same answer, on any number of threads.
     bounce, bounce_law
-        How corners bounce off the ground, as for `simulate`.
+        How corners of plane bodies bounce off the ground, as for `simulate`.
     gravity : float
         Acceleration of gravity [m/s2].
     threads : int, optional
@@ -101,7 +103,7 @@ def predict(  # noqa: PLR0913 - everything that is not known is an argument
     Raises
     ------
     InvalidValueError
-        If it is no plane body, an input is outside of what makes sense, or no history has a result.
+        If it is no body, an input is outside of what makes sense, or no history has a result.
 
     Examples
     --------

@@ -6,8 +6,15 @@ from rocking.lazy import exports
 from rocking.reports.document import Document
 
 if TYPE_CHECKING:
+    from rocking.reports._prediction_report import prediction_report
     from rocking.reports._response_report import response_report
 
-__all__ = ["Document", "response_report"]
+__all__ = ["Document", "prediction_report", "response_report"]
 
-__getattr__, __dir__ = exports("rocking.reports", {"response_report": "rocking.reports._response_report"})
+__getattr__, __dir__ = exports(
+    "rocking.reports",
+    {
+        "prediction_report": "rocking.reports._prediction_report",
+        "response_report": "rocking.reports._response_report",
+    },
+)

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from rocking import checks
@@ -13,11 +12,10 @@ from rocking.outcome import Outcome
 from rocking.plots.body import body_picture, coefficient_picture
 from rocking.plots.ground_motion import ground_motion_picture
 from rocking.plots.response import response_picture
-from rocking.plots.style import write
 from rocking.plots.traces import fine_samples
 from rocking.reports.body_facts import ImpactAnswer
 from rocking.reports.motion_facts import measures_of
-from rocking.reports.render import render_html, response_pdf
+from rocking.reports.render import write_report
 from rocking.reports.response_document import ReportResults, ReportSubject, response_document
 from rocking.tables import target_of
 
@@ -53,8 +51,6 @@ def response_report(
         If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
     """
     path = target_of(path)
-    if path.suffix.lower() not in {".pdf", ".html"}:
-        raise InvalidValueError(f"a report is .pdf or .html, got {path.name!r}")
     if response.outcome is Outcome.FAILED:
         raise InvalidValueError(f"a report needs a result: {response.summary}")
     friction = friction if isinstance(friction, Assumed) else checks.positive("friction", friction)
@@ -73,10 +69,5 @@ def response_report(
     }
     if motion is not None:
         pictures["motion"] = lambda: ground_motion_picture(motion)
-    with TemporaryDirectory(prefix="rocking-report-") as folder:
-        drawn = {stem: write(draw(), Path(folder) / f"{stem}.svg") for stem, draw in pictures.items()}
-        if path.suffix.lower() == ".html":
-            path.write_text(render_html(document, Path(folder)), encoding="utf-8")
-        else:
-            path.write_bytes(response_pdf(document, {stem: file.read_bytes() for stem, file in drawn.items()}))
+    write_report(document, pictures, path)
     return path

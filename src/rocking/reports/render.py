@@ -1,13 +1,14 @@
 """A report as one self-contained HTML file, or as a PDF set by Typst: nothing is fetched from elsewhere."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
-from rocking.errors import extra
+from rocking.errors import InvalidValueError, extra
 from rocking.reports.document import Document, Listing, Pair, Paragraph, ReportTable
 
 
@@ -47,6 +48,20 @@ def write_html(document: Document, pictures: Path, path: Path) -> None:
 def render_pdf(document: Document, pictures: Path, path: Path) -> None:
     """Write a report as PDF."""
     path.write_bytes(_pdf(document, "report.typ", pictures, []))
+
+
+def write_report(document: Document, pictures: Mapping[str, Callable[[], Any]], path: Path) -> None:
+    """Write a report of one body as .pdf or .html; pictures: what draws each, by stem."""
+    from rocking.plots.style import write
+
+    if path.suffix.lower() not in {".pdf", ".html"}:
+        raise InvalidValueError(f"a report is .pdf or .html, got {path.name!r}")
+    with TemporaryDirectory(prefix="rocking-report-") as folder:
+        drawn = {stem: write(draw(), Path(folder) / f"{stem}.svg") for stem, draw in pictures.items()}
+        if path.suffix.lower() == ".html":
+            write_html(document, Path(folder), path)
+        else:
+            path.write_bytes(response_pdf(document, {stem: file.read_bytes() for stem, file in drawn.items()}))
 
 
 def response_pdf(document: Document, pictures: Mapping[str, bytes]) -> bytes:

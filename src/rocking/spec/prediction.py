@@ -4,10 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rocking.bodies import Body
+from rocking.bodies import Body, Solid
 from rocking.prediction import Prediction, predict
 from rocking.prediction.mechanics import COMPLEMENTARITY, MEASURED
-from rocking.spec.construction import body_of, motion_of, motions_of, restitutions_of
+from rocking.spec.construction import any_body_of, motion_of, motions_of, restitutions_of
 from rocking.spec.reading import InputFiles, located
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class PredictionProblem:
     """Everything that a prediction depends on."""
 
-    body: Body
+    body: Body | Solid
     motions: Any  # by number
     options: dict[str, Any]  # as `predict` takes them
 
@@ -28,7 +28,7 @@ class PredictionProblem:
         from rocking.spec.document import RestitutionTable
 
         with located("body"):
-            body = body_of(document.body, inputs)
+            body = any_body_of(document.body, inputs)
         motions: Any
         if document.motion is None:
             motions = motions_of(document.motions, inputs)
@@ -39,7 +39,7 @@ class PredictionProblem:
         ground = document.settings.model_dump(exclude_none=True, exclude={"engine"})
         options = {**document.predict.model_dump(exclude_none=True), **ground}
         model = options.get("restitution")
-        if isinstance(model, str) and model not in {MEASURED, COMPLEMENTARITY}:
+        if isinstance(model, str) and model not in {MEASURED, COMPLEMENTARITY} and not isinstance(body, Solid):
             table = RestitutionTable(model=model)
             options["restitution"] = next(iter(restitutions_of(table, 0, [body], inputs).values()))
         return cls(body, motions, options)
