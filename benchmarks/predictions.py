@@ -7,7 +7,7 @@ takes the friction, which decides most, for known.
 
 import hashlib
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -62,12 +62,16 @@ def scored(rows: list[dict[str, float]]) -> dict[str, Forecasts]:
     return {name: Forecasts(each, fell, motion) for name, each in given.items()}
 
 
-def resumed(path: Path, cases: int, count: int, motions: int) -> Iterator[dict[str, float]]:
-    """Give every case, those of an earlier run from its file unless what computes them has changed."""
-    folders = [ROOT / "src" / "rocking" / each for each in ("prediction", "dynamics/contact", "evidence")]
-    sources = sorted([Path(__file__), *(file for folder in folders for file in folder.rglob("*.py"))])
+def resumed(
+    path: Path, cases: int, made: Callable[..., dict[str, Any]], source: str, **settings: int
+) -> Iterator[dict[str, Any]]:
+    """Give every case that is made, those of an earlier run from its file unless what computes them has changed."""
+    folders = [
+        ROOT / "src" / "rocking" / each for each in ("prediction", "dynamics/contact", "dynamics/hull", "evidence")
+    ]
+    sources = sorted([Path(source), *(file for folder in folders for file in folder.rglob("*.py"))])
     digest = hashlib.sha256(b"".join(file.read_bytes() for file in sources)).hexdigest()
-    head = json.dumps({"sources": digest, "count": count, "motions": motions})
+    head = json.dumps({"sources": digest, **settings})
     lines = path.read_text("utf-8").splitlines() if path.exists() else []
     kept = lines[1:] if lines[:1] == [head] else []
     if kept and not kept[-1].endswith("}"):
@@ -77,7 +81,7 @@ def resumed(path: Path, cases: int, count: int, motions: int) -> Iterator[dict[s
     yield from map(json.loads, kept[:cases])
     with path.open("a", encoding="utf-8") as file:
         for number in range(len(kept), cases):
-            row = foreseen(number, count, motions)
+            row = made(number, **settings)
             file.write(f"{json.dumps(row)}\n")
             file.flush()
             yield row
@@ -85,7 +89,7 @@ def resumed(path: Path, cases: int, count: int, motions: int) -> Iterator[dict[s
 
 def main(cases: int = 2000, count: int = 256, motions: int = 100) -> None:
     """Print the scores."""
-    rows = list(resumed(ROOT / "build" / "predictions.jsonl", cases, count, motions))
+    rows = list(resumed(ROOT / "build" / "predictions.jsonl", cases, foreseen, __file__, count=count, motions=motions))
     found = scored(rows)
     print("| forecast | Brier | logarithmic | balanced accuracy | calibration z |\n|---|---|---|---|---|")
     for name, each in found.items():

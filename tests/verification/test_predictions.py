@@ -47,16 +47,21 @@ def test_not_worse_than_the_plain_logistic(scores):
 
 
 @pytest.mark.verifies("damage", room="studies")
-def test_what_was_stopped_goes_on(tmp_path, monkeypatch):
-    """A line that was half written is computed again, whole ones are kept; other sources begin anew."""
+def test_what_was_stopped_goes_on(tmp_path):
+    """A line that was half written is computed again, whole ones are kept; other settings begin anew."""
     path, asked = tmp_path / "rows.jsonl", []
-    monkeypatch.setattr(
-        predictions, "foreseen", lambda number, count, motions: asked.append(number) or {"number": number}
-    )
-    assert len(list(predictions.resumed(path, 3, 8, 2))) == 3
+
+    def rows(cases, count):
+        def made(number, count):
+            asked.append(number)
+            return {"number": number}
+
+        return list(predictions.resumed(path, cases, made, predictions.__file__, count=count))
+
+    assert len(rows(3, 8)) == 3
     path.write_text(path.read_text("utf-8")[:-6], "utf-8")
-    assert [row["number"] for row in predictions.resumed(path, 4, 8, 2)] == [0, 1, 2, 3]
+    assert [row["number"] for row in rows(4, 8)] == [0, 1, 2, 3]
     assert asked == [0, 1, 2, 2, 3]
-    assert len(list(predictions.resumed(path, 2, 16, 2))) == 2
+    assert len(rows(2, 16)) == 2
     assert asked[5:] == [0, 1]
     assert json.loads(path.read_text("utf-8").splitlines()[0])["count"] == 16
