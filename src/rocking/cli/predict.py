@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rocking.spec.reading import InputFiles
 
 TABLES = ("body", "motion", "settings", "predict")
+ALIKE = "Nothing decides it: all bodies end alike."
 COUNT, SEED = 20, 1
 """Synthetic motions, where nobody says otherwise."""
 
@@ -162,7 +163,10 @@ class PredictionAnswer:
         ]
         page.table(head, rows, head[:1])
         page.line()
-        if found.shares:
+        if found.shares and not any(share.total for share in found.shares.values()):
+            page.line(ALIKE)
+            page.line()
+        elif found.shares:
             head = ("what is not known", "alone", "95 %", "with the others", "95 %")
             named = {("motion" if name == "case" else name): share for name, share in found.shares.items()}
             page.table(head, [

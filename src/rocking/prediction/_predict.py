@@ -195,14 +195,14 @@ def _chance(happened: FloatArray, seed: int) -> Chance:
         [share_interval(h, n) if n else (0.0, 1.0) for h, n in zip(hits.tolist(), known.tolist(), strict=True)]
     )
     seen = each[known > 0]
-    value = float(seen.mean())  # Eq. 258
+    value = float(seen.mean())  # Eq. 259
     # bodies are the same under all motions: as many independent histories as the scatter of their means says
     bodies = np.nanmean(happened[~np.isnan(happened).all(axis=1)][:, known > 0], axis=1)
     spread = float(bodies.var()) / bodies.size
     trials = float(np.clip(value * (1.0 - value) / spread if spread else 0.0, bodies.size, happened.size))
-    low, high = share_interval(value * trials, trials)  # Eq. 259
+    low, high = share_interval(value * trials, trials)  # Eq. 260
     within = float(np.mean(seen * (1.0 - seen) / known[known > 0]))
-    between = max(float(seen.var(ddof=1)) - within, 0.0) ** 0.5 if seen.size > 1 else np.nan  # Eq. 260
+    between = max(float(seen.var(ddof=1)) - within, 0.0) ** 0.5 if seen.size > 1 else np.nan  # Eq. 261
     wide = (np.nan, np.nan)
     if seen.size >= LEAST_CLUSTERS:
         random = np.random.default_rng(seed)

@@ -102,8 +102,8 @@ def _estimates(stacked: FloatArray, weights: FloatArray) -> list[tuple[FloatArra
     found = []
     for k, one in enumerate(mixed):
         step = middle[2 + k] - middle[0]
-        alone = weights @ (middle[1] * step) - mean * (weights @ step)  # Eq. 261
-        found.append((alone / scale, weights @ (0.5 * ((first - one) ** 2).mean(axis=1)) / scale))  # Eq. 262
+        alone = weights @ (middle[1] * step) - mean * (weights @ step)  # Eq. 262
+        found.append((alone / scale, weights @ (0.5 * ((first - one) ** 2).mean(axis=1)) / scale))  # Eq. 263
     if stacked.shape[2] > 1:
         alone = ((weights @ first) * (weights @ second)).mean(axis=1)
         alone -= (weights @ middle[0]) * (weights @ middle[1])

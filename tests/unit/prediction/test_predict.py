@@ -220,7 +220,6 @@ def test_bad_input(given, why):
     ("body", "motions", "why"),
     [
         ("block", PULSE, "body must be"),
-        (rk.Solid.from_section(rk.Block(width=1.0, height=2.0).to_section()), PULSE, "in_plane"),
         (BLOCK, [], "motions must be"),
         (BLOCK, "sine", "motions must be"),
         (BLOCK, [1.0], "motions must be"),

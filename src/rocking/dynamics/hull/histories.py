@@ -14,7 +14,7 @@ from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.engine import HullEngine, HullEventKind, HullHistory, HullSettings
 from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.motion import State
-from rocking.dynamics.hull.restitution import ImpulsePosition
+from rocking.dynamics.hull.restitution import FixedPosition
 from rocking.dynamics.hull.vectors import applied, cross, dot, frame, scaled
 from rocking.dynamics.settings import check_threads, processors
 from rocking.dynamics.space.attitude import SpatialStart
@@ -79,7 +79,7 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
         Bodies.
     grounds : HullGround or sequence of them
         What they stand on, and how that moves.
-    restitution : {"housner-3d", "ked-3d"}, ImpulsePosition, float or list of them
+    restitution : {"housner-3d", "ked-3d"}, FixedPosition, float or list of them
         What an impact costs, as `HullEngine` takes it.
     friction : float or array_like
         Coulomb coefficients; infinite for vertices that never slide [-].
@@ -201,7 +201,7 @@ def _code(law: Any) -> tuple[int, float]:
         return fast_engine.HOUSNER, 0.0
     if law in ("ked", "ked-3d"):
         return fast_engine.KED, 0.0
-    if isinstance(law, ImpulsePosition):
+    if isinstance(law, FixedPosition):
         return fast_engine.POSITION, law.k
     if isinstance(law, (int, float)):
         return fast_engine.COEFFICIENT, checks.within("restitution", float(law), 0.0, 1.0)

@@ -19,7 +19,7 @@ ImpulseLaw = Callable[[Vector, Vector], float]
 
 
 @dataclass(frozen=True)
-class ImpulsePosition:
+class FixedPosition:
     """Restitution as the position k of the impulse of every landing on the base, in any direction.
 
     Parameters
@@ -45,7 +45,7 @@ def law_of(restitution: Any, body: HullBody, base: int) -> ImpulseLaw:
 
     Parameters
     ----------
-    restitution : {"housner-3d", "ked-3d"}, ImpulsePosition or float
+    restitution : {"housner-3d", "ked-3d"}, FixedPosition or float
         Housner's impact (k = 1); the pivot-consistent KED, which needs the body's solid; or the coefficient of a
         landing of the whole base in any direction [-].
     body : HullBody
@@ -70,7 +70,7 @@ def law_of(restitution: Any, body: HullBody, base: int) -> ImpulseLaw:
             raise InvalidValueError("restitution 'ked-3d' needs the distribution of mass: give the HullBody its solid")
         position = impulse_position(body.solid)
         return _on_base(body, base, lambda step: position.at(np.array(step)))
-    if isinstance(restitution, ImpulsePosition):
+    if isinstance(restitution, FixedPosition):
         return _on_base(body, base, lambda _step: restitution.k)
     if isinstance(restitution, (int, float)):
         r = checks.within("restitution", float(restitution), 0.0, 1.0)
