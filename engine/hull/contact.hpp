@@ -6,6 +6,7 @@ namespace rocking::hull {
 
 constexpr double kSingular = 1e-12, kStraight = 1e-12;
 constexpr int kTurns = 300;
+constexpr std::size_t kCorners = 8;  // of a facet with more no single one sticks
 
 struct Contact {
     Points members, stuck;
@@ -281,7 +282,7 @@ inline std::vector<Points> faces(const Problem& p, const Points& touching) {
 // Which of the vertices that do not slide yet stick: all, all but one, one, none.
 inline void friction_states(const Points& members, const Points& still, std::vector<Contact>& made) {
     if (still.size() == members.size() || still.size() < 2) made.push_back({members, still});
-    if (still.size() > 1)  // two sticking vertices of a facet make it rest; of an edge that leaves single ones
+    if (still.size() > 1 && members.size() <= kCorners)  // two sticking vertices of a facet make it rest; of an edge that leaves single ones
         for (int i : still) made.push_back({members, {i}});
     if (!still.empty()) made.push_back({members, {}});
 }

@@ -500,7 +500,11 @@ class Run {
                 states.clear();
                 friction_states(members, free, states);
                 for (Contact& way : states)
-                    if (p.friction < kInfinite || way.stuck == members) ways.push_back({free.size() - way.stuck.size(), std::move(way)});
+                    if (p.friction < kInfinite || way.stuck == members) {
+                        // a facet that slides as a whole comes before what edges and single vertices do
+                        const std::size_t slides = free.size() - way.stuck.size();
+                        ways.push_back({slides == 0 ? 0 : members.size() > 2 && way.stuck.empty() ? 1 : slides + 1, std::move(way)});
+                    }
             }
             std::stable_sort(ways.begin(), ways.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
             for (auto& way : ways) order_.push_back(std::move(way.second));

@@ -28,6 +28,7 @@ from rocking.dynamics.hull.vectors import (
 
 _SINGULAR = 1e-12
 _TURNS, _STRAIGHT = 300, 1e-12
+_CORNERS = 8  # of a facet with more no single one sticks
 
 Wrench = tuple[Vector, Vector]
 
@@ -306,7 +307,7 @@ def friction_states(members: tuple[int, ...], still: tuple[int, ...]) -> Iterato
     """Yield which of the vertices that do not slide yet stick: all, all but one, one, none."""
     if len(still) == len(members) or len(still) < 2:
         yield HullContact(members, still)
-    if len(still) > 1:
+    if len(still) > 1 and len(members) <= _CORNERS:
         # two sticking vertices of a facet make it rest
         sizes = (1,) if len(members) > 2 else range(len(still) - 1, 0, -1)
         for n in sizes:

@@ -615,7 +615,11 @@ class HullEngine:
             still = tuple(i for i in members if i not in moving)
             ways = contacts.friction_states(members, still)
             ways = (way for way in ways if self.friction < math.inf or way.stuck == members)
-            states += [(len(still) - len(way.stuck), way) for way in ways]
+            for way in ways:
+                # a facet that slides as a whole comes before what edges and single vertices do
+                slides = len(still) - len(way.stuck)
+                rank = 0 if slides == 0 else 1 if len(members) > 2 and not way.stuck else slides + 1
+                states.append((rank, way))
         for _, contact in sorted(states, key=lambda state: state[0]):
             known = {i: moving[i] for i in contact.members if i in moving and i not in contact.stuck}
             found = contacts.sliding(problem, contact, known, 1e-5 * self.ground.gravity if problem.bias else 0.0)
