@@ -1,17 +1,24 @@
 """`rocking predict`: the same as in Python, from options and from a file; files, refusals."""
 
 import json
+from pathlib import Path
 
+import bad_scans
 import pytest
 
 import rocking as rk
+from rocking.cli import main
 from rocking.cli.page import plain
 from rocking.prediction import predict
 
+trimesh = pytest.importorskip("trimesh")
+
 COMMAND = "predict"
+DOCS = Path(__file__).parents[3] / "docs" / "how_to.md"
 SIZE = ("--width", "0.5", "--height", "2")
 PULSE = "sine:amplitude=4.2,period=0.8"
 FEW = ("--set", "predict.count=16")
+FAST = ("--count", "1", "--set", "motion.pga=5", "--set", "predict.count=4", "--set", "predict.shares=false")
 FILE = """
 [body]
 units = "cm"
@@ -93,3 +100,41 @@ def test_refusals(run, words, why):
     code, _, err = run(*words)
     assert code == 2
     assert why in err
+
+
+@pytest.mark.verifies("behaviour")
+def test_a_conservator_with_a_scan(tmp_path, capsys, monkeypatch):
+    """Three commands from an open scan in mm to a picture, a probability and a document, as docs/how_to.md has them."""
+    vertices, sides, _ = bad_scans.statue(12, 9)
+    trimesh.Trimesh(1000.0 * vertices[:-1], sides, process=False).export(tmp_path / "statue.stl")
+    text = DOCS.read_text("utf-8").partition("### How do I get from a scan to a probability?")[2]
+    commands = [line.split()[1:] for line in text.partition("```\n")[2].partition("```")[0].splitlines()]
+    assert [words[0] for words in commands] == ["equilibria", "predict", "predict"]
+    monkeypatch.chdir(tmp_path)
+    said = []
+    for words in commands:
+        few = FAST if words[0] == "predict" else []
+        with pytest.raises(SystemExit) as stop:
+            main([*words, *few])
+        assert stop.value.code in {0, None}
+        said.append(capsys.readouterr().out)
+    assert "It can stand in" in said[0]
+    assert "overturns with a probability of" in said[1]
+    assert said[1].partition("wrote")[0] == said[2].partition("wrote")[0]
+    assert all("! closed the open bottom" in each for each in said)
+    assert (tmp_path / "statue.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "statue.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_reports_say_what_was_said(run, tmp_path):
+    """The page has the verdict, what was assumed and the numbers; an ending that is none is refused."""
+    page = tmp_path / "found.html"
+    code, out, _ = run(*SIZE, PULSE, *FEW, "--out", str(page))
+    assert code == 0
+    text = page.read_text("utf-8")
+    assert out.splitlines()[0] in text
+    assert "placement" in text
+    assert "16 bodies under each motion" in text
+    found = predict(rk.Block(width=0.5, height=2.0), rk.pulses.sine(4.2, 0.8), count=16, shares=False)
+    with pytest.raises(rk.errors.RockingError, match=r"\.pdf or \.html"):
+        rk.reports.prediction_report(found, tmp_path / "found.docx")
