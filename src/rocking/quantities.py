@@ -103,7 +103,10 @@ _HISTORY_WITH_FRICTION = (
 _HISTORY_IN_SPACE = (
     Quantity("over_contact", "1", f"{_spelled(_CONTACTS)} over which it fell, -1 none"),
     Quantity("over_number", "1", "number of that edge or vertex; -1 where there is none"),
-    Quantity("peak_tilt", "rad", "largest angle from the vertical; a quarter turn if it overturned"),
+    Quantity(
+        "peak_tilt", "rad",
+        "largest angle from the vertical; a quarter turn if it overturned; with friction from the pose at the start",
+    ),
     Quantity("peak_spin", "rad/s", "largest angular velocity at ends of steps and at impacts"),
     Quantity("direction", "rad", "direction in which it lies, from x towards y"),
     Quantity("end_time", "s", "end of the history"),
@@ -113,6 +116,11 @@ _HISTORY_IN_SPACE = (
     Quantity("lost", "J", "energy lost at impacts"),
     Quantity("events", "1", "number of impacts, uplifts and changes of contact"),
     Quantity("steps", "1", "number of steps of the engine"),
+)
+_HISTORY_ON_THE_HULL = (
+    Quantity("pose", "1", "number of the stable pose in which it ends; 0 has the lowest centre, -1 there is no result"),
+    Quantity("contacts_held", "1", "impacts and changes where no contact obeyed every law, and what touched was held"),
+    Quantity("landings_replaced", "1", "impacts in which Housner's law stood in for one without a solution"),
 )  # fmt: skip
 _SAMPLES = (
     Quantity("time", "s", "time"),
@@ -145,6 +153,8 @@ _SAMPLES = (
     Quantity("tilt", "rad", "angle between the axis of the body and the vertical"),
     Quantity("azimuth", "rad", "direction in which the body leans, from x towards y"),
     Quantity("contact", "1", _spelled(_CONTACTS), _CONTACTS),
+    Quantity("touching", "1", "number of vertices on the ground"),
+    Quantity("sliding", "1", "number of vertices that slide on the ground"),
 )
 _IMPACTS_AND_INTERVALS = (
     Quantity("velocity_before", "rad/s", "angular velocity before the impact"),
@@ -160,13 +170,14 @@ _IMPACTS_AND_INTERVALS = (
     Quantity("slips", "1", "whether the feet slid in the impact: 1 yes, 0 no"),
     Quantity("feet", "", "feet that touch the ground"),
     Quantity("vertices", "", "vertices on the ground"),
+    Quantity("sliding_vertices", "", "vertices that slide on the ground"),
     Quantity("start", "s", "start of the interval"),
     Quantity("end", "s", "end of the interval"),
     Quantity("distance", "m", "path of the feet along the ground in the interval"),
 )
 QUANTITIES: dict[str, Quantity] = {
     each.name: each
-    for each in (*_HISTORY, *_HISTORY_WITH_FRICTION, *_HISTORY_IN_SPACE, *_SAMPLES, *_IMPACTS_AND_INTERVALS)
+    for each in (*_HISTORY, *_HISTORY_WITH_FRICTION, *_HISTORY_IN_SPACE, *_HISTORY_ON_THE_HULL, *_SAMPLES, *_IMPACTS_AND_INTERVALS)
 }
 """All of them, by name."""
 TIMES = tuple(each.name for each in _HISTORY if each.unit == "s")

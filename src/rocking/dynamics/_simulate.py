@@ -18,6 +18,7 @@ from rocking.motions.pulse import Motion, Pulse
 if TYPE_CHECKING:
     from rocking.bodies.solid import Solid
     from rocking.dynamics.contact import ContactResponse, Start
+    from rocking.dynamics.hull import HullResponse
     from rocking.dynamics.space import SpatialBody, SpatialResponse, SpatialStart
 
 Component = GroundMotion | Pulse | None
@@ -35,8 +36,12 @@ def simulate(
 ) -> "ContactResponse": ...
 @overload
 def simulate(
-    body: "Solid | SpatialBody", motion: AnyMotion, restitution: Any = "ked", **options: Any
+    body: "Solid | SpatialBody", motion: AnyMotion, restitution: Any = "ked", *, friction: None = None, **options: Any
 ) -> "SpatialResponse": ...
+@overload
+def simulate(
+    body: "Solid | SpatialBody", motion: AnyMotion, restitution: Any = "ked", *, friction: float, **options: Any
+) -> "HullResponse": ...
 def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what the answer hangs on
     body: Any,
     motion: Any,
@@ -64,7 +69,8 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
 
     A plane body rocks about its feet; with `friction` it may also slide, hop and fly. A body in space turns about the
     edges and vertices of its base, or rolls on its rim, and does not slip; where it would leave the ground, the history
-    stops and says so. A round base under two components rolls and has no impacts, so that the restitution does not
+    stops and says so; with `friction` it touches with all vertices of its convex hull, on which it rocks, slides, hops,
+    flies and falls into another pose. A round base under two components rolls and has no impacts, so that the restitution does not
     matter; after it has rolled through lying nearly flat, small causes have large effects.
 
     Parameters
@@ -82,13 +88,14 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
         complementarity. In space a model of `rocking.restitution.space`, with or without its "-3d" ("ked" needs the
         distribution of mass, which a Solid, a box and a cylinder have), a coefficient from 0 to 1 (that share of the
         angular velocity goes on, in the direction of the plastic impact), or any object with `velocity_after` and
-        `label`.
+        `label`. In space with friction "housner-3d", "ked-3d" or the coefficient of a landing of the whole base, not
+        below Housner's.
     friction : float, optional
         Coulomb's coefficient mu between body and ground, from 0 to 1e6 [-]: the body may slide, hop and fly. If not
         given, it rocks alone, and a `PureRockingWarning` says where the ground would have to pull, and what the body
         then does.
     bounce : float
-        Coefficient of normal restitution, in [0, 1), with friction [-].
+        Coefficient of normal restitution of a plane body, in [0, 1), with friction [-].
     bounce_law : {"newton", "poisson", "stronge"}
         What `bounce` is the ratio of: normal velocities (Newton), normal impulses (Poisson), or, squared, the work of
         the normal impulses (Stronge). They differ where sliding stops or turns during an impact. Where Newton's or
@@ -105,7 +112,7 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
     duration : float, optional
         How long to follow the body [s]; if not given, the motion and 15 / p (with friction 15 sqrt(R / g)) after it.
         With friction, one that leans beyond its slenderness angle then is followed, on ground at rest, until it lies or
-        leans less: `outcome` needs it.
+        leans less: `outcome` needs it. In space with friction until it rests.
     engine : {"auto", "fast", "reference"}
         Which engine; which one ran is in `Response.engine`. The fast one is for rocking alone.
     stream : int
@@ -115,8 +122,9 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
 
     Returns
     -------
-    Response, ContactResponse or SpatialResponse
-        Of a plane body, of one with friction, of one in space: motion, impacts, energy, forces, outcome.
+    Response, ContactResponse, SpatialResponse or HullResponse
+        Of a plane body, of one with friction, of one in space, of that with friction: motion, impacts, outcome and
+        more.
 
     Raises
     ------
@@ -139,6 +147,8 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
     >>> response = rk.simulate(box, {"x": pulse, "y": pulse.scaled(0.4)}, "housner")
     >>> response.outcome.name, response.intervals[1][2].name
     ('ROCKED', 'EDGE')
+    >>> rk.simulate(box, {"x": pulse, "y": pulse.scaled(0.4)}, "housner", friction=0.2).outcome.name
+    'SLID'
     """
     settings = {
         "gravity": gravity, "linear": linear, "rest_speed": rest_speed, "most_events": most_events,
@@ -161,8 +171,13 @@ def free_rocking(
 ) -> "ContactResponse": ...
 @overload
 def free_rocking(
-    body: "Solid | SpatialBody", rotation: float = 0.0, restitution: Any = "ked", **options: Any
+    body: "Solid | SpatialBody", rotation: float = 0.0, restitution: Any = "ked", *, friction: None = None,
+    **options: Any,
 ) -> "SpatialResponse": ...
+@overload
+def free_rocking(
+    body: "Solid | SpatialBody", rotation: float = 0.0, restitution: Any = "ked", *, friction: float, **options: Any
+) -> "HullResponse": ...
 def free_rocking(  # type: ignore[misc]  # noqa: PLR0913 - as for `simulate`
     body: Any,
     rotation: float = 0.0,
@@ -215,7 +230,7 @@ def free_rocking(  # type: ignore[misc]  # noqa: PLR0913 - as for `simulate`
 
     Returns
     -------
-    Response, ContactResponse or SpatialResponse
+    Response, ContactResponse, SpatialResponse or HullResponse
         As of `simulate`; the motion is None.
 
     Raises
@@ -270,12 +285,18 @@ def _followed(  # noqa: PLR0913 - what the two questions have in common
         from rocking.dynamics.space.body import SpatialBody
         from rocking.dynamics.space.histories import response_in_space
 
-        body = SpatialBody.of(body)
-        refuse("a body in space", friction=friction, bounce=bounce, bounce_law=bounce_law, engine=engine, stream=stream)
+        if friction is None:
+            body = SpatialBody.of(body)
+        refuse("a body in space", bounce=bounce, bounce_law=bounce_law, engine=engine, stream=stream)
         if not np.ndim(angular_velocity) and angular_velocity:
             raise InvalidValueError("angular_velocity of a body in space must be three numbers [rad/s], got one")
         spin = angular_velocity if np.ndim(angular_velocity) else (0.0, 0.0, 0.0)
         leaning = _start(start, SpatialStart) or SpatialStart(rotation, angular_velocity=spin)
+        if friction is not None:
+            from rocking.dynamics.hull.response import response_on_hull
+
+            own = Settings(**settings, mechanics="space with friction", friction=friction)
+            return response_on_hull(body, motion, restitution, own, start=leaning, **how)
         return response_in_space(
             body, motion, restitution, Settings(**settings, mechanics="space"), start=leaning, **how
         )

@@ -41,6 +41,7 @@ _OWN: dict[str, dict[str, tuple[float, float, float]]] = {
         "longest_step": (0.6, SHORTEST_STEP, 1.0),
         "tolerance": (1e-13, 1e-20, 1e-2),
     },
+    "space with friction": {"rest_speed": (1e-5, 1e-7, 0.01), "tolerance": (1e-12, 1e-15, 1e-2)},
 }
 _HINTS = {
     ("rocking", "rest_speed"): "the flights must be short for the sum to hold",
@@ -78,9 +79,10 @@ class Settings:
         part; elsewhere they are refused. In space: the highest, from 2 to 40 (28). Other engines choose their own.
     tolerance : float, optional
         Bound on the last two terms of a Taylor step: over the angle alpha (and the size R with contact) 1e-15; for
-        quaternions of unit length 1e-17 in space (1e-13 for many bodies) [-].
-    mechanics : {"rocking", "contact", "space", "space, many"}
-        Whose usual values and ranges these are; with `friction` those of contact.
+        quaternions of unit length 1e-17 in space (1e-13 for many bodies). In space with friction on the local error of a
+        step of order 5, over size, radian and their rates (1e-12) [-].
+    mechanics : {"rocking", "contact", "space", "space, many", "space with friction"}
+        Whose usual values and ranges these are; with `friction` those of contact, in space of bodies on their hulls.
     friction, bounce, bounce_law : optional
         Of studies whose bodies may slide, hop and fly: as for `simulate` [-].
 
@@ -144,9 +146,13 @@ class Settings:
         plausibility.warn(plausibility.of_gravity(self.gravity))
 
     def _check_ground(self) -> None:
-        if self.mechanics not in {"rocking", "contact"}:
-            raise InvalidValueError(f"friction is no setting of {self.mechanics}; {self._has(_OWN[self.mechanics])}")
-        object.__setattr__(self, "mechanics", "contact")
+        own = _OWN[self.mechanics]
+        if self.mechanics not in {"rocking", "contact", "space with friction"}:
+            raise InvalidValueError(f"friction is no setting of {self.mechanics}; {self._has(own)}")
+        if self.mechanics != "space with friction":
+            object.__setattr__(self, "mechanics", "contact")
+        elif self.bounce or self.bounce_law != "newton":
+            raise InvalidValueError(f"bounce is no setting of {self.mechanics}; {self._has(own)}")
         friction = checks.within("friction", self.friction, 0.0, 1e6, hint="1e6 for feet that never slide")
         made = {
             "friction": friction,
@@ -167,7 +173,7 @@ class Settings:
         if self.mechanics == "rocking":
             has.add("linear")
         if self.friction is not None:
-            has |= {"friction", "bounce", "bounce_law"}
+            has |= {"friction"} if "space" in self.mechanics else {"friction", "bounce", "bounce_law"}
         return {field.name: getattr(self, field.name) for field in fields(self) if field.name in has}
 
 

@@ -4,5 +4,6 @@ from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.engine import HullEngine, HullSettings, standing
 from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.histories import HullBatch, hull_histories
+from rocking.dynamics.hull.response import HullResponse
 
-__all__ = ["HullBatch", "HullBody", "HullEngine", "HullGround", "HullSettings", "hull_histories", "standing"]
+__all__ = ["HullBatch", "HullBody", "HullEngine", "HullGround", "HullResponse", "HullSettings", "hull_histories", "standing"]

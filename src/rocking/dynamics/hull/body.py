@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -10,8 +11,8 @@ from rocking.bodies.equilibria.polytope import Polytope, polytope
 from rocking.bodies.solid import Solid
 from rocking.conventions import FloatArray
 from rocking.dynamics.hull.vectors import Frame, Vector, dot, length
-from rocking.dynamics.space.body import checked_inertia, finite
-from rocking.errors import GeometryError
+from rocking.dynamics.space.body import SpatialBody, checked_inertia, finite
+from rocking.errors import GeometryError, InvalidValueError
 from rocking.portable import inverse
 
 
@@ -69,22 +70,38 @@ class HullBody:
             )
 
     @classmethod
-    def of(cls, solid: Solid) -> "HullBody":
+    def of(cls, solid: Any) -> "HullBody":
         """Return a solid on the vertices of its hull, as it stands.
 
         Parameters
         ----------
-        solid : Solid
-            The solid; round faces are those of `Solid.equilibria`, of 360 corners.
+        solid : Solid, SpatialBody or HullBody
+            The solid, or a body that knows of which it is made; round faces are those of `Solid.equilibria`, of 360
+            corners.
 
         Returns
         -------
         HullBody
-            The body, in the solid's own frame.
+            The body, in the solid's own frame; itself if it is one.
+
+        Raises
+        ------
+        InvalidValueError
+            If the body is known by its base alone.
         """
+        if isinstance(solid, cls):
+            return solid
+        if isinstance(solid, SpatialBody) and solid.matter is not None:
+            solid = solid.matter()[0]
+        if not isinstance(solid, Solid):
+            raise InvalidValueError(
+                f"with friction a body touches with all its hull: it must be a Solid, or a box or cylinder made of "
+                f"one, got {type(solid).__name__}, of which the base is known alone"
+            )
         moments = solid.local_moments
         points = solid.equilibria().hull_vertices - solid.origin
-        return cls(points, moments.mass, moments.centre, moments.inertia, solid)
+        known = solid.known is not None  # then only these moments are known
+        return cls(points, moments.mass, moments.centre, moments.inertia, None if known else solid)
 
     @cached_property
     def points(self) -> list[Vector]:

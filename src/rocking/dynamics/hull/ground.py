@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from rocking import checks, conventions
 from rocking.dynamics.hull.vectors import Frame, Vector, applied, minus
 from rocking.dynamics.space.ground import SpatialGround, ground_of
@@ -56,6 +58,33 @@ class HullGround:
             (c * ss, s * ss, cc),
         )
         object.__setattr__(self, "level", rows)
+
+    @classmethod
+    def placed(cls, motion: SpatialGround, level: Any, shelf: Any, gravity: float) -> "HullGround":
+        """Return a ground from its motion and its axes.
+
+        Parameters
+        ----------
+        motion : SpatialGround
+            The three components, in level axes [m/s2].
+        level : array_like, 9 numbers
+            Level axes to axes of the plane [-].
+        shelf : array_like, 2 numbers
+            Half sizes of the plane, infinite without end [m].
+        gravity : float
+            Acceleration of gravity [m/s2].
+
+        Returns
+        -------
+        HullGround
+            The ground.
+        """
+        ends = float(shelf[0]), float(shelf[1])
+        made = cls(shelf=None if ends == (math.inf, math.inf) else ends, gravity=gravity)
+        object.__setattr__(made, "motion", motion)
+        a, b, c = (tuple(map(float, row)) for row in np.reshape(level, (3, 3)))
+        object.__setattr__(made, "level", (a, b, c))
+        return made
 
     @property
     def weight(self) -> Vector:

@@ -1,9 +1,10 @@
 """Many histories of bodies on their hulls: every combination of bodies, grounds, scales, laws, frictions and starts."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -14,13 +15,15 @@ from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.engine import HullEngine, HullEventKind, HullHistory, HullSettings
 from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.motion import State
-from rocking.dynamics.hull.restitution import FixedPosition
 from rocking.dynamics.hull.vectors import applied, cross, dot, frame, scaled
-from rocking.dynamics.settings import check_threads, processors
+from rocking.dynamics.settings import check_progress, check_threads, processors
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.ground import SpatialGround
 from rocking.errors import InvalidValueError
-from rocking.outcome import Status, overturned
+from rocking.outcome import Outcome, Status, overturned
+
+PIECE = 1 << 14
+"""Histories that are handed to the engine at a time."""
 
 DIMENSIONS = ("body", "ground", "scale", "restitution", "friction", "start")
 
@@ -59,7 +62,7 @@ class HullBatch:
 
 
 def hull_histories(  # noqa: PLR0913 - the axes of a study
-    bodies: HullBody | Sequence[HullBody],
+    bodies: HullBody | Sequence[HullBody | None],
     grounds: HullGround | Sequence[HullGround],
     restitution: Any = "housner-3d",
     friction: Any = math.inf,
@@ -70,16 +73,17 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     settings: HullSettings | None = None,
     engine: str = "auto",
     threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
 ) -> HullBatch:
     """Return the outcome of every combination of bodies, grounds, scales, restitutions, frictions and starts.
 
     Parameters
     ----------
     bodies : HullBody or sequence of them
-        Bodies.
+        Bodies; None for one that cannot be, whose rows are refused by themselves.
     grounds : HullGround or sequence of them
         What they stand on, and how that moves.
-    restitution : {"housner-3d", "ked-3d"}, FixedPosition, float or list of them
+    restitution : {"housner-3d", "ked-3d"}, float or list of them
         What an impact costs, as `HullEngine` takes it.
     friction : float or array_like
         Coulomb coefficients; infinite for vertices that never slide [-].
@@ -95,6 +99,8 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
         Which engine runs; the reference takes hundreds of times as long.
     threads : int, optional
         How many threads; all processors by default. Results do not depend on it.
+    progress : callable, optional
+        Called with the number of histories done since the last call.
 
     Returns
     -------
@@ -115,6 +121,7 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     ([0], [0])
     """
     check_threads(threads)
+    check_progress(progress)
     settings = settings or HullSettings()
     several, under = _listed("bodies", bodies), _listed("grounds", grounds)
     laws, starts = _listed("restitution", restitution), [SpatialStart()] if start is None else _listed("start", start)
@@ -122,54 +129,79 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     frictions, factors = (
         np.atleast_1d(checks.real_array(n, v)) for n, v in (("friction", friction), ("scales", scales))
     )
-    if any(code == fast_engine.KED and body.solid is None for code, _ in codes for body in several):
+    if any(code == fast_engine.KED and body is not None and body.solid is None for code, _ in codes for body in several):
         raise InvalidValueError("restitution 'ked-3d' needs the distribution of mass: give the HullBody its solid")
     shape = (len(several), len(under), factors.size, len(laws), frictions.size, len(starts))
-    states = np.array([[state_of(body, each) for each in starts] for body in several])
+    states = np.array([[_numbers(body, each) for each in starts] for body in several])
+    planes = np.array(
+        [np.concatenate([np.ravel(g.level), g.shelf or (math.inf, math.inf), [g.gravity]]) for g in under]
+    )
     body, ground, scale, law, mu, first = np.unravel_index(np.arange(int(np.prod(shape))), shape)
-    code, coefficient = np.array([code for code, _ in codes]), np.array([value for _, value in codes])
-    rows = HullRows(body, ground, code[law], coefficient[law], factors[scale], frictions[mu], states[body, first])
-    if fast_engine.chosen(engine) == "fast":
-        values = rows.run(several, under, settings, float(horizon), threads)
-        return HullBatch(shape, values, "fast (Dormand-Prince with complementarity, compiled)")
-    results = []
-    for k in range(len(body)):
-        scaled_ground = _scaled(under[ground[k]], float(factors[scale[k]]))
-        run = HullEngine(several[body[k]], scaled_ground, laws[law[k]], float(frictions[mu[k]]), settings)
-        results.append(results_of(run.run(_state(rows.state[k]), float(horizon))))
-    values = fast_engine.named(np.array([r for r, _ in results]), np.array([c for _, c in results], np.int64))
-    return HullBatch(shape, values, "reference, row by row")
+    numbers = np.column_stack([
+        np.array([r for _, r in codes])[law], factors[scale], np.full(len(body), float(horizon)), frictions[mu],
+        planes[ground, :11], states[body, first], planes[ground, 11],
+    ])  # fmt: skip
+    choices = np.column_stack([body, ground, np.array([code for code, _ in codes])[law]]).astype(np.int64)
+    ked = any(code == fast_engine.KED for code, _ in codes)
+    rows = HullRows(several, [g.motion for g in under], settings, fast_engine.chosen(engine), ked=ked)
+    return HullBatch(shape, rows.run(numbers, choices, threads or processors(), progress), rows.words)
 
 
-class HullRows(NamedTuple):
-    """Histories for the compiled engine, one entry each."""
+@dataclass(frozen=True, eq=False)
+class HullRows:
+    """Bodies and motions, and histories of them as rows of numbers; a row without a body is refused by itself."""
 
-    body: IntArray  # body, ground: numbers of both
-    ground: IntArray
-    law: IntArray
-    coefficient: FloatArray  # of laws that have one
-    scale: FloatArray
-    friction: FloatArray
-    state: FloatArray  # attitude, place, velocity and angular velocity, (n, 13)
+    bodies: Sequence[HullBody | None]
+    motions: Sequence[SpatialGround]
+    settings: HullSettings
+    engine: str  # fast or reference
+    ked: bool = field(kw_only=True)  # whether a row asks where the mass is
+
+    @property
+    def words(self) -> str:
+        """Which engine runs, and how."""
+        fast = "fast (Dormand-Prince with complementarity, compiled)"
+        return fast if self.engine == "fast" else "reference, row by row"
+
+    @cached_property
+    def library(self) -> Any:
+        """Bodies and motions as the compiled engine keeps them."""
+        return fast_engine.library_of(self.bodies, self.motions, ked=self.ked)
 
     def run(
-        self,
-        bodies: Sequence[HullBody | None],
-        grounds: Sequence[HullGround],
-        settings: HullSettings,
-        horizon: float = 0.0,
-        threads: int | None = None,
+        self, numbers: FloatArray, choices: IntArray, threads: int, progress: Callable[[int], None] | None = None
     ) -> dict[str, np.ndarray]:
-        """Return the results by name."""
-        planes = np.array([[*np.ravel(g.level), *(g.shelf or (math.inf, math.inf)), g.gravity] for g in grounds])
-        numbers = np.column_stack([
-            self.coefficient, self.scale, np.full(len(self.body), horizon), self.friction, planes[self.ground, :11],
-            self.state, planes[self.ground, 11],
-        ])  # fmt: skip
-        choices = np.column_stack([self.body, self.ground, self.law]).astype(np.int64)
-        ked = bool((self.law == fast_engine.KED).any())
-        library = fast_engine.library_of(bodies, [g.motion for g in grounds], ked=ked)
-        return fast_engine.run_rows(library, numbers, choices, settings, threads or processors())
+        """Return the results of rows by name, NaN where there is none.
+
+        numbers: coefficient, scale, horizon, friction; level axes to axes of the plane; half sizes of the shelf;
+        attitude, place, velocity, spin; gravity; choices: body, motion, law.
+        """
+        pieces = []
+        size = PIECE if self.engine == "fast" else 1
+        for first in range(0, len(numbers), size):
+            some, which = numbers[first : first + size], choices[first : first + size]
+            if self.engine == "fast":
+                pieces.append(fast_engine.run_rows(self.library, some, which, self.settings, threads))
+            else:
+                floats, whole = self._one(some[0], which[0].tolist())
+                pieces.append(fast_engine.named(np.array([floats]), np.array([whole], np.int64)))
+            if progress is not None:
+                progress(len(some))
+        return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+
+    def _one(self, row: FloatArray, which: list[int]) -> tuple[list[float], list[int]]:
+        body, unbounded = self.bodies[which[0]], np.isin(np.arange(row.size), (3, 13, 14))
+        known = (np.abs(row) <= 1e9) | (unbounded & (row == math.inf))
+        bounded = which[2] != fast_engine.COEFFICIENT or 0.0 <= row[0] <= 1.0
+        if body is None or not (known.all() and bounded and row[3] >= 0.0 and row[28] > 0.0):
+            refused = [Outcome.FAILED.code, Status.INVALID.code, -1, *[0] * (len(fast_engine.WHOLES) - 3)]
+            return [math.nan] * len(fast_engine.FLOATS), refused
+        law = {fast_engine.HOUSNER: "housner-3d", fast_engine.KED: "ked-3d"}.get(which[2], float(row[0]))
+        moving = self.motions[which[1]]
+        ground = HullGround.placed(
+            SpatialGround(moving.times, row[1] * moving.coefficients), row[4:13], row[13:15], float(row[28])
+        )
+        return results_of(HullEngine(body, ground, law, float(row[3]), self.settings).run(_state(row[15:28]), row[2]))
 
 
 def results_of(history: HullHistory) -> tuple[list[float], list[int]]:
@@ -201,16 +233,14 @@ def _code(law: Any) -> tuple[int, float]:
         return fast_engine.HOUSNER, 0.0
     if law in ("ked", "ked-3d"):
         return fast_engine.KED, 0.0
-    if isinstance(law, FixedPosition):
-        return fast_engine.POSITION, law.k
     if isinstance(law, (int, float)):
         return fast_engine.COEFFICIENT, checks.within("restitution", float(law), 0.0, 1.0)
     raise InvalidValueError(f"restitution must be 'housner-3d', 'ked-3d' or a number, got {law!r:.60}")
 
 
-def state_of(body: HullBody, start: SpatialStart) -> FloatArray:
+def _numbers(body: HullBody | None, start: SpatialStart) -> FloatArray:
     """Return attitude, place, velocity and angular velocity of a start; NaN for one that is none."""
-    if not start.valid:
+    if body is None or not start.valid:
         return np.full(13, np.nan)
     attitude = tuple(start.quaternion.tolist())
     axes, spin = frame(attitude), start.body_velocity.tolist()
@@ -219,13 +249,11 @@ def state_of(body: HullBody, start: SpatialStart) -> FloatArray:
     return np.array([*attitude, 0.0, 0.0, -dot(axes[2], low), *velocity, *spin])
 
 
+def start_of(body: HullBody, start: SpatialStart) -> State:
+    """Return the state of a body that leans at the start, its lowest vertex at rest on the ground."""
+    return _state(_numbers(body, start))
+
+
 def _state(row: FloatArray) -> State:
     q, x, v, w = (tuple(row[a:b].tolist()) for a, b in ((0, 4), (4, 7), (7, 10), (10, 13)))
     return State(x, q, v, w)
-
-
-def _scaled(ground: HullGround, scale: float) -> HullGround:
-    made = HullGround(None, None, None, ground.slope, ground.azimuth, ground.shelf, ground.gravity)
-    motion = SpatialGround(ground.motion.times, scale * ground.motion.coefficients)
-    object.__setattr__(made, "motion", motion)
-    return made

@@ -40,7 +40,7 @@ def response_in_space(
     """
     made = SpatialBody.of(body)
     scale = checks.within("scale", scale, -1e6, 1e6)
-    start = _checked(made, start)
+    start = started(start, made.frequency(conventions.g))
     p, shaken = made.frequency(settings.gravity), [motion for motion in components if motion is not None]
     if shaken and not all(hasattr(motion, "duration") for motion in shaken):
         ground_of(*components)  # says which of them is no motion
@@ -54,13 +54,14 @@ def response_in_space(
     rests = not shaken and duration is None and last.contact.mode is ContactMode.REST
     end = min(length, last.start + _FINE / p if rests else last.end)
     steps = [motion.time_step for motion in shaken if isinstance(motion, GroundMotion)]
-    time = _samples(min(steps, default=_FINE / p), end)
+    time = samples(min(steps, default=_FINE / p), end)
     x, y, z = ("none" if motion is None else motion.name for motion in components)
     return SpatialResponse(made, ground, engine.law, settings, time, found, end, (x, y, z))
 
 
-def _checked(body: SpatialBody, start: SpatialStart) -> SpatialStart:
-    most = 100.0 * body.frequency(conventions.g)
+def started(start: SpatialStart, pace: float) -> SpatialStart:
+    """Return how a body starts, checked; pace: frequency parameter, or sqrt(g / size) [1/s]."""
+    most = 100.0 * pace
     tilt = checks.within("tilt", start.tilt, 0.0, 0.5 * math.pi, unit="rad", open_high=True, hint="degrees?")
     azimuth, yaw = (checks.number(name, getattr(start, name), "rad") for name in ("azimuth", "yaw"))
     spin = checks.real_array("angular_velocity", start.angular_velocity, "rad/s")
@@ -71,7 +72,8 @@ def _checked(body: SpatialBody, start: SpatialStart) -> SpatialStart:
     return replace(start, tilt=tilt, azimuth=azimuth, yaw=yaw, angular_velocity=spin)
 
 
-def _samples(step: float, end: float) -> FloatArray:
+def samples(step: float, end: float) -> FloatArray:
+    """Return the times of samples up to an end [s]."""
     count = end / step
     if not count <= _MOST_SAMPLES:
         raise InvalidValueError(f"the response would have {count:.3g} samples; a shorter duration, please")

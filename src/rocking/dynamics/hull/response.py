@@ -1,0 +1,363 @@
+"""The response of a body on the vertices of its hull: attitude, place, contacts, impacts, sliding, outcome."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from rocking import checks, plausibility
+from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.hull.body import HullBody
+from rocking.dynamics.hull.engine import HullEngine, HullEventKind, HullHistory, HullSettings
+from rocking.dynamics.hull.ground import HullGround
+from rocking.dynamics.hull.histories import start_of
+from rocking.dynamics.hull.vectors import unit
+from rocking.dynamics.response_base import ResponseBase, motion_provenance
+from rocking.dynamics.settings import Settings
+from rocking.dynamics.space import attitude
+from rocking.dynamics.space.attitude import SpatialStart
+from rocking.dynamics.space.fast_engine import batch_law
+from rocking.dynamics.space.ground import Component, ground_of
+from rocking.dynamics.space.histories import samples, started
+from rocking.errors import InvalidValueError
+from rocking.motions.motion import GroundMotion
+from rocking.outcome import Outcome
+from rocking.portable import applied
+
+FINE = 0.05
+"""Time between samples where no record gives it, over sqrt(size / g)."""
+
+HULL_IMPACT = np.dtype([("time", "f8"), ("energy_before", "f8"), ("energy_after", "f8"), ("vertices", "U64")])
+"""Fields of `HullResponse.impacts`: [s], kinetic energy [J], [J], vertices that stay on the ground."""
+
+_AXES = ("x", "y", "z")
+
+
+def law_on_hull(restitution: Any) -> str | float:
+    """Return a restitution as the hull engine takes it.
+
+    >>> law_on_hull("ked"), law_on_hull(0.8)
+    ('ked-3d', 0.8)
+    """
+    law = batch_law(restitution)
+    coefficient = getattr(law.law, "coefficient", None)
+    if coefficient is not None:
+        return float(coefficient)
+    if law.label not in ("housner-3d", "ked-3d"):
+        raise InvalidValueError(
+            f"restitution of a body in space with friction must be 'housner-3d', 'ked-3d' or a coefficient from 0 to "
+            f"1, got {law.label!r:.60}"
+        )
+    return law.label
+
+
+def settings_on_hull(settings: Settings) -> HullSettings:
+    """Return settings as the hull engine takes them."""
+    return HullSettings(settings.tolerance, settings.rest_speed, settings.most_events)
+
+
+def response_on_hull(
+    body: Any,
+    components: tuple[Component, Component, Component],
+    restitution: Any,
+    settings: Settings,
+    *,
+    start: SpatialStart,
+    scale: float = 1.0,
+    duration: float | None = None,
+) -> "HullResponse":
+    """Return how a body in space moves that may rock, slide, hop and fall; without components, when it is let go.
+
+    duration: how long to follow the body at least [s]; if not given, until it rests after the motion.
+    """
+    made, law = HullBody.of(body), law_on_hull(restitution)
+    scale = checks.within("scale", scale, -1e6, 1e6)
+    start = started(start, math.sqrt(settings.gravity / made.size))
+    until = np.inf if duration is None else checks.positive("duration", duration, "s")
+    shaken = [motion for motion in components if motion is not None]
+    motion = ground_of(*components, until=until, scale=scale)
+    plausibility.warn(plausibility.of_scaled(shaken, scale))
+    ground = HullGround.placed(motion, np.eye(3), (math.inf, math.inf), settings.gravity)
+    assert settings.friction is not None
+    engine = HullEngine(made, ground, law, settings.friction, settings_on_hull(settings))
+    found = engine.run(start_of(made, start), 0.0 if duration is None else duration)
+    steps = [each.time_step for each in shaken if isinstance(each, GroundMotion)]
+    time = samples(min(steps, default=FINE / engine.pace), min(until, found.time[-1]))
+    return HullResponse(made, ground, str(law), settings, time, found, components, scale)
+
+
+@dataclass(frozen=True, eq=False)
+class HullStates:
+    """A body at n instants, in axes of the ground; its vertices stand in `HullBody`."""
+
+    quaternion: FloatArray  # attitude (s, x, y, z) [-]; shape (n, 4)
+    angular_velocity: FloatArray  # [rad/s]; shape (n, 3)
+    centre: FloatArray  # place of the centre of mass, from under where it was at the start [m]; shape (n, 3)
+    centre_velocity: FloatArray  # [m/s]; shape (n, 3)
+    touching: IntArray  # how many vertices are on the ground
+    sliding: IntArray  # how many of these slide
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class HullResponse(ResponseBase):
+    """What `simulate` returns of a body in space with friction.
+
+    Parameters
+    ----------
+    body : HullBody
+        The body on the vertices of its convex hull.
+    ground : HullGround
+        The motion as it was integrated [m/s2].
+    restitution : str
+        Law of restitution, or its coefficient.
+    settings : Settings
+        How it was integrated, and with which friction.
+    time : ndarray
+        Times of the samples, until it rests after the motion, or to the duration [s].
+    trajectory : HullHistory
+        What the engine returned.
+    components : tuple
+        Motions along x, y and z, or None.
+    scale : float
+        Factor on the motion [-].
+    """
+
+    body: HullBody
+    ground: HullGround
+    restitution: str
+    settings: Settings
+    time: FloatArray
+    trajectory: HullHistory
+    components: tuple[Component, Component, Component]
+    scale: float
+
+    @property
+    def engine(self) -> str:
+        """Which engine ran, and how."""
+        return "reference (Dormand-Prince with complementarity)"
+
+    @cached_property
+    def states(self) -> HullStates:
+        """Attitude, place, velocities and contact at the samples."""
+        return self.at(self.time)
+
+    @property
+    def quaternion(self) -> FloatArray:
+        """Attitude (s, x, y, z) at the samples, body axes to axes of the ground, shape (n, 4) [-]."""
+        return self.states.quaternion
+
+    @property
+    def angular_velocity(self) -> FloatArray:
+        """Angular velocity at the samples in axes of the ground, shape (n, 3) [rad/s]."""
+        return self.states.angular_velocity
+
+    @property
+    def centre(self) -> FloatArray:
+        """Path of the centre of mass over the ground, from under where it was, shape (n, 3) [m]."""
+        return self.states.centre
+
+    @cached_property
+    def _up(self) -> FloatArray:
+        """The axis of the body, of its pose at the start, at the samples in axes of the ground."""
+        history = self.trajectory
+        first = attitude.matrix(np.array(history.states[0].attitude))
+        up = (float(first[2, 0]), float(first[2, 1]), float(first[2, 2]))
+        axis = -np.array(unit(self.body.facets[self.body.under(up)]))
+        return applied(attitude.matrix(self.quaternion), axis)
+
+    @cached_property
+    def tilt(self) -> FloatArray:
+        """Angle from the pose at the start, at the samples [rad]."""
+        x, y, z = self._up.T
+        return np.asarray(np.arctan2(np.hypot(x, y), z))
+
+    @cached_property
+    def azimuth(self) -> FloatArray:
+        """Direction in which the body leans at the samples, from x towards y [rad]."""
+        return np.asarray(np.arctan2(self._up[:, 1], self._up[:, 0]))
+
+    @cached_property
+    def intervals(self) -> list[tuple[float, float, tuple[int, ...], tuple[int, ...]]]:
+        """Start and end [s], vertices on the ground and those of them that slide, as long as they stay the same."""
+        found: list[tuple[float, float, tuple[int, ...], tuple[int, ...]]] = []
+        made, end = self.trajectory, float(self.time[-1])
+        stops = [*made.time[1:], made.time[-1]]
+        for start, stop, contact in zip(made.time, stops, made.contacts, strict=True):
+            slides = tuple(i for i in contact.members if i not in contact.stuck)
+            if start > end or stop <= start:
+                continue
+            if found and found[-1][2:] == (contact.members, slides):
+                start = found.pop()[0]
+            found.append((start, min(stop, end), contact.members, slides))
+        return found
+
+    @cached_property
+    def impacts(self) -> np.ndarray:
+        """Impacts in order: time, energy_before, energy_after, vertices that stay on the ground."""
+        rows = [
+            (event.time, event.before, event.after, "-".join(map(str, event.contact.members)))
+            for event in self.trajectory.events
+            if event.kind is HullEventKind.IMPACT and event.time <= self.time[-1]
+        ]
+        return np.array(rows, dtype=HULL_IMPACT)
+
+    @property
+    def peak_tilt(self) -> float:
+        """Largest angle from the pose at the start, between the samples too [rad]."""
+        return self.trajectory.peak_tilt
+
+    @property
+    def sliding_distance(self) -> float:
+        """Path of the vertex that slides most, along the ground [m]."""
+        return self.trajectory.sliding_distance
+
+    @property
+    def pose(self) -> int:
+        """Number of the stable pose in which it ends, or to which it is on its way; that of the lowest centre is 0."""
+        return self.trajectory.pose
+
+    @property
+    def overturning_direction(self) -> float:
+        """Direction in which it leant when it left its first pose, from x towards y; NaN if it did not [rad]."""
+        return self.trajectory.direction
+
+    @property
+    def _last_motion(self) -> tuple[str, float, str]:
+        last = self.trajectory.states[-1]
+        rate = math.hypot(*last.spin)
+        return "moving", self.trajectory.time[-1], f"turning at {rate:.3g} rad/s"
+
+    @property
+    def _ending(self) -> str:
+        slid = f"a vertex slid {self.sliding_distance:.4g} m in all"
+        if self.outcome is Outcome.NO_UPLIFT:
+            return str(self.outcome.value)
+        count = self.impacts.size
+        impacts = f"{count} impact{'s' * (count != 1)}"
+        if self.outcome is Outcome.OVERTURNED:
+            where = "" if self.trajectory.fell else f" towards {math.degrees(self.overturning_direction):.4g} degrees"
+            when = "" if math.isnan(self.overturning_time) else f", for good at {self.overturning_time:.4g} s"
+            return f"overturned{where} into pose {self.pose}{when}; {impacts}, {slid}"
+        sentence = f"{self.outcome.value}: largest tilt {math.degrees(self.peak_tilt):.4g} degrees, {impacts}, {slid}"
+        if held := self.trajectory.held:
+            sentence += f"; {held} time{'s' * (held != 1)} no contact obeyed every law, and what touched was held"
+        return sentence
+
+    def at(self, time: Any) -> HullStates:
+        """Return the state of the body at any times within the response.
+
+        Between steps of the engine place and attitude follow cubics with its velocities.
+
+        Parameters
+        ----------
+        time : array_like, shape (n,)
+            Times [s].
+
+        Returns
+        -------
+        HullStates
+            Attitude, place, velocities, contact.
+
+        Raises
+        ------
+        InvalidValueError
+            If a time is not finite, or before the start or after the end by more than rounding.
+        """
+        stops, places, attitudes, velocities, turning = self._nodes
+        times = np.atleast_1d(self._known(time, float(stops[-1])))
+        k = np.clip(np.searchsorted(stops, times, side="right") - 1, 0, max(len(stops) - 2, 0))
+        last = np.minimum(k + 1, len(stops) - 1)
+        k = np.where((times >= stops[-1]), len(stops) - 1, k)
+        last = np.maximum(last, k)
+        span = stops[last] - stops[k]
+        share = np.divide(times - stops[k], span, out=np.zeros(times.size), where=span > 0.0)
+
+        def between(values: FloatArray, rates: FloatArray) -> tuple[FloatArray, FloatArray]:
+            return _hermite(values[k], rates[k], values[last], rates[last], span[:, None], share[:, None])
+
+        centre, velocity = between(places, velocities)
+        q, rate = between(attitudes, turning)
+        size = np.linalg.norm(q, axis=1)[:, None]
+        q = q / size
+        contacts = [self.trajectory.contacts[i] for i in k]
+        return HullStates(
+            q,
+            _spin(q, rate / size),
+            centre,
+            velocity,
+            np.array([len(c.members) for c in contacts], np.int64),
+            np.array([len(c.members) - len(c.stuck) for c in contacts], np.int64),
+        )
+
+    @cached_property
+    def _nodes(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Times, places, attitudes and their rates at the ends of the steps."""
+        states = self.trajectory.states
+        q = np.array([s.attitude for s in states])
+        w = np.array([s.spin for s in states])
+        s, v = q[:, :1], q[:, 1:]
+        scalar = -0.5 * (v * w).sum(axis=1)  # Eq. 22
+        rate = np.column_stack([scalar, 0.5 * (s * w + attitude.cross(v, w))])
+        places, velocities = (np.array([getattr(one, name) for one in states]) for name in ("place", "velocity"))
+        return np.array(self.trajectory.time), places, q, velocities, rate
+
+    @property
+    def _samples(self) -> dict[str, FloatArray]:
+        def axes(name: str, rows: FloatArray) -> dict[str, FloatArray]:
+            return {f"{name}_{axis}": rows[:, k] for k, axis in enumerate(_AXES)}
+
+        states = self.states
+        return {
+            "time": self.time,
+            **{f"quaternion_{axis}": self.quaternion[:, k] for k, axis in enumerate(("s", *_AXES))},
+            **axes("angular_velocity", states.angular_velocity), "tilt": self.tilt, "azimuth": self.azimuth,
+            "touching": states.touching.astype(np.float64), "sliding": states.sliding.astype(np.float64),
+            **axes("centre", states.centre), **axes("ground_acceleration", self.ground.motion.at(self.time)),
+        }  # fmt: skip
+
+    @property
+    def _beside(self) -> dict[str, dict[str, Any]]:
+        starts, ends, points, slides = zip(*self.intervals, strict=True) if self.intervals else ((),) * 4
+        return {
+            "impact": {name: self.impacts[name] for name in HULL_IMPACT.names or ()},
+            "interval": {
+                "start": np.array(starts, dtype=np.float64),
+                "end": np.array(ends, dtype=np.float64),
+                "vertices": np.array(["-".join(map(str, each)) for each in points], dtype="U64"),
+                "sliding_vertices": np.array(["-".join(map(str, each)) for each in slides], dtype="U64"),
+            },
+        }
+
+    @property
+    def _facts(self) -> dict[str, Any]:
+        body, direction = self.body, self.overturning_direction
+        names = ["none" if motion is None else motion.name for motion in self.components]
+        return {
+            **({} if math.isnan(direction) else {"overturning_direction_rad": direction}),
+            "pose": self.pose,
+            "mass_kg": body.mass,
+            "centre_m": body.centre.tolist(),
+            "inertia_kg_m2": np.ravel(body.inertia).tolist(),
+            "vertices": len(body.points),
+            "restitution": self.restitution,
+            "scale": self.scale,
+            **{f"motion_{axis}": name for axis, name in zip(("x", "y", "vertical"), names, strict=True)},
+            "motion_provenance": [motion_provenance(motion) for motion in self.components],
+        }
+
+
+def _hermite(a: FloatArray, va: FloatArray, b: FloatArray, vb: FloatArray, span: FloatArray, x: FloatArray) -> Any:
+    """Return the cubic with given values and rates at both ends, and its rate."""
+    da, db, rise = span * va, span * vb, b - a
+    cubic, square = da + db - 2.0 * rise, 3.0 * rise - 2.0 * da - db
+    value = a + x * (da + x * (square + x * cubic))
+    slope = da + x * (2.0 * square + 3.0 * x * cubic)
+    return value, np.divide(slope, span, out=va.copy(), where=span > 0.0)
+
+
+def _spin(q: FloatArray, rate: FloatArray) -> FloatArray:
+    """Return the angular velocity in axes of the ground."""
+    s, v, ds, dv = q[:, :1], q[:, 1:], rate[:, :1], rate[:, 1:]
+    return np.asarray(2.0 * (s * dv - ds * v - attitude.cross(dv, v)))  # Eq. 22
