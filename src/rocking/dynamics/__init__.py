@@ -7,6 +7,7 @@ from rocking.lazy import exports
 if TYPE_CHECKING:
     from rocking.dynamics._simulate import free_rocking, simulate
     from rocking.dynamics.contact import ContactResponse, Start
+    from rocking.dynamics.hull.response import HullResponse
     from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
     from rocking.dynamics.many import simulate_many
     from rocking.dynamics.parameters import RockingParameters, RockingSide
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ConstantRestitution",
     "ContactResponse",
+    "HullResponse",
     "ImpactLaw",
     "Outcome",
     "RandomRestitution",
@@ -39,6 +41,7 @@ __all__ = [
 _HOMES = {
     "rocking.dynamics._simulate": ("free_rocking", "simulate"),
     "rocking.dynamics.contact": ("ContactResponse", "Start"),
+    "rocking.dynamics.hull.response": ("HullResponse",),
     "rocking.dynamics.impact_laws": ("ConstantRestitution", "ImpactLaw", "RandomRestitution", "SpeedRestitution"),
     "rocking.dynamics.many": ("simulate_many",),
     "rocking.dynamics.parameters": ("RockingParameters", "RockingSide"),

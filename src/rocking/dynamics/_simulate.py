@@ -18,7 +18,7 @@ from rocking.motions.pulse import Motion, Pulse
 if TYPE_CHECKING:
     from rocking.bodies.solid import Solid
     from rocking.dynamics.contact import ContactResponse, Start
-    from rocking.dynamics.hull import HullResponse
+    from rocking.dynamics.hull.response import HullResponse
     from rocking.dynamics.space import SpatialBody, SpatialResponse, SpatialStart
 
 Component = GroundMotion | Pulse | None

@@ -59,7 +59,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     restitution : as for `simulate`, or a list of such
         Laws that change from impact to impact cannot be mixed with others.
     friction : float or array_like, optional
-        Coulomb's coefficients between plane bodies and ground [-]: they may slide, hop and fly, as in `simulate`.
+        Coulomb's coefficients between bodies and ground [-]: they may slide, hop and fly, as in `simulate`.
     bounce : float
         Coefficient of normal restitution, in [0, 1), with friction [-].
     bounce_law : {"newton", "poisson", "stronge"}
@@ -78,11 +78,12 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     progress : callable, optional
         Called with the number of histories done since the last call.
     start : SpatialStart or sequence of them, or Start, optional
-        How bodies in space lean at the start, or how plane bodies with friction do; upright at rest if not given. Plane
+        How bodies in space lean at the start, the lowest vertex at rest on the ground, or how plane bodies with friction do; upright at rest if not given. Plane
         bodies that rock alone start at rest.
     duration : float, optional
         How long to follow bodies in space [s]; if not given, to the end of the motion, on ground at rest 300 / p. After
-        that a history goes on until its energy decides whether it overturns. With friction as for `simulate`.
+        that a history goes on until its energy decides whether it overturns. With friction as for `simulate`, in space
+        until it rests in one of its stable poses.
     linear, rest_speed, most_events, longest_step, order, tolerance
         How to integrate: see `Settings`.
 
@@ -91,7 +92,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     xarray.Dataset
         Over ``body, motion, scale, restitution``: outcome, status, peak_rotation and more, with units; in space over
         ``start`` too, with peak_tilt and the direction of overturning; with friction over ``friction`` too, with how
-        far they slid. Every history that rocks alone ends with its motion: energy then decides the outcome and the peak
+        far they slid, in space also with the stable pose in which they end. Every history that rocks alone ends with its motion: energy then decides the outcome and the peak
         of the swings to come, whose impacts are not counted. Its attributes say which engine ran, and why bodies in
         space were refused.
 
@@ -113,6 +114,10 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     >>> sliding = rk.simulate_many(blocks[0], pulse, friction=[0.2, 0.6])
     >>> (sliding.sliding_distance > 0.0).squeeze().values.tolist()
     [True, False]
+    >>> box = rk.dynamics.SpatialBody.box(width=0.5, depth=0.6, height=2.0)
+    >>> in_space = rk.simulate_many(box, {"x": pulse, "y": pulse}, "housner", friction=[0.2, 0.6])
+    >>> (in_space.sliding_distance > 0.01).squeeze().values.tolist()
+    [True, False]
     """
     extra("xarray", "simulate_many")
     given: dict[str, Any] = {
@@ -121,7 +126,14 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     }  # fmt: skip
     several: list[Any] = list(bodies) if isinstance(bodies, (list, tuple)) else [bodies]
     if any(map(in_space, several)) and not any(isinstance(body, Body) for body in several):
-        refuse("bodies in space", twin=twin, friction=friction, bounce=bounce, bounce_law=bounce_law)
+        refuse("bodies in space", twin=twin, bounce=bounce, bounce_law=bounce_law)
+        if friction is not None:
+            mus = _row("friction", friction)
+            settings = Settings(**given, mechanics="space with friction", friction=float(mus[0]))
+            return _on_hulls(
+                several, motions, restitution, _row("scale", scale), mus, start, settings, duration, engine, threads,
+                progress,
+            )  # fmt: skip
         settings = Settings(**given, mechanics="space, many")
         return _in_space(several, motions, restitution, scale, start, settings, duration, engine, threads, progress)
     body_list = _several("bodies", bodies, (Body,))
@@ -236,16 +248,33 @@ def _dataset(
     return made
 
 
-def _in_space(bodies: list[Any], motions: Any, restitution: Any, scale: Any, start: Any, *how: Any) -> "xr.Dataset":
+def _in_space(bodies: list[Any], *axes_and_how: Any) -> "xr.Dataset":
     from rocking.dynamics.space.batch import batch_in_space
 
-    several = list(motions) if isinstance(motions, Sequence) else [motions]
-    components = [None if motion is None else components_of(motion) for motion in several]
-    starts = list(start) if isinstance(start, Sequence) else start
-    restitutions = (
-        list(restitution) if isinstance(restitution, Sequence) and not isinstance(restitution, str) else restitution
-    )
-    return batch_in_space(bodies, components, restitutions, scale, starts, *how).to_xarray()
+    motions, restitution, scale, start, *how = axes_and_how
+    restitutions = _listed(restitution)
+    return batch_in_space(
+        bodies, _components(motions), restitutions, scale, start if start is None else _listed(start), *how
+    ).to_xarray()
+
+
+def _on_hulls(bodies: list[Any], *axes_and_how: Any) -> "xr.Dataset":
+    from rocking.dynamics.hull.batch import batch_on_hulls
+
+    motions, restitution, scales, frictions, start, *how = axes_and_how
+    starts = [None] if start is None else _listed(start)
+    return batch_on_hulls(
+        bodies, _components(motions), scales, _listed(restitution), frictions, starts, *how
+    ).to_xarray()
+
+
+def _components(motions: Any) -> list[Any]:
+    """Return the components of motions of bodies in space, None for ground at rest."""
+    return [None if motion is None else components_of(motion) for motion in _listed(motions)]
+
+
+def _listed(given: Any) -> list[Any]:
+    return list(given) if isinstance(given, Sequence) and not isinstance(given, str) else [given]
 
 
 def _pieces(

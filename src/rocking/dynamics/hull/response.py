@@ -84,8 +84,9 @@ def response_on_hull(
     engine = HullEngine(made, ground, law, settings.friction, settings_on_hull(settings))
     found = engine.run(start_of(made, start), 0.0 if duration is None else duration)
     steps = [each.time_step for each in shaken if isinstance(each, GroundMotion)]
-    time = samples(min(steps, default=FINE / engine.pace), min(until, found.time[-1]))
-    return HullResponse(made, ground, str(law), settings, time, found, components, scale)
+    end = min(until, found.time[-1])
+    time = samples(min(steps, default=FINE / engine.pace), end)
+    return HullResponse(made, ground, str(law), settings, time, found, end, components, scale)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,6 +119,8 @@ class HullResponse(ResponseBase):
         Times of the samples, until it rests after the motion, or to the duration [s].
     trajectory : HullHistory
         What the engine returned.
+    end : float
+        End of the response; the engine may have gone on until it rests [s].
     components : tuple
         Motions along x, y and z, or None.
     scale : float
@@ -130,6 +133,7 @@ class HullResponse(ResponseBase):
     settings: Settings
     time: FloatArray
     trajectory: HullHistory
+    end: float
     components: tuple[Component, Component, Component]
     scale: float
 
@@ -182,7 +186,7 @@ class HullResponse(ResponseBase):
     def intervals(self) -> list[tuple[float, float, tuple[int, ...], tuple[int, ...]]]:
         """Start and end [s], vertices on the ground and those of them that slide, as long as they stay the same."""
         found: list[tuple[float, float, tuple[int, ...], tuple[int, ...]]] = []
-        made, end = self.trajectory, float(self.time[-1])
+        made, end = self.trajectory, self.end
         stops = [*made.time[1:], made.time[-1]]
         for start, stop, contact in zip(made.time, stops, made.contacts, strict=True):
             slides = tuple(i for i in contact.members if i not in contact.stuck)
@@ -199,7 +203,7 @@ class HullResponse(ResponseBase):
         rows = [
             (event.time, event.before, event.after, "-".join(map(str, event.contact.members)))
             for event in self.trajectory.events
-            if event.kind is HullEventKind.IMPACT and event.time <= self.time[-1]
+            if event.kind is HullEventKind.IMPACT and event.time <= self.end
         ]
         return np.array(rows, dtype=HULL_IMPACT)
 

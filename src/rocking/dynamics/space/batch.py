@@ -38,19 +38,20 @@ _FEW = 100  # up to so many bodies are spelled out; of more of them the digest a
 
 @dataclass(frozen=True, eq=False)
 class SpatialBatch:
-    """The results of a batch; every array has the shape (body, motion, scale, restitution, start).
+    """The results of a batch; every array has one axis for each of its dimensions.
 
     >>> batch = SpatialBatch((1, 1, 1, 1, 1), {"outcome": np.array([2]), "status": np.array([0])}, "none")
     >>> batch.overturned.item()
     1.0
     """
 
-    shape: tuple[int, int, int, int, int]
+    shape: tuple[int, ...]
     values: dict[str, np.ndarray] = field(repr=False)  # results by name, one after another; see `rocking.quantities`
     engine: str  # which engine ran, and how
     labels: dict[str, list[object]] = field(default_factory=dict, repr=False)  # motions, restitutions, scales
     refused: dict[int, str] = field(default_factory=dict)  # why a body was refused, by its number
     provenance: dict[str, Any] = field(default_factory=dict, repr=False)  # bodies, starts, settings as plain values
+    dimensions: tuple[str, ...] = DIMENSIONS
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Return an array by name, as the engine gives it: in `results` flags are NaN without a result."""
@@ -87,10 +88,11 @@ class SpatialBatch:
         return self.values | {name: flag.ravel() for name, flag in flags.items()}
 
     def to_xarray(self) -> "xr.Dataset":
-        """Return the results over body, motion, scale, restitution and start, with units and provenance."""
+        """Return the results over the dimensions, with units and provenance."""
         xarray = extra("xarray", "a labelled dataset")
         data = {
-            name: (DIMENSIONS, values.reshape(self.shape), attributes(name)) for name, values in self.results.items()
+            name: (self.dimensions, values.reshape(self.shape), attributes(name))
+            for name, values in self.results.items()
         }
         coordinates = {name: (name, row) for name, row in self.labels.items()}
         refused = json.dumps({str(number): reason for number, reason in self.refused.items()})
