@@ -97,6 +97,7 @@ __getattr__, __dir__ = exports(
 presenters.update({
     "picture of Response": "rocking.plots:response_picture",
     "picture of ContactResponse": "rocking.plots:regimes_picture",
+    "picture of HullResponse": "rocking.plots:spatial_picture",
     "picture of SpatialResponse": "rocking.plots:spatial_picture",
     "writer of pictures": "rocking.plots:write",
     "animation as .html": "rocking.plots:animate_html",

@@ -34,7 +34,8 @@ def answer_of(problem: ResponseProblem, length: str, acceleration: str, *, liste
     if response.outcome is Outcome.FAILED:
         raise RockingError(f"there is no response: {response.status.value}")
     if problem.mechanics != "rocking":
-        return (SpaceAnswer if problem.mechanics == "space" else ContactAnswer)(problem, response, length)
+        kinds: dict[str, Any] = {"space": SpaceAnswer, "space with friction": HullAnswer, "contact": ContactAnswer}
+        return kinds[problem.mechanics](problem, response, length)
     rivals = dict(list(problem.restitutions.items())[1:])
     if not listed:
         from rocking.evidence._coefficient_table import default_models
@@ -348,3 +349,60 @@ class SpaceAnswer:
         fell = response.outcome is Outcome.OVERTURNED
         peak = "it overturned" if fell else f"{math.degrees(response.peak_tilt):.6g} deg"
         page.facts([("peak tilt", peak), ("energy closure", _CLOSURE.format(response.energy.closure))], 16)
+
+
+@dataclass(frozen=True)
+class HullAnswer(SpaceAnswer):
+    """A response of a body in space with friction."""
+
+    def facts(self) -> dict[str, Any]:
+        from rocking.cli.solids import base_facts, body_facts
+        from rocking.reports.response_facts import finite
+
+        response, solid = self.response, self.problem.body
+        keys = ("time_s", "energy_before_J", "energy_after_J", "vertices")
+        return {
+            "body": body_facts(solid),
+            "base": base_facts(solid.base),
+            "repairs": list(solid.repairs),
+            "motion": dict(zip(("x", "y", "vertical"), response.names, strict=True)),
+            "restitution": response.restitution,
+            "friction": response.settings.friction,
+            "engine": response.engine,
+            "gravity_m_s2": response.settings.gravity,
+            "outcome": response.outcome.name.lower(),
+            "summary": response.summary,
+            "still_rocking": response.still_rocking,
+            "peak_tilt_rad": response.peak_tilt,
+            "sliding_distance_m": response.sliding_distance,
+            "pose": response.pose,
+            "overturning_time_s": finite(response.overturning_time),
+            "overturning_direction_rad": finite(response.overturning_direction),
+            "contacts": [
+                {"start_s": start, "end_s": end, "vertices": list(touching), "sliding": list(sliding)}
+                for start, end, touching, sliding in response.intervals
+            ],
+            "impacts": [dict(zip(keys, row, strict=True)) for row in response.impacts.tolist()],
+            "lost_in_impacts_J": response.trajectory.lost,
+        }
+
+    def show(self, page: Page) -> None:
+        from rocking.cli.solids import show_body
+
+        response = self.response
+        show_body(page, self.problem.body, self.length)
+        page.facts(((f"motion {a}", n) for a, n in zip(("x", "y", "vertical"), response.names, strict=True)), 16)
+        page.facts([("restitution", response.restitution), ("friction", f"{response.settings.friction:g}")], 16)
+        page.line()
+        page.line(sentence(response.summary), "bold")
+        contacts = [
+            (start, end, "-".join(map(str, touching)) or "none: in flight", "-".join(map(str, sliding)))
+            for start, end, touching, sliding in response.intervals
+        ]
+        _first(page, {"from [s]": ".6f", "to [s]": ".6f", "vertices": "", "sliding": ""}, contacts)
+        sizes = {"energy before [J]": ".5g", "after [J]": ".5g"}
+        _first(page, {"impact [s]": ".6f", **sizes, "vertices": ""}, response.impacts.tolist())
+        page.line()
+        slid, lost = in_unit(response.sliding_distance, self.length, ".6g"), response.trajectory.lost
+        peak = f"{math.degrees(response.peak_tilt):.6g} deg from the pose at the start"
+        page.facts([("peak tilt", peak), ("slid", slid), ("energy lost", f"{lost:.5g} J in impacts")], 16)

@@ -4,6 +4,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rocking.conventions import FloatArray
+from rocking.dynamics.hull.response import HullResponse
+from rocking.dynamics.hull.vectors import frame
 from rocking.dynamics.space.response import SpatialResponse
 from rocking.outcome import ContactMode, Outcome
 from rocking.plots.style import DASHED, DOUBLE, GREY, INK, PALE, headline, in_journal_style, legend_above, new_figure
@@ -18,24 +21,26 @@ _COLOURS = {
     ContactMode.VERTEX: "#E69F00",
     ContactMode.ROLLING: "#009E73",
 }
+_SLIDES = "#CC79A7"
+_ON = {"face": PALE, "edge": "#0072B2", "vertex": "#E69F00", "flight": "#56B4E9"}
 _IMPACT, _TOP = "#D55E00", "#0072B2"
 _SMALL = 1e-3
 """Below this share of the largest tilt the body leans nowhere in particular."""
 
 
 @in_journal_style
-def spatial_picture(response: SpatialResponse) -> "Figure":
+def spatial_picture(response: SpatialResponse | HullResponse) -> "Figure":
     """Draw a response in space.
 
     Parameters
     ----------
-    response : SpatialResponse
-        What `simulate` or `free_rocking` returned of a body in space.
+    response : SpatialResponse or HullResponse
+        What `simulate` or `free_rocking` returned of a body in space, without or with friction.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The path of the top in plan; tilt, direction of leaning and contact over time.
+        The path of the top, or of the centre of mass, in plan; tilt, direction of leaning and contact over time.
 
     Examples
     --------
@@ -44,6 +49,37 @@ def spatial_picture(response: SpatialResponse) -> "Figure":
     >>> len(spatial_picture(response).axes)
     4
     """
+    if isinstance(response, HullResponse):
+        return _on_the_hull(response)
+    body, states = response.body, response.at([0.0])
+    angle = np.linspace(0.0, 2.0 * np.pi, 73)
+    circle = np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
+    corners = body.radius * circle if body.round else body.vertices
+    outline = np.array([states.point(corner)[0, :2] for corner in corners])
+    regimes = [(start, end, contact.name.lower(), _COLOURS[contact]) for start, end, contact, _ in response.intervals]
+    reach = float(np.degrees(np.arctan2(body.reach, body.centre[2])))
+    return _picture(response, outline, (response.top, "path of the top"), regimes, reach)
+
+
+def _on_the_hull(response: HullResponse) -> "Figure":
+    body, start = response.body, response.trajectory.states[0]
+    turned = np.array(frame(start.attitude))
+    base = body.hull.corners(body.under(frame(start.attitude)[2]))
+    outline = np.array([turned @ body.points[i] for i in base])[:, :2]
+    regimes = []
+    for first, last, touching, sliding in response.intervals:
+        name = ("flight", "vertex", "edge", "face")[min(len(touching), 3)]
+        regimes.append((first, last, "slides" if sliding else name, _SLIDES if sliding else _ON[name]))
+    return _picture(response, outline, (response.centre, "path of the centre"), regimes, None)
+
+
+def _picture(
+    response: SpatialResponse | HullResponse,
+    outline: FloatArray,
+    path: tuple[FloatArray, str],
+    regimes: list[tuple[float, float, str, str]],
+    reach: float | None,
+) -> "Figure":
     figure, panels = new_figure(DOUBLE, 4.6)
     panels[0].remove()
     grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 1.35], height_ratios=[1.6, 1.2, 0.35])
@@ -52,10 +88,10 @@ def spatial_picture(response: SpatialResponse) -> "Figure":
     direction = figure.add_subplot(grid[1, 1], sharex=tilt)
     contact = figure.add_subplot(grid[2, 1], sharex=tilt)
     headline(figure, response.summary)
-    _plan(plan, response)
-    _tilt(tilt, response)
+    _plan(plan, outline, *path)
+    _tilt(tilt, response, reach)
     _direction(direction, response)
-    _contact(contact, response)
+    _contact(contact, regimes, float(response.time[-1]))
     tilt.set_xlim(0.0, max(float(response.time[-1]), 1e-9))
     for panel in (tilt, direction):
         panel.tick_params(labelbottom=False)
@@ -63,15 +99,9 @@ def spatial_picture(response: SpatialResponse) -> "Figure":
     return figure
 
 
-def _plan(axes: "Axes", response: SpatialResponse) -> None:
-    body, states = response.body, response.at([0.0])
-    angle = np.linspace(0.0, 2.0 * np.pi, 73)
-    circle = np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
-    corners = body.radius * circle if body.round else body.vertices
-    outline = np.array([states.point(corner)[0, :2] for corner in corners])
+def _plan(axes: "Axes", outline: FloatArray, top: FloatArray, words: str) -> None:
     axes.fill(outline[:, 0], outline[:, 1], facecolor="none", edgecolor=GREY, linewidth=0.8, label="base at the start")
-    top = response.top
-    axes.plot(top[:, 0], top[:, 1], color=_TOP, linewidth=0.8, label="path of the top")
+    axes.plot(top[:, 0], top[:, 1], color=_TOP, linewidth=0.8, label=words)
     axes.plot(top[:1, 0], top[:1, 1], marker="o", markersize=3.5, color=INK, linestyle="none", label="start")
     axes.plot(top[-1:, 0], top[-1:, 1], marker="s", markersize=3.5, color=_IMPACT, linestyle="none", label="end")
     axes.set_aspect("equal", adjustable="datalim")
@@ -79,7 +109,7 @@ def _plan(axes: "Axes", response: SpatialResponse) -> None:
     legend_above(axes, 2)
 
 
-def _tilt(axes: "Axes", response: SpatialResponse) -> None:
+def _tilt(axes: "Axes", response: SpatialResponse | HullResponse, reach: float | None) -> None:
     axes.plot(response.time, np.degrees(response.tilt), color=INK, linewidth=0.9)
     times = response.impacts["time"]
     times = times[times <= response.time[-1]]
@@ -89,8 +119,7 @@ def _tilt(axes: "Axes", response: SpatialResponse) -> None:
             times, heights, marker="o", markersize=2.6, markerfacecolor="white", color=_IMPACT, linestyle="none",
             label=f"impacts ({times.size})",
         )  # fmt: skip
-    reach = float(np.degrees(np.arctan2(response.body.reach, response.body.centre[2])))
-    if response.outcome is Outcome.OVERTURNED or np.degrees(response.tilt).max() > 0.3 * reach:
+    if reach is not None and (response.outcome is Outcome.OVERTURNED or np.degrees(response.tilt).max() > 0.3 * reach):
         axes.axhline(reach, color=GREY, linewidth=0.8, linestyle=DASHED, label="least slenderness angle")
     axes.set_ylim(bottom=0.0)
     if axes.get_legend_handles_labels()[0]:
@@ -98,7 +127,7 @@ def _tilt(axes: "Axes", response: SpatialResponse) -> None:
     axes.set_ylabel("tilt\n[degrees]")
 
 
-def _direction(axes: "Axes", response: SpatialResponse) -> None:
+def _direction(axes: "Axes", response: SpatialResponse | HullResponse) -> None:
     leans = response.tilt > _SMALL * response.tilt.max(initial=0.0)
     azimuth = np.degrees(response.azimuth[leans])
     axes.plot(response.time[leans], azimuth, color=_TOP, marker=".", markersize=1.6, linestyle="none")
@@ -108,14 +137,14 @@ def _direction(axes: "Axes", response: SpatialResponse) -> None:
     axes.set_ylabel("leans towards\n[degrees]")
 
 
-def _contact(axes: "Axes", response: SpatialResponse) -> None:
-    seen: set[ContactMode] = set()
-    for start, end, contact, _ in response.intervals:
-        last = min(end, float(response.time[-1]))
+def _contact(axes: "Axes", regimes: list[tuple[float, float, str, str]], until: float) -> None:
+    seen: set[str] = set()
+    for start, end, name, colour in regimes:
+        last = min(end, until)
         if last <= start:
             continue
-        label = None if contact in seen else contact.name.lower()
-        seen.add(contact)
-        axes.barh(0.0, last - start, left=start, height=0.8, color=_COLOURS[contact], linewidth=0.0, label=label)
+        label = None if name in seen else name
+        seen.add(name)
+        axes.barh(0.0, last - start, left=start, height=0.8, color=colour, linewidth=0.0, label=label)
     axes.set(yticks=[], ylim=(-0.5, 0.5), xlabel="time [s]", ylabel="contact")
-    legend_above(axes, 4)
+    legend_above(axes, 5)

@@ -17,7 +17,10 @@ from rocking.spec.reading import InputFiles, located
 if TYPE_CHECKING:
     from rocking.spec.document import ResponseDocument, ResponseTables
 
-_MECHANICS = {"rocking": "pure rocking", "contact": "sliding and hopping", "space": "a body in space"}
+_MECHANICS = {"rocking": "pure rocking", "contact": "sliding and hopping", "space": "a body in space", "space with friction": "a body in space with friction"}
+
+
+_PLANE_ONLY = {"free", "bounce", "bounce_law", "assumed_friction"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,18 +88,15 @@ def problem_of(
     table, start = getattr(tables, "motion", None), tables.response
     mechanics = "rocking" if start.friction is None else "contact"
     if isinstance(body, Solid):
-        mechanics = "space"
-        _refuse(
-            "a body in space has an engine of its own",
-            start,
-            {"free", "friction", "bounce", "bounce_law", "assumed_friction"},
-        )
+        mechanics = "space" if start.friction is None else "space with friction"
+        _refuse(f"{_MECHANICS[mechanics]} has an engine of its own", start, _PLANE_ONLY)
     if mechanics != "rocking":
         _refuse(
             f"{_MECHANICS[mechanics]} has one engine, with the full equations", tables.settings, {"linear", "engine"}
         )
     with located("settings"):
-        settings = Settings(mechanics=mechanics, **tables.settings.stated())
+        own = {"friction": start.friction} if mechanics == "space with friction" else {}
+        settings = Settings(mechanics=mechanics, **own, **tables.settings.stated())
     restitutions = restitutions_of(tables.restitution, 0, [body], inputs, friction=start.friction)
     if mechanics != "rocking" and len(restitutions) > 1:
         names = ", ".join(restitutions)

@@ -138,6 +138,11 @@ class HullResponse(ResponseBase):
     scale: float
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the three motions."""
+        return tuple("none" if motion is None else motion.name for motion in self.components)
+
+    @property
     def engine(self) -> str:
         """Which engine ran, and how."""
         return "reference (Dormand-Prince with complementarity)"
@@ -337,7 +342,6 @@ class HullResponse(ResponseBase):
     @property
     def _facts(self) -> dict[str, Any]:
         body, direction = self.body, self.overturning_direction
-        names = ["none" if motion is None else motion.name for motion in self.components]
         return {
             **({} if math.isnan(direction) else {"overturning_direction_rad": direction}),
             "pose": self.pose,
@@ -347,7 +351,7 @@ class HullResponse(ResponseBase):
             "vertices": len(body.points),
             "restitution": self.restitution,
             "scale": self.scale,
-            **{f"motion_{axis}": name for axis, name in zip(("x", "y", "vertical"), names, strict=True)},
+            **{f"motion_{axis}": name for axis, name in zip(("x", "y", "vertical"), self.names, strict=True)},
             "motion_provenance": [motion_provenance(motion) for motion in self.components],
         }
 
