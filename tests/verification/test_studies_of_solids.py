@@ -1,0 +1,183 @@
+"""Bodies in space with friction at every door: what the reference engine gives one by one, and what is known."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.bodies.solid import Part, Solid, box
+from rocking.cli import main
+from rocking.conventions import g
+from rocking.dynamics import SpatialBody, SpatialStart
+from rocking.errors import InvalidValueError
+from rocking.outcome import Outcome, Status
+
+pytestmark = pytest.mark.verifies(room="rocking in space")
+
+PULSE = rk.pulses.sine(amplitude=3.0, period=0.5)
+BOTH = {"x": PULSE, "y": rk.pulses.ricker(amplitude=2.0, period=0.4)}
+# a pedestal and an eccentric block on it: no symmetry
+STATUE = Solid([Part(box(0.5, 0.7, 0.9), 2400.0), Part(box(0.3, 0.2, 0.5), 1500.0).moved(0.06, 0.1, 0.9)])
+SHORT = Solid(Part(box(0.6, 0.5, 0.7), 2000.0))
+BASE_ALONE = SpatialBody(1.0, np.array([0.0, 0.0, 1.0]), np.eye(3), 0.2 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]))
+
+
+@pytest.mark.verifies("second engine", "the reference engine, one history at a time", within="1e-6")
+@pytest.mark.parametrize("restitution", ["ked", 0.9])
+def test_a_cell_is_its_history(restitution):
+    """Every cell of a batch is the history of `simulate`, of a body without symmetry under two components."""
+    frictions, scales = [0.25, 0.7], [0.8, 2.2]
+    found = rk.simulate_many(STATUE, BOTH, restitution, friction=frictions, scale=scales)
+    for i, scale in enumerate(scales):
+        for j, mu in enumerate(frictions):
+            cell = found.isel(body=0, motion=0, restitution=0, start=0, scale=i, friction=j)
+            one = rk.simulate(STATUE, BOTH, restitution, friction=mu, scale=scale)
+            assert int(cell.outcome) == one.outcome.code
+            assert int(cell.pose) == one.pose
+            assert float(cell.peak_tilt) == pytest.approx(one.peak_tilt, rel=1e-6, abs=1e-9)
+            assert float(cell.sliding_distance) == pytest.approx(one.sliding_distance, rel=1e-6, abs=1e-7)
+    assert len(set(found.outcome.values.ravel().tolist())) > 1
+
+
+@pytest.mark.verifies("closed form", "a body slides before it rocks where friction is below tan alpha", within="exact")
+def test_sliding_before_rocking():
+    """A motion that grows from nothing first slides a box at mu g, or lifts it at g tan alpha; the control: both."""
+    tangent = 0.5 / 1.6
+    tower = SpatialBody.box(0.5, 0.6, 1.6)
+    levels, frictions = np.array([0.19, 0.21, 0.3, 0.33]) * g / PULSE.peak, [0.2, 0.9]
+    found = rk.simulate_many(tower, PULSE, "housner", friction=frictions, scale=levels).squeeze()
+    for level, row in zip(levels * PULSE.peak / g, found.outcome.values, strict=True):
+        for mu, outcome in zip(frictions, row, strict=True):
+            if level < min(mu, tangent):
+                assert outcome == Outcome.NO_UPLIFT.code
+            elif mu < tangent:
+                assert outcome == Outcome.SLID.code
+            else:
+                assert outcome in {Outcome.ROCKED.code, Outcome.OVERTURNED.code, Outcome.ROCKED_AND_SLID.code}
+    assert set(found.sliding_distance.values[-1] > 1e-3) == {True, False}
+
+
+@pytest.mark.verifies("closed form", "Coulomb friction under a constant acceleration, and its stop", within="1e-6")
+def test_the_distance_of_a_box_that_slides():
+    """Ground at a = 2 m/s2 for T, then at rest, with mu g = 1: it slides (a - mu g) a T^2 / (2 mu g) back."""
+    mu, pull, duration = 1.0 / g, 2.0, 0.5
+    response = rk.simulate(SHORT, rk.pulses.rectangular(pull, duration), "housner", friction=mu)
+    expected = (pull - 1.0) * duration**2 / 2.0 + ((pull - 1.0) * duration) ** 2 / 2.0
+    assert response.outcome is Outcome.SLID
+    assert response.sliding_distance == pytest.approx(expected, rel=1e-6)
+    assert response.at(response.end).centre[0, 0] == pytest.approx(-expected, rel=1e-6)
+    assert rk.simulate(SHORT, rk.pulses.rectangular(pull, duration), "housner", friction=0.3).sliding_distance == 0.0
+
+
+@pytest.mark.verifies("second engine", "the engine of flat bases, without friction", within="1e-6")
+def test_rough_ground_is_today():
+    """A box on rough ground, let go over an edge: the first swing of the engine that never slides; little friction: not."""
+    tower, start = SpatialBody.box(0.5, 0.6, 1.6), SpatialStart(0.1, 0.0)
+    held = rk.free_rocking(tower, restitution="housner", start=start, duration=1.0)
+    rough, smooth = (
+        rk.free_rocking(tower, restitution="housner", start=start, friction=mu, duration=1.0) for mu in (1e3, 0.1)
+    )
+    assert rough.impacts["time"][0] == pytest.approx(held.impacts["time"][0], rel=1e-9)
+    ratio = rough.impacts["energy_after"] / rough.impacts["energy_before"]
+    known = held.impacts["energy_after"] / held.impacts["energy_before"]
+    assert ratio[:2] == pytest.approx(known[:2], rel=1e-6)
+    times = np.linspace(0.0, 0.9, 30)
+    assert np.abs(rough.at(times).quaternion - held.at(times).quaternion).max() < 1e-7
+    assert np.abs(smooth.at(times).quaternion - held.at(times).quaternion).max() > 1e-3
+
+
+@pytest.mark.verifies("behaviour")
+def test_a_response_is_its_states():
+    """At ends of steps the response is the engine's own state, between them its rates are those of its places."""
+    response = rk.simulate(STATUE, BOTH, friction=0.4, scale=1.5)
+    history = response.trajectory
+    states = response.at(history.time)
+    last = np.append(np.diff(history.time) > 0.0, True)  # at an event the state after it
+    assert states.quaternion[last] == pytest.approx(np.array([s.attitude for s in history.states])[last], abs=1e-12)
+    assert states.centre_velocity[last] == pytest.approx(np.array([s.velocity for s in history.states])[last], abs=1e-9)
+    middle = 0.5 * (np.array(history.time[1:]) + np.array(history.time[:-1]))
+    wide = np.diff(history.time) > 1e-3
+    h = 1e-5
+    rate = (response.at(middle[wide] + h).centre - response.at(middle[wide] - h).centre) / (2.0 * h)
+    assert response.at(middle[wide]).centre_velocity == pytest.approx(rate, abs=1e-6)
+    assert response.tilt.max() <= response.peak_tilt + 1e-9
+    data = response.to_xarray()
+    assert {"tilt", "touching", "sliding", "centre_x"} <= set(data)
+    assert data.attrs["setting_friction"] == 0.4
+    ends = [stop for _, stop, *_ in response.intervals]
+    assert ends == sorted(ends)
+
+
+@pytest.mark.verifies("behaviour")
+def test_threads_and_order_do_not_matter():
+    """Other threads, another order of the rows, another order of the bodies: the same bits."""
+    bodies, scales = [STATUE, SHORT], [0.7, 1.4, 2.1]
+    ask = {"restitution": "ked", "friction": [0.3, 0.6]}
+    one = rk.simulate_many(bodies, BOTH, scale=scales, threads=1, **ask)
+    other = rk.simulate_many(bodies[::-1], BOTH, scale=scales[::-1], threads=2, **ask)
+    for name in ("peak_tilt", "sliding_distance", "outcome", "end_time"):
+        assert np.array_equal(one[name].values, other[name].values[::-1, :, ::-1], equal_nan=True)
+
+
+@pytest.mark.verifies("damage")
+@pytest.mark.parametrize("engine", ["fast", "reference"])
+def test_a_bad_row_touches_no_other(engine):
+    """A body known by its base alone, and a start that is none, have a status; the others keep their bits."""
+    ask = {"restitution": "housner", "friction": 0.3, "engine": engine}
+    clean = rk.simulate_many(SHORT, PULSE, **ask)
+    found = rk.simulate_many([BASE_ALONE, SHORT], PULSE, start=[SpatialStart(), SpatialStart(math.nan)], **ask)
+    status = found.status.values[:, 0, 0, 0, 0]
+    assert status.tolist() == [[Status.INVALID.code] * 2, [Status.GOOD.code, Status.INVALID.code]]
+    assert np.isnan(found.overturned.values).sum() == 3
+    for name in ("peak_tilt", "sliding_distance", "end_time"):
+        assert found[name].values[1, 0, 0, 0, 0, 0] == clean[name].item()
+    assert "base is known alone" in json.loads(found.attrs["refused"])["0"]
+
+
+@pytest.mark.verifies("damage")
+@pytest.mark.parametrize(
+    ("how", "says"),
+    [
+        ({"friction": -0.1}, "friction must be in"),
+        ({"friction": 2e6}, "friction must be"),
+        ({"friction": 0.3, "bounce": 0.2}, "bounce is nothing for"),
+        ({"friction": 0.3, "order": 6}, "order is no setting of space with friction"),
+        ({"friction": 0.3, "linear": True}, "linear equations are no setting of space with friction"),
+        ({"friction": 0.3, "restitution": "horizontal-momentum-3d"}, "must be 'housner-3d', 'ked-3d' or a coefficient"),
+        ({"friction": 0.3, "restitution": 1.2}, "restitution must be in"),
+    ],
+)
+def test_refusals(how, says):
+    """What cannot be meant is refused in one sentence, of one history as of many."""
+    for ask in (rk.simulate, rk.simulate_many):
+        with pytest.raises(InvalidValueError, match=says):
+            ask(SHORT, PULSE, **how)
+
+
+@pytest.mark.verifies("damage")
+def test_a_body_of_known_moments_has_no_ked():
+    """Of a body whose mass, centre and inertia are stated, KED does not know where the mass is."""
+    known = Solid(box(0.5, 0.6, 1.6), mass=300.0, centre=(0.02, 0.0, 0.7))
+    with pytest.raises(InvalidValueError, match="distribution of mass"):
+        rk.simulate(known, PULSE, "ked", friction=0.4)
+    assert rk.simulate(known, PULSE, "housner", friction=0.2).outcome is Outcome.SLID
+
+
+@pytest.mark.verifies("behaviour")
+def test_commands(tmp_path, capsys):
+    """The option of the command gives what Python gives; a picture and a table are written."""
+    text = 'units = "m"\n[[solid.part]]\nbox = { width = 0.6, depth = 0.5, height = 0.7 }\ndensity = 2000\n'
+    (tmp_path / "body.toml").write_text(text)
+    out = [f"picture={tmp_path / 'a.png'}", f"csv={tmp_path / 'a.csv'}"]
+    words = ["simulate", str(tmp_path / "body.toml"), "sine:amplitude=3,period=0.5", "--friction", "0.2", "--json"]
+    with pytest.raises(SystemExit) as stop:
+        main([*words, *(word for each in out for word in ("--out", each))])
+    assert not stop.value.code
+    told = json.loads(capsys.readouterr().out)
+    one = rk.simulate(SHORT, PULSE, friction=0.2)
+    assert told["outcome"] == "slid"
+    assert told["sliding_distance_m"] == pytest.approx(one.sliding_distance, rel=1e-9)
+    assert (tmp_path / "a.png").stat().st_size > 1000
+    assert (tmp_path / "a.csv").read_text().startswith("time [s],quaternion_s")
