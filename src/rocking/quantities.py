@@ -55,7 +55,7 @@ _HISTORY = (
     ),
     Quantity("overturned", "1", "1 it overturned, 0 it did not, NaN where there is no result: neither"),
     Quantity(
-        "mode", "1", "-3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts"
+        "mode", "1", "-3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts, in space 0"
     ),
     Quantity("side", "1", "side to which it overturned: 1 right, -1 left, 0 it did not"),
     Quantity("peak_rotation", "rad", "rotation of largest size; a quarter turn if it overturned"),

@@ -154,8 +154,8 @@ class RockingParameters:
 
         Parameters
         ----------
-        body : Body
-            The body.
+        body : Body, Solid or SpatialBody
+            The body; in space with the least slenderness angle of its base, and with friction.
         restitution : str, RestitutionModel, float, pair of float, mapping or ImpactLaw
             A model or its name; one coefficient; one for landing left and one for landing right, as
             ``{"left": .., "right": ..}``; or a law for what changes from impact to impact.
@@ -176,7 +176,11 @@ class RockingParameters:
             If it is no body, or a coefficient is negative, not finite, or would create energy.
         """
         if not isinstance(body, Body):
-            raise InvalidValueError(f"body must be a Block, Section or MassPoints, got {body!r:.60}")
+            if hasattr(body, "base"):
+                from rocking.dynamics.hull.rows import parameters_in_space
+
+                return parameters_in_space(body, restitution, gravity, friction)
+            raise InvalidValueError(f"body must be a Block, Section, MassPoints or Solid, got {body!r:.60}")
         law = restitution if isinstance(restitution, ImpactLaw) else ConstantRestitution()
         base = getattr(restitution, "times", 1.0) if isinstance(restitution, ImpactLaw) else restitution
         coefficients: Mapping[str, float]

@@ -177,13 +177,14 @@ class Settings:
         return {field.name: getattr(self, field.name) for field in fields(self) if field.name in has}
 
 
-def settings_of(gravity: float, options: dict[str, Any]) -> Settings:
-    """Return the settings of a call."""
+def settings_of(gravity: float, options: dict[str, Any], body: Any = None) -> Settings:
+    """Return the settings of a call; body: what it is about, which may be one in space."""
     known = {field.name for field in fields(Settings)} - {"mechanics"}
     unknown = sorted(set(options) - known)
     if unknown:
         raise InvalidValueError(f"no option named {unknown[0]!r}; there are {', '.join(sorted(known))}")
-    return Settings(gravity=gravity, **options)
+    spatial = hasattr(body, "base") and options.get("friction") is not None
+    return Settings(gravity=gravity, **options, mechanics="space with friction" if spatial else "rocking")
 
 
 def _whole(name: str, value: object, least: int = 1, most: float = math.inf, among: tuple[int, ...] = ()) -> int:

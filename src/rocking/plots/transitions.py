@@ -115,7 +115,7 @@ def transitions_picture(
         raise InvalidValueError(f"found must be of minimum_overturning_acceleration, got {type(found).__name__}")
     count = int(checks.within("points", points, 2, _MOST_POINTS))
     threads, engine = settings.pop("threads", None), settings.pop("engine", "auto")
-    question = Question(body, motion, restitution, settings_of(gravity, settings), threads, engine)
+    question = Question(body, motion, restitution, settings_of(gravity, settings, body), threads, engine)
     place = _places(found, count)
     peaks, modes = _curve(question, place)
     figure, (axes,) = new_figure(SINGLE, _HEIGHT)

@@ -40,7 +40,7 @@ class Plane:
         threads, engine = options.pop("threads", None), options.pop("engine", "auto")
         axes = axis_of(x), axis_of(y)
         options |= friction_beside(axes, options.get("friction"))
-        settings = settings_of(options.pop("gravity"), options)
+        settings = settings_of(options.pop("gravity"), options, body)
         return cls(Question(body, motion, restitution, settings, threads, engine), *axes)
 
     def attributes(self, work: dict[str, int]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks, plausibility
-from rocking.bodies import Block
+from rocking.bodies import Block, Body
 from rocking.conventions import FEET, FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.errors import InvalidValueError
@@ -139,6 +139,8 @@ def _slenderness_ratio(case: Case, values: FloatArray) -> dict[str, Any]:
 
 def _restitution(case: Case, values: FloatArray) -> dict[str, Any]:
     body = case.question.body
+    if not isinstance(body, Body):
+        return {"sides": {**case.sides, "r_right": values, "r_left": values}}
     inertia = [body.side(foot).moment_of_inertia for foot in FEET]
     most = np.sqrt(min(inertia) / max(inertia)) * (1.0 + 1e-9)  # Eq. 29
     allowed = np.where(values <= most, values, np.nan)

@@ -290,10 +290,9 @@ def minimum_overturning_acceleration(
     >>> found.modes.tolist()
     [[-1, 1], [1, -1], [-1, 0]]
     """
-    if not isinstance(body, Body):
+    if isinstance(body, Sequence):
         raise InvalidValueError(
-            f"body must be a Block, Section or MassPoints, got {body!r:.60}; for several bodies "
-            "there is minimum_overturning_accelerations"
+            f"body must be one body, got {body!r:.60}; for several bodies there is minimum_overturning_accelerations"
         )
     search: dict[str, Any] = {"lowest": lowest, "highest": highest, "points": points, "tolerance": tolerance}
     return minimum_overturning_accelerations([body], motion, restitution, **search, **options)[0]
@@ -337,7 +336,7 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
     if not isinstance(several, Sequence) or not several:
         raise InvalidValueError(f"bodies must be a sequence of at least one body, got {bodies!r:.60}")
     engine = settings.pop("engine", "auto")
-    question = Question(bodies[0], motion, restitution, settings_of(gravity, settings), threads, engine)
+    question = Question(bodies[0], motion, restitution, settings_of(gravity, settings, bodies[0]), threads, engine)
     effort = Effort(points, levels, tolerance)
     sides = sides_of([question.parameters_of(b) for b in bodies])
     cases = Cases.of(motion, sides, question.settings, lowest, highest)

@@ -16,7 +16,11 @@ from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import Arrays, instruction_set
+from rocking.dynamics.response_base import motion_provenance
 from rocking.dynamics.settings import Settings
+from rocking.dynamics._simulate import components_of
+from rocking.dynamics.space.body import SpatialBody
+from rocking.dynamics.space.ground import ground_of
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion, Pulse
@@ -37,8 +41,14 @@ class Question:
     settings: Settings = field(default_factory=Settings)  # how to integrate
     threads: int | None = None  # threads of the fast engine; the results do not depend on them
     engine: str = "auto"  # which engine
+    components: Any = field(default=None, init=False)  # of a body in space under several: along x, y and z
 
     def __post_init__(self) -> None:
+        if not isinstance(self.body, Body) and not isinstance(self.motion, (GroundMotion, Pulse)):
+            object.__setattr__(self, "components", components_of(self.motion))
+            # axes of amplitude and time speak of the component with the largest peak
+            parts = [part for part in self.components or () if part is not None]
+            object.__setattr__(self, "motion", max(parts, key=lambda part: part.peak))
         if not isinstance(self.motion, (GroundMotion, Pulse)):
             raise InvalidValueError(f"motion must be a GroundMotion or a pulse, got {self.motion!r:.60}")
         _ = self.parameters
@@ -56,7 +66,8 @@ class Question:
     @cached_property
     def batch(self) -> Batch:
         """The motion as the engine lays it out."""
-        return Batch([self.motion.segments()], self.law, self.settings, self.threads, self.engine)
+        motion = self.motion.segments() if self.components is None else ground_of(*self.components)
+        return Batch([motion], self.law, self.settings, self.threads, self.engine)
 
     def parameters_of(self, body: Body) -> RockingParameters:
         """Return another body with the same restitution, evaluated for it."""
@@ -84,7 +95,10 @@ class Question:
         for name in quantities.TIMES:
             results[name] = results[name] * stretch
         results["peak_velocity"] = results["peak_velocity"] / stretch
-        results |= {"mode": modes_of(results), **flags(results)}
+        modes = modes_of(results)
+        if not isinstance(self.body, Body):
+            modes = np.minimum(modes, 0)  # impacts of a body in space go on after it has overturned
+        results |= {"mode": modes, **flags(results)}
         results["peak_ratio"] = peak_ratio(results["peak_rotation"], values["alpha_right"], values["alpha_left"])
         return results, work
 
@@ -98,13 +112,13 @@ class Question:
 
     def attributes(self, work: dict[str, int]) -> dict[str, Any]:
         """Return what was computed from what and how, as plain values."""
-        motion = self.motion
+        parts = (self.motion,) if self.components is None else self.components
         return {
             "software": SOFTWARE,
             "engine": engine_words(self.settings, fast=bool(work)),
             "body": repr(self.body),
-            "motion": motion.name,
-            "motion_provenance": "; ".join(getattr(motion, "provenance", ())) or repr(motion),
+            "motion": ", ".join("none" if part is None else part.name for part in parts),
+            "motion_provenance": "; ".join(motion_provenance(part) for part in parts),
             "restitution": self.parameters.label,
             "seed": int(getattr(self.law, "seed", 0)),
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in self.settings.stated.items()},
@@ -180,6 +194,8 @@ class Case:
 
 def engine_words(settings: Settings, *, fast: bool) -> str:
     """Return which engine computes a study, in words."""
+    if settings.mechanics == "space with friction":
+        return "fast (Dormand-Prince with complementarity, compiled)"
     if settings.friction is not None:
         return FAST
     return f"fast ({instruction_set()})" if fast else "reference"
@@ -202,6 +218,10 @@ def changed_body(body: Body, parameters: Mapping[str, float]) -> Body:
     """
     if not parameters:
         return body
+    if not isinstance(body, Body):
+        if set(parameters) != {"semi_diagonal"}:
+            raise InvalidValueError(f"of a body in space only the semi-diagonal varies, got {', '.join(parameters)}")
+        return body.scaled(size=parameters["semi_diagonal"] / SpatialBody.of(body).size)
     if set(parameters) == {"semi_diagonal"}:
         side = body.side(reference_side(body))  # type: ignore[arg-type]
         return body.scaled(size=parameters["semi_diagonal"] / side.semi_diagonal)

@@ -132,7 +132,7 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     if any(code == fast_engine.KED and body is not None and body.solid is None for code, _ in codes for body in several):
         raise InvalidValueError("restitution 'ked-3d' needs the distribution of mass: give the HullBody its solid")
     shape = (len(several), len(under), factors.size, len(laws), frictions.size, len(starts))
-    states = np.array([[_numbers(body, each) for each in starts] for body in several])
+    states = np.array([[numbers_of(body, each) for each in starts] for body in several])
     planes = np.array(
         [np.concatenate([np.ravel(g.level), g.shelf or (math.inf, math.inf), [g.gravity]]) for g in under]
     )
@@ -238,7 +238,7 @@ def _code(law: Any) -> tuple[int, float]:
     raise InvalidValueError(f"restitution must be 'housner-3d', 'ked-3d' or a number, got {law!r:.60}")
 
 
-def _numbers(body: HullBody | None, start: SpatialStart) -> FloatArray:
+def numbers_of(body: HullBody | None, start: SpatialStart) -> FloatArray:
     """Return attitude, place, velocity and angular velocity of a start; NaN for one that is none."""
     if body is None or not start.valid:
         return np.full(13, np.nan)
@@ -251,7 +251,7 @@ def _numbers(body: HullBody | None, start: SpatialStart) -> FloatArray:
 
 def start_of(body: HullBody, start: SpatialStart) -> State:
     """Return the state of a body that leans at the start, its lowest vertex at rest on the ground."""
-    return _state(_numbers(body, start))
+    return _state(numbers_of(body, start))
 
 
 def _state(row: FloatArray) -> State:

@@ -70,7 +70,7 @@ class Rows:
 class Batch:
     """What to compute many times: the motions, the law of impact, the settings."""
 
-    motions: Sequence[Segments]  # all records or all pulses [m/s2]
+    motions: Sequence[Any]  # `Segments`, all of records or all of pulses; in space `SpatialGround` too [m/s2]
     law: ImpactLaw = field(default_factory=ConstantRestitution)  # how the coefficient changes from impact to impact
     settings: Settings = field(default_factory=Settings)  # how to integrate
     threads: int | None = None  # threads of the fast engine; as many as the processor has, if not given
@@ -149,7 +149,10 @@ class Batch:
     @cached_property
     def _with_contact(self) -> Any:
         from rocking.dynamics.contact.batch import RowsWithContact
+        from rocking.dynamics.hull.rows import RestitutionOnHull, RowsOnHull
 
+        if isinstance(self.law, RestitutionOnHull):
+            return RowsOnHull(self.motions, self.law, self.settings, self.engine)
         return RowsWithContact(self.motions, self.settings, self.engine)
 
     @cached_property

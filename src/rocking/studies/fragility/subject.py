@@ -55,7 +55,7 @@ class Subject:
         """Return the subject of an analysis; options: gravity [m/s2], engine and other fields of `Settings`."""
         rest = dict(options)
         engine = rest.pop("engine", "auto")
-        settings = settings_of(rest.pop("gravity", conventions.g), rest)
+        settings = settings_of(rest.pop("gravity", conventions.g), rest, body)
         parameters = RockingParameters.of_body(body, restitution, settings.gravity, friction=settings.friction)
         all_motions = motions if isinstance(motions, MotionSet) else MotionList(motions)
         return cls(parameters, all_motions, measure(measure_name), settings, engine)
@@ -81,6 +81,8 @@ class Subject:
         slide before.
         """
         friction, gravity = self.settings.friction, self.settings.gravity
+        if self.settings.mechanics == "space with friction":
+            return None  # it depends on the direction
         if self.measure.uplift is None or (friction is not None and friction * gravity <= self.scale.threshold):
             return None
         equal = math.isclose(

@@ -1,0 +1,127 @@
+"""Rows of studies of bodies in space with friction: a law that knows the body, and histories of it on its hull."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import FEET, FloatArray
+from rocking.dynamics.content import hash_of
+from rocking.dynamics.hull import fast_engine
+from rocking.dynamics.hull.body import HullBody
+from rocking.dynamics.hull.histories import HullRows, numbers_of
+from rocking.dynamics.hull.response import law_on_hull, settings_on_hull
+from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
+from rocking.dynamics.parameters import UNIMPOSED, RockingParameters, RockingSide
+from rocking.dynamics.settings import Settings
+from rocking.dynamics.space.attitude import SpatialStart
+from rocking.dynamics.space.body import SpatialBody
+from rocking.dynamics.space.ground import SpatialGround
+from rocking.errors import InvalidValueError
+from rocking.motions.segments import Segments
+from rocking.outcome import Outcome
+
+
+@dataclass(frozen=True, eq=False)
+class RestitutionOnHull(ConstantRestitution):
+    """What an impact costs a body in space, and the body: its rows say size, coefficient, friction and scale alone."""
+
+    body: Any = None  # a Solid, or what knows of which it is made
+    model: str | float = "ked-3d"
+    frequency: float = 1.0  # of the body under `gravity`: what rows of other sizes are compared with [rad/s]
+    gravity: float = field(default=1.0)  # [m/s2]
+
+    @cached_property
+    def on_hull(self) -> HullBody:
+        """The body on the vertices of its hull."""
+        return HullBody.of(self.body)
+
+    def content(self) -> dict[str, Any]:
+        """Return mass, centre, inertia and hull of the body, and the model."""
+        made = self.on_hull
+        arrays = {"centre": made.centre, "inertia": made.inertia, "hull": made.hull.vertices}
+        return {"model": self.model, "mass": made.mass, **{name: hash_of(each) for name, each in arrays.items()}}
+
+
+def parameters_in_space(body: Any, restitution: Any, gravity: float, friction: float | None) -> RockingParameters:
+    """Return a body in space as studies see it: the least slenderness angle of its base, its p, and its law."""
+    if friction is None:
+        raise InvalidValueError(
+            "a study of a body in space needs friction=, under which it may rock, slide, hop and fall into any of its "
+            "poses; friction=1e6 for one that never slides"
+        )
+    if isinstance(restitution, ImpactLaw):
+        raise InvalidValueError(
+            f"a body in space takes a model or one coefficient in a study, got {type(restitution).__name__}"
+        )
+    law, made = law_on_hull(restitution), SpatialBody.of(body)
+    frequency = made.frequency(gravity)
+    side = RockingSide(
+        math.atan2(made.reach, float(made.centre[2])), frequency, made.size,
+        law if isinstance(law, float) else UNIMPOSED,
+    )  # fmt: skip
+    return RockingParameters(side, side, RestitutionOnHull(body=body, model=law, frequency=frequency, gravity=gravity),
+                             law if isinstance(law, str) else f"{law:.6g}")  # fmt: skip
+
+
+class RowsOnHull:
+    """Motions of a study, and histories of one body under them as rows: the runner behind every study of solids."""
+
+    def __init__(
+        self, motions: Sequence[Segments | SpatialGround], law: RestitutionOnHull, settings: Settings, engine: str
+    ) -> None:
+        self.law, self.settings = law, settings
+        grounds = [_ground(motion) for motion in motions]
+        which = fast_engine.chosen(engine)
+        ked = law.model == "ked-3d"
+        self.rows = HullRows([law.on_hull], grounds, settings_on_hull(settings), which, ked=ked)
+        if ked and law.on_hull.solid is None:
+            raise InvalidValueError("restitution 'ked-3d' needs the distribution of mass, of this body moments are known")
+
+    def run(self, values: dict[str, FloatArray], motion: np.ndarray, threads: int) -> dict[str, np.ndarray]:
+        """Return the results of some rows by the names that studies know; NaN for what this mechanics has not.
+
+        A body of c times the size moves as the one at hand does under gravity and ground accelerations over c, in the
+        same time; p says c.
+        """
+        law, count = self.law, motion.size
+        if values["rotation"].any() or values["velocity"].any():
+            raise InvalidValueError("rows of a body in space start upright and at rest")
+        with np.errstate(all="ignore"):  # a row that is no body is refused by itself
+            size = (law.frequency / values["p_right"]) ** 2 * (self.settings.gravity / law.gravity)
+            size = np.where(np.all([values[f"alpha_{foot}"] > 0.0 for foot in FEET], axis=0), size, np.nan)
+            pull, scale = self.settings.gravity / size, values["scale"] / size
+        friction = np.where(np.isnan(values["friction"]), self.settings.friction, values["friction"])
+        r = values["r_right"]
+        modelled = r == UNIMPOSED
+        code = {"housner-3d": fast_engine.HOUSNER, "ked-3d": fast_engine.KED}.get(str(law.model), 0)
+        numbers = np.zeros((count, 29))
+        numbers[:, 0], numbers[:, 1], numbers[:, 3] = np.where(modelled, 0.0, r), scale, friction
+        numbers[:, 4:13], numbers[:, 13:15] = np.eye(3).ravel(), math.inf
+        numbers[:, 15:28], numbers[:, 28] = numbers_of(law.on_hull, SpatialStart()), pull
+        codes = np.where(modelled, code, fast_engine.COEFFICIENT)
+        choices = np.column_stack([np.zeros(count, np.int64), motion, codes]).astype(np.int64)
+        found = self.rows.run(numbers, choices, threads)
+        fell, unknown = found["outcome"] == Outcome.OVERTURNED.code, np.full(count, np.nan)
+        names = ("outcome", "status", "impacts", "uplifts", "still_rocking", "steps", "overturning_time", "peak_time",
+                 "first_uplift")  # fmt: skip
+        return {name: found[name] for name in names} | {
+            "peak_rotation": np.where(fell, 0.5 * math.pi, found["peak_tilt"]), "peak_velocity": found["peak_spin"],
+            "side": np.where(fell, np.where(np.cos(found["direction"]) < 0.0, -1, 1), 0),
+            "truncation": unknown, "least_force": unknown, "friction_demand": unknown,
+        }  # fmt: skip
+
+
+def _ground(motion: Segments | SpatialGround) -> SpatialGround:
+    if isinstance(motion, SpatialGround):
+        return motion
+    times = np.asarray(np.arange(motion.count + 1) * motion.step, dtype=np.float64)
+    degree = motion.horizontal.shape[1]
+    rows = np.zeros((motion.count, 3, degree))
+    rows[:, 0] = motion.horizontal
+    if motion.vertical is not None:
+        rows[:, 2, : motion.vertical.shape[1]] = motion.vertical
+    return SpatialGround(times, rows)
