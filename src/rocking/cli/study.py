@@ -7,9 +7,10 @@ from typing import Any
 from rocking.bodies import Body
 from rocking.bodies.body import assumed_rows
 from rocking.cli.arguments import NO_MOTION, Arguments, hinted, parsed_sets, with_sets
-from rocking.cli.numbers import side_line
+from rocking.cli.numbers import in_unit, side_line
 from rocking.conventions import FEET, Foot
 from rocking.dynamics.settings import Settings
+from rocking.dynamics.space.body import SpatialBody
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Pulse
 from rocking.spec.document import NEEDS, OF_FILES, CampaignDocument
@@ -109,8 +110,11 @@ def contact_lines(settings: Settings, *, varied: bool = False) -> list[tuple[str
     return [("contact", f"friction {friction}{bounce}: it may slide, hop and fly")]
 
 
-def body_lines(body: Body, settings: Settings, length: str = "m", *, varied: bool = False) -> list[tuple[str, str]]:
+def body_lines(body: Any, settings: Settings, length: str = "m", *, varied: bool = False) -> list[tuple[str, str]]:
     """Return what is printed of the body of a study, and of the ground under it."""
+    if not isinstance(body, Body):
+        base = f"{body.mass:.4g} kg, {in_unit(float(SpatialBody.of(body).centre[2]), length)} from base to centre"
+        return [("body", f"{body!r}; {base}"), *contact_lines(settings, varied=varied)]
     feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
     sides = {foot: side_line(body.side(foot, settings.gravity), length) for foot in feet}
     shape = "; ".join(f"{'' if body.is_symmetric else f'{foot} '}{line}" for foot, line in sides.items())
@@ -128,12 +132,12 @@ def subject_facts(problem: StudyProblem) -> dict[str, Any]:
     facts = {"duration_s": motion.duration, "peak_acceleration_m_s2": motion.peak}
     kind = "pulse" if isinstance(motion, Pulse) else "record"
     table = problem.document.map
-    ground = ["friction", "bounce", "bounce_law"] if problem.settings.friction is not None else []
+    ground = ["friction", *(["bounce", "bounce_law"] if isinstance(body, Body) else [])] if problem.settings.friction is not None else []
     if ground and table is not None and "friction" in {table.x.axis, table.y.axis}:
         del ground[0]
     return {
         "body": repr(body),
         **{name: getattr(problem.settings, name) for name in ground},
-        "assumed": list(body.assumed),
+        "assumed": list(getattr(body, "assumed", ())),
         "motion": {"kind": kind, "name": motion.name, **facts, "warnings": list(motion.doubts)},
     }

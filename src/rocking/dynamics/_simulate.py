@@ -11,7 +11,7 @@ from rocking.dynamics.plane.histories import response_of_rocking
 from rocking.dynamics.response import Response
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, PureRockingWarning
-from rocking.motions.components import with_vertical
+from rocking.motions.components import Components, with_vertical
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion, Pulse
 
@@ -349,6 +349,8 @@ def components_of(motion: Any) -> tuple[Component, Component, Component]:
     >>> [part is None for part in components_of({"z": GroundMotion([0.0, 1.0], 0.1)})]
     [True, True, False]
     """
+    if isinstance(motion, Components):
+        motion = motion.parts
     if isinstance(motion, Mapping):
         unknown = [name for name in motion if name not in ("x", "y", "z")]
         if unknown:
@@ -369,6 +371,11 @@ def components_of(motion: Any) -> tuple[Component, Component, Component]:
         z = x.changed("its vertical part", acceleration=x.vertical, vertical=None)
         x = x.changed("its horizontal part", vertical=None)
     return x, y, z
+
+
+def together(motion: Any) -> Any:
+    """Return a motion of one component as it is, of several, by mapping or tuple, as one of a study."""
+    return Components(*components_of(motion)) if isinstance(motion, (Mapping, tuple)) else motion
 
 
 def in_space(body: Any) -> bool:

@@ -1,12 +1,74 @@
 """Components of one motion: joined, turned into other directions, and the largest over all of them."""
 
 import math
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion, checked_motion
+from rocking.motions.pulse import Pulse
+
+@dataclass(frozen=True, eq=False)
+class Components:
+    """Motions along x, y and z that a study takes as one: scaled and stretched together, and measured by the leading.
+
+    >>> both = Components(GroundMotion([0.0, 1.0], 0.1, name="a"), GroundMotion([0.0, -2.0], 0.1, name="b"), None)
+    >>> both.name, both.peak
+    ('a, b, none', 2.0)
+    """
+
+    x: GroundMotion | Pulse | None
+    y: GroundMotion | Pulse | None
+    z: GroundMotion | Pulse | None
+
+    @property
+    def parts(self) -> tuple[GroundMotion | Pulse | None, ...]:
+        """All three."""
+        return self.x, self.y, self.z
+
+    @property
+    def leading(self) -> GroundMotion | Pulse:
+        """The horizontal component with the largest peak; the vertical one where it is alone."""
+        return max((part for part in (self.x, self.y) if part is not None), key=lambda part: part.peak, default=self.z)
+
+    @property
+    def name(self) -> str:
+        """Names of the components."""
+        return ", ".join("none" if part is None else part.name for part in self.parts)
+
+    @property
+    def peak(self) -> float:
+        """Peak acceleration of the leading component [m/s2]."""
+        return self.leading.peak
+
+    @property
+    def duration(self) -> float:
+        """Duration of the longest component [s]."""
+        return max(part.duration for part in self.parts if part is not None)
+
+    @property
+    def provenance(self) -> tuple[str, ...]:
+        """Where they come from."""
+        told = ("; ".join(getattr(part, "provenance", ())) or repr(part) for part in self.parts if part is not None)
+        return tuple(told)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Doubts about any of them."""
+        return tuple(doubt for part in self.parts if part is not None for doubt in part.doubts)
+
+    def segments(self) -> "Components":
+        """Return itself: the engine of bodies in space lays out its components together."""
+        return self
+
+
+def leading(motion: Any) -> Any:
+    """Return the motion that axes and measures speak of: itself, or the leading one of several components."""
+    return motion.leading if isinstance(motion, Components) else motion
+
 
 ANGLES = np.radians(np.arange(180.0))
 """Directions for RotD: every degree over half a turn."""

@@ -22,6 +22,7 @@ from rocking.motions.integrals import (
     peak_ground_velocity,
     significant_duration,
 )
+from rocking.motions.components import leading
 from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.pulse import Pulse
 from rocking.motions.spectrum import response_spectrum
@@ -315,7 +316,7 @@ class IntensityMeasure:
         Parameters
         ----------
         motions : MotionSet
-            Records, or pulses, which are sampled finely.
+            Records, or pulses, which are sampled finely; of several components the leading one counts.
         body : RockingScale
             What of the body counts.
 
@@ -324,7 +325,7 @@ class IntensityMeasure:
         ndarray
             One value a motion [unit of the measure].
         """
-        each = (sampled(motions[k]) for k in range(len(motions)))
+        each = (sampled(leading(motions[k])) for k in range(len(motions)))
         strong = (self.of_motion(motion, body) if motion.peak > 0.0 else 0.0 for motion in each)
         found = np.fromiter(strong, np.float64, len(motions))
         bad = np.flatnonzero(~((found > 0.0) & np.isfinite(found)))

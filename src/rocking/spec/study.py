@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking.bodies import Body
-from rocking.dynamics.settings import Settings
+from rocking.conventions import g
+from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError
-from rocking.spec.construction import body_of, motions_of, restitutions_of
+from rocking.spec.construction import any_body_of, motions_of, restitutions_of
 from rocking.spec.reading import InputFiles, located
 from rocking.studies.axis import Axis, axis_of, friction_beside
 from rocking.studies.motion_sets import MotionList, MotionSet
@@ -24,7 +25,7 @@ class StudyProblem:
     """What the histories of a study are made of."""
 
     document: "CampaignDocument"  # its tables
-    bodies: list[Body]  # none for spectra
+    bodies: list[Any]  # plane ones, or solids; none for spectra
     motions: MotionSet
     restitutions: dict[str, Any]  # by label
     settings: Settings  # how to integrate
@@ -37,11 +38,16 @@ class StudyProblem:
         with located("settings"):
             stated = document.settings.stated()
             axes = axes_of(document.map) if document.map is not None else ()
-            settings = Settings(**(stated | friction_beside(axes, stated.get("friction"))))
+            stated |= friction_beside(axes, stated.get("friction"))
         bodies = []
         for k, table in enumerate(document.body or []):
             with located("body" if len(document.body or []) == 1 else f"body[{k}]"):
-                bodies.append(body_of(table, inputs))
+                bodies.append(any_body_of(table, inputs))
+        with located("settings"):
+            kinds = {isinstance(body, Body) for body in bodies}
+            if len(kinds) > 1:
+                raise InvalidValueError("bodies of a study are all plane or all in space")
+            settings = settings_of(stated.pop("gravity", g), stated, next(iter(bodies), None))
         motions = motions_of(document.motions, inputs)
         seed, friction = document.campaign.seed, settings.friction
         restitutions = restitutions_of(document.restitution, seed, bodies, inputs, friction=friction)

@@ -13,6 +13,7 @@ from rocking.conventions import FEET, FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.errors import InvalidValueError
 from rocking.motions import peak_ground_velocity
+from rocking.motions.components import leading
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion, Ricker, Sinusoids
 from rocking.studies.question import Case, Question
@@ -97,6 +98,7 @@ def main_period(motion: Motion) -> float:
     >>> round(main_period(sine(2.0, 0.5)), 12)
     0.5
     """
+    motion = leading(motion)
     if isinstance(motion, Ricker):
         return motion.period
     frequency = abs(motion.waves[0][1]) if isinstance(motion, Sinusoids) else 0.0
@@ -116,6 +118,7 @@ def peak_velocity(motion: Motion) -> float:
     >>> round(peak_velocity(sine(math.pi, 1.0)), 12)
     1.0
     """
+    motion = leading(motion)
     if isinstance(motion, GroundMotion):
         return peak_ground_velocity(motion)
     times = np.linspace(0.0, motion.duration, _SAMPLES + 1)

@@ -153,7 +153,8 @@ class Cases:
         both = np.stack([sides["alpha_right"], sides["alpha_left"]])
         lifts = settings.gravity * (both if settings.linear else np.tan(both))  # Eq. 25
         uplift, record = lifts.min(axis=0), isinstance(motion, GroundMotion)
-        light = isinstance(motion, GroundMotion) and motion.vertical is not None
+        # other components may lift a body in space before the one that is scaled does
+        light = settings.mechanics == "space with friction" or getattr(motion, "vertical", None) is not None
         low, high = (_FROM_VERTICAL if light else _FROM) * uplift, _TO * lifts.max(axis=0)
         if lowest is not None:
             low = np.full_like(low, checks.positive("lowest", lowest, "m/s2"))
@@ -339,7 +340,7 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
     question = Question(bodies[0], motion, restitution, settings_of(gravity, settings, bodies[0]), threads, engine)
     effort = Effort(points, levels, tolerance)
     sides = sides_of([question.parameters_of(b) for b in bodies])
-    cases = Cases.of(motion, sides, question.settings, lowest, highest)
+    cases = Cases.of(question.motion, sides, question.settings, lowest, highest)
 
     def run(values: dict[str, FloatArray], body: IntArray) -> Arrays:
         return question.run(values, np.ones(body.size), body, progress)[0]

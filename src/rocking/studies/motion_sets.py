@@ -1,13 +1,15 @@
 """The motions of a study, by number: held in memory, or made from a seed when they are needed."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
 from rocking import checks
+from rocking.dynamics._simulate import together
 from rocking.dynamics.content import full_name
 from rocking.errors import InvalidValueError
+from rocking.motions.components import Components, leading
 from rocking.motions.intensity import measure
 from rocking.motions.motion import GroundMotion
 from rocking.motions.processing import scaled_to
@@ -46,8 +48,8 @@ class MotionList(MotionSet):
 
     Parameters
     ----------
-    motions : GroundMotion or Pulse, or a sequence of them
-        All records or all pulses.
+    motions : GroundMotion, Pulse or mapping, or a sequence of them
+        All records or all pulses; of bodies in space also components by axis, as for `simulate`.
 
     Raises
     ------
@@ -63,14 +65,15 @@ class MotionList(MotionSet):
 
     def __init__(self, motions: Motion | Sequence[Motion]) -> None:
         given: object = motions
-        found = [motions] if isinstance(given, (GroundMotion, Pulse)) else list(motions)  # type: ignore[arg-type]
+        single = isinstance(given, (GroundMotion, Pulse, Components, Mapping))
+        found = [together(each) for each in ([motions] if single else list(motions))]  # type: ignore[arg-type]
         wanted = "motions must be ground motions or pulses"
         if not found:
             raise InvalidValueError(f"{wanted}, got none")
         for k, item in enumerate(found):
-            if not isinstance(item, (GroundMotion, Pulse)):
+            if not isinstance(item, (GroundMotion, Pulse, Components)):
                 raise InvalidValueError(f"{wanted}, got {item!r:.60} at index {k}")
-        if len({isinstance(item, Pulse) for item in found}) > 1:
+        if len({isinstance(leading(item), Pulse) for item in found}) > 1:
             raise InvalidValueError("motions of a study must be all records or all pulses; sample the pulses")
         self._motions: list[Motion] = found  # type: ignore[assignment]
 
@@ -99,6 +102,9 @@ def digest(motion: Motion) -> str:
 
     import numpy as np
 
+    if isinstance(motion, Components):
+        parts = (b"none" if part is None else digest(part).encode() for part in motion.parts)
+        return hashlib.sha256(b" ".join(parts)).hexdigest()
     segments = motion.segments()
     hashed = hashlib.sha256(np.array([segments.step, segments.degree], "<f8").tobytes())
     for part in (segments.horizontal, segments.vertical):

@@ -16,12 +16,11 @@ from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import Arrays, instruction_set
-from rocking.dynamics.response_base import motion_provenance
 from rocking.dynamics.settings import Settings
-from rocking.dynamics._simulate import components_of
+from rocking.dynamics._simulate import together
 from rocking.dynamics.space.body import SpatialBody
-from rocking.dynamics.space.ground import ground_of
 from rocking.errors import InvalidValueError
+from rocking.motions.components import Components
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion, Pulse
 from rocking.outcome import Outcome, flags
@@ -41,15 +40,12 @@ class Question:
     settings: Settings = field(default_factory=Settings)  # how to integrate
     threads: int | None = None  # threads of the fast engine; the results do not depend on them
     engine: str = "auto"  # which engine
-    components: Any = field(default=None, init=False)  # of a body in space under several: along x, y and z
 
     def __post_init__(self) -> None:
-        if not isinstance(self.body, Body) and not isinstance(self.motion, (GroundMotion, Pulse)):
-            object.__setattr__(self, "components", components_of(self.motion))
-            # axes of amplitude and time speak of the component with the largest peak
-            parts = [part for part in self.components or () if part is not None]
-            object.__setattr__(self, "motion", max(parts, key=lambda part: part.peak))
-        if not isinstance(self.motion, (GroundMotion, Pulse)):
+        kinds = (GroundMotion, Pulse) if isinstance(self.body, Body) else (GroundMotion, Pulse, Components)
+        if not isinstance(self.body, Body):
+            object.__setattr__(self, "motion", together(self.motion))
+        if not isinstance(self.motion, kinds):
             raise InvalidValueError(f"motion must be a GroundMotion or a pulse, got {self.motion!r:.60}")
         _ = self.parameters
 
@@ -66,8 +62,7 @@ class Question:
     @cached_property
     def batch(self) -> Batch:
         """The motion as the engine lays it out."""
-        motion = self.motion.segments() if self.components is None else ground_of(*self.components)
-        return Batch([motion], self.law, self.settings, self.threads, self.engine)
+        return Batch([self.motion.segments()], self.law, self.settings, self.threads, self.engine)
 
     def parameters_of(self, body: Body) -> RockingParameters:
         """Return another body with the same restitution, evaluated for it."""
@@ -112,13 +107,13 @@ class Question:
 
     def attributes(self, work: dict[str, int]) -> dict[str, Any]:
         """Return what was computed from what and how, as plain values."""
-        parts = (self.motion,) if self.components is None else self.components
+        motion = self.motion
         return {
             "software": SOFTWARE,
             "engine": engine_words(self.settings, fast=bool(work)),
             "body": repr(self.body),
-            "motion": ", ".join("none" if part is None else part.name for part in parts),
-            "motion_provenance": "; ".join(motion_provenance(part) for part in parts),
+            "motion": motion.name,
+            "motion_provenance": "; ".join(getattr(motion, "provenance", ())) or repr(motion),
             "restitution": self.parameters.label,
             "seed": int(getattr(self.law, "seed", 0)),
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in self.settings.stated.items()},

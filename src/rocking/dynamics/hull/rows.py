@@ -19,8 +19,9 @@ from rocking.dynamics.parameters import UNIMPOSED, RockingParameters, RockingSid
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.body import SpatialBody
-from rocking.dynamics.space.ground import SpatialGround
+from rocking.dynamics.space.ground import SpatialGround, ground_of
 from rocking.errors import InvalidValueError
+from rocking.motions.components import Components
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome
 
@@ -71,7 +72,7 @@ class RowsOnHull:
     """Motions of a study, and histories of one body under them as rows: the runner behind every study of solids."""
 
     def __init__(
-        self, motions: Sequence[Segments | SpatialGround], law: RestitutionOnHull, settings: Settings, engine: str
+        self, motions: Sequence[Segments | Components], law: RestitutionOnHull, settings: Settings, engine: str
     ) -> None:
         self.law, self.settings = law, settings
         grounds = [_ground(motion) for motion in motions]
@@ -115,9 +116,9 @@ class RowsOnHull:
         }  # fmt: skip
 
 
-def _ground(motion: Segments | SpatialGround) -> SpatialGround:
-    if isinstance(motion, SpatialGround):
-        return motion
+def _ground(motion: Segments | Components) -> SpatialGround:
+    if isinstance(motion, Components):
+        return ground_of(*motion.parts)
     times = np.asarray(np.arange(motion.count + 1) * motion.step, dtype=np.float64)
     degree = motion.horizontal.shape[1]
     rows = np.zeros((motion.count, 3, degree))

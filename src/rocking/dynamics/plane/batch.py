@@ -13,7 +13,7 @@ from rocking.dynamics.parameters import RockingParameters, RockingSide
 from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.settings import Settings, check_progress, check_threads, processors
 from rocking.errors import InvalidValueError
-from rocking.motions.segments import Segments
+from rocking.motions.components import Components
 from rocking.outcome import Outcome, Status
 
 PIECE = 1 << 16
@@ -70,15 +70,17 @@ class Rows:
 class Batch:
     """What to compute many times: the motions, the law of impact, the settings."""
 
-    motions: Sequence[Any]  # `Segments`, all of records or all of pulses; in space `SpatialGround` too [m/s2]
+    motions: Sequence[Any]  # `Segments`, all of records or all of pulses; in space `Components` too [m/s2]
     law: ImpactLaw = field(default_factory=ConstantRestitution)  # how the coefficient changes from impact to impact
     settings: Settings = field(default_factory=Settings)  # how to integrate
     threads: int | None = None  # threads of the fast engine; as many as the processor has, if not given
     engine: str = "auto"  # which engine
 
     def __post_init__(self) -> None:
-        """Check the threads."""
+        """Check the threads and the motions."""
         check_threads(self.threads)
+        if any(isinstance(motion, Components) for motion in self.motions) and not hasattr(type(self.law), "on_hull"):
+            raise InvalidValueError("a motion of several components is for bodies in space; a plane body takes one")
 
     def run(
         self,
