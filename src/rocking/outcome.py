@@ -78,6 +78,10 @@ class ContactMode(Enum):
         return list(ContactMode).index(self)
 
 
+UNCOUNTED = 1_000_000
+"""Impacts, and mode, of a body in space that has overturned: they go on as it falls, and are not counted."""
+
+
 def overturned(outcome: Any) -> FloatArray:
     """Return 1 for histories that overturned, 0 for others; NaN without a result, which is neither a fall nor a stand.
 

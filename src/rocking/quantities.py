@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from rocking.outcome import ContactMode, Outcome, Regime, Status
+from rocking.outcome import UNCOUNTED, ContactMode, Outcome, Regime, Status
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,8 @@ _HISTORY = (
     ),
     Quantity("overturned", "1", "1 it overturned, 0 it did not, NaN where there is no result: neither"),
     Quantity(
-        "mode", "1", "-3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts, in space 0"
+        "mode", "1", "-3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts, "
+        f"{UNCOUNTED} overturned in space, where they are not counted",
     ),
     Quantity("side", "1", "side to which it overturned: 1 right, -1 left, 0 it did not"),
     Quantity("peak_rotation", "rad", "rotation of largest size; a quarter turn if it overturned"),
@@ -104,7 +105,8 @@ _HISTORY_IN_SPACE = (
     Quantity("over_contact", "1", f"{_spelled(_CONTACTS)} over which it fell, -1 none"),
     Quantity("over_number", "1", "number of that edge or vertex; -1 where there is none"),
     Quantity(
-        "peak_tilt", "rad",
+        "peak_tilt",
+        "rad",
         "largest angle from the vertical; a quarter turn if it overturned; with friction from the pose at the start",
     ),
     Quantity("peak_spin", "rad/s", "largest angular velocity at ends of steps and at impacts"),
@@ -177,7 +179,14 @@ _IMPACTS_AND_INTERVALS = (
 )
 QUANTITIES: dict[str, Quantity] = {
     each.name: each
-    for each in (*_HISTORY, *_HISTORY_WITH_FRICTION, *_HISTORY_IN_SPACE, *_HISTORY_ON_THE_HULL, *_SAMPLES, *_IMPACTS_AND_INTERVALS)
+    for each in (
+        *_HISTORY,
+        *_HISTORY_WITH_FRICTION,
+        *_HISTORY_IN_SPACE,
+        *_HISTORY_ON_THE_HULL,
+        *_SAMPLES,
+        *_IMPACTS_AND_INTERVALS,
+    )
 }
 """All of them, by name."""
 TIMES = tuple(each.name for each in _HISTORY if each.unit == "s")

@@ -11,8 +11,15 @@ from rocking.bodies.solid import Part, Solid, box
 from rocking.cli import main
 from rocking.conventions import g
 from rocking.dynamics import SpatialBody, SpatialStart
+from rocking.dynamics.hull.rows import RestitutionOnHull
+from rocking.dynamics.parameters import RockingParameters, sides_of
+from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError
-from rocking.outcome import Outcome, Status
+from rocking.outcome import UNCOUNTED, Outcome, Status
+from rocking.studies import Product, minimum_overturning_acceleration, overturning_map
+from rocking.studies.fragility import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
+from rocking.studies.motion_sets import MotionList
 
 pytestmark = pytest.mark.verifies(room="rocking in space")
 
@@ -21,7 +28,9 @@ BOTH = {"x": PULSE, "y": rk.pulses.ricker(amplitude=2.0, period=0.4)}
 # a pedestal and an eccentric block on it: no symmetry
 STATUE = Solid([Part(box(0.5, 0.7, 0.9), 2400.0), Part(box(0.3, 0.2, 0.5), 1500.0).moved(0.06, 0.1, 0.9)])
 SHORT = Solid(Part(box(0.6, 0.5, 0.7), 2000.0))
-BASE_ALONE = SpatialBody(1.0, np.array([0.0, 0.0, 1.0]), np.eye(3), 0.2 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]))
+BASE_ALONE = SpatialBody(
+    1.0, np.array([0.0, 0.0, 1.0]), np.eye(3), 0.2 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+)
 
 
 @pytest.mark.verifies("second engine", "the reference engine, one history at a time", within="1e-6")
@@ -73,7 +82,7 @@ def test_the_distance_of_a_box_that_slides():
 
 @pytest.mark.verifies("second engine", "the engine of flat bases, without friction", within="1e-6")
 def test_rough_ground_is_today():
-    """A box on rough ground, let go over an edge: the first swing of the engine that never slides; little friction: not."""
+    """A box on rough ground swings as with the engine that never slides; on smooth ground it does not."""
     tower, start = SpatialBody.box(0.5, 0.6, 1.6), SpatialStart(0.1, 0.0)
     held = rk.free_rocking(tower, restitution="housner", start=start, duration=1.0)
     rough, smooth = (
@@ -181,3 +190,159 @@ def test_commands(tmp_path, capsys):
     assert told["sliding_distance_m"] == pytest.approx(one.sliding_distance, rel=1e-9)
     assert (tmp_path / "a.png").stat().st_size > 1000
     assert (tmp_path / "a.csv").read_text().startswith("time [s],quaternion_s")
+
+
+# ---- studies --------------------------------------------------------------------------------------------------------
+
+
+def _same(cell, one):
+    """A cell of a study and the history of `simulate`; a fall is a quarter turn in studies."""
+    assert int(cell.outcome) == one.outcome.code
+    fell = one.outcome is Outcome.OVERTURNED
+    assert float(cell.peak_rotation) == pytest.approx(0.5 * math.pi if fell else one.peak_tilt, rel=1e-6, abs=1e-8)
+    assert int(cell["mode"]) == (UNCOUNTED if fell else -2 if one.outcome.code in {0, 4} else -1)
+    if fell:
+        assert float(cell.overturning_time) == pytest.approx(one.overturning_time, rel=1e-5)
+
+
+@pytest.mark.verifies("second engine", "the reference engine, one history at a time", within="1e-6")
+def test_a_map_is_its_single_histories():
+    """Cell by cell, two components of unequal length, time stretched for both, a body without symmetry."""
+    periods, scales = [0.4, 0.8], [1.0, 3.5]
+    found = overturning_map(STATUE, BOTH, ("period", periods), ("scale", scales), "housner", friction=0.5)
+    for i, scale in enumerate(scales):
+        for j, period in enumerate(periods):
+            slow = period / 0.5
+            longer = {"x": rk.pulses.sine(3.0, period), "y": rk.pulses.ricker(2.0, 0.4 * slow)}
+            _same(found.isel(scale=i, period=j), rk.simulate(STATUE, longer, "housner", scale=scale, friction=0.5))
+    assert len(set(found["mode"].values.ravel().tolist())) > 1
+
+
+@pytest.mark.verifies("second engine", "the reference engine on a body of the size itself", within="1e-6")
+def test_size_friction_and_restitution_are_axes():
+    """A body of another size is the body itself scaled; friction and coefficient are those of each row."""
+    sizes, frictions = [0.4, 1.2], [0.25, 0.8]
+    found = overturning_map(STATUE, BOTH, ("semi_diagonal", sizes), ("friction", frictions), 0.9)
+    size = SpatialBody.of(STATUE).size
+    for i, mu in enumerate(frictions):
+        for j, wanted in enumerate(sizes):
+            one = rk.simulate(STATUE.scaled(size=wanted / size), BOTH, 0.9, friction=mu)
+            _same(found.isel(semi_diagonal=j, friction=i), one)
+    drawn = overturning_map(STATUE, BOTH, ("restitution", [0.7, 0.95]), ("scale", [2.2]), friction=0.8)
+    for j, r in enumerate((0.7, 0.95)):
+        _same(drawn.isel(scale=0, restitution=j), rk.simulate(STATUE, BOTH, r, scale=2.2, friction=0.8))
+    peaks = drawn.peak_rotation.values.ravel()
+    assert peaks[0] != peaks[1]
+
+
+@pytest.mark.verifies("second engine", "histories on both sides of the minimum", within="1e-3")
+def test_the_minimum_is_where_the_verdict_changes():
+    """Just below the least acceleration `simulate` stands, just above it falls; little friction needs no less."""
+    found = minimum_overturning_acceleration(STATUE, BOTH, friction=0.8, points=30, levels=1, tolerance=1e-6)
+    scale = found.minimum / 3.0
+    verdicts = [rk.simulate(STATUE, BOTH, friction=0.8, scale=s * scale).outcome for s in (0.999, 1.001)]
+    assert verdicts[0] is not Outcome.OVERTURNED
+    assert verdicts[1] is Outcome.OVERTURNED
+    assert set(found.modes[found.modes >= 0].tolist()) == {UNCOUNTED}
+    smooth = minimum_overturning_acceleration(STATUE, BOTH, friction=0.05, points=12, highest=20.0, levels=0)
+    assert smooth.minimum is None
+    assert smooth.failed == 0
+
+
+@pytest.mark.verifies("second engine", "`simulate_many` over the same motions", within="exact")
+def test_fragilities():
+    """Stripes, cloud and incremental analysis count the verdicts of `simulate_many`, of motions of two components."""
+    motions = [{"x": rk.pulses.sine(1.0, period), "y": rk.pulses.sine(0.6, 1.3 * period)} for period in (0.4, 0.7, 1.0)]
+    levels = [2.0, 5.0, 8.0]
+    found = multiple_stripe_analysis(STATUE, motions, levels, friction=0.7)
+    many = rk.simulate_many(STATUE, motions, friction=0.7, scale=levels)
+    fell = many.overturned.values[0, :, :, 0, 0, 0]
+    assert np.array_equal(found.responses.overturned.reshape(fell.shape), fell)
+    assert 0 < fell.sum() < fell.size
+    assert found.uplift.threshold is None
+    assert cloud(STATUE, motions, factor=5.0, friction=0.7).responses.overturned.sum() == fell[:, 1].sum()
+    smooth = multiple_stripe_analysis(STATUE, motions, levels, friction=0.05)
+    assert not (smooth.responses.overturned > 0.0).any()
+    ida = incremental_dynamic_analysis(STATUE, motions[:2], levels, friction=0.7)
+    assert np.array_equal(ida.responses.overturned.reshape(2, 3), fell[:2])
+
+
+@pytest.mark.verifies("damage")
+def test_a_bad_row_of_a_study_touches_no_other():
+    """A row with NaN or infinity in one number is refused by itself, in any number of threads the same bits."""
+    settings = settings_of(g, {"friction": 0.4}, STATUE)
+    parameters = RockingParameters.of_body(STATUE, "housner", g, friction=0.4)
+    sides = {name: float(values[0]) for name, values in sides_of([parameters]).items()}
+    values = {name: np.full(40, value) for name, value in sides.items()}
+    values |= {"scale": np.linspace(0.5, 3.0, 40), "friction": np.full(40, 0.4)}
+    batch = Batch([PULSE.segments()], parameters.law, settings)
+    clean, _ = batch.run(40, Rows.of(40, **values).part, threads=1)
+    ill = np.arange(1, 40, 3)
+    names = ("scale", "friction", "p_right", "r_right", "alpha_right")
+    for k, row in enumerate(ill):
+        values[names[k % len(names)]][row] = (np.nan, np.inf)[k % 2] if k % len(names) != 1 else np.inf
+    values["r_right"][ill[3]] = 1.5
+    found, _ = batch.run(40, Rows.of(40, **values).part, threads=2)
+    refused = np.array([k for k in ill if names[(k - 1) // 3 % 5] not in {"friction", "alpha_right"}])
+    assert (found["status"][refused] == Status.INVALID.code).all()
+    fine = np.setdiff1d(np.arange(40), ill)
+    for name in ("peak_rotation", "impacts", "outcome", "overturning_time"):
+        assert np.array_equal(found[name][fine], clean[name][fine], equal_nan=True)
+
+
+@pytest.mark.verifies("behaviour")
+def test_the_name_of_histories_knows_the_body():
+    """Studies that differ in the shape alone, the model or the friction have other names."""
+    names = set()
+    for body, model, mu in [(STATUE, "ked", 0.5), (SHORT, "ked", 0.5), (STATUE, "housner", 0.5), (STATUE, "ked", 0.6)]:
+        parameters = RockingParameters.of_body(body, model, g, friction=mu)
+        sides = {name: np.array([[0.4]]) for name in sides_of([parameters])}
+        settings = Settings(friction=mu, mechanics="space with friction")
+        names.add(Product(MotionList([BOTH]), sides, np.ones(1), law=parameters.law, settings=settings).key())
+    assert len(names) == 4
+    assert isinstance(parameters.law, RestitutionOnHull)
+
+
+@pytest.mark.verifies("damage")
+@pytest.mark.parametrize(
+    ("ask", "says"),
+    [
+        (lambda: overturning_map(SHORT, PULSE, ("scale", [1.0]), ("period", [0.5])), "needs friction="),
+        (lambda: overturning_map(SHORT, PULSE, ("width", [1.0]), ("period", [0.5]), friction=0.3), "only for a Block"),
+        (
+            lambda: overturning_map(rk.Block(width=1, height=4), BOTH, ("scale", [1.0]), ("period", [0.5])),
+            "motion must",
+        ),
+        (lambda: minimum_overturning_acceleration(BASE_ALONE, PULSE, "housner", friction=0.3), "base is known alone"),
+        (lambda: minimum_overturning_acceleration(SHORT, PULSE, None, friction=0.3), "restitution"),
+        (lambda: multiple_stripe_analysis(rk.Block(width=1, height=4), [BOTH, BOTH], [1.0]), "for bodies in space"),
+    ],
+)
+def test_refusals_of_studies(ask, says):
+    """What a study of a body in space cannot do is said in one sentence."""
+    with pytest.raises(InvalidValueError, match=says):
+        ask()
+
+
+@pytest.mark.verifies("behaviour")
+def test_commands_of_studies(tmp_path, capsys):
+    """A map and a minimum of the command line, and of a job file, are those of Python; pictures are drawn."""
+    body = "[[solid.part]]\nbox = { width = 0.5, depth = 0.6, height = 1.2 }\ndensity = 2000\n"
+    (tmp_path / "body.toml").write_text(f'units = "m"\n{body}')
+    tall = Solid(Part(box(0.5, 0.6, 1.2), 2000.0))
+    words = [str(tmp_path / "body.toml"), "sine:amplitude=3,period=0.5", "--friction", "0.6", "--json"]
+
+    def asked(*more):
+        with pytest.raises(SystemExit) as stop:
+            main(list(more))
+        assert not stop.value.code
+        return json.loads(capsys.readouterr().out)
+
+    out = ["--out", f"picture={tmp_path / 'map.png'}"]
+    told = asked("map", *words, "--x", "scale=1:4:4", "--y", "period=0.4:0.8:3", *out)
+    grid = overturning_map(tall, PULSE, ("scale", [1, 2, 3, 4]), ("period", [0.4, 0.6, 0.8]), friction=0.6)
+    assert told["mode"] == grid["mode"].values.tolist()
+    assert (tmp_path / "map.png").stat().st_size > 1000
+    least = asked("minimum", *words, "--points", "20", "--levels", "0")["minimum_m_s2"]
+    python = minimum_overturning_acceleration(tall, PULSE, friction=0.6, points=20, levels=0).minimum
+    assert least == pytest.approx(python, rel=1e-9)

@@ -11,6 +11,7 @@ import typer
 from rocking.cli import options
 from rocking.cli.exports import PICTURES, Export, Exports, draw, write_dataset
 from rocking.cli.page import Page, bar, deliver
+from rocking.outcome import UNCOUNTED
 from rocking.spec.document import MapTable
 
 if TYPE_CHECKING:
@@ -34,7 +35,8 @@ _AXIS = (
     ": NAME=FIRST:LAST:COUNT, with :log for equal ratios, or NAME=A,B,C; with units where the axis has one, "
     "pga=0.1g:1g:50, slenderness_angle=5deg:20deg:16"
 )
-_MEANINGS = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: "overturns without impact"}
+_MEANINGS = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: "overturns without impact",
+             UNCOUNTED: "overturns"}  # fmt: skip
 
 
 EXPORTS = {

@@ -12,6 +12,7 @@ from rocking.cli.numbers import beside_g, in_unit, quantity
 from rocking.cli.page import Page, bar, deliver, sentence
 from rocking.conventions import ACCELERATION_UNITS, g, percent
 from rocking.errors import InvalidValueError
+from rocking.outcome import UNCOUNTED
 from rocking.spec.construction import COMPLEMENTARITY
 from rocking.spec.document import MinimumTable
 
@@ -213,4 +214,6 @@ def _row(one: dict[str, float | int], size: float) -> tuple[str, ...]:
 def _short(mode: int) -> str:
     if mode < 0:
         return "stays standing" if mode == -1 else "not lifted"
+    if mode == UNCOUNTED:
+        return "falls"
     return "falls, no impact" if mode == 0 else f"falls, {mode} impact{'s' if mode > 1 else ''}"

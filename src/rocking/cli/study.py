@@ -132,7 +132,9 @@ def subject_facts(problem: StudyProblem) -> dict[str, Any]:
     facts = {"duration_s": motion.duration, "peak_acceleration_m_s2": motion.peak}
     kind = "pulse" if isinstance(motion, Pulse) else "record"
     table = problem.document.map
-    ground = ["friction", *(["bounce", "bounce_law"] if isinstance(body, Body) else [])] if problem.settings.friction is not None else []
+    ground = [] if problem.settings.friction is None else ["friction"]
+    if ground and isinstance(body, Body):
+        ground += ["bounce", "bounce_law"]
     if ground and table is not None and "friction" in {table.x.axis, table.y.axis}:
         del ground[0]
     return {

@@ -70,8 +70,8 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
     A plane body rocks about its feet; with `friction` it may also slide, hop and fly. A body in space turns about the
     edges and vertices of its base, or rolls on its rim, and does not slip; where it would leave the ground, the history
     stops and says so; with `friction` it touches with all vertices of its convex hull, on which it rocks, slides, hops,
-    flies and falls into another pose. A round base under two components rolls and has no impacts, so that the restitution does not
-    matter; after it has rolled through lying nearly flat, small causes have large effects.
+    flies and falls into another pose. A round base under two components rolls and has no impacts, so that the
+    restitution does not matter; after it has rolled through lying nearly flat, small causes have large effects.
 
     Parameters
     ----------
@@ -171,7 +171,11 @@ def free_rocking(
 ) -> "ContactResponse": ...
 @overload
 def free_rocking(
-    body: "Solid | SpatialBody", rotation: float = 0.0, restitution: Any = "ked", *, friction: None = None,
+    body: "Solid | SpatialBody",
+    rotation: float = 0.0,
+    restitution: Any = "ked",
+    *,
+    friction: None = None,
     **options: Any,
 ) -> "SpatialResponse": ...
 @overload

@@ -78,8 +78,8 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     progress : callable, optional
         Called with the number of histories done since the last call.
     start : SpatialStart or sequence of them, or Start, optional
-        How bodies in space lean at the start, the lowest vertex at rest on the ground, or how plane bodies with friction do; upright at rest if not given. Plane
-        bodies that rock alone start at rest.
+        How bodies in space lean at the start, the lowest vertex at rest on the ground, or how plane bodies with
+        friction do; upright at rest if not given. Plane bodies that rock alone start at rest.
     duration : float, optional
         How long to follow bodies in space [s]; if not given, to the end of the motion, on ground at rest 300 / p. After
         that a history goes on until its energy decides whether it overturns. With friction as for `simulate`, in space
@@ -92,8 +92,9 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     xarray.Dataset
         Over ``body, motion, scale, restitution``: outcome, status, peak_rotation and more, with units; in space over
         ``start`` too, with peak_tilt and the direction of overturning; with friction over ``friction`` too, with how
-        far they slid, in space also with the stable pose in which they end. Every history that rocks alone ends with its motion: energy then decides the outcome and the peak
-        of the swings to come, whose impacts are not counted. Its attributes say which engine ran, and why bodies in
+        far they slid, in space also with the stable pose in which they end. Every history that rocks alone ends with
+        its motion: energy then decides the outcome and the peak of the swings to come, whose impacts are not counted.
+        Its attributes say which engine ran, and why bodies in
         space were refused.
 
     Raises

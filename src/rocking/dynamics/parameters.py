@@ -148,7 +148,7 @@ class RockingParameters:
 
     @classmethod
     def of_body(
-        cls, body: Body, restitution: Any, gravity: float, *, friction: float | None = None
+        cls, body: Any, restitution: Any, gravity: float, *, friction: float | None = None
     ) -> "RockingParameters":
         """Return a body with its coefficients of restitution.
 

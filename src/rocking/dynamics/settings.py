@@ -79,8 +79,8 @@ class Settings:
         part; elsewhere they are refused. In space: the highest, from 2 to 40 (28). Other engines choose their own.
     tolerance : float, optional
         Bound on the last two terms of a Taylor step: over the angle alpha (and the size R with contact) 1e-15; for
-        quaternions of unit length 1e-17 in space (1e-13 for many bodies). In space with friction on the local error of a
-        step of order 5, over size, radian and their rates (1e-12) [-].
+        quaternions of unit length 1e-17 in space (1e-13 for many bodies). In space with friction bound on the local
+        error of a step of order 5, over size, radian and their rates (1e-12) [-].
     mechanics : {"rocking", "contact", "space", "space, many", "space with friction"}
         Whose usual values and ranges these are; with `friction` those of contact, in space of bodies on their hulls.
     friction, bounce, bounce_law : optional

@@ -9,7 +9,7 @@ import numpy as np
 from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion, checked_motion
-from rocking.motions.pulse import Pulse
+
 
 @dataclass(frozen=True, eq=False)
 class Components:
@@ -20,17 +20,17 @@ class Components:
     ('a, b, none', 2.0)
     """
 
-    x: GroundMotion | Pulse | None
-    y: GroundMotion | Pulse | None
-    z: GroundMotion | Pulse | None
+    x: Any  # GroundMotion, Pulse or None
+    y: Any
+    z: Any
 
     @property
-    def parts(self) -> tuple[GroundMotion | Pulse | None, ...]:
+    def parts(self) -> tuple[Any, Any, Any]:
         """All three."""
         return self.x, self.y, self.z
 
     @property
-    def leading(self) -> GroundMotion | Pulse:
+    def leading(self) -> Any:
         """The horizontal component with the largest peak; the vertical one where it is alone."""
         return max((part for part in (self.x, self.y) if part is not None), key=lambda part: part.peak, default=self.z)
 
@@ -42,12 +42,12 @@ class Components:
     @property
     def peak(self) -> float:
         """Peak acceleration of the leading component [m/s2]."""
-        return self.leading.peak
+        return float(self.leading.peak)
 
     @property
     def duration(self) -> float:
         """Duration of the longest component [s]."""
-        return max(part.duration for part in self.parts if part is not None)
+        return float(max(part.duration for part in self.parts if part is not None))
 
     @property
     def provenance(self) -> tuple[str, ...]:

@@ -16,13 +16,13 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray, g
 from rocking.errors import InvalidValueError
+from rocking.motions.components import leading
 from rocking.motions.integrals import (
     arias_intensity,
     peak_ground_displacement,
     peak_ground_velocity,
     significant_duration,
 )
-from rocking.motions.components import leading
 from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.pulse import Pulse
 from rocking.motions.spectrum import response_spectrum

@@ -7,6 +7,7 @@ import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
+from rocking.outcome import UNCOUNTED
 from rocking.plots.labels import axis_label, geometric, note, plain, plain_log
 from rocking.plots.map_labels import LabelPlace, labelled_contours, place_in, rastered
 from rocking.plots.style import DOUBLE, INK, SINGLE, in_journal_style, legend_below, new_figure, patch, stroke
@@ -27,7 +28,7 @@ _RASTER = 700
 _PANEL = (2.95, 2.55)
 """Width and height of the panel, roughly [in]."""
 
-FAILED, UNLIFTED, ROCKED, ISLAND, FIRST, SECOND, LATER = range(7)
+FAILED, UNLIFTED, ROCKED, ISLAND, FIRST, SECOND, LATER, FELL = range(8)
 """What is told apart in a map."""
 
 CLASSES: dict[int, tuple[str, str]] = {
@@ -38,6 +39,7 @@ CLASSES: dict[int, tuple[str, str]] = {
     FIRST: ("overturns without impact", "#A8420A"),
     SECOND: ("overturns after 1 impact", "#E0812F"),
     LATER: ("overturns after 2 or more impacts", "#F0B26B"),
+    FELL: ("overturns", "#E0812F"),
 }
 """Words and colours: light stays standing, dark overturns, in grey too."""
 
@@ -121,8 +123,8 @@ def classes_of(found: "xr.Dataset") -> IntArray:
 
 
 def _kinds(mode: IntArray) -> IntArray:
-    cases = [mode == -3, mode == -2, mode == 0, mode == 1, mode > 1]
-    kinds = np.select(cases, [FAILED, UNLIFTED, FIRST, SECOND, LATER], default=ROCKED)
+    cases = [mode == -3, mode == -2, mode == 0, mode == 1, mode == UNCOUNTED, mode > 1]
+    kinds = np.select(cases, [FAILED, UNLIFTED, FIRST, SECOND, FELL, LATER], default=ROCKED)
     return np.asarray(kinds, dtype=np.int64)
 
 

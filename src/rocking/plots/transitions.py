@@ -13,8 +13,9 @@ from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Motion
+from rocking.outcome import UNCOUNTED
 from rocking.plots.labels import PEAK, note, plain, plain_log
-from rocking.plots.overturning_map import CLASSES, FIRST, LATER, SECOND
+from rocking.plots.overturning_map import CLASSES, FELL, FIRST, LATER, SECOND
 from rocking.plots.style import (
     DASHED,
     DOUBLE,
@@ -176,7 +177,7 @@ def _runs(place: FloatArray, modes: IntArray, low: float, high: float) -> list[_
     if not inside.any():
         return []
     place, modes = place[inside], modes[inside]
-    kinds = np.select([modes == 0, modes == 1], [FIRST, SECOND], default=LATER)
+    kinds = np.select([modes == 0, modes == 1, modes == UNCOUNTED], [FIRST, SECOND, FELL], default=LATER)
     changes = np.flatnonzero(np.diff(kinds))
     ends = [low, *(0.5 * (place[changes] + place[changes + 1])).tolist(), high]
     parts = np.split(modes, changes + 1)

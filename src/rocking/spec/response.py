@@ -17,7 +17,12 @@ from rocking.spec.reading import InputFiles, located
 if TYPE_CHECKING:
     from rocking.spec.document import ResponseDocument, ResponseTables
 
-_MECHANICS = {"rocking": "pure rocking", "contact": "sliding and hopping", "space": "a body in space", "space with friction": "a body in space with friction"}
+_MECHANICS = {
+    "rocking": "pure rocking",
+    "contact": "sliding and hopping",
+    "space": "a body in space",
+    "space with friction": "a body in space with friction",
+}
 
 
 _PLANE_ONLY = {"free", "bounce", "bounce_law", "assumed_friction"}
@@ -95,8 +100,8 @@ def problem_of(
             f"{_MECHANICS[mechanics]} has one engine, with the full equations", tables.settings, {"linear", "engine"}
         )
     with located("settings"):
-        own = {"friction": start.friction} if mechanics == "space with friction" else {}
-        settings = Settings(mechanics=mechanics, **own, **tables.settings.stated())
+        friction = start.friction if mechanics == "space with friction" else None
+        settings = Settings(mechanics=mechanics, friction=friction, **tables.settings.stated())
     restitutions = restitutions_of(tables.restitution, 0, [body], inputs, friction=start.friction)
     if mechanics != "rocking" and len(restitutions) > 1:
         names = ", ".join(restitutions)

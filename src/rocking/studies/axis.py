@@ -141,7 +141,7 @@ def _slenderness_ratio(case: Case, values: FloatArray) -> dict[str, Any]:
 
 
 def _restitution(case: Case, values: FloatArray) -> dict[str, Any]:
-    body = case.question.body
+    body: Any = case.question.body
     if not isinstance(body, Body):
         return {"sides": {**case.sides, "r_right": values, "r_left": values}}
     inertia = [body.side(foot).moment_of_inertia for foot in FEET]

@@ -12,6 +12,7 @@ from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Motion
+from rocking.outcome import UNCOUNTED
 from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, absent, merged, verdicts
 from rocking.studies.axis import Axis
 from rocking.studies.question import FAILED
@@ -119,7 +120,8 @@ def outlines(grid: AdaptiveGrid, seeds: tuple[IntArray, IntArray], by: str, tole
         return _outlined(grid, verdicts, "overturned", tolerance, seeds)
     lines: list[Polyline] = []
     for n in np.unique(grid.modes[grid.modes >= 0]).tolist():
-        lines += _outlined(grid, partial(np.equal, n), f"overturned after {n} impacts", tolerance, seeds)
+        words = "overturned" if n == UNCOUNTED else f"overturned after {n} impacts"
+        lines += _outlined(grid, partial(np.equal, n), words, tolerance, seeds)
     return lines
 
 

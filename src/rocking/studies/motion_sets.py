@@ -1,7 +1,7 @@
 """The motions of a study, by number: held in memory, or made from a seed when they are needed."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any
 
@@ -63,10 +63,9 @@ class MotionList(MotionSet):
     2
     """
 
-    def __init__(self, motions: Motion | Sequence[Motion]) -> None:
-        given: object = motions
-        single = isinstance(given, (GroundMotion, Pulse, Components, Mapping))
-        found = [together(each) for each in ([motions] if single else list(motions))]  # type: ignore[arg-type]
+    def __init__(self, motions: Any) -> None:
+        single = isinstance(motions, (GroundMotion, Pulse, Components, Mapping))
+        found = [together(each) for each in ([motions] if single else list(motions))]
         wanted = "motions must be ground motions or pulses"
         if not found:
             raise InvalidValueError(f"{wanted}, got none")
@@ -75,7 +74,7 @@ class MotionList(MotionSet):
                 raise InvalidValueError(f"{wanted}, got {item!r:.60} at index {k}")
         if len({isinstance(leading(item), Pulse) for item in found}) > 1:
             raise InvalidValueError("motions of a study must be all records or all pulses; sample the pulses")
-        self._motions: list[Motion] = found  # type: ignore[assignment]
+        self._motions: list[Motion] = found
 
     def __len__(self) -> int:
         return len(self._motions)
@@ -96,7 +95,7 @@ class MotionList(MotionSet):
         }
 
 
-def digest(motion: Motion) -> str:
+def digest(motion: Any) -> str:
     """Return the SHA-256 of what an engine sees of a motion: the step, and the coefficients of both accelerations."""
     import hashlib
 

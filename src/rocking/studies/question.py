@@ -11,18 +11,18 @@ import numpy as np
 from rocking import quantities
 from rocking.bodies import Block, Body
 from rocking.conventions import FloatArray
+from rocking.dynamics._simulate import together
 from rocking.dynamics.contact.fast_engine import FAST
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import Arrays, instruction_set
 from rocking.dynamics.settings import Settings
-from rocking.dynamics._simulate import together
 from rocking.dynamics.space.body import SpatialBody
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
 from rocking.motions.motion import GroundMotion
-from rocking.motions.pulse import Motion, Pulse
+from rocking.motions.pulse import Pulse
 from rocking.outcome import Outcome, flags
 from rocking.version import SOFTWARE
 
@@ -34,18 +34,17 @@ UNLIFTED, SURVIVED, FAILED = -2, -1, -3
 class Question:
     """One body under one motion, to be varied."""
 
-    body: Body
-    motion: Motion
+    body: Any  # a plane body, or one in space
+    motion: Any  # of a body in space components by axis too, as for `simulate`
     restitution: Any = "ked"  # as for `simulate`
     settings: Settings = field(default_factory=Settings)  # how to integrate
     threads: int | None = None  # threads of the fast engine; the results do not depend on them
     engine: str = "auto"  # which engine
 
     def __post_init__(self) -> None:
-        kinds = (GroundMotion, Pulse) if isinstance(self.body, Body) else (GroundMotion, Pulse, Components)
         if not isinstance(self.body, Body):
             object.__setattr__(self, "motion", together(self.motion))
-        if not isinstance(self.motion, kinds):
+        if not isinstance(self.motion, (GroundMotion, Pulse, Components)):
             raise InvalidValueError(f"motion must be a GroundMotion or a pulse, got {self.motion!r:.60}")
         _ = self.parameters
 
@@ -90,10 +89,7 @@ class Question:
         for name in quantities.TIMES:
             results[name] = results[name] * stretch
         results["peak_velocity"] = results["peak_velocity"] / stretch
-        modes = modes_of(results)
-        if not isinstance(self.body, Body):
-            modes = np.minimum(modes, 0)  # impacts of a body in space go on after it has overturned
-        results |= {"mode": modes, **flags(results)}
+        results |= {"mode": modes_of(results), **flags(results)}
         results["peak_ratio"] = peak_ratio(results["peak_rotation"], values["alpha_right"], values["alpha_left"])
         return results, work
 
@@ -201,7 +197,7 @@ def reference_side(body: Body) -> str:
     return "left" if body.side("left").slenderness_angle < body.side("right").slenderness_angle else "right"
 
 
-def changed_body(body: Body, parameters: Mapping[str, float]) -> Body:
+def changed_body(body: Any, parameters: Mapping[str, float]) -> Any:
     """Return a body with other dimensions.
 
     semi_diagonal [m] scales any body with all its lengths; slenderness_angle [rad], width and height [m] are for a

@@ -6,4 +6,13 @@ from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.histories import HullBatch, hull_histories
 from rocking.dynamics.hull.response import HullResponse
 
-__all__ = ["HullBatch", "HullBody", "HullEngine", "HullGround", "HullResponse", "HullSettings", "hull_histories", "standing"]
+__all__ = [
+    "HullBatch",
+    "HullBody",
+    "HullEngine",
+    "HullGround",
+    "HullResponse",
+    "HullSettings",
+    "hull_histories",
+    "standing",
+]

@@ -129,7 +129,9 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     frictions, factors = (
         np.atleast_1d(checks.real_array(n, v)) for n, v in (("friction", friction), ("scales", scales))
     )
-    if any(code == fast_engine.KED and body is not None and body.solid is None for code, _ in codes for body in several):
+    if any(
+        code == fast_engine.KED and body is not None and body.solid is None for code, _ in codes for body in several
+    ):
         raise InvalidValueError("restitution 'ked-3d' needs the distribution of mass: give the HullBody its solid")
     shape = (len(several), len(under), factors.size, len(laws), frictions.size, len(starts))
     states = np.array([[numbers_of(body, each) for each in starts] for body in several])

@@ -197,9 +197,9 @@ class HullResponse(ResponseBase):
             slides = tuple(i for i in contact.members if i not in contact.stuck)
             if start > end or stop <= start:
                 continue
-            if found and found[-1][2:] == (contact.members, slides):
-                start = found.pop()[0]
-            found.append((start, min(stop, end), contact.members, slides))
+            same = found and found[-1][2:] == (contact.members, slides)
+            first = found.pop()[0] if same else start
+            found.append((first, min(stop, end), contact.members, slides))
         return found
 
     @cached_property
@@ -356,7 +356,9 @@ class HullResponse(ResponseBase):
         }
 
 
-def _hermite(a: FloatArray, va: FloatArray, b: FloatArray, vb: FloatArray, span: FloatArray, x: FloatArray) -> Any:
+def _hermite(
+    a: FloatArray, va: FloatArray, b: FloatArray, vb: FloatArray, span: FloatArray, x: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Return the cubic with given values and rates at both ends, and its rate."""
     da, db, rise = span * va, span * vb, b - a
     cubic, square = da + db - 2.0 * rise, 3.0 * rise - 2.0 * da - db

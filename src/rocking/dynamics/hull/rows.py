@@ -23,7 +23,7 @@ from rocking.dynamics.space.ground import SpatialGround, ground_of
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
 from rocking.motions.segments import Segments
-from rocking.outcome import Outcome
+from rocking.outcome import UNCOUNTED, Outcome
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,13 +74,17 @@ class RowsOnHull:
     def __init__(
         self, motions: Sequence[Segments | Components], law: RestitutionOnHull, settings: Settings, engine: str
     ) -> None:
-        self.law, self.settings = law, settings
+        self.law, self.gravity = law, settings.gravity
+        assert settings.friction is not None
+        self.friction = settings.friction
         grounds = [_ground(motion) for motion in motions]
         which = fast_engine.chosen(engine)
         ked = law.model == "ked-3d"
         self.rows = HullRows([law.on_hull], grounds, settings_on_hull(settings), which, ked=ked)
         if ked and law.on_hull.solid is None:
-            raise InvalidValueError("restitution 'ked-3d' needs the distribution of mass, of this body moments are known")
+            raise InvalidValueError(
+                "restitution 'ked-3d' needs the distribution of mass, of this body moments are known"
+            )
 
     def run(self, values: dict[str, FloatArray], motion: np.ndarray, threads: int) -> dict[str, np.ndarray]:
         """Return the results of some rows by the names that studies know; NaN for what this mechanics has not.
@@ -92,10 +96,10 @@ class RowsOnHull:
         if values["rotation"].any() or values["velocity"].any():
             raise InvalidValueError("rows of a body in space start upright and at rest")
         with np.errstate(all="ignore"):  # a row that is no body is refused by itself
-            size = (law.frequency / values["p_right"]) ** 2 * (self.settings.gravity / law.gravity)
+            size = (law.frequency / values["p_right"]) ** 2 * (self.gravity / law.gravity)
             size = np.where(np.all([values[f"alpha_{foot}"] > 0.0 for foot in FEET], axis=0), size, np.nan)
-            pull, scale = self.settings.gravity / size, values["scale"] / size
-        friction = np.where(np.isnan(values["friction"]), self.settings.friction, values["friction"])
+            pull, scale = self.gravity / size, values["scale"] / size
+        friction = np.where(np.isnan(values["friction"]), self.friction, values["friction"])
         r = values["r_right"]
         modelled = r == UNIMPOSED
         code = {"housner-3d": fast_engine.HOUSNER, "ked-3d": fast_engine.KED}.get(str(law.model), 0)
@@ -107,10 +111,11 @@ class RowsOnHull:
         choices = np.column_stack([np.zeros(count, np.int64), motion, codes]).astype(np.int64)
         found = self.rows.run(numbers, choices, threads)
         fell, unknown = found["outcome"] == Outcome.OVERTURNED.code, np.full(count, np.nan)
-        names = ("outcome", "status", "impacts", "uplifts", "still_rocking", "steps", "overturning_time", "peak_time",
+        names = ("outcome", "status", "uplifts", "still_rocking", "steps", "overturning_time", "peak_time",
                  "first_uplift")  # fmt: skip
         return {name: found[name] for name in names} | {
             "peak_rotation": np.where(fell, 0.5 * math.pi, found["peak_tilt"]), "peak_velocity": found["peak_spin"],
+            "impacts": np.where(fell, UNCOUNTED, found["impacts"]),
             "side": np.where(fell, np.where(np.cos(found["direction"]) < 0.0, -1, 1), 0),
             "truncation": unknown, "least_force": unknown, "friction_demand": unknown,
         }  # fmt: skip
