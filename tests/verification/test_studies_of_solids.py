@@ -11,7 +11,7 @@ from rocking.bodies.solid import Part, Solid, box
 from rocking.cli import main
 from rocking.conventions import g
 from rocking.dynamics import SpatialBody, SpatialStart
-from rocking.dynamics.hull.rows import RestitutionOnHull
+from rocking.dynamics.hull.law import RestitutionOnHull
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.settings import Settings, settings_of
@@ -27,6 +27,7 @@ PULSE = rk.pulses.sine(amplitude=3.0, period=0.5)
 BOTH = {"x": PULSE, "y": rk.pulses.ricker(amplitude=2.0, period=0.4)}
 # a pedestal and an eccentric block on it: no symmetry
 STATUE = Solid([Part(box(0.5, 0.7, 0.9), 2400.0), Part(box(0.3, 0.2, 0.5), 1500.0).moved(0.06, 0.1, 0.9)])
+PLANE = rk.Block(width=1.0, height=4.0)
 SHORT = Solid(Part(box(0.6, 0.5, 0.7), 2000.0))
 BASE_ALONE = SpatialBody(
     1.0, np.array([0.0, 0.0, 1.0]), np.eye(3), 0.2 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])

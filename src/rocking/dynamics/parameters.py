@@ -177,9 +177,7 @@ class RockingParameters:
         """
         if not isinstance(body, Body):
             if hasattr(body, "base"):
-                from rocking.dynamics.hull.rows import parameters_in_space
-
-                return parameters_in_space(body, restitution, gravity, friction)
+                return cls._in_space(body, restitution, gravity, friction)
             raise InvalidValueError(f"body must be a Block, Section, MassPoints or Solid, got {body!r:.60}")
         law = restitution if isinstance(restitution, ImpactLaw) else ConstantRestitution()
         base = getattr(restitution, "times", 1.0) if isinstance(restitution, ImpactLaw) else restitution
@@ -203,6 +201,15 @@ class RockingParameters:
                 share,
             )
         return cls(made["right"], made["left"], law, _label(law, {foot: made[foot].share for foot in FEET}, label))
+
+    @classmethod
+    def _in_space(cls, body: Any, restitution: Any, gravity: float, friction: float | None) -> "RockingParameters":
+        from rocking.dynamics.hull.law import RestitutionOnHull
+
+        law = RestitutionOnHull.of(body, restitution, gravity, friction)
+        r = UNIMPOSED if isinstance(law.model, str) else law.model
+        side = RockingSide(law.slenderness_angle, law.frequency, law.size, r)
+        return cls(side, side, law, law.label)
 
 
 def is_none(restitution: Any) -> bool:

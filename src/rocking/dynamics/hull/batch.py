@@ -12,7 +12,8 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.histories import hull_histories
-from rocking.dynamics.hull.response import law_on_hull, settings_on_hull
+from rocking.dynamics.hull.law import law_on_hull
+from rocking.dynamics.hull.response import settings_on_hull
 from rocking.dynamics.response_base import motion_provenance
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space.attitude import SpatialStart

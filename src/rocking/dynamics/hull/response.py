@@ -13,15 +13,14 @@ from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.engine import HullEngine, HullEventKind, HullHistory, HullSettings
 from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.histories import start_of
+from rocking.dynamics.hull.law import law_on_hull
 from rocking.dynamics.hull.vectors import unit
 from rocking.dynamics.response_base import ResponseBase, motion_provenance
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude
 from rocking.dynamics.space.attitude import SpatialStart
-from rocking.dynamics.space.fast_engine import batch_law
 from rocking.dynamics.space.ground import Component, ground_of
 from rocking.dynamics.space.histories import samples, started
-from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.outcome import Outcome
 from rocking.portable import applied
@@ -33,24 +32,6 @@ HULL_IMPACT = np.dtype([("time", "f8"), ("energy_before", "f8"), ("energy_after"
 """Fields of `HullResponse.impacts`: [s], kinetic energy [J], [J], vertices that stay on the ground."""
 
 _AXES = ("x", "y", "z")
-
-
-def law_on_hull(restitution: Any) -> str | float:
-    """Return a restitution as the hull engine takes it.
-
-    >>> law_on_hull("ked"), law_on_hull(0.8)
-    ('ked-3d', 0.8)
-    """
-    law = batch_law(restitution)
-    coefficient = getattr(law.law, "coefficient", None)
-    if coefficient is not None:
-        return float(coefficient)
-    if law.label not in ("housner-3d", "ked-3d"):
-        raise InvalidValueError(
-            f"restitution of a body in space with friction must be 'housner-3d', 'ked-3d' or a coefficient from 0 to "
-            f"1, got {law.label!r:.60}"
-        )
-    return law.label
 
 
 def settings_on_hull(settings: Settings) -> HullSettings:

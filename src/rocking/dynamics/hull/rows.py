@@ -1,71 +1,23 @@
-"""Rows of studies of bodies in space with friction: a law that knows the body, and histories of it on its hull."""
+"""Rows of studies of bodies in space with friction, as histories of one body on its hull."""
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from rocking.conventions import FEET, FloatArray
-from rocking.dynamics.content import hash_of
 from rocking.dynamics.hull import fast_engine
-from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.histories import HullRows, numbers_of
-from rocking.dynamics.hull.response import law_on_hull, settings_on_hull
-from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
-from rocking.dynamics.parameters import UNIMPOSED, RockingParameters, RockingSide
+from rocking.dynamics.hull.law import RestitutionOnHull
+from rocking.dynamics.hull.response import settings_on_hull
+from rocking.dynamics.parameters import UNIMPOSED
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space.attitude import SpatialStart
-from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.ground import SpatialGround, ground_of
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
 from rocking.motions.segments import Segments
 from rocking.outcome import UNCOUNTED, Outcome
-
-
-@dataclass(frozen=True, eq=False)
-class RestitutionOnHull(ConstantRestitution):
-    """What an impact costs a body in space, and the body: its rows say size, coefficient, friction and scale alone."""
-
-    body: Any = None  # a Solid, or what knows of which it is made
-    model: str | float = "ked-3d"
-    frequency: float = 1.0  # of the body under `gravity`: what rows of other sizes are compared with [rad/s]
-    gravity: float = field(default=1.0)  # [m/s2]
-
-    @cached_property
-    def on_hull(self) -> HullBody:
-        """The body on the vertices of its hull."""
-        return HullBody.of(self.body)
-
-    def content(self) -> dict[str, Any]:
-        """Return mass, centre, inertia and hull of the body, and the model."""
-        made = self.on_hull
-        arrays = {"centre": made.centre, "inertia": made.inertia, "hull": made.hull.vertices}
-        return {"model": self.model, "mass": made.mass, **{name: hash_of(each) for name, each in arrays.items()}}
-
-
-def parameters_in_space(body: Any, restitution: Any, gravity: float, friction: float | None) -> RockingParameters:
-    """Return a body in space as studies see it: the least slenderness angle of its base, its p, and its law."""
-    if friction is None:
-        raise InvalidValueError(
-            "a study of a body in space needs friction=, under which it may rock, slide, hop and fall into any of its "
-            "poses; friction=1e6 for one that never slides"
-        )
-    if isinstance(restitution, ImpactLaw):
-        raise InvalidValueError(
-            f"a body in space takes a model or one coefficient in a study, got {type(restitution).__name__}"
-        )
-    law, made = law_on_hull(restitution), SpatialBody.of(body)
-    frequency = made.frequency(gravity)
-    side = RockingSide(
-        math.atan2(made.reach, float(made.centre[2])), frequency, made.size,
-        law if isinstance(law, float) else UNIMPOSED,
-    )  # fmt: skip
-    return RockingParameters(side, side, RestitutionOnHull(body=body, model=law, frequency=frequency, gravity=gravity),
-                             law if isinstance(law, str) else f"{law:.6g}")  # fmt: skip
 
 
 class RowsOnHull:

@@ -151,7 +151,8 @@ class Batch:
     @cached_property
     def _with_contact(self) -> Any:
         from rocking.dynamics.contact.batch import RowsWithContact
-        from rocking.dynamics.hull.rows import RestitutionOnHull, RowsOnHull
+        from rocking.dynamics.hull.law import RestitutionOnHull
+        from rocking.dynamics.hull.rows import RowsOnHull
 
         if isinstance(self.law, RestitutionOnHull):
             return RowsOnHull(self.motions, self.law, self.settings, self.engine)
