@@ -10,10 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from rocking.bodies.solid import Solid, box
 from rocking.campaigns import disk
 from rocking.campaigns.chunks import DEFAULT_CHUNK, FORMAT, REFERENCE_CHUNK, Plan
 from rocking.campaigns.disk import CampaignDamagedError, CampaignMismatchError
 from rocking.conventions import FloatArray
+from rocking.dynamics.hull.law import RestitutionOnHull
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
 from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
@@ -37,7 +39,7 @@ def engine_of(histories: Histories) -> str:
     """Return the engine that computes here: of the same text, ``fast, 0123456789abcdef``, are the same bits."""
     engine = fast_engine.chosen(histories.engine, histories.law)
     if histories.settings.friction is not None:
-        return f"{engine}, {_fingerprint(engine, '', 'contact')}"
+        return f"{engine}, {_fingerprint(engine, '', histories.settings.mechanics)}"
     return f"{engine}, {_fingerprint(engine, fast_engine.instruction_set() if engine == 'fast' else '')}"
 
 
@@ -52,7 +54,7 @@ def _fingerprint(engine: str, instruction_set: str, mechanics: str = "rocking") 
     digest = hashlib.sha256()
     count = _EACH if engine == "fast" else _OF_REFERENCE
     for motions, law, settings in (each for each in _batches() if each[2].mechanics == mechanics):
-        rows = _rows(count, one_base=mechanics == "contact")
+        rows = _rows(count, mechanics)
         results = Batch(motions, law, settings, 1, engine).run(count, rows.part)[0]
         for name, kind in RESULTS.items():
             digest.update(np.ascontiguousarray(results[name], np.dtype(kind).newbyteorder("<")).tobytes())
@@ -74,6 +76,7 @@ def _batches() -> list[tuple[list[Segments], ImpactLaw, Settings]]:
     ]
     quantiles = {"right": np.arange(33) / 256.0 + 0.8125, "left": np.arange(33) / 512.0 + 0.875}
     by_speed = SpeedRestitution(np.array([0.0, 1.0, 4.0]), np.array([1.0, 0.9375, 0.75]))
+    on_hull = RestitutionOnHull(body=Solid(box(0.5, 0.75, 1.5)), model="housner-3d", frequency=2.0, gravity=9.8125)
     return [
         (pulses, RandomRestitution(quantiles, 7), Settings(gravity=9.8125)),
         (flat, ConstantRestitution(), Settings(gravity=9.8125, order=6)),
@@ -81,6 +84,7 @@ def _batches() -> list[tuple[list[Segments], ImpactLaw, Settings]]:
         (pulses, by_speed, Settings(gravity=9.8125, linear=True)),
         (pulses, ConstantRestitution(), Settings(gravity=9.8125, friction=0.3125)),
         (upright, ConstantRestitution(), Settings(gravity=9.8125, friction=0.75, bounce=0.25)),
+        (flat, on_hull, Settings(gravity=9.8125, friction=0.625, mechanics="space with friction")),
     ]
 
 
@@ -90,8 +94,8 @@ def _noise(factor: int, size: float) -> FloatArray:
     return np.asarray(size * ((number * number * factor + 11 * number) % 101 - 50) / 64.0, np.float64)
 
 
-def _rows(count: int, *, one_base: bool) -> Rows:
-    """Bodies from squat to slender, one of which no engine can take; one_base: of one height and one I_C."""
+def _rows(count: int, mechanics: str) -> Rows:
+    """Bodies from squat to slender, one of which no engine can take; with contact of one height and one I_C."""
     k = np.arange(_EACH)[-count:]
     alpha = 0.0625 + 0.03125 * (k * 5 % 13)
     values = {
@@ -101,7 +105,9 @@ def _rows(count: int, *, one_base: bool) -> Rows:
         "share_right": 1.0 - k / 64.0, "share_left": 0.5 + k / 64.0,
         "scale": np.where(k == _EACH - 1, np.nan, 0.5 + k / 16.0), "rotation": np.where(k % 5 == 4, 0.03125, 0.0),
     }  # fmt: skip
-    if one_base:
+    if mechanics == "space with friction":
+        values["rotation"] = 0.0
+    if mechanics == "contact":
         values |= {f"{name}_left": values[f"{name}_right"] for name in ("alpha", "p", "q")}
     return Rows.of(count, k % 4, k, **values)
 

@@ -48,6 +48,11 @@ class RestitutionOnHull(ConstantRestitution):
         return HullBody.of(self.body)
 
     @property
+    def tabulated(self) -> bool:
+        """True: its engine knows it."""
+        return True
+
+    @property
     def label(self) -> str:
         """The model, or the coefficient."""
         return self.model if isinstance(self.model, str) else f"{self.model:.6g}"
