@@ -106,7 +106,7 @@ def _rows(count: int, mechanics: str) -> Rows:
         "scale": np.where(k == _EACH - 1, np.nan, 0.5 + k / 16.0), "rotation": np.where(k % 5 == 4, 0.03125, 0.0),
     }  # fmt: skip
     if mechanics == "space with friction":
-        values["rotation"] = 0.0
+        values["rotation"] = np.zeros(k.size)
     if mechanics == "contact":
         values |= {f"{name}_left": values[f"{name}_right"] for name in ("alpha", "p", "q")}
     return Rows.of(count, k % 4, k, **values)

@@ -71,8 +71,10 @@ class RestitutionOnHull(ConstantRestitution):
             )
         law, made = law_on_hull(restitution), SpatialBody.of(body)
         angle = math.atan2(made.reach, float(made.centre[2]))
-        how = {"frequency": made.frequency(gravity), "gravity": gravity, "slenderness_angle": angle, "size": made.size}
-        return cls(body=body, model=law, **how)
+        return cls(
+            body=body, model=law, frequency=made.frequency(gravity), gravity=gravity, slenderness_angle=angle,
+            size=made.size,
+        )  # fmt: skip
 
     def content(self) -> dict[str, Any]:
         """Return mass, centre, inertia and hull of the body, and the model."""

@@ -28,6 +28,8 @@ from rocking.portable import applied
 FINE = 0.05
 """Time between samples where no record gives it, over sqrt(size / g)."""
 
+_NO_SLIP = 1e-6  # over the size: what an answer does not speak of
+
 HULL_IMPACT = np.dtype([("time", "f8"), ("energy_before", "f8"), ("energy_after", "f8"), ("vertices", "U64")])
 """Fields of `HullResponse.impacts`: [s], kinetic energy [J], [J], vertices that stay on the ground."""
 
@@ -221,7 +223,8 @@ class HullResponse(ResponseBase):
 
     @property
     def _ending(self) -> str:
-        slid = f"a vertex slid {self.sliding_distance:.4g} m in all"
+        slides = self.sliding_distance > _NO_SLIP * self.body.size
+        slid = f", a vertex slid {self.sliding_distance:.4g} m in all" if slides else ""
         if self.outcome is Outcome.NO_UPLIFT:
             return str(self.outcome.value)
         count = self.impacts.size
@@ -229,8 +232,8 @@ class HullResponse(ResponseBase):
         if self.outcome is Outcome.OVERTURNED:
             where = "" if self.trajectory.fell else f" towards {math.degrees(self.overturning_direction):.4g} degrees"
             when = "" if math.isnan(self.overturning_time) else f", for good at {self.overturning_time:.4g} s"
-            return f"overturned{where} into pose {self.pose}{when}; {impacts}, {slid}"
-        sentence = f"{self.outcome.value}: largest tilt {math.degrees(self.peak_tilt):.4g} degrees, {impacts}, {slid}"
+            return f"overturned{where} into pose {self.pose}{when}; {impacts}{slid}"
+        sentence = f"{self.outcome.value}: largest tilt {math.degrees(self.peak_tilt):.4g} degrees, {impacts}{slid}"
         if held := self.trajectory.held:
             sentence += f"; {held} time{'s' * (held != 1)} no contact obeyed every law, and what touched was held"
         return sentence
