@@ -9,7 +9,7 @@ from rocking import conventions, errors
 from rocking.bodies import Body
 from rocking.dynamics.plane.histories import response_of_rocking
 from rocking.dynamics.response import Response
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.settings import Settings, in_space
 from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.motions.components import Components, with_vertical
 from rocking.motions.motion import GroundMotion
@@ -380,11 +380,6 @@ def components_of(motion: Any) -> tuple[Component, Component, Component]:
 def together(motion: Any) -> Any:
     """Return a motion of one component as it is, of several, by mapping or tuple, as one of a study."""
     return Components(*components_of(motion)) if isinstance(motion, (Mapping, tuple)) else motion
-
-
-def in_space(body: Any) -> bool:
-    """Return whether a body is one in space: it has a base to stand on, not two feet."""
-    return not isinstance(body, (Body, np.ndarray)) and hasattr(body, "base")
 
 
 def in_plane(motion: Any) -> GroundMotion | Pulse:

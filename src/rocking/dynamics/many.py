@@ -9,10 +9,10 @@ import numpy as np
 from rocking import checks, conventions, plausibility, quantities
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
-from rocking.dynamics._simulate import components_of, in_plane, in_space, refuse
+from rocking.dynamics._simulate import components_of, in_plane, refuse
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
 from rocking.dynamics.parameters import COMPLEMENTARITY, RockingParameters, is_none, sides_of
-from rocking.dynamics.settings import SHORTEST_STEP, Settings
+from rocking.dynamics.settings import SHORTEST_STEP, Settings, in_space
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion, Pulse

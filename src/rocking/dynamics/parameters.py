@@ -10,6 +10,7 @@ from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.conventions import FEET, FloatArray, Foot, percent
 from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, ImpactLaw
+from rocking.dynamics.settings import in_space
 from rocking.errors import InvalidValueError
 from rocking.restitution import RestitutionModel, model
 from rocking.restitution.implied import energy_bound
@@ -176,7 +177,7 @@ class RockingParameters:
             If it is no body, or a coefficient is negative, not finite, or would create energy.
         """
         if not isinstance(body, Body):
-            if hasattr(body, "base"):
+            if in_space(body):
                 return cls._in_space(body, restitution, gravity, friction)
             raise InvalidValueError(f"body must be a Block, Section, MassPoints or Solid, got {body!r:.60}")
         law = restitution if isinstance(restitution, ImpactLaw) else ConstantRestitution()

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks, conventions, errors, plausibility
+from rocking.bodies import Body
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
 
 ORDERS = (4, 6, 8)
@@ -177,13 +178,18 @@ class Settings:
         return {field.name: getattr(self, field.name) for field in fields(self) if field.name in has}
 
 
+def in_space(body: Any) -> bool:
+    """Return whether a body is one in space: it has a base to stand on, not two feet."""
+    return not isinstance(body, (Body, np.ndarray)) and hasattr(body, "base")
+
+
 def settings_of(gravity: float, options: dict[str, Any], body: Any = None) -> Settings:
     """Return the settings of a call; body: what it is about, which may be one in space."""
     known = {field.name for field in fields(Settings)} - {"mechanics"}
     unknown = sorted(set(options) - known)
     if unknown:
         raise InvalidValueError(f"no option named {unknown[0]!r}; there are {', '.join(sorted(known))}")
-    spatial = hasattr(body, "base") and options.get("friction") is not None
+    spatial = in_space(body) and options.get("friction") is not None
     return Settings(gravity=gravity, **options, mechanics="space with friction" if spatial else "rocking")
 
 
