@@ -146,7 +146,7 @@ REFUSED = {
     "two motions": ([SINE, "--motion", SINE], "one motion along x, please"),
     "free": (["--free", "0.5"], "so it takes no free"),
     "width": ([SINE, "--width", "1"], "give a body file or dimensions, not both"),
-    "friction": ([SINE, "--friction", "0.4"], "so it takes no friction"),
+    "bounce": ([SINE, "--friction", "0.4", "--bounce", "0.2"], "so it takes no bounce"),
     "linear": ([SINE, "--set", "settings.linear=true"], "so it takes no linear"),
     "engine": ([SINE, "--set", "settings.engine=fast"], "so it takes no engine"),
     "animation": ([SINE, "--out", "a.gif"], "an animation is of pure rocking only"),
