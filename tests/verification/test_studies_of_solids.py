@@ -35,14 +35,13 @@ BASE_ALONE = SpatialBody(
 
 
 @pytest.mark.verifies("second engine", "the reference engine, one history at a time", within="1e-6")
-@pytest.mark.parametrize("restitution", ["ked", 0.9])
-def test_a_cell_is_its_history(restitution):
+def test_a_cell_is_its_history():
     """Every cell of a batch is the history of `simulate`, of a body without symmetry under two components."""
     frictions, scales = [0.25, 0.7], [0.8, 2.2]
-    found = rk.simulate_many(STATUE, BOTH, restitution, friction=frictions, scale=scales)
+    found = rk.simulate_many(STATUE, BOTH, "ked", friction=frictions, scale=scales)
     for i, j in ((0, 0), (1, 1)):
         cell = found.isel(body=0, motion=0, restitution=0, start=0, scale=i, friction=j)
-        one = rk.simulate(STATUE, BOTH, restitution, friction=frictions[j], scale=scales[i])
+        one = rk.simulate(STATUE, BOTH, "ked", friction=frictions[j], scale=scales[i])
         assert int(cell.outcome) == one.outcome.code
         assert int(cell.pose) == one.pose
         assert float(cell.peak_tilt) == pytest.approx(one.peak_tilt, rel=1e-6, abs=1e-9)
@@ -210,7 +209,7 @@ def test_a_map_is_its_single_histories():
     """Cell by cell, two components of unequal length, time stretched for both, a body without symmetry."""
     periods, scales = [0.4, 0.8], [1.0, 4.0]
     found = overturning_map(STATUE, BOTH, ("period", periods), ("scale", scales), "housner", friction=0.8)
-    for i, j in ((1, 0), (0, 1), (1, 1)):
+    for i, j in ((0, 1), (1, 1)):
         slow = periods[j] / 0.5
         longer = {"x": rk.pulses.sine(3.0, periods[j]), "y": rk.pulses.ricker(2.0, 0.4 * slow)}
         _same(found.isel(scale=i, period=j), rk.simulate(STATUE, longer, "housner", scale=scales[i], friction=0.8))
