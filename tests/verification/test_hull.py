@@ -31,7 +31,7 @@ G = rk.conventions.g
 FINE = HullSettings(tolerance=1e-14)
 TOWER = (1.0, 1.3, 4.0)
 CAMPAIGN = os.environ.get("ROCKING_CAMPAIGN") == "1"
-HULLS = 30 if CAMPAIGN else 2
+HULLS = 30 if CAMPAIGN else 1
 
 
 def _rocking(body, tilt, azimuth=0.0, spin=(0.0, 0.0, 0.0)):
