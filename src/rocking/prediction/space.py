@@ -8,9 +8,11 @@ import numpy as np
 
 from rocking.bodies import Block, Solid
 from rocking.conventions import FloatArray, percent
-from rocking.dynamics.hull import HullBody, HullGround, HullSettings, fast_engine, standing
+from rocking.dynamics.hull import HullBody, HullSettings, fast_engine, standing
 from rocking.dynamics.hull.histories import HullRows
+from rocking.dynamics.settings import processors
 from rocking.dynamics.space.attitude import product, turn
+from rocking.dynamics.space.ground import ground_of
 from rocking.errors import InvalidValueError
 from rocking.evidence import restitution_distribution
 from rocking.outcome import Status
@@ -131,14 +133,17 @@ class SpaceMechanics(Mechanics):
         several = list(dict.fromkeys(shapes))
         number = {shape: k for k, shape in enumerate(several)}
         place = np.array([number[shape] for shape in shapes])
-        ground = HullGround(*parts(self._motions[motion]), gravity=self._gravity)
+        ground = ground_of(*parts(self._motions[motion]))
         turned = zip(shapes, drawn["azimuth"].tolist(), strict=True)
         state = np.array([shape.state(azimuth) for shape, azimuth in turned])
-        rows = HullRows(
-            place, np.zeros(place.size, np.int64), np.full(place.size, self._law), drawn["restitution"], factor,
-            drawn["friction"], state,
-        )  # fmt: skip
-        found = rows.run([shape.body for shape in several], [ground], _SETTINGS, threads=threads)
+        numbers = np.zeros((place.size, 29))
+        numbers[:, 0], numbers[:, 1], numbers[:, 3] = drawn["restitution"], factor, drawn["friction"]
+        numbers[:, 4:13], numbers[:, 13:15] = np.eye(3).ravel(), math.inf
+        numbers[:, 15:28], numbers[:, 28] = state, self._gravity
+        choices = np.column_stack([place, np.zeros_like(place), np.full_like(place, self._law)])
+        ked = self._law == fast_engine.KED
+        rows = HullRows([shape.body for shape in several], [ground], _SETTINGS, fast_engine.chosen("auto"), ked=ked)
+        found = rows.run(numbers, choices, threads or processors())
         known = found["status"] == Status.GOOD.code
         pairs = zip(shapes, found["pose"].tolist(), strict=True)
         elsewhere = np.array([shape.left(pose) for shape, pose in pairs], dtype=np.float64)

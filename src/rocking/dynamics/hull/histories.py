@@ -15,6 +15,7 @@ from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.engine import HullEngine, HullEventKind, HullHistory, HullSettings
 from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.motion import State
+from rocking.dynamics.hull.restitution import FixedPosition
 from rocking.dynamics.hull.vectors import applied, cross, dot, frame, scaled
 from rocking.dynamics.settings import check_progress, check_threads, processors
 from rocking.dynamics.space.attitude import SpatialStart
@@ -83,7 +84,7 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
         Bodies; None for one that cannot be, whose rows are refused by themselves.
     grounds : HullGround or sequence of them
         What they stand on, and how that moves.
-    restitution : {"housner-3d", "ked-3d"}, float or list of them
+    restitution : {"housner-3d", "ked-3d"}, FixedPosition, float or list of them
         What an impact costs, as `HullEngine` takes it.
     friction : float or array_like
         Coulomb coefficients; infinite for vertices that never slide [-].
@@ -194,11 +195,12 @@ class HullRows:
     def _one(self, row: FloatArray, which: list[int]) -> tuple[list[float], list[int]]:
         body, unbounded = self.bodies[which[0]], np.isin(np.arange(row.size), (3, 13, 14))
         known = (np.abs(row) <= 1e9) | (unbounded & (row == math.inf))
-        bounded = which[2] != fast_engine.COEFFICIENT or 0.0 <= row[0] <= 1.0
+        bounded = which[2] in {fast_engine.HOUSNER, fast_engine.KED} or 0.0 <= row[0] <= 1.0
         if body is None or not (known.all() and bounded and row[3] >= 0.0 and row[28] > 0.0):
             refused = [Outcome.FAILED.code, Status.INVALID.code, -1, *[0] * (len(fast_engine.WHOLES) - 3)]
             return [math.nan] * len(fast_engine.FLOATS), refused
-        law = {fast_engine.HOUSNER: "housner-3d", fast_engine.KED: "ked-3d"}.get(which[2], float(row[0]))
+        named = {fast_engine.HOUSNER: "housner-3d", fast_engine.KED: "ked-3d"}
+        law = FixedPosition(row[0]) if which[2] == fast_engine.POSITION else named.get(which[2], float(row[0]))
         moving = self.motions[which[1]]
         ground = HullGround.placed(
             SpatialGround(moving.times, row[1] * moving.coefficients), row[4:13], row[13:15], float(row[28])
@@ -235,6 +237,8 @@ def _code(law: Any) -> tuple[int, float]:
         return fast_engine.HOUSNER, 0.0
     if law in ("ked", "ked-3d"):
         return fast_engine.KED, 0.0
+    if isinstance(law, FixedPosition):
+        return fast_engine.POSITION, law.k
     if isinstance(law, (int, float)):
         return fast_engine.COEFFICIENT, checks.within("restitution", float(law), 0.0, 1.0)
     raise InvalidValueError(f"restitution must be 'housner-3d', 'ked-3d' or a number, got {law!r:.60}")
