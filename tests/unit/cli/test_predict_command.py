@@ -102,7 +102,7 @@ def test_refusals(run, words, why):
     assert why in err
 
 
-@pytest.mark.verifies("behaviour")
+@pytest.mark.verifies("behaviour", room="doors")
 def test_a_conservator_with_a_scan(tmp_path, capsys, monkeypatch):
     """Three commands from an open scan in mm to a picture, a probability and a document, as docs/how_to.md has them."""
     vertices, sides, _ = bad_scans.statue(12, 9)
