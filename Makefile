@@ -6,6 +6,8 @@ PORTABLE := src/rocking/restitution/space src/rocking/dynamics/space tests/unit/
 	tests/verification/test_spatial_round_shaken.py::test_a_lift_from_rest_is_no_fall tests/verification/test_planar_regimes.py
 VENV := .venv
 BIN := $(VENV)/bin
+# Hundreds of processes import the library: what was compiled once is kept, whatever the surroundings say.
+unexport PYTHONDONTWRITEBYTECODE
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 .PHONY: help demo test docs oldest packages coverage portable portable-quick lint golden engine campaign fuzz fuzz-web durability predictions virtual-rocks questions bench mutants lock clean
