@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -159,18 +160,24 @@ def test_titles_of_motions_and_responses_are_text(name):
 
 @names
 def test_tables_hold_text_and_no_formula(name):
-    """In CSV and Excel no hostile name begins a formula, opens a row or a column; MATLAB and netCDF hold it."""
+    """In CSV and Excel no hostile name begins a formula, opens a row or a column; MATLAB and netCDF hold it.
+
+    NetCDF takes long: each name is written in one of the three tables, with ROCKING_CAMPAIGN=1 in all.
+    """
     asked = Evaluation(inputs_named(name), None)
     motion = GroundMotion(np.sin(np.arange(50.0)), 0.1, name=name)
-    for sheet in (
+    sheets = (
         body_table(asked.body, 9.80665, name, {"body": name}),
         measures_table(motion, {"motion": name}),
         as_table({name: name}, {"label": ("", [name, None]), "value": ("-", [1.5, None])}),
-    ):
+    )
+    in_netcdf = sheets if os.environ.get("ROCKING_CAMPAIGN") == "1" else (sheets[NAMES.index(name) % 3],)
+    for sheet in sheets:
         check_csv(written([(name, sheet)], "csv"), sheet)
         check_excel(written([(name, sheet), (name, sheet)], "xlsx"), sheet)
         mat = scipy.io.loadmat(io.BytesIO(written([(name, sheet)], "mat")), squeeze_me=True)["rocking"]
         assert set(mat.dtype.names) >= set(sheet.columns)
+    for sheet in in_netcdf:
         with xarray.open_dataset(io.BytesIO(written([(name, sheet)], "nc")), engine="h5netcdf") as data:
             assert set(data.variables) == set(sheet.columns)
 

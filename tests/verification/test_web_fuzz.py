@@ -22,8 +22,8 @@ with warnings.catch_warnings():  # it says that another client than httpx is com
 
 pytestmark = pytest.mark.verifies("damage", control="test_a_server_that_fails_is_seen", room="doors")
 
-REQUESTS = int(os.environ.get("ROCKING_WEB_FUZZ", "400"))
-"""Requests of each of the two kinds; `make fuzz-web` sends 5,000 of each."""
+REQUESTS = int(os.environ.get("ROCKING_WEB_FUZZ", "200"))
+"""Requests of each of the two kinds; `make fuzz-web` sends 6,500 of each."""
 
 HEAVY = ("report.pdf", "animation", "picture", "table", "inputs.zip", "export")
 INPUTS: dict[str, Any] = {
