@@ -75,7 +75,7 @@ def of_space(response: Any) -> list[Any]:
 def space(body: SpatialBody) -> list[Any]:
     """Histories of the reference engine, one a law."""
     laws = LAWS if body.matter else ["housner-3d", 0.95]
-    end = (1.2 if body.round else 3.0) * (1.0 if LONG else 0.4)
+    end = (1.2 if body.round else 3.0) * (1.0 if LONG else 0.25)
     return [of_space(rk.simulate(body, shaking(k), law, scale=0.9, duration=end)) for k, law in enumerate(laws)]
 
 
