@@ -100,7 +100,7 @@ def imports(folder: Path) -> dict[str, set[str]]:
 
 def _imported(name: str, tree: ast.Module, modules: dict[str, ast.Module]) -> Iterator[str]:
     # a package's table of its own exports is no arrow
-    named = () if name.count(".") and _is_package(name, modules) else [each for each in modules if "." in each]
+    named = set() if name.count(".") and _is_package(name, modules) else {each for each in modules if "." in each}
     for node in _executed(tree):
         if isinstance(node, ast.Import):
             yield from (each.name for each in node.names if each.name in modules)
@@ -116,13 +116,14 @@ def _is_package(name: str, modules: dict[str, ast.Module]) -> bool:
 
 
 def _executed(tree: ast.AST) -> Iterator[ast.AST]:
-    for node in ast.iter_child_nodes(tree):
-        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test):
-            for other in node.orelse:
-                yield from _executed(other)
-            continue
-        yield node
-        yield from _executed(node)
+    inside = [tree]
+    while inside:
+        for node in ast.iter_child_nodes(inside.pop()):
+            if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test):
+                inside += node.orelse
+                continue
+            yield node
+            inside.append(node)
 
 
 def _home(module: str, name: str, modules: dict[str, ast.Module]) -> str:
