@@ -58,6 +58,7 @@ SECTIONS = {
         "incremental_analysis_with_resurrection",
         "which_intensity_measure",
         "how_likely_it_overturns",
+        "were_the_predictions_right",
     ],
     "space": [
         "solid_statue",

@@ -12,8 +12,8 @@ from rocking.version import SOFTWARE
 
 _MODULES = {"models": "catalogues", "formats": "catalogues"}
 COMMANDS = (
-    "cor", "equilibria", "simulate", "predict", "map", "minimum", "spectrum", "fragility", "inventory", "paper",
-    "models", "motion", "formats", "serve", "example",
+    "cor", "equilibria", "simulate", "predict", "validate", "map", "minimum", "spectrum", "fragility", "inventory",
+    "paper", "models", "motion", "formats", "serve", "example",
 )  # fmt: skip
 
 

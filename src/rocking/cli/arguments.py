@@ -52,10 +52,18 @@ def as_typed() -> Iterator[None]:
         inner: RockingError = error
         while isinstance(cause := inner.__cause__, RockingError) and _is_located(inner, cause):
             inner = cause
-        text = str(inner)
-        for pattern, option in _AS_TYPED:
-            text = pattern.sub(option, text)
-        raise type(inner)(text) from error
+        raise type(inner)(as_options(str(inner))) from error
+
+
+def as_options(text: str) -> str:
+    """Return what is refused as the command line calls things.
+
+    >>> as_options('say units="g"')
+    'say --units g'
+    """
+    for pattern, option in _AS_TYPED:
+        text = pattern.sub(option, text)
+    return text
 
 
 def _is_located(error: RockingError, cause: RockingError) -> bool:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rocking.plots.paper_figures import paper_figure
     from rocking.plots.prediction import prediction_picture
     from rocking.plots.regimes import regime_map_picture, regimes_picture
+    from rocking.plots.reliability import reliability_picture
     from rocking.plots.response import response_picture
     from rocking.plots.rocking_spectrum import rocking_spectrum_picture
     from rocking.plots.sensitivity import difference_map_picture, sensitivity_picture
@@ -54,6 +55,7 @@ __all__ = [
     "refined_map_picture",
     "regime_map_picture",
     "regimes_picture",
+    "reliability_picture",
     "response_picture",
     "rocking_spectrum_picture",
     "sensitivity_picture",

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking.bodies import Block, Solid
+from rocking.bodies import MassPoints, Solid
 from rocking.conventions import FloatArray, percent
 from rocking.dynamics.hull import HullBody, HullSettings, fast_engine, standing
 from rocking.dynamics.hull.histories import HullRows
@@ -112,9 +112,9 @@ class SpaceMechanics(Mechanics):
         reach = support @ np.array([edge[1], -edge[0]])  # outward across the edge
         new, old, height = float(reach.max()), float(-reach.min()), self._pose.height
         inertia = float(edge @ self._inertia @ edge)
-        plane = Block(
-            width=old + new, height=2.0 * height, mass=self._mass, centre=(old, height), moment_of_inertia=inertia
-        )
+        # the body may be wider than its base, so no block has its moments: two equal masses about the centre have
+        far, half = math.sqrt(inertia / self._mass), 0.5 * self._mass
+        plane = MassPoints([(old - far, height), (old + far, height)], [half, half], feet=(0.0, old + new))
         found = restitution_distribution(plane)
         r = found.tables["right"]
         ahead = (inertia / self._mass + height**2) * (1.0 - r) / (r * new + old)  # Eq. 4

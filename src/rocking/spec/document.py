@@ -455,22 +455,44 @@ class ResponseDocument(ResponseTables):
         return self
 
 
-class PredictionDocument(JobTable):
-    """A file that asks how likely a body is to overturn."""
+class PredictedBody(JobTable):
+    """A body, what is not known of it, and how to integrate."""
 
     predict: PredictTable = Field(default_factory=PredictTable)
     body: dict[str, Any]
-    motion: ComponentsTable | None = None
-    motions: Annotated[list[MotionTable], BeforeValidator(in_list)] = Field(default_factory=list)
     settings: StudySettingsTable = Field(default_factory=StudySettingsTable)
 
     @model_validator(mode="after")
-    def _whole(self) -> "PredictionDocument":
-        if (self.motion is None) == (not self.motions):
-            raise refused("give [[motions]], or [motion] with x and y, and not both")
+    def _one_engine(self) -> "PredictedBody":
         odd = sorted(self.settings.model_fields_set - {"gravity", "friction", "bounce", "bounce_law"})
         if odd:
             raise refused(f"settings.{odd[0]} does not go with a prediction, which has one engine")
         if self.settings.friction is not None and self.predict.friction is not None:
             raise refused("predict.friction and settings.friction say the same: leave one out")
+        return self
+
+
+class PredictionDocument(PredictedBody):
+    """A file that asks how likely a body is to overturn."""
+
+    motion: ComponentsTable | None = None
+    motions: Annotated[list[MotionTable], BeforeValidator(in_list)] = Field(default_factory=list)
+
+    @model_validator(mode="after")
+    def _whole(self) -> "PredictionDocument":
+        if (self.motion is None) == (not self.motions):
+            raise refused("give [[motions]], or [motion] with x and y, and not both")
+        return self
+
+
+class ValidationDocument(PredictedBody):
+    """A file beside a table of outcomes: the body, what is not known of it, and how its records are read."""
+
+    motion: MotionKeys = Field(default_factory=MotionKeys)
+
+    @model_validator(mode="after")
+    def _of_files(self) -> "ValidationDocument":
+        known = OF_FILES - {"vertical_file"}
+        if odd := sorted(self.motion.model_fields_set - known):
+            raise refused(f"[motion] takes {', '.join(sorted(known))} here, got {odd[0]}; outcomes name the rest")
         return self

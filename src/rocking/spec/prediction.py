@@ -11,7 +11,7 @@ from rocking.spec.construction import any_body_of, motion_of, motions_of, restit
 from rocking.spec.reading import InputFiles, located
 
 if TYPE_CHECKING:
-    from rocking.spec.document import PredictionDocument
+    from rocking.spec.document import PredictedBody, PredictionDocument
 
 
 @dataclass(frozen=True)
@@ -25,8 +25,6 @@ class PredictionProblem:
     @classmethod
     def of(cls, document: "PredictionDocument", inputs: InputFiles) -> "PredictionProblem":
         """Return what a file describes; inputs: files that it may name."""
-        from rocking.spec.document import RestitutionTable
-
         with located("body"):
             body = any_body_of(document.body, inputs)
         motions: Any
@@ -36,14 +34,21 @@ class PredictionProblem:
             along = document.motion.components or {"x": document.motion}
             with located("motion"):
                 motions = [{axis: motion_of(each, inputs).scaled(each.scale) for axis, each in along.items()}]
-        ground = document.settings.model_dump(exclude_none=True, exclude={"engine"})
-        options = {**document.predict.model_dump(exclude_none=True), **ground}
-        model = options.get("restitution")
-        if isinstance(model, str) and model not in {MEASURED, COMPLEMENTARITY} and not isinstance(body, Solid):
-            table = RestitutionTable(model=model)
-            options["restitution"] = next(iter(restitutions_of(table, 0, [body], inputs).values()))
-        return cls(body, motions, options)
+        return cls(body, motions, options_of(document, body, inputs))
 
     def answer(self, progress: Callable[[int], None] | None = None, threads: int | None = None) -> Prediction:
         """Compute it."""
         return predict(self.body, self.motions, **self.options, threads=threads, progress=progress)
+
+
+def options_of(document: "PredictedBody", body: Body | Solid, inputs: InputFiles) -> dict[str, Any]:
+    """Return what a file says of a body that is not known exactly, as `predict` takes it."""
+    from rocking.spec.document import RestitutionTable
+
+    ground = document.settings.model_dump(exclude_none=True, exclude={"engine"})
+    options = {**document.predict.model_dump(exclude_none=True), **ground}
+    model = options.get("restitution")
+    if isinstance(model, str) and model not in {MEASURED, COMPLEMENTARITY} and not isinstance(body, Solid):
+        table = RestitutionTable(model=model)
+        options["restitution"] = next(iter(restitutions_of(table, 0, [body], inputs).values()))
+    return options

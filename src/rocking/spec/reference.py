@@ -28,7 +28,7 @@ _TABLES: dict[str, tuple[type[JobTable], str]] = {
     "fragility": (document.FragilityTable, "`rocking fragility`"),
     "inventory": (document.InventoryTable, "`rocking inventory`"),
     "inventory.thresholds": (document.ThresholdsTable, "`rocking inventory`"),
-    "predict": (document.PredictTable, "`rocking predict`"),
+    "predict": (document.PredictTable, "`rocking predict` and `rocking validate`"),
     "histories": (document.HistoriesTable, "campaigns of kind histories"),
     "campaign": (document.CampaignTable, "`rocking campaign`"),
     "export": (document.ExportTable, "`rocking campaign export`"),

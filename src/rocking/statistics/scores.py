@@ -125,12 +125,12 @@ class Forecasts:
     @property
     def brier(self) -> Score:
         """Mean square of probability less outcome; 0 is perfect, 1/4 is a coin's (Brier 1950) [-]."""
-        return self._mean((self.probability - self.outcome) ** 2)  # Eq. 230
+        return self._mean(_brier(self.probability, self.outcome))
 
     @property
     def logarithmic(self) -> Score:
         """Mean of -ln of the probability given to what happened; infinite if one was called impossible [nat]."""
-        return self._mean(self._surprise())
+        return self._mean(_surprise(self.probability, self.outcome))
 
     @property
     def accuracy(self) -> Score:
@@ -143,31 +143,44 @@ class Forecasts:
         foreseen, yes = self._foreseen(), self.outcome == 1.0
         return self._score(lambda sums: 0.5 * (sums(foreseen, yes) + sums(foreseen, ~yes)))  # Eq. 232
 
-    def skill(self, other: "Forecasts | float") -> Score:
-        """Return by how much the Brier score is better than that of another forecast of the same outcomes.
+    def skill(self, other: "Forecasts | float", measure: str = "brier") -> Score:
+        """Return by how much a score is better than that of another forecast of the same outcomes.
 
         Parameters
         ----------
         other : Forecasts or float
             The other forecast, or one probability given to all [-].
+        measure : str
+            The score, "brier" or "logarithmic".
 
         Returns
         -------
         Score
-            Brier score of the other less that of this one, above zero where this one is better; drawn in pairs [-].
+            Score of the other less that of this one, above zero where this one is better; drawn in pairs [- or nat].
 
         Raises
         ------
         InvalidValueError
-            If the other one is of other outcomes.
+            If the other one is of other outcomes, or there is no such score.
         """
+        loss = _LOSSES[checks.one_of("measure", measure, _LOSSES)]
         if isinstance(other, Forecasts):
             if not np.array_equal(other.outcome, self.outcome):
                 raise InvalidValueError("the other forecast must be of the same outcomes in the same order")
             theirs = other.probability
         else:
             theirs = np.full(self.outcome.size, checks.within("other", other, 0.0, 1.0))
-        return self._mean((theirs - self.outcome) ** 2 - (self.probability - self.outcome) ** 2)
+        return self._mean(loss(theirs, self.outcome) - loss(self.probability, self.outcome))
+
+    @property
+    def bias(self) -> Score:
+        """Mean of probability less outcome; above zero where more was said than happened [-]."""
+        return self._mean(self.probability - self.outcome)
+
+    @property
+    def sureness(self) -> Score:
+        """Mean of the terms above the fraction of `calibration`: above zero where forecasts are too sure [-]."""
+        return self._mean((self.outcome - self.probability) * (1.0 - 2.0 * self.probability))
 
     @property
     def calibration(self) -> float:
@@ -199,10 +212,6 @@ class Forecasts:
             found.append(ReliabilityBin(p.size, float(p.mean()), float(happened.mean()), *interval))
         return found
 
-    def _surprise(self) -> FloatArray:
-        p, yes = self.probability, self.outcome
-        return np.asarray(-xlogy(yes, p) - xlogy(1.0 - yes, 1.0 - p), dtype=np.float64)  # Eq. 231
-
     def _foreseen(self) -> FloatArray:
         return np.where((self.probability >= 0.5) == (self.outcome == 1.0), 1.0, 0.0)
 
@@ -233,6 +242,17 @@ class Forecasts:
         return Score(value, float(low), float(high))
 
 
+def _brier(p: FloatArray, yes: FloatArray) -> FloatArray:
+    return np.asarray((p - yes) ** 2)  # Eq. 230
+
+
+def _surprise(p: FloatArray, yes: FloatArray) -> FloatArray:
+    return np.asarray(-xlogy(yes, p) - xlogy(1.0 - yes, 1.0 - p), dtype=np.float64)  # Eq. 231
+
+
+_LOSSES = {"brier": _brier, "logarithmic": _surprise}
+
+
 def logistic_left_out(features: Any, outcome: Any, clusters: Any) -> FloatArray:
     """Return what a logistic curve foresees of each cluster that was fitted to all the others.
 
@@ -243,7 +263,8 @@ def logistic_left_out(features: Any, outcome: Any, clusters: Any) -> FloatArray:
     Parameters
     ----------
     features : array_like, shape (n, k)
-        What is known of each outcome beforehand, such as ln PGA and ln PGV.
+        What is known of each outcome beforehand, such as ln PGA and ln PGV; with no columns the curve is the share of
+        the others, one half added to either count.
     outcome : array_like, shape (n,)
         1, 0, or NaN where nobody knows [-].
     clusters : array_like, shape (n,)

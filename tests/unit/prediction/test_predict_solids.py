@@ -161,3 +161,20 @@ def test_what_cannot_be_meant_is_refused(given, words):
     """Names that do not exist in space, ranges in other units, with the words that say so."""
     with pytest.raises(RockingError, match=words):
         predict(stone(), shaking(), count=4, **given)
+
+
+@pytest.mark.verifies("computed anew", "a section of the same shape")
+def test_a_body_wider_than_its_base_is_measured_as_its_section():
+    """A heavy head on a narrow foot: no block on that base has its moment of inertia, which was refused."""
+    from rocking.evidence import restitution_distribution
+
+    shapes = {(0.0, 0.2, 0.0, 0.8): 300.0, (-2.4, 2.5, 0.8, 1.1): 2500.0}
+    regions = [rk.Region([(a, c), (b, c), (b, d), (a, d)], density) for (a, b, c, d), density in shapes.items()]
+    section = rk.Section(regions, feet=(0.0, 0.2))
+    parts = [
+        Part(box(b - a, 1.5, d - c), density, translation=(0.5 * (a + b), 0.0, c))
+        for (a, b, c, d), density in shapes.items()
+    ]
+    found = SpaceMechanics(Solid(parts), rk.pulses.sine(3.0, 0.8), {}, rk.conventions.g)
+    r = restitution_distribution(section, onto="left").tables["left"]  # the nearer one
+    assert found.inputs["restitution"].words.startswith(f"{r[25]:.3f} to {r[-26]:.3f} over the edge")

@@ -19,6 +19,9 @@ def test_by_hand():
     assert made.logarithmic.value == pytest.approx(-np.log([0.9, 0.8, 0.4, 0.9]).mean(), rel=1e-14)
     assert (made.accuracy.value, made.balanced_accuracy.value) == (0.75, pytest.approx(5.0 / 6.0))
     assert made.skill(0.25).value == pytest.approx((0.75**2 + 3 * 0.25**2) / 4.0 - made.brier.value, rel=1e-13)
+    assert made.skill(0.5, "logarithmic").value == pytest.approx(np.log(2.0) - made.logarithmic.value, rel=1e-13)
+    assert made.bias.value == pytest.approx((0.9 - 1.0 + 0.2 + 0.6 + 0.1) / 4.0, rel=1e-13)
+    assert made.sureness.value == pytest.approx((0.1 * -0.8 - 0.2 * 0.6 - 0.6 * -0.2 - 0.1 * 0.8) / 4.0, rel=1e-13)
     assert Forecasts([0.0, 1.0], [1, 1]).logarithmic.value == np.inf
     assert Forecasts([0.5, np.nan, 0.3], [1, 1, np.nan]).left_out == 2
     one, two = Forecasts([0.05, 0.12, 0.18], [0, 1, 0]).reliability()
@@ -116,6 +119,7 @@ def test_left_out_is_not_seen():
         (lambda: Forecasts([0.5], [2]), "outcome must be 1, 0 or NaN, got 2"),
         (lambda: Forecasts([0.5], [np.nan]), "nothing to score"),
         (lambda: Forecasts([0.5], [1]).skill(Forecasts([0.5], [0])), "same outcomes"),
+        (lambda: Forecasts([0.5], [1]).skill(0.5, "accuracy"), "measure must be one of brier, logarithmic"),
         (lambda: logistic_left_out([0.1, 0.2], [0, 1], [0, 1]), "a row for each outcome"),
         (lambda: logistic_left_out([[-np.inf], [1.0]], [0, 1], [0, 1]), "logarithm of zero"),
     ],

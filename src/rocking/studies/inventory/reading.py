@@ -247,7 +247,7 @@ def parse_inventory(text: str, source: str = "objects") -> Inventory:
     if separator := _SEPARATOR.match(lines):
         lines, allowed = lines[separator.end() :], (separator[1],)
     delimiter = _delimiter(lines, allowed, source)
-    rows = _rows(lines, delimiter, source)
+    rows = rows_of(lines, delimiter, source)
     columns, ignored = columns_of(rows[0][1], source)
     body = [(line, cells) for line, cells in rows[1:] if any(cell.strip() for cell in cells)]
     numeric = [k for k, column in enumerate(columns) if column and column.fields[0] not in _TEXTS]
@@ -280,7 +280,8 @@ def _delimiter(text: str, allowed: tuple[str, ...], source: str) -> str:
     )
 
 
-def _rows(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]]]:
+def rows_of(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]]]:
+    """Return the rows of CSV that are not empty before the first, with the line on which each begins."""
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
     rows: list[tuple[int, list[str]]] = []
     line = 1
@@ -290,7 +291,7 @@ def _rows(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]]]
                 rows.append((line, cells))
             line = reader.line_num + 1
             if len(rows) > MOST_ROWS:
-                raise InvalidValueError(f"{source}: an inventory must have at most {MOST_ROWS} rows")
+                raise InvalidValueError(f"{source}: a list must have at most {MOST_ROWS} rows")
     except csv.Error as error:
         raise InvalidValueError(f"{source}: not a table, line {line}: {error}; a quotation mark left open?") from error
     return rows

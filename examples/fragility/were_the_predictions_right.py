@@ -1,0 +1,71 @@
+"""Were the predictions right?
+===========================
+
+A body was shaken 180 times, and it is known whether it overturned. Were the probabilities that were given beforehand
+right as often as they say, and were they better than a curve in PGA and PGV? For whoever has trials of a shaking table,
+or photographs from after an earthquake.
+
+The trials here are invented: they are simulations whose friction, feet and restitution the prediction is not told.
+"""
+
+# %%
+# Each trial has a motion of its own. What happened is found with one hidden friction, chipped feet and one coefficient
+# for each trial.
+
+import numpy as np
+
+import rocking as rk
+from rocking.motions.integrals import peak_ground_velocity
+from rocking.plots import reliability_picture, write
+from rocking.prediction import predict, score
+
+random = np.random.default_rng(4)
+body = rk.Block(width=0.4, height=1.6)
+shapes = (rk.pulses.sine, rk.pulses.cosine, rk.pulses.ricker)
+motions = [shapes[k % 3](random.uniform(1.5, 7.0), random.uniform(0.3, 1.4)).sampled(0.01) for k in range(180)]
+
+
+def tried(motion):
+    """Return whether a body with what is hidden of it overturned."""
+    left, right = random.uniform(0.0, 0.02, 2)
+    truly = body.with_feet(body.feet[0] + left, body.feet[1] - right)
+    friction, restitution = random.uniform(0.1, 0.8), random.uniform(0.85, 0.93)
+    found = rk.simulate_many(truly, motion, restitution, friction=friction, scale=random.choice([-1.0, 1.0]))
+    return float(found.overturned.item())
+
+
+fell = np.array([tried(motion) for motion in motions])
+print(f"{fell.sum():.0f} of {fell.size} overturned")
+
+# %%
+# The prediction knows the ranges alone. `score` puts it beside a logistic curve in PGA and PGV, and beside the share
+# that overturned at all; either is fitted to the outcomes under all other motions, the prediction to none.
+
+known = {"friction": (0.1, 0.8), "base": (0.0, 0.02), "restitution": (0.85, 0.93), "centre": 1.0}
+foreseen = predict(body, motions, **known, count=32, shares=False)
+pga, pgv = [motion.peak for motion in motions], [peak_ground_velocity(motion) for motion in motions]
+said = foreseen.chances["overturning"].per_motion
+found = score(said, fell, range(180), pga=pga, pgv=pgv, count=foreseen.count)
+print(found)
+
+# %%
+# Points on the dashed line are right as often as they say. To the right of zero the prediction is better; a bar across
+# zero means that these trials do not tell.
+
+write(reliability_picture(found), "were_the_predictions_right.png")
+assert found.finding == "better"
+
+# %%
+# Fewer trials tell less: the first twenty alone do not tell it from the curve.
+
+few = slice(20)
+first = score(said[few], fell[few], range(20), pga=pga[few], pgv=pgv[few], count=foreseen.count)
+print(first)
+assert first.finding == "not resolved"
+
+# %%
+# A negative control: the same probabilities beside the outcomes of other trials. Nothing is foreseen, and it is said.
+
+shuffled = score(said, random.permutation(fell), range(180), pga=pga, pgv=pgv, count=foreseen.count)
+print(shuffled.verdict)
+assert shuffled.finding == "worse"

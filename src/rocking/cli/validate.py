@@ -1,0 +1,148 @@
+"""`rocking validate`: how good predictions are, where the outcomes are known."""
+
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rocking.cli import options
+from rocking.cli.exports import Export, Exports, draw
+from rocking.cli.page import Page, bar, deliver
+
+if TYPE_CHECKING:
+    from rocking.spec.document import ValidationDocument
+    from rocking.spec.reading import InputFiles
+    from rocking.spec.validation import FolderFiles, FolderValidation
+
+TABLES = ("body", "motion", "settings", "predict")
+NOTE = "Scores with their 95 % intervals, whole motions drawn anew; balanced accuracy has no say in a verdict."
+_SCORES = {"brier": "Brier", "logarithmic": "logarithmic", "balanced_accuracy": "balanced accuracy"}
+
+
+def _csv(answer: "ValidationAnswer", path: Path) -> None:
+    from rocking.tables import to_csv
+
+    to_csv(answer.found.exported(), path)
+
+
+def _report(answer: "ValidationAnswer", path: Path) -> None:
+    from rocking.reports import validation_report
+
+    validation_report(answer.found, path)
+
+
+EXPORTS = {
+    "picture": Export((".png", ".svg"), draw, "matplotlib"),
+    "report": Export((".pdf", ".html"), _report, "matplotlib"),
+    "csv": Export((".csv",), _csv),
+}
+
+
+def validate(
+    context: typer.Context,
+    folder: Annotated[
+        Path,
+        typer.Argument(
+            help="Folder with a body file, records, and a .csv table of outcomes: motion (or x, y, z), scale, "
+            "overturned, and if known rocked, slid; one row a trial."
+        ),
+    ],
+    restitution: Annotated[
+        str | None, typer.Option(help="Model or coefficient; what measurements say of the body if not given.")
+    ] = None,
+    friction: Annotated[
+        float | None, typer.Option(help=r"Coefficient of friction; 0.3 to 0.8 if not given \[-].")
+    ] = None,
+    units: options.Units = None,
+    sets: options.Set = None,
+    threads: options.Threads = None,
+    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    as_json: options.AsJson = False,
+) -> None:
+    """Print how good predictions of a folder's trials are, beside the plain curve that they must beat."""
+    from rocking.cli.arguments import as_typed
+    from rocking.spec.validation import FolderFiles, ValidationProblem
+
+    exports = Exports.of(out, EXPORTS)
+    files = FolderFiles.of(folder)
+    document, inputs = _document(context, files)
+    with as_typed():
+        problem = ValidationProblem.of(document, files, inputs)
+        with bar("motions", len(problem.motions), quiet=as_json) as progress:
+            found = problem.answer(lambda done: progress(1), threads)
+    deliver(ValidationAnswer(found), exports, as_json=as_json)
+
+
+def _document(context: typer.Context, files: "FolderFiles") -> "tuple[ValidationDocument, InputFiles]":
+    from rocking.cli.arguments import Arguments, as_typed
+    from rocking.spec.document import ValidationDocument
+    from rocking.spec.reading import CommandFiles, checked, located, tables_in
+    from rocking.spec.validation import is_question
+
+    arguments = Arguments(context, *TABLES)
+    told = {name: arguments.options[name] for name in ("restitution", "friction")}
+    with suppress(TypeError, ValueError):  # none, or the name of a model
+        told["restitution"] = float(told["restitution"])
+    typed = {
+        "body": arguments.table("body", {"units": arguments.length}),
+        "predict": arguments.table("predict", told),
+        "settings": arguments.table("settings", {}),
+        "motion": arguments.table("motion", {"units": arguments.acceleration}),
+    }
+    stated: dict[str, Any] = {"body": {"file": files.body.name}}
+    if is_question(files.body):
+        stated = dict(tables_in(files.body) or {})
+    with located(files.body.name), as_typed():
+        whole = {**stated, **{name: {**stated.get(name, {}), **keys} for name, keys in typed.items() if keys}}
+        return checked(ValidationDocument, whole), CommandFiles(files.body.parent)
+
+
+@dataclass(frozen=True)
+class ValidationAnswer:
+    """How good the predictions of a folder are."""
+
+    found: "FolderValidation"
+
+    def facts(self) -> dict[str, Any]:
+        return self.found.as_dict()
+
+    def draw(self) -> Any:
+        from rocking.plots import reliability_picture
+
+        return reliability_picture(next(iter(self.found.found.values())))
+
+    def show(self, page: Page) -> None:
+        from rocking.cli.arguments import as_options
+
+        for each in self.found.found.values():
+            page.line(each.verdict, style="bold")
+            for line in each.sentences[1:]:
+                page.line(line)
+            page.line()
+            several = each.forecasts.values()
+            rows = [(words, *(interval(getattr(one, name)) for one in several)) for name, words in _SCORES.items()]
+            page.table(("score", *each.forecasts), rows, ("score",), whole=(1, 2, 3))
+            page.line()
+            rows = [
+                (f"{b.predicted:.2f}", f"{b.observed:.2f}", f"{b.low:.2f} to {b.high:.2f}", str(b.count))
+                for b in each.forecasts["prediction"].reliability()
+            ]
+            page.table(("said", "happened", "95 %", "outcomes"), rows)
+            page.line()
+        page.line(
+            "Scores with their 95 % intervals, whole motions drawn anew; balanced accuracy has no say in a verdict."
+        )
+        page.facts([("assumed", each) for each in self.found.prediction.assumed])
+        if self.found.ignored:
+            page.line(f"Columns that were not read: {', '.join(self.found.ignored)}")
+        page.warn(self.found.repairs)
+        page.warn(f"{self.found.source}, line {each.line}: {as_options(each.reason)}" for each in self.found.refused)
+
+
+def interval(score: Any) -> str:
+    """Return a score with its interval; a dash where it does not exist."""
+    if score.value != score.value:
+        return "-"
+    return f"{score.value:.3f}" + ("" if score.low != score.low else f" ({score.low:.2f} to {score.high:.2f})")
