@@ -86,7 +86,7 @@ def fell(solid: Solid, motions: list[dict[str, Any]], random: np.random.Generato
     moments, found = solid.local_moments, solid.equilibria()
     pose, height = found.settling((0.0, 0.0, -1.0)), moments.centre[2]
     radius = np.linalg.norm(pose.support, axis=1).mean()
-    points = found.hull_vertices - moments.centre
+    points = found.hull.vertices.copy()  # from the centre of mass
     base = random.uniform(BASE[0] * radius, min(BASE[1] * height, 0.005))
     low = points[:, 2] + height <= max(base, 1e-9)
     if base > 0.0:
