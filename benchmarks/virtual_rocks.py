@@ -153,7 +153,7 @@ def main(rocks: int = 20, count: int = 32, motions: int = 40) -> None:
         right = one.balanced_accuracy if 0 < sum(row["fell"]) < len(row["fell"]) else one.accuracy
         cell = f"{right.value:.3f} ({right.low:.3f} to {right.high:.3f})"
         print(f"| {k} | {sum(row['fell']):.0f} of {len(row['fell'])} | {cell} |")
-    print("\n| forecast | balanced accuracy | Brier | logarithmic | calibration z |\n|---|---|---|---|---|")
+    print("\n| forecast | balanced accuracy | Brier | calibration z |\n|---|---|---|---|")
     for name, each in scored(rows).items():
         scores = (each.balanced_accuracy, each.brier)
         cells = " | ".join(f"{s.value:.3f} ({s.low:.3f} to {s.high:.3f})" for s in scores)
