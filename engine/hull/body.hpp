@@ -1,12 +1,12 @@
 // A body on the vertices of its hull, the ground under it, and what both are to the equations.
 #pragma once
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
 
 #include "../spatial/vectors.hpp"
+#include "few.hpp"
 
 namespace rocking::hull {
 using namespace rocking::spatial::ROCKING_ISA;
@@ -14,8 +14,10 @@ using namespace rocking::spatial::ROCKING_ISA;
 constexpr int kInterval = 35, kPowers = 8;
 constexpr double kInfinite = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
 
-using Points = std::vector<int>;
-using Vecs = std::vector<Vec>;
+using Points = Few<int>;
+using Vecs = Few<Vec>;
+using Numbers = Few<double>;
+using List = std::vector<int>;
 
 inline Vec unit(Vec a) {
     const double size = norm(a);
@@ -25,11 +27,11 @@ inline Vec unit(Vec a) {
 struct Body {
     double mass = 0.0, size = 0.0;
     Mat inertia, inverse;
-    Vecs points;                       // vertices, from the centre of mass
+    std::vector<Vec> points;           // vertices, from the centre of mass
     std::vector<Mat> soft, stiff;      // acceleration of each vertex by a force there, and its inverse
-    Vecs facets;                       // outward normals over distances from the centre
-    Points poses, first, beside;       // of each facet: pose to which it leads, its neighbours
-    Points first_corner, corners;      // of each facet
+    std::vector<Vec> facets;           // outward normals over distances from the centre
+    List poses, first, beside;         // of each facet: pose to which it leads, its neighbours
+    List first_corner, corners;         // of each facet
     const double* positions = nullptr; // intervals of azimuth, with the coefficients of k over each
     int intervals = 0;
     bool usable = false;

@@ -15,6 +15,11 @@ struct Contact {
 
 inline bool has(const Points& all, int i) { return std::find(all.begin(), all.end(), i) != all.end(); }
 
+struct Placed {
+    int first;
+    Vec second;
+};
+
 // What would happen without forces, and where they act.
 struct Problem {
     const Body* body = nullptr;
@@ -22,7 +27,7 @@ struct Problem {
     Vec linear, angular, spin;
     double friction = 0.0;
     bool forces = false;                            // accelerations, not velocities: with the centripetal part
-    std::vector<std::pair<int, Vec>> places;        // where the impulse of a vertex acts, if not at the vertex
+    Few<Placed> places;                             // where the impulse of a vertex acts, if not at the vertex
 
     Vec bias(int i) const { return cross(spin, cross(spin, body->points[i])); }
     Vec rate(int i, Vec a, Vec alpha) const {
@@ -41,7 +46,7 @@ struct Problem {
 struct Solution {
     Contact contact;
     Vec linear, angular;
-    std::vector<double> normals;
+    Numbers normals;
     Vecs directions, pulls;  // of those that slide, of those that stick; zero for the others
     bool exists = false;
 };
@@ -88,9 +93,8 @@ inline void share_pulls(const Problem& p, const double* parts, Solution& s) {
         s.pulls[slot(stuck[0])] = total;
         return;
     }
-    thread_local std::vector<double> weights;
-    thread_local Vecs arms, turning;
-    weights.assign(n, 0.0), arms.assign(n, Vec{}), turning.assign(n, Vec{});
+    Numbers weights(n);
+    Vecs arms(n), turning(n);
     double weight = 0.0;
     for (int k = 0; k < n; ++k) arms[k] = p.place(stuck[k]), weight += weights[k] = greater(s.normals[slot(stuck[k])], 0.0);
     if (!(weight > 0.0)) weights.assign(n, 1.0), weight = n;
@@ -178,8 +182,7 @@ inline bool solve(const Problem& p, Solution& s) {
         s.linear = p.linear, s.angular = p.angular, s.normals.clear(), s.pulls.clear();
         return s.exists = true;
     }
-    thread_local Points carrying;
-    carrying.resize(s.contact.members.size());
+    Points carrying(s.contact.members.size());
     for (std::size_t k = 0; k < carrying.size(); ++k) carrying[k] = static_cast<int>(k);
     for (;;) {
         s.exists = linear(p, carrying, s);
@@ -208,7 +211,7 @@ inline bool sliding(const Problem& p, double still, Solution& s) {
     if (solve(p, holding))
         for (int k : free) s.directions[k] = unit(-1.0 * holding.pulls[k]);
     const std::size_t n = free.size();
-    std::vector<double> soft;
+    Numbers soft;
     for (int k : free) {
         const Mat& w = p.body->soft[members[k]];
         soft.push_back(greater(dot(p.axes.a, w * p.axes.a), dot(p.axes.b, w * p.axes.b)) * p.friction * static_cast<double>(n));

@@ -8,7 +8,7 @@ namespace rocking::hull {
 struct Mode {
     Contact contact;
     Vecs starts;          // by member: direction in which it starts to slide, axes of the ground
-    std::vector<char> starting;
+    Few<char> starting;
     bool pulled = false;  // no contact obeys every law, and this one stands in
     bool stuck(std::size_t k) const { return has(contact.stuck, contact.members[k]); }
     bool resting() const { return contact.members.size() > 2 && contact.stuck.size() == contact.members.size(); }
@@ -21,7 +21,7 @@ struct Rates {
 
 struct Forces {
     bool found = true;
-    std::vector<double> normals, pulls;  // by member
+    Numbers normals, pulls;  // by member
 };
 
 inline Vec point_velocity(const Body& b, const State& s, const Mat& axes, int i) { return s.velocity + axes * cross(s.spin, b.points[i]); }

@@ -31,7 +31,7 @@ static Vec vec(const double* v) { return {v[0], v[1], v[2]}; }
 static Mat mat(const double* v) { return {vec(v), vec(v + 3), vec(v + 6)}; }
 
 // Lists of numbers below a limit, one after another: where each starts, the numbers.
-static void lists(Line<const Whole> first, Line<const Whole> members, std::size_t count, std::size_t limit, Points& starts, Points& all) {
+static void lists(Line<const Whole> first, Line<const Whole> members, std::size_t count, std::size_t limit, List& starts, List& all) {
     expect(first.size() == count + 1 && first.data()[0] == 0 && first.data()[count] == static_cast<Whole>(members.size()), "lists of a body expected");
     for (std::size_t k = 0; k < count; ++k) expect(first.data()[k] <= first.data()[k + 1], "lists of a body expected in order");
     for (std::size_t k = 0; k < members.size(); ++k) expect(members.data()[k] >= 0 && members.data()[k] < static_cast<Whole>(limit), "a body names what is not there");

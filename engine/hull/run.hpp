@@ -103,7 +103,7 @@ class Run {
         r_.peak_spin = greater(r_.peak_spin, norm(s_.spin));
         const int under = b_.under(axes.c, under_);
         if (under != under_) {
-            const Points& poses = b_.poses;
+            const List& poses = b_.poses;
             if (poses[under] != poses[under_] && poses[under_] == poses[stood_]) {
                 const Vec apart = b_.facets[under_] - b_.facets[under];
                 const double before = dot(apart, up_), after = dot(apart, axes.c);
@@ -480,7 +480,7 @@ class Run {
         return p;
     }
 
-    using Moving = std::vector<std::pair<int, Vec>>;
+    using Moving = Few<Placed>;
     static const Vec* moving_of(const Moving& moving, int i) {
         for (const auto& each : moving)
             if (each.first == i) return &each.second;
@@ -804,7 +804,7 @@ class Run {
     double moment_ = -1.0, since_ = 0.0, tilt_ = 1.0, tilting_ = 0.0, kept_ = 0.0, peak_ = 1.0, margin_ = -1.0, travelled_ = 0.0;
     bool bordered_ = false, fell_ = false, flew_ = false, slid_ = false, rocked_ = false;
     Status ended_ = kGood;
-    std::vector<Side> sides_;
+    Few<Side> sides_;
     Points touching_, near_;
     Vecs slides_;
     std::vector<Watch> watched_;
