@@ -73,6 +73,8 @@ class Flow {
     double error = 0.0;
     bool found() const { return found_; }
 
+    static constexpr double last[6] = {35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0};
+
     // Advances by a part of a step.
     const State& step(const State& state, const Field& field, double whole, double part, double pace) {
         static constexpr double node[7] = {0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0};
@@ -82,11 +84,11 @@ class Flow {
                                            {44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0},
                                            {19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0},
                                            {9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0},
-                                           {35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0}};
+                                           {last[0], last[1], last[2], last[3], last[4], last[5]}};
         static constexpr double off[7] = {71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0};
         static constexpr int sample[7] = {0, -1, 1, 2, -1, -1, 3};
         const double h = part * whole;
-        Rates k[7];
+        Rates* const k = rates_;
         State at = state;
         found_ = true;
         for (int n = 0; n < 7; ++n) {
@@ -105,7 +107,41 @@ class Flow {
         return samples[3];
     }
 
+    // Keeps the motion over the step that was just made whole, for `along`.
+    void keep(double whole) {
+        static constexpr double weight[7] = {-12715105075.0 / 11282082432.0, 0.0, 87487479700.0 / 32700410799.0, -10690763975.0 / 1880347072.0,
+                                             701980252875.0 / 199316789632.0, -1453857185.0 / 822651844.0, 69997945.0 / 29380423.0};
+        const State none{{}, {0.0}, {}, {}};
+        static constexpr double one = 1.0;
+        course_[0] = samples[0];
+        course_[1] = moved(none, rates_, last, 6, whole);
+        course_[2] = added(moved(none, rates_, &one, 1, whole), -1.0, course_[1]);
+        course_[3] = added(added(course_[1], -1.0, moved(none, rates_ + 6, &one, 1, whole)), -1.0, course_[2]);
+        course_[4] = moved(none, rates_, weight, 7, whole);
+    }
+
+    // The motion at a part of that step, to the fourth order (Hairer, Norsett & Wanner 1993, II.6).
+    State along(double part) const {
+        const double left = 1.0 - part;
+        State made = added(course_[3], left, course_[4]);
+        made = added(course_[2], part, made), made = added(course_[1], left, made), made = added(course_[0], part, made);
+        normalise(made.q);
+        return made;
+    }
+
+    const Forces& forces_at(const State& s, Vec field) {
+        Rates none;
+        rates(s, field, none, &between_);
+        return between_;
+    }
+
   private:
+    static State added(const State& s, double factor, const State& o) {
+        State made{s.place + factor * o.place, {}, s.velocity + factor * o.velocity, s.spin + factor * o.spin};
+        for (int i = 0; i < 4; ++i) made.q[i] = s.q[i] + factor * o.q[i];
+        return made;
+    }
+
     enum Kind { kFlight, kStuckVertex, kSlidingVertex, kEdge, kAny };
 
     static State moved(const State& s, const Rates* k, const double* weights, int n, double h) {
@@ -203,6 +239,9 @@ class Flow {
     const Mode* mode_ = nullptr;
     Kind kind_ = kFlight;
     bool found_ = true;
+    Rates rates_[7];
+    State course_[5];
+    Forces between_;
     Problem problem_;
     Solution solution_;
 };

@@ -308,7 +308,7 @@ class Run {
         std::sort(falls_.begin(), falls_.end());
         for (const Fall& f : falls_)
             for (const double end : {lesser(f.high, part), part})  // stages lie beside the motion
-                if (at(f.what, end) < 0.0) {
+                if ((end == part ? at(f.what, end) : near(f.what, end)) < 0.0) {
                     part = located(f, lesser(f.low, end), end), first = f.what.kind;
                     break;
                 }
@@ -317,6 +317,7 @@ class Run {
 
     void fallen() {
         falls_.clear();
+        flow_.keep(span_);
         watch();
         dips_.clear();
         for (const Watch& w : watched_) {
@@ -342,18 +343,57 @@ class Run {
             }
         }
         for (const Fall& d : dips_)
-            if (at(d.what, d.high) < 0.0) falls_.push_back(d);
+            if (near(d.what, d.high) < 0.0) falls_.push_back(d);
     }
 
-    // The zero of a margin that is below zero at the end of a bracket: from the cubic through the four stages by secants,
-    // which a bracket keeps. Aims a little below zero.
+    // The zero of a margin that is below zero at the end of a bracket. Aims a little below zero: where the interpolated motion
+    // has it, then by secants on steps of that length.
     double located(const Fall& f, double low, double high) {
         const Watch& w = f.what;
         const double close = w.kind == kGap ? 0.5 * kGrazed * b_.size : w.kind == kShelf ? kClosed * b_.size : w.kind == kSlipping ? 1e-3 * kSlip * speed_ : slack_;
+        if (part_ == high && at(w, high) >= -close) return high;
+        double slope = 0.0, from = guessed(f, low, high, 0.5 * close, slope);
+        for (int k = 0; k < 5 && slope < 0.0; ++k) {
+            const double value = at(w, from);
+            if (value < 0.0 && value >= -close) return from;
+            const double to = from - (value + 0.5 * close) / slope;
+            if (!(0.0 < to && to < high)) break;
+            from = to;
+        }
+        return searched(f, low, high, close);
+    }
+
+    // Where the interpolated motion has a margin at -aim, and how steep it is there; slope 0 if nowhere.
+    double guessed(const Fall& f, double low, double high, double aim, double& slope) {
+        const Watch& w = f.what;
+        if (low > 0.0 && near(w, low) < 0.0) high = low, low = 0.0;
+        if (low == 0.0 && f.values[0] == 0.0)  // it has just left: where is it above the ground?
+            for (const double least = 1e-6 * high; near(w, low = 0.5 * high) < 0.0;)
+                if (!((high = low) > least)) return high;
+        double a = low, b = high, at_a = near(w, a) + aim, at_b = near(w, b) + aim, x = 0.0;
+        if (!(at_a >= 0.0 && at_b <= 0.0)) return high;
+        for (int k = 0, side = 0; k < 40; ++k) {  // regula falsi, by the Illinois rule
+            const double before = x;
+            x = (a * at_b - b * at_a) / (at_b - at_a);
+            const double value = near(w, x) + aim;
+            if (std::fabs(value) <= 1e-3 * aim || std::fabs(x - before) < 1e-12) break;
+            const int now = value < 0.0 ? -1 : 1;
+            if (now < 0) b = x, at_b = value, at_a *= side == now ? 0.5 : 1.0;
+            else a = x, at_a = value, at_b *= side == now ? 0.5 : 1.0;
+            side = now;
+        }
+        const double apart = 1e-4 * high;
+        slope = (near(w, x + apart) - near(w, x - apart)) / (2.0 * apart);
+        return x;
+    }
+
+    // The same where that fails: from the cubic through the four stages, within a bracket.
+    double searched(const Fall& f, double low, double high, double close) {
+        const Watch& w = f.what;
         double at_high = at(w, high), x = guess(f, low, high), last = high, at_last = at_high;
         bool sure = low == 0.0;  // whether the margin is above zero at the low end
         if (sure && f.values[0] == 0.0)  // it has just left: where is it above the ground?
-            for (double up = 0.5 * high; up > 1e-6 * high; up *= 0.5) {
+            for (double up = 0.5 * high, least = 1e-6 * high; up > least; up *= 0.5) {
                 const double value = at(w, up);
                 if (value < 0.0) high = last = up, at_high = at_last = value;
                 else {
@@ -441,6 +481,13 @@ class Run {
     double at(const Watch& w, double part) {
         const State& s = to(part);
         return margin(w, s, flow_.forces[3]);
+    }
+
+    // The same by interpolation.
+    double near(const Watch& w, double part) {
+        static const Forces none;
+        const State s = flow_.along(part);
+        return margin(w, s, w.kind == kNormal || w.kind == kSticking ? flow_.forces_at(s, field_.at(part)) : none);
     }
 
     // ---- contact ----
