@@ -56,9 +56,10 @@ struct Wrench {
 };
 
 // Gauss without exchange; false where a pivot is not positive, so that no force answers a motion.
-inline bool eliminated(const Problem& p, int n, const Wrench* columns, const Wrench* rows, const double* known, double* answer) {
-    double t[6][7], sizes[6];
-    Wrench soft[6];
+template <int n>
+bool eliminated(const Problem& p, const Wrench* columns, const Wrench* rows, const double* known, double* answer) {
+    double t[n][n + 1], sizes[n];
+    Wrench soft[n];
     for (int c = 0; c < n; ++c) soft[c] = {1.0 / p.body->mass * columns[c].f, p.body->inverse * columns[c].m};
     for (int r = 0; r < n; ++r) {
         for (int c = 0; c < n; ++c) t[r][c] = dot(rows[r].f, soft[c].f) + dot(rows[r].m, soft[c].m);
@@ -120,23 +121,22 @@ inline void share_pulls(const Problem& p, const double* parts, Solution& s) {
     for (int k = 0; k < n; ++k) s.pulls[slot(stuck[k])] = turning[k];
 }
 
-// What certain forces do, pulled or not, so that the vertices of s.contact stay on the ground; carrying: slots of members.
-inline bool linear(const Problem& p, const Points& carrying, Solution& s) {
+template <int size>  // of the system
+bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
     const Body& body = *p.body;
     const Points &members = s.contact.members, &stuck = s.contact.stuck;
     const Vec up = p.axes.c;
     const int n = static_cast<int>(carrying.size()), shapes = n <= 3 ? n : 3, rest = static_cast<int>(stuck.size());
-    Wrench columns[6], rows[6];
-    double known[6] = {}, answer[6];
+    Wrench columns[size], rows[size];
+    double known[size] = {}, answer[size];
     const auto weight = [&](int shape, int k) {
         if (n <= 3) return shape == k ? 1.0 : 0.0;
         const Vec at = p.place(members[carrying[k]]);
         return shape == 0 ? 1.0 : dot(shape == 1 ? p.axes.a : p.axes.b, at);  // Eq. 253
     };
     for (int j = 0; j < shapes; ++j)
-        for (int k = 0; k < n; ++k) {
+        for (int k = n <= 3 ? j : 0; k < (n <= 3 ? j + 1 : n); ++k) {
             const double w = weight(j, k);
-            if (w == 0.0) continue;
             const int i = members[carrying[k]];
             const Vec slide = s.directions[carrying[k]];
             const Vec push = dot(slide, slide) > 0.0 ? up - p.friction * slide : up;
@@ -144,8 +144,8 @@ inline bool linear(const Problem& p, const Points& carrying, Solution& s) {
             rows[j].f = rows[j].f + w * up, rows[j].m = rows[j].m + w * cross(body.points[i], up);
             if (p.forces) known[j] += w * dot(up, p.bias(i));
         }
-    int size = shapes;
     if (rest) {
+        int at = shapes;
         Vec acts, moves, known_there;  // means over those that stick: the matrix is symmetric where the forces are at the vertices
         const double share = 1.0 / rest;
         for (int i : stuck) {
@@ -153,27 +153,40 @@ inline bool linear(const Problem& p, const Points& carrying, Solution& s) {
             if (p.forces) known_there = known_there + share * p.bias(i);
         }
         for (const Vec axis : {p.axes.a, p.axes.b}) {
-            columns[size] = {axis, cross(acts, axis)}, rows[size] = {axis, cross(moves, axis)};
-            known[size++] = dot(axis, known_there);
+            columns[at] = {axis, cross(acts, axis)}, rows[at] = {axis, cross(moves, axis)};
+            known[at++] = dot(axis, known_there);
         }
         if (rest > 1) {
             const int one = stuck[0], other = stuck[rest / 2];
             const Vec arm = body.points[other] - body.points[one], across = cross(up, arm);
-            columns[size] = rows[size] = {{}, up};
-            known[size++] = p.forces ? dot(across, p.bias(other) - p.bias(one)) / dot(across, across) : 0.0;
+            columns[at] = rows[at] = {{}, up};
+            known[at++] = p.forces ? dot(across, p.bias(other) - p.bias(one)) / dot(across, across) : 0.0;
         }
     }
-    if (!eliminated(p, size, columns, rows, known, answer)) return false;
+    if (!eliminated<size>(p, columns, rows, known, answer)) return false;
     Vec force, moment;
     for (int k = 0; k < size; ++k) force = force + answer[k] * columns[k].f, moment = moment + answer[k] * columns[k].m;
     s.linear = p.linear + 1.0 / body.mass * force;
     s.angular = p.angular + body.inverse * moment;
     s.normals.assign(members.size(), 0.0);
     for (int j = 0; j < shapes; ++j)
-        for (int k = 0; k < n; ++k) s.normals[carrying[k]] += answer[j] * weight(j, k);
+        for (int k = n <= 3 ? j : 0; k < (n <= 3 ? j + 1 : n); ++k) s.normals[carrying[k]] += answer[j] * weight(j, k);
     if (p.friction < kInfinite) share_pulls(p, answer + shapes, s);
     else s.pulls.assign(members.size(), Vec{});
     return true;
+}
+
+// What certain forces do, pulled or not, so that the vertices of s.contact stay on the ground; carrying: slots of members.
+inline bool linear(const Problem& p, const Points& carrying, Solution& s) {
+    const std::size_t shapes = std::min<std::size_t>(carrying.size(), 3), rest = s.contact.stuck.size();
+    switch (shapes + (rest > 0 ? 2 : 0) + (rest > 1 ? 1 : 0)) {
+        case 1: return linear_of<1>(p, carrying, s);
+        case 2: return linear_of<2>(p, carrying, s);
+        case 3: return linear_of<3>(p, carrying, s);
+        case 4: return linear_of<4>(p, carrying, s);
+        case 5: return linear_of<5>(p, carrying, s);
+        default: return linear_of<6>(p, carrying, s);
+    }
 }
 
 // Accelerations and forces of s.contact with the directions s.directions.
