@@ -1,5 +1,5 @@
 // The motion while a contact lasts: accelerations, and steps of the fifth order of Dormand and Prince (1980). One vertex
-// that sticks or slides, and an edge that sticks, have closed forms; every other contact is a small linear system.
+// that sticks or slides, an edge that sticks, and up to three vertices that all slide have closed forms; every other contact is a small linear system.
 #pragma once
 #include "contact.hpp"
 
@@ -40,13 +40,16 @@ class Flow {
         mode_ = &mode;
         const Contact& c = mode.contact;
         const std::size_t n = c.members.size(), stuck = c.stuck.size();
-        kind_ = n == 0 ? kFlight : n == 1 ? (stuck ? kStuckVertex : kSlidingVertex) : n == 2 && stuck == 2 ? kEdge : kAny;
+        kind_ = n == 0 ? kFlight : n == 1 ? (stuck ? kStuckVertex : kSlidingVertex) : n == 2 && stuck == 2 ? kEdge : n <= 3 && !stuck ? kSliding : kAny;
         if (kind_ == kEdge) {
             const Vec one = b_.points[c.members[0]], arm = b_.points[c.members[1]] - one;
             length_ = norm(arm), along_ = 1.0 / length_ * arm;
             const Vec lever = cross(along_, one);
             about_ = dot(along_, b_.inertia * along_) + b_.mass * dot(lever, lever);
         }
+        if (kind_ == kSliding)
+            for (std::size_t j = 0; j < n; ++j)
+                for (std::size_t k = 0; k < n; ++k) yields_[j][k] = yielding(b_.points[c.members[j]], b_.points[c.members[k]]);
         solution_.contact = c;
     }
 
@@ -142,7 +145,7 @@ class Flow {
         return made;
     }
 
-    enum Kind { kFlight, kStuckVertex, kSlidingVertex, kEdge, kAny };
+    enum Kind { kFlight, kStuckVertex, kSlidingVertex, kEdge, kSliding, kAny };
 
     static State moved(const State& s, const Rates* k, const double* weights, int n, double h) {
         State made = s;
@@ -167,6 +170,7 @@ class Flow {
             return true;
         }
         if (kind_ == kEdge) return edge(s, axes, linear, angular, f), true;
+        if (kind_ == kSliding) return sliding(s, axes, linear, angular, f);
         if (kind_ == kAny) return system(s, axes, linear, angular, f);
         const int i = c.members[0];
         const Vec r = b_.points[i], up = axes.c, free = linear + cross(angular, r) + cross(s.spin, cross(s.spin, r));
@@ -217,6 +221,50 @@ class Flow {
         linear = centre, angular = turn;
     }
 
+    // Acceleration of one point by a force at another: columns of the matrix become its rows, to be multiplied from the left.
+    Mat yielding(Vec at, Vec by) const {
+        const auto answer = [&](Vec f) { return 1.0 / b_.mass * f + cross(b_.inverse * cross(by, f), at); };
+        const Vec x = answer({1.0, 0.0, 0.0}), y = answer({0.0, 1.0, 0.0}), z = answer({0.0, 0.0, 1.0});
+        return {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}};
+    }
+
+    // Two or three vertices that all slide: Eq. 252 for their normal forces.
+    bool sliding(const State& s, const Mat& axes, Vec& linear, Vec& angular, Forces* f) const {
+        const Points& members = mode_->contact.members;
+        const int n = static_cast<int>(members.size());
+        const Vec up = axes.c, w = s.spin;
+        Vec push[3];
+        double t[3][4], least[3];
+        for (int k = 0; k < n; ++k) push[k] = up - mu_ * row_times(slip_direction(b_, s, axes, *mode_, k), axes);
+        for (int j = 0; j < n; ++j) {
+            const Vec r = b_.points[members[j]];
+            for (int k = 0; k < n; ++k) t[j][k] = dot(row_times(up, yields_[j][k]), push[k]);
+            t[j][3] = -dot(up, linear + cross(angular, r) + cross(w, cross(w, r)));
+            least[j] = kSingular * t[j][j];
+        }
+        for (int k = 0; k < n; ++k) {
+            if (!(t[k][k] > least[k])) return false;
+            const double over = 1.0 / t[k][k];
+            for (int j = k + 1; j < n; ++j) {
+                const double factor = t[j][k] * over;
+                for (int c = k + 1; c < 4; ++c)
+                    if (c < n || c == 3) t[j][c] -= factor * t[k][c];
+            }
+        }
+        double normal[3];
+        Vec force, moment;
+        for (int k = n - 1; k >= 0; --k) {
+            double total = t[k][3];
+            for (int c = k + 1; c < n; ++c) total -= t[k][c] * normal[c];
+            normal[k] = total / t[k][k];
+            const Vec part = normal[k] * push[k];
+            force = force + part, moment = moment + cross(b_.points[members[k]], part);
+        }
+        if (f) f->normals.assign(normal, normal + n), f->pulls.assign(n, 0.0);
+        linear = linear + 1.0 / b_.mass * force, angular = angular + b_.inverse * moment;
+        return true;
+    }
+
     bool system(const State& s, const Mat& axes, Vec& linear, Vec& angular, Forces* f) {
         const std::size_t n = mode_->contact.members.size();
         problem_.body = &b_, problem_.axes = axes, problem_.linear = linear, problem_.angular = angular, problem_.spin = s.spin;
@@ -236,6 +284,7 @@ class Flow {
     const Body& b_;
     double mu_, length_ = 0.0, about_ = 0.0;
     Vec along_;
+    Mat yields_[3][3];
     const Mode* mode_ = nullptr;
     Kind kind_ = kFlight;
     bool found_ = true;
