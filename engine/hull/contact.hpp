@@ -5,7 +5,8 @@
 namespace rocking::hull {
 
 constexpr double kSingular = 1e-12, kStraight = 1e-12;
-constexpr int kTurns = 300;
+constexpr int kTurns = 300, kNewton = 20, kTries = 6;
+constexpr double kSwing = 1e-7;  // by which a direction is turned for the slope
 constexpr std::size_t kCorners = 8;  // of a facet with more no single one sticks
 
 struct Contact {
@@ -208,6 +209,73 @@ inline bool solve(const Problem& p, Solution& s) {
     }
 }
 
+// Gauss with exchange of rows; false where the table is singular. The last column is the right-hand side, and the answer.
+inline bool solved(int n, double t[][kCorners + 1]) {
+    for (int k = 0; k < n; ++k) {
+        int best = k;
+        for (int i = k + 1; i < n; ++i)
+            if (std::fabs(t[i][k]) > std::fabs(t[best][k])) best = i;
+        if (!(std::fabs(t[best][k]) > kSingular)) return false;
+        for (int c = 0; c <= n; ++c) std::swap(t[k][c], t[best][c]);
+        for (int i = 0; i < n; ++i) {
+            const double factor = i == k ? 0.0 : t[i][k] / t[k][k];
+            for (int c = k; c <= n && factor != 0.0; ++c) t[i][c] -= factor * t[k][c];
+        }
+    }
+    for (int k = 0; k < n; ++k) t[k][n] /= t[k][k];
+    return true;
+}
+
+// Turns the directions of vertices that start to slide into those of their accelerations (Newton).
+inline bool turned(const Problem& p, const Points& free, const std::vector<double>& soft, Solution& s) {
+    const int n = static_cast<int>(free.size());
+    const Vec up = p.axes.c;
+    Vec d[kCorners], from[kCorners];
+    double along[kCorners], r[kCorners], other[kCorners], table[kCorners][kCorners + 1], size = 0.0;
+    for (int j = 0; j < n; ++j) d[j] = s.directions[free[j]];
+    const auto across = [&](double* r) {  // accelerations across the directions, over the most that friction moves
+        for (int j = 0; j < n; ++j) s.directions[free[j]] = d[j];
+        if (!solve(p, s)) return false;
+        size = 0.0;
+        for (int j = 0; j < n; ++j) {
+            const Vec rate = p.rate(s.contact.members[free[j]], s.linear, s.angular);
+            const double most = soft[j] * std::fabs(s.normals[free[j]]) + norm(rate);
+            r[j] = dot(cross(up, d[j]), rate) / most, along[j] = dot(d[j], rate) / most;
+            size = greater(size, std::fabs(r[j]));
+        }
+        return true;
+    };
+    const auto turn = [&](Vec a, double angle) { return std::cos(angle) * a + std::sin(angle) * cross(up, a); };
+    for (int k = 0; k < kNewton; ++k) {
+        if (!across(r)) return false;
+        if (size <= kStraight) {
+            bool with = true;
+            for (int j = 0; j < n; ++j)
+                if (along[j] < -kStraight) d[j] = -1.0 * d[j], with = false;
+            if (with) return true;
+            continue;
+        }
+        const double before = size;
+        for (int j = 0; j < n; ++j) from[j] = d[j], table[j][n] = -r[j];
+        for (int j = 0; j < n; ++j) {
+            d[j] = turn(from[j], kSwing);
+            if (!across(other)) return false;
+            d[j] = from[j];
+            for (int i = 0; i < n; ++i) table[i][j] = (other[i] - r[i]) / kSwing;
+        }
+        if (!solved(n, table)) return false;
+        double most = 0.0;
+        for (int j = 0; j < n; ++j) most = greater(most, std::fabs(table[j][n]));
+        double share = lesser(1.0, 0.5 / greater(most, 1e-300));
+        for (int tries = 0; tries < kTries; ++tries, share *= 0.5) {
+            for (int j = 0; j < n; ++j) d[j] = turn(from[j], share * table[j][n]);
+            if (!across(other)) return false;
+            if (size < before) break;
+        }
+    }
+    return false;
+}
+
 // The same with the directions in which free vertices start to slide, by iteration. s.directions: of those that slide
 // already; still: rate below which friction alone has the direction.
 inline bool sliding(const Problem& p, double still, Solution& s) {
@@ -229,6 +297,9 @@ inline bool sliding(const Problem& p, double still, Solution& s) {
         const Mat& w = p.body->soft[members[k]];
         soft.push_back(greater(dot(p.axes.a, w * p.axes.a), dot(p.axes.b, w * p.axes.b)) * p.friction * static_cast<double>(n));
     }
+    const Vecs begun = s.directions;
+    if (n <= 2 && turned(p, free, soft, s)) return true;
+    s.directions = begun;
     Vecs after(n), moved(n), last(n);
     for (int turn = 0; turn < kTurns; ++turn) {
         if (!solve(p, s)) return false;
@@ -249,7 +320,8 @@ inline bool sliding(const Problem& p, double still, Solution& s) {
         for (std::size_t j = 0; j < n; ++j) s.directions[free[j]] = further != 0.0 ? unit(after[j] + further * moved[j]) : after[j];
         last = moved;
     }
-    return s.exists = false;
+    s.directions = begun;
+    return s.exists = n > 2 && n <= kCorners && turned(p, free, soft, s);
 }
 
 // The vertices of the convex polygon of points on the ground, in order (Andrew's monotone chain).

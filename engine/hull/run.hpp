@@ -12,7 +12,7 @@ constexpr double kClosed = 1e-11, kGrazed = 1e-14, kForce = 1e-11;
 // speeds over sqrt(g size): at which sliding stops, below which a vertex may stick, or still slides as it started
 constexpr double kSlip = 5e-6, kStill = 5e-6, kSlides = 1e-4;
 constexpr std::array<double, 4> kLadder{1e-11, 1e-9, 1e-7, 1e-5};
-constexpr double kAhead = 1e-6, kCrowded = 1e-2, kPatience = 100.0, kMargin = 0.1, kAfter = 0.1;
+constexpr double kAhead = 1e-6, kCrowded = 1e-2, kGathered = 1e-7, kGathering = 1e-3, kPatience = 100.0, kMargin = 0.1, kAfter = 0.1;
 constexpr int kPiled = 30, kMany = 200, kCrowd = 30, kHalvings = 80;
 
 // Codes of `rocking.outcome`.
@@ -603,10 +603,19 @@ class Run {
         return a == b;
     }
 
+    struct Over {
+        Contact contact;
+        bool leaves;
+    };
+
     // The first candidate whose forces obey every law. exclude: what has just ended; closed: what an impact has stopped;
     // leaves: one of its vertices leaves, so that no way of sticking or sliding keeps all of them.
     void choose(const Points& touching, const Contact* exclude = nullptr, const Points* closed = nullptr, bool leaves = false) {
         if (ended_ != kGood || guarded()) return;
+        if (!at_once_ || closed) over_.clear();  // what has ended at this moment is not taken again
+        if (exclude) over_.push_back({*exclude, leaves});
+        const bool crowd = crowded();
+        if (crowd && time_ > gathered_) return gather();
         Points near;
         for (int i : touching)
             if ((closed && has(*closed, i)) || velocity(i).z <= slow_) near.push_back(i);
@@ -620,13 +629,17 @@ class Run {
                     moving.push_back({i, row_times(unit({v.x, v.y, 0.0}), p.axes)});
                 }
         Candidates candidates(p, near, moving, 1e-5 * g_.gravity);
-        const bool crowd = crowded();
-        for (std::size_t level = crowd ? kLadder.size() : 0; level < kLadder.size(); ++level)
-            for (std::size_t k = 0; const Solution* found = candidates[k]; ++k) {
-                const Contact& c = found->contact;
-                if (exclude && same(c.members, exclude->members) && (leaves || same(c.stuck, exclude->stuck))) continue;
-                if (valid(p, *found, near, kLadder[level] * g_.gravity)) return take(p, *found, moving);
-            }
+        // what has ended may have to go on if nothing else is possible
+        for (int pass = crowd ? 3 : 0; pass < (mu_ < kInfinite ? 3 : 1); ++pass) {
+            if (pass && over_.empty()) break;
+            for (double slack : kLadder)
+                for (std::size_t k = 0; const Solution* found = candidates[k]; ++k) {
+                    const Contact& c = found->contact;
+                    const auto ended = [&](const Over& o) { return pass < 2 && same(c.members, o.contact.members) && ((o.leaves && !pass) || same(c.stuck, o.contact.stuck)); };
+                    if (std::any_of(over_.begin(), over_.end(), ended)) continue;
+                    if (valid(p, *found, near, slack * g_.gravity)) return take(p, *found, moving);
+                }
+        }
         if (!moving.empty() && !mode_.pulled && !crowd) return shocked(near);
         const Solution* best = crowd ? nullptr : least_pull(p, candidates, near, 1e-9 * g_.gravity, [](const Solution&) { return true; });
         if (!best && candidates[0] && !candidates[0]->contact.members.empty()) best = candidates[0];
@@ -792,6 +805,23 @@ class Run {
         keep();
     }
 
+    // Changes that accumulate at one moment are over: what they close in on touches, and is at rest there.
+    void gather() {
+        const double reach = time_ > gathered_ + kCrowded / pace_ ? kGathered : 10.0 * kGathered;
+        gathered_ = time_, changes_ = at_once_ = 0;
+        const double before = energy();
+        Points near, still;
+        touch(touching_, reach);
+        for (int i : touching_)
+            if (std::fabs(velocity(i).z) <= kGathering * speed_) near.push_back(i);
+        const Points border = outline(velocities(mu_), near);
+        for (int i : border)
+            if (slip(i) <= kSlides * speed_) still.push_back(i);
+        settle_on({border, {}}, still);
+        r_.lost += before - energy();
+        choose(near, nullptr, &near);
+    }
+
     // Makes the largest face stick by a plastic impact, pulled or not.
     void pile(const Points& touching) {
         const Problem p = velocities(0.0);
@@ -848,9 +878,10 @@ class Run {
     Vec anchor_, first_, upright_, up_;
     Field field_;
     int stood_ = 0, under_ = 0, at_once_ = 0, changes_ = 0;
-    double moment_ = -1.0, since_ = 0.0, tilt_ = 1.0, tilting_ = 0.0, kept_ = 0.0, peak_ = 1.0, margin_ = -1.0, travelled_ = 0.0;
+    double moment_ = -1.0, since_ = 0.0, gathered_ = -kInfinite, tilt_ = 1.0, tilting_ = 0.0, kept_ = 0.0, peak_ = 1.0, margin_ = -1.0, travelled_ = 0.0;
     bool bordered_ = false, fell_ = false, flew_ = false, slid_ = false, rocked_ = false;
     Status ended_ = kGood;
+    std::vector<Over> over_;
     Few<Side> sides_;
     Points touching_, near_;
     Vecs slides_;
