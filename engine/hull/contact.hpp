@@ -227,7 +227,7 @@ inline bool solved(int n, double t[][kCorners + 1]) {
 }
 
 // Turns the directions of vertices that start to slide into those of their accelerations (Newton).
-inline bool turned(const Problem& p, const Points& free, const std::vector<double>& soft, Solution& s) {
+inline bool turned(const Problem& p, const Points& free, const Numbers& soft, Solution& s) {
     const int n = static_cast<int>(free.size());
     const Vec up = p.axes.c;
     Vec d[kCorners], from[kCorners];
@@ -239,7 +239,7 @@ inline bool turned(const Problem& p, const Points& free, const std::vector<doubl
         size = 0.0;
         for (int j = 0; j < n; ++j) {
             const Vec rate = p.rate(s.contact.members[free[j]], s.linear, s.angular);
-            const double most = soft[j] * std::fabs(s.normals[free[j]]) + norm(rate);
+            const double most = greater(soft[j] * std::fabs(s.normals[free[j]]) + norm(rate), 1e-300);
             r[j] = dot(cross(up, d[j]), rate) / most, along[j] = dot(d[j], rate) / most;
             size = greater(size, std::fabs(r[j]));
         }

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from itertools import product as product_of
 from typing import Any, NamedTuple
 
 from rocking.dynamics.hull import contact_problem as contacts
@@ -49,7 +50,9 @@ _SLIP, _STILL, _SLIDES = 5e-6, 5e-6, 1e-4
 _LADDER = (1e-11, 1e-9, 1e-7, 1e-5)
 _AHEAD = 1e-6  # how much later, over sqrt(size / g), the ground decides which mode starts
 _PILED, _STUCK = 30, 200
-_CROWD, _CROWDED = 30, 1e-2  # changes of contact, and the time over sqrt(size / g) within which they are too many
+_CROWD, _CROWDED = 12, 1e-2  # changes of contact, and the time over sqrt(size / g) within which they are too many
+# what they close in on: gaps over the size, and speeds over sqrt(g size) away from the ground
+_GATHERED, _GATHERING = 1e-7, 1e-3
 _PATIENCE = 100.0
 _PATH = (1.0 / 12.0, 10.0 / 21.0, 5.0 / 12.0, 1.0 / 42.0)
 _HALVINGS = 80
@@ -184,7 +187,8 @@ class HullEngine:
         self.mode = self._mode(FLIGHT, {})
         self.anchors: dict[int, Vector] = {}
         self.at_once, self.moment = 0, -1.0
-        self.changes, self.since = 0, 0.0
+        self.changes, self.since, self.gathered = 0, 0.0, -math.inf
+        self.over: list[tuple[HullContact, bool]] = []  # what has ended at this moment, and whether a vertex leaves
         self.struck: list[Solution] = []
         self.history = HullHistory()
         self.ended: Status | None = None
@@ -567,9 +571,15 @@ class HullEngine:
         """
         if self.ended is not None or self._guarded():
             return
+        if not self.at_once or closed:
+            self.over = []
+        if exclude is not None:
+            self.over.append((exclude, leaves))
+        crowded = self._crowded()
+        if crowded and self.time > self.gathered:
+            self._gather()
+            return
         body, state = self.body, self.state
-        over = {-1} if exclude is None else set(exclude.members)
-        held = set() if exclude is None else set(exclude.stuck)
         near = tuple(i for i in touching if i in closed or point_velocity(body, state, i)[2] <= self.slow)
         problem = problem_of(body, state, self._field(), self.friction)
         problem.bias = {i: cross(state.spin, cross(state.spin, p)) for i, p in enumerate(body.points)}
@@ -579,16 +589,10 @@ class HullEngine:
                 x, y, _ = point_velocity(body, state, i)
                 moving[i] = back(problem.axes, unit((x, y, 0.0)))
         candidates = list(self._candidates(problem, near, moving))
-        crowded = self._crowded()
-
-        def excluded(contact: HullContact) -> bool:
-            return set(contact.members) == over and (leaves or set(contact.stuck) == held)
-
-        for slack in () if crowded else _LADDER:
-            for found in candidates:
-                if not excluded(found.contact) and contacts.valid(problem, found, near, slack * self.ground.gravity):
-                    self._take(problem, found, moving)
-                    return
+        found = None if crowded else self._lawful(problem, candidates, near)
+        if found is not None:
+            self._take(problem, found, moving)
+            return
         if moving and not self.mode.pulled and not crowded:
             self._shocked(near)
             return
@@ -601,12 +605,45 @@ class HullEngine:
         self._take(problem, best, moving)
         self.mode = replace(self.mode, pulled=True)
 
+    def _lawful(self, problem: Problem, candidates: list[Solution], near: tuple[int, ...]) -> Solution | None:
+        """Return the first candidate that obeys every law; what has ended at this moment as a last resort."""
+
+        def ended(contact: HullContact, level: int) -> bool:
+            return any(
+                set(contact.members) == set(c.members)
+                and ((leaves and level == 0) or set(contact.stuck) == set(c.stuck))
+                for c, leaves in (self.over if level < 2 else ())
+            )
+
+        levels = range(3 if self.over and self.friction < math.inf else 1)
+        for level, slack in product_of(levels, _LADDER):
+            for found in candidates:
+                if not ended(found.contact, level) and contacts.valid(
+                    problem, found, near, slack * self.ground.gravity
+                ):
+                    return found
+        return None
+
     def _crowded(self) -> bool:
         """Whether changes of contact follow each other without end."""
         if self.time - self.since > _CROWDED / self.pace:
             self.changes, self.since = 0, self.time
         self.changes += not self.mode.pulled
         return self.changes > _CROWD or self.at_once > _PILED
+
+    def _gather(self) -> None:
+        """Bring to an end what accumulates at one moment: what it closes in on touches, and is at rest there."""
+        again = self.time <= self.gathered + _CROWDED / self.pace
+        self.gathered, self.changes, self.at_once = self.time, 0, 0
+        before = sum(energies(self.body, self.state, self.ground.weight))
+        touching = self._touching((10.0 if again else 1.0) * _GATHERED)
+        slow = _GATHERING * self.speed
+        near = tuple(i for i in touching if abs(point_velocity(self.body, self.state, i)[2]) <= slow)
+        border = contacts.outline(problem_of(self.body, self.state, ZERO, 0.0), near)
+        still = tuple(i for i in border if self._slip(i) <= _SLIDES * self.speed)
+        self._settle_on(HullContact(border), still)
+        self.history.lost += before - sum(energies(self.body, self.state, self.ground.weight))
+        self._choose(near, closed=near)
 
     def _candidates(self, problem: Problem, near: tuple[int, ...], moving: dict[int, Vector]) -> Iterator[Solution]:
         """Yield what may stay: first what sticks wherever it does not slide yet, larger faces first; flight last."""
