@@ -147,7 +147,7 @@ bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
             known[j] += w[j] * swing;
         }
     }
-    if (rest) {
+    if (size > 2 && rest) {
         int at = shapes;
         Vec acts, moves, known_there;  // means over those that stick: the matrix is symmetric where the forces are at the vertices
         const double share = 1.0 / rest;
@@ -159,7 +159,7 @@ bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
             columns[at] = {axis, cross(acts, axis)}, rows[at] = {axis, cross(moves, axis)};
             known[at++] = dot(axis, known_there);
         }
-        if (rest > 1) {
+        if (size > 3 && rest > 1) {
             const int one = stuck[0], other = stuck[rest / 2];
             const Vec arm = body.points[other] - body.points[one], across = cross(up, arm);
             columns[at] = rows[at] = {{}, up};
