@@ -4,6 +4,7 @@ MuJoCo runs at the largest step whose verdicts agree in 95 % of the hulls with t
 median over the histories that rock at least a fifth of the time, as MuJoCo has them.
 """
 
+import sys
 import time
 from dataclasses import dataclass
 from importlib import import_module
@@ -13,7 +14,8 @@ from typing import Any
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from benchmarks import spatial_mujoco
+from benchmarks import spatial_mujoco, table
+from benchmarks.table import Row
 from rocking.conventions import FloatArray, g
 from rocking.dynamics.hull import HullBody, HullGround, HullSettings, hull_histories, standing
 from rocking.dynamics.hull.vectors import frame
@@ -135,25 +137,49 @@ def ours(case: Case) -> tuple[bool, float]:
     return bool(batch.overturned.flat[0] == 1.0), (time.process_time() - began) / BATCH
 
 
-def main() -> None:
-    """Print the comparison."""
+def main() -> bool:
+    """Print and keep the comparison; whether the goal was met."""
     hulls = cases()
+    mine = [ours(case) for case in hulls]
+    rows = [Row(f"a history of {DURATION:g} s", "one core", f"{1e3 * np.median([t for _, t in mine]):.1f} ms", "-")]
+    if spatial_mujoco.installed():
+        rows += against_mujoco(hulls, mine)
+    else:
+        rows.append(Row("the same", "MuJoCo", "skipped: mujoco is not installed", "-"))
+    text = [
+        "# Speed of bodies on the vertices of their hull",
+        "",
+        f"{COUNT} random hulls with a motion of their own; CPU time of one core, in one run; made by",
+        "`python -m benchmarks hull`.",
+        "",
+        f"{table.machine()}.",
+        f"{table.versions('numpy', 'mujoco')}.",
+        "",
+        *table.lines(rows),
+    ]
+    table.keep("RESULTS-hull.md", text)
+    return all(row.met is not False for row in rows)
+
+
+def against_mujoco(hulls: list[Case], mine: list[tuple[bool, float]]) -> list[Row]:
+    """Verdicts and CPU time beside those of MuJoCo at the step that its own verdicts ask for."""
     coarse = [peer(case, STEPS[0]) for case in hulls]
     for step, half in pairwise(STEPS):
         fine = [peer(case, half) for case in hulls]
         agree = np.mean([a[0] == b[0] for a, b in zip(coarse, fine, strict=True)])
-        print(f"MuJoCo at {step:.3g} s and half of it: {agree:.0%} of verdicts agree", flush=True)
+        against = f"MuJoCo at {1e3 * step:g} ms ({agree:.0%} of verdicts as at half of it)"
         if agree >= AGREE:
             break
         coarse = fine
-    mine = [ours(case) for case in hulls]
     rocks = [k for k, (_, share, _) in enumerate(coarse) if share >= MOVES]
-    ratio = [coarse[k][2] / mine[k][1] for k in rocks]
+    ratio = float(np.median([coarse[k][2] / mine[k][1] for k in rocks]))
     same = np.mean([a[0] == b[0] for a, b in zip(coarse, mine, strict=True)])
-    fell = sum(a[0] for a in coarse), sum(b[0] for b in mine)
-    print(f"verdicts alike: {same:.0%} (overturned: MuJoCo {fell[0]}, ours {fell[1]} of {COUNT})")
-    print(f"{len(rocks)} histories rock; CPU time of MuJoCo over ours: median {np.median(ratio):.0f}, goal {GOAL:.0f}")
+    rocking = f"a history that rocks (median of {len(rocks)})"
+    return [
+        Row("verdicts alike", against, f"{same:.0%}", "-"),
+        Row(rocking, against, f"{ratio:.1f} times faster", f">= {GOAL:.0f} times", ratio >= GOAL),
+    ]
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(0 if main() else 1)

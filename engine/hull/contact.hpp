@@ -130,22 +130,25 @@ bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
     const int n = static_cast<int>(carrying.size()), shapes = n <= 3 ? n : 3, rest = static_cast<int>(stuck.size());
     Wrench columns[size], rows[size];
     double known[size] = {}, answer[size];
-    const auto weight = [&](int shape, int k) {
-        if (n <= 3) return shape == k ? 1.0 : 0.0;
-        const Vec at = p.place(members[carrying[k]]);
-        return shape == 0 ? 1.0 : dot(shape == 1 ? p.axes.a : p.axes.b, at);  // Eq. 253
+    const auto weights = [&](int k, Vec at, double* w) {  // of the shapes in what a vertex carries
+        if (n > 3) w[0] = 1.0, w[1] = dot(p.axes.a, at), w[2] = dot(p.axes.b, at);  // Eq. 253
+        else w[0] = w[1] = w[2] = 0.0, w[k] = 1.0;
     };
-    for (int j = 0; j < shapes; ++j)
-        for (int k = n <= 3 ? j : 0; k < (n <= 3 ? j + 1 : n); ++k) {
-            const double w = weight(j, k);
-            const int i = members[carrying[k]];
-            const Vec slide = s.directions[carrying[k]];
-            const Vec push = dot(slide, slide) > 0.0 ? up - p.friction * slide : up;
-            columns[j].f = columns[j].f + w * push, columns[j].m = columns[j].m + w * cross(p.place(i), push);
-            rows[j].f = rows[j].f + w * up, rows[j].m = rows[j].m + w * cross(body.points[i], up);
-            if (p.forces) known[j] += w * dot(up, p.bias(i));
+    constexpr int most = size < 3 ? size : 3;
+    double w[3];
+    for (int k = 0; k < n; ++k) {
+        const int i = members[carrying[k]];
+        const Vec at = p.place(i), slide = s.directions[carrying[k]];
+        const Vec push = dot(slide, slide) > 0.0 ? up - p.friction * slide : up, turn = cross(at, push), lift = cross(body.points[i], up);
+        const double swing = p.forces ? dot(up, p.bias(i)) : 0.0;
+        weights(k, at, w);
+        for (int j = n > 3 ? 0 : k, end = n > 3 ? most : std::min(k + 1, most); j < end; ++j) {
+            columns[j].f = columns[j].f + w[j] * push, columns[j].m = columns[j].m + w[j] * turn;
+            rows[j].f = rows[j].f + w[j] * up, rows[j].m = rows[j].m + w[j] * lift;
+            known[j] += w[j] * swing;
         }
-    if (rest) {
+    }
+    if (size > 2 && rest) {
         int at = shapes;
         Vec acts, moves, known_there;  // means over those that stick: the matrix is symmetric where the forces are at the vertices
         const double share = 1.0 / rest;
@@ -157,7 +160,7 @@ bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
             columns[at] = {axis, cross(acts, axis)}, rows[at] = {axis, cross(moves, axis)};
             known[at++] = dot(axis, known_there);
         }
-        if (rest > 1) {
+        if (size > 3 && rest > 1) {
             const int one = stuck[0], other = stuck[rest / 2];
             const Vec arm = body.points[other] - body.points[one], across = cross(up, arm);
             columns[at] = rows[at] = {{}, up};
@@ -170,8 +173,10 @@ bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
     s.linear = p.linear + 1.0 / body.mass * force;
     s.angular = p.angular + body.inverse * moment;
     s.normals.assign(members.size(), 0.0);
-    for (int j = 0; j < shapes; ++j)
-        for (int k = n <= 3 ? j : 0; k < (n <= 3 ? j + 1 : n); ++k) s.normals[carrying[k]] += answer[j] * weight(j, k);
+    for (int k = 0; k < n; ++k) {
+        weights(k, p.place(members[carrying[k]]), w);
+        for (int j = n > 3 ? 0 : k, end = n > 3 ? most : std::min(k + 1, most); j < end; ++j) s.normals[carrying[k]] += answer[j] * w[j];
+    }
     if (p.friction < kInfinite) share_pulls(p, answer + shapes, s);
     else s.pulls.assign(members.size(), Vec{});
     return true;

@@ -1,6 +1,8 @@
 // The motion while a contact lasts: accelerations, and steps of the fifth order of Dormand and Prince (1980). One vertex
 // that sticks or slides, an edge that sticks, and up to three vertices that all slide have closed forms; every other contact is a small linear system.
 #pragma once
+#include <cstring>
+
 #include "contact.hpp"
 
 namespace rocking::hull {
@@ -50,7 +52,7 @@ class Flow {
         if (kind_ == kSliding)
             for (std::size_t j = 0; j < n; ++j)
                 for (std::size_t k = 0; k < n; ++k) yields_[j][k] = yielding(b_.points[c.members[j]], b_.points[c.members[k]]);
-        solution_.contact = c;
+        solution_.contact = c, known_ = false;
     }
 
     // f: where the forces go, if they are asked for.
@@ -94,7 +96,10 @@ class Flow {
         Rates* const k = rates_;
         State at = state;
         found_ = true;
-        for (int n = 0; n < 7; ++n) {
+        // the first stage is known from a longer step from the same state
+        const int first = known_ && std::memcmp(&samples[0], &state, sizeof state) == 0 && std::memcmp(&first_, &field.power[0], sizeof first_) == 0;
+        known_ = true, first_ = field.power[0];
+        for (int n = first; n < 7; ++n) {
             if (n) at = moved(state, k, a[n], n, h);
             const int keep = sample[n];
             if (keep >= 0) samples[keep] = at;
@@ -287,7 +292,8 @@ class Flow {
     Mat yields_[3][3];
     const Mode* mode_ = nullptr;
     Kind kind_ = kFlight;
-    bool found_ = true;
+    bool found_ = true, known_ = false;
+    Vec first_;
     Rates rates_[7];
     State course_[5];
     Forces between_;

@@ -12,7 +12,7 @@ constexpr double kClosed = 1e-11, kGrazed = 1e-14, kForce = 1e-11;
 // speeds over sqrt(g size): at which sliding stops, below which a vertex may stick, or still slides as it started
 constexpr double kSlip = 5e-6, kStill = 5e-6, kSlides = 1e-4;
 constexpr std::array<double, 4> kLadder{1e-11, 1e-9, 1e-7, 1e-5};
-constexpr double kAhead = 1e-6, kCrowded = 1e-2, kGathered = 1e-7, kGathering = 1e-3, kPatience = 100.0, kMargin = 0.1, kAfter = 0.1;
+constexpr double kAhead = 1e-6, kCrowded = 1e-2, kGathered = 1e-7, kGathering = 1e-4, kPatience = 100.0, kMargin = 0.1, kAfter = 0.1;
 constexpr int kPiled = 30, kMany = 200, kCrowd = 12, kHalvings = 80;
 
 // Codes of `rocking.outcome`.

@@ -52,7 +52,7 @@ _AHEAD = 1e-6  # how much later, over sqrt(size / g), the ground decides which m
 _PILED, _STUCK = 30, 200
 _CROWD, _CROWDED = 12, 1e-2  # changes of contact, and the time over sqrt(size / g) within which they are too many
 # what they close in on: gaps over the size, and speeds over sqrt(g size) away from the ground
-_GATHERED, _GATHERING = 1e-7, 1e-3
+_GATHERED, _GATHERING = 1e-7, 1e-4
 _PATIENCE = 100.0
 _PATH = (1.0 / 12.0, 10.0 / 21.0, 5.0 / 12.0, 1.0 / 42.0)
 _HALVINGS = 80
