@@ -25,11 +25,8 @@ def full_name(kind: type) -> str:
 
 
 def fields_of(thing: object) -> dict[str, Any]:
-    """Return the fields of a dataclass as plain values.
-
-    Returns numbers and words as they are, arrays as their SHA-256; without a field `times` that is a model, because
-    what a law multiplies is in the coefficients already.
-    """
+    """Return the fields of a dataclass as plain values, arrays as their SHA-256."""
+    # without `times` that is a model: what a law multiplies is in the coefficients already
     kind = type(thing)
     if "__dataclass_fields__" not in vars(kind) or _closes_over_something(kind):
         raise InvalidValueError(f"{_ADVICE}; {full_name(kind)} is no dataclass, or its functions hold other values")

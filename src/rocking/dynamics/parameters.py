@@ -228,19 +228,13 @@ def sides_of(bodies: Sequence[RockingParameters | None]) -> dict[str, FloatArray
 
 
 def cut_of(law: ImpactLaw, body: Body) -> dict[Foot, float]:
-    """Return what of a law's distribution is cut off for a body, where impacts would create energy.
-
-    Returns probability by foot; zero for a law that draws nothing [-].
-    """
+    """Return the probability by foot that is cut off a law's distribution, where impacts would create energy [-]."""
     coefficients, _ = coefficients_of(getattr(law, "times", 1.0), body)
     return _cut(law, {foot: _share(law, foot, coefficients[foot], energy_bound(body, foot)) for foot in FEET})
 
 
 def cut_words(cut: Mapping[Foot, float]) -> str:
-    """Return what is cut off of a distribution, in words.
-
-    cut: probability by foot [-]. Returns for the end of a label; nothing where less than a ten-thousandth is cut off.
-    """
+    """Return what is cut off of a distribution, for the end of a label; nothing below a ten-thousandth."""
     said = [f"{percent(cut[foot])} onto {foot}" for foot in FEET if cut[foot] > _SAID]
     if said and cut["left"] == cut["right"]:
         said = [percent(cut["left"])]

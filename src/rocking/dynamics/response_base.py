@@ -26,11 +26,7 @@ if TYPE_CHECKING:
 
 
 def motion_provenance(motion: Any) -> str:
-    """Return where a motion comes from.
-
-    >>> motion_provenance(None)
-    'ground at rest'
-    """
+    """Return where a motion comes from."""
     return "ground at rest" if motion is None else "; ".join(getattr(motion, "provenance", ())) or repr(motion)
 
 

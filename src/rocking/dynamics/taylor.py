@@ -13,11 +13,8 @@ _HALVINGS = 80
 def series(
     u: float, rate: float, kappa: float, push: Sequence[float], weight: Sequence[float], order: int, *, linear: bool
 ) -> list[float]:
-    """Return the series of ``u'' = kappa { weight * S + push * C }`` with S = sin u, C = cos u, over a unit of time.
-
-    u: angle from the top, alpha - |theta| [rad]; rate: u' per unit of time [rad]; kappa: p^2 times the unit of time
-    squared [-]. Returns coefficients of u, from the power 0; shorter than `order` where what is left is below rounding.
-    """
+    """Return coefficients of ``u'' = kappa { weight * S + push * C }``, S = sin u, C = cos u."""
+    # as many as are above rounding
     coefficients, rates = [u, rate], [rate]
     if linear:
         sines, cosines = coefficients, [1.0]
@@ -69,20 +66,15 @@ def slope(polynomial: Sequence[float], x: float) -> float:
 
 
 def first_fall(polynomial: Sequence[float]) -> float | None:
-    """Return where on (0, 1] a polynomial that starts above zero first goes below it.
-
-    Returns the zero, to rounding; None if there is none. Touching zero is not falling.
-    """
+    """Return where on (0, 1] a polynomial that starts above zero first goes below it, to rounding."""
+    # touching is not falling
     if polynomial[0] + sum(min(c, 0.0) for c in polynomial[1:]) > 0.0:
         return None
     return next((x for x in _zeros(polynomial) if 0.0 < x <= 1.0 and slope(polynomial, x) < 0.0), None)
 
 
 def last_fall(polynomial: Sequence[float]) -> float | None:
-    """Return where on [0, 1) a polynomial that ends below zero last goes below it.
-
-    Returns the zero, to rounding; None if the polynomial is below zero throughout.
-    """
+    """Return where on [0, 1) a polynomial that ends below zero last goes below it; None if it is below throughout."""
     if polynomial[0] + sum(max(c, 0.0) for c in polynomial[1:]) < 0.0:
         return None
     # backwards in time and upside down it is a first fall
@@ -91,13 +83,7 @@ def last_fall(polynomial: Sequence[float]) -> float | None:
 
 
 def turning_points(polynomial: Sequence[float], until: float) -> list[float]:
-    """Return where on (0, until] the slope of a polynomial is zero.
-
-    Returns the zeros of the slope, in order; where it only just touches zero there may be one or none.
-
-    >>> [round(x, 12) for x in turning_points([0.0, 0.5, -1.5, 1.0], 1.0)]
-    [0.211324865405, 0.788675134595]
-    """
+    """Return zeros of the slope on (0, until], in order; where it only just touches zero there may be one or none."""
     return [min(x, until) for x in _zeros(_slopes(polynomial)) if 0.0 < x <= until + _NEAR]
 
 

@@ -64,10 +64,7 @@ class PlaneBase:
         return d * cosine - self.height * sine, -d * sine - self.height * cosine  # Eq. 58
 
     def rise_on(self, foot: int, rotation: float) -> float:
-        """Return how far the centre is above its height at rest while a foot touches the ground.
-
-        rotation: theta [rad]. Returns ``d sin(theta) - 2 h sin(theta / 2)^2``, exactly zero at theta = 0 [m].
-        """
+        """Return the rise of the centre on one foot, d sin(theta) - 2 h sin(theta / 2)^2, exactly zero at rest [m]."""
         return self.lever(foot) * math.sin(rotation) - 2.0 * self.height * math.sin(0.5 * rotation) ** 2  # Eq. 59
 
 
@@ -111,26 +108,17 @@ class ContactState(NamedTuple):
 
 
 def along(base: PlaneBase, state: ContactState, foot: int) -> float:
-    """Return the velocity of a foot along the ground.
-
-    Returns v_t, to the right; exactly zero where the foot was made to stick [m/s].
-    """
+    """Return velocity of a foot along the ground, to the right; exactly zero where the foot was made to stick [m/s]."""
     return state.u + base.arm(foot, state.rotation)[1] * state.spin  # Eq. 60
 
 
 def away(base: PlaneBase, state: ContactState, foot: int) -> float:
-    """Return the velocity of a foot away from the ground.
-
-    Returns v_n, upwards; exactly zero where the foot was put to rest [m/s].
-    """
+    """Return velocity of a foot away from the ground, upwards; exactly zero where the foot was put to rest [m/s]."""
     return state.w - base.arm(foot, state.rotation)[0] * state.spin  # Eq. 61
 
 
 def kept(base: PlaneBase, state: ContactState, feet: tuple[int, ...], *, stick: bool) -> ContactState:
-    """Return the state with rounding taken out of what the contacts fix.
-
-    Returns with ``v_n = 0``, and ``v_t = 0`` if they stick, exactly.
-    """
+    """Return the state without rounding in what contacts fix: ``v_n = 0``, and ``v_t = 0`` if they stick, exactly."""
     if not feet:
         return state
     if len(feet) == 2:
@@ -143,10 +131,7 @@ def kept(base: PlaneBase, state: ContactState, feet: tuple[int, ...], *, stick: 
 
 
 def kinetic(base: PlaneBase, state: ContactState) -> float:
-    """Return the kinetic energy in the frame of the ground, per unit of mass.
-
-    Returns ``(x'^2 + z'^2 + (I_C / m) theta'^2) / 2`` [J/kg].
-    """
+    """Return kinetic energy seen from the ground, per unit of mass, (x'^2 + z'^2 + (I_C / m) theta'^2) / 2 [J/kg]."""
     return 0.5 * (state.u**2 + state.w**2 + base.inertia * state.spin**2)  # Eq. 62
 
 

@@ -77,10 +77,8 @@ class RowsWithContact:
 
 
 def ends_of(length: Any, step: Any, pulse: Any, slow: Any) -> FloatArray:
-    """Return when histories end: on a sample of what the reference engine follows, which cuts pulses finer [s].
-
-    slow: sqrt(R / g) [s].
-    """
+    """Return when histories end: on a sample of what the reference engine follows, which cuts pulses finer [s]."""
+    # slow: sqrt(R / g) [s]
     with np.errstate(invalid="ignore"):
         step = np.where(pulse, step / np.maximum(1.0, np.ceil(step / (FINE * slow))), step)
         return np.asarray(np.maximum(1.0, np.ceil(length / step - 1e-9)) * step)

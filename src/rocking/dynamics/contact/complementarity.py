@@ -19,10 +19,7 @@ _SAME = 1e-6
 
 
 def candidates(base: PlaneBase, state: ContactState) -> list[Mode]:
-    """Return the modes that the velocities allow.
-
-    Returns modes with most feet first, and those that stick before those that slide.
-    """
+    """Return the modes that the velocities allow: most feet first, those that stick before those that slide."""
     resting = [foot for foot in state.touching if away(base, state, foot) == 0.0]
     subsets = chain.from_iterable(combinations(resting, n) for n in range(len(resting), 0, -1))
     found = []
@@ -43,10 +40,8 @@ class NextMode(NamedTuple):
 
 
 def choose(base: PlaneBase, state: ContactState, ground: GroundSeries, friction: float) -> NextMode | Status:
-    """Return the mode that follows a state.
-
-    Returns the mode; of several the first: contacts last, and stick, where they can. Where there is none, a status.
-    """
+    """Return the mode that follows a state, a status if there is none."""
+    # of several the first: contacts last, and stick, where they can
     weight = weight_of(ground)
     tried = [(mode, mode_series(base, state, mode, ground, friction, _ORDER)) for mode in candidates(base, state)]
     possible = [(m, c, event_functions(base, m, c, friction, weight)) for m, c in tried if c.stiff > 0.0]

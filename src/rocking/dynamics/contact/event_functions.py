@@ -42,10 +42,8 @@ class EventFunction(NamedTuple):
 def event_functions(
     base: PlaneBase, mode: Mode, series: ModeSeries, friction: float, weight: float
 ) -> list[EventFunction]:
-    """Return what must stay above zero in a mode.
-
-    weight: acceleration that forces are measured by, such as g + |a_x| + |a_z| [m/s2].
-    """
+    """Return what must stay above zero in a mode."""
+    # weight: what forces are measured by, such as g + |a_x| + |a_z| [m/s2]
     found = [EventFunction(ModeEnd.LOSS_OF_CONTACT, normal, 0, weight) for normal in series.normals.values()]
     per_gap = weight * series.unit**2 / (1.0 if not mode.feet else base.size)
     found += [EventFunction(ModeEnd.LANDING, gap, 2, per_gap) for gap in series.gaps.values()]
@@ -79,21 +77,14 @@ def leading(function: EventFunction, stretch: float, tolerance: float) -> int:
 
 
 def consistent(found: list[EventFunction], stretch: float, tolerance: float) -> bool:
-    """Return whether all event functions are above zero, or zero, for a while.
-
-    stretch: duration of the series over the natural time of the body [-]; tolerance: below it a coefficient counts as
-    zero [-].
-    """
+    """Return whether all event functions are above zero, or zero, for a while."""
+    # stretch and tolerance as of `leading`
     decisive = ((m, leading(m, stretch, tolerance)) for m in found)
     return all(k < 0 or m.series[k] > 0.0 for m, k in decisive)
 
 
 def first_end(found: list[EventFunction], stretch: float, tolerance: float) -> tuple[float, ModeEnd] | None:
-    """Return when the first function falls below zero.
-
-    stretch: duration of the series over the natural time of the body [-]; tolerance: below it a coefficient counts as
-    zero [-]. Returns kind: what happens; None instead of both where nothing does.
-    """
+    """Return when the first function falls below zero, and what then happens; None where nothing does."""
     first: tuple[float, ModeEnd] | None = None
     for function in found:
         k = leading(function, stretch, tolerance)
@@ -107,11 +98,7 @@ def first_end(found: list[EventFunction], stretch: float, tolerance: float) -> t
 
 
 def excited_stretches(base: PlaneBase, push: FloatArray, lift: FloatArray, friction: float) -> np.ndarray:
-    """Return the stretches in which a body at rest might be lifted or moved.
-
-    push, lift: coefficients of a_x and g + a_z [m/s2]. Returns numbers of the stretches; in all others every function
-    stays above zero.
-    """
+    """Return stretches that might lift or move a body at rest; push, lift: coefficients of a_x and g + a_z [m/s2]."""
     turn = push * base.height
     # Eq. 69
     held = [lift * base.right + turn, lift * base.left - turn, friction * lift - push, friction * lift + push]

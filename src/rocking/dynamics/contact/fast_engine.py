@@ -56,11 +56,8 @@ def run_compiled(
     settings: Settings,
     threads: int,
 ) -> dict[str, np.ndarray]:
-    """Return the results of histories by name: `FLOATS` and `WHOLES`.
-
-    values: the keys of `NUMBERS`, numbers or arrays; motion: numbers of the motions;
-    touching: 1 for the left foot plus 2 for the right one.
-    """
+    """Return results by name of histories of `NUMBERS`; motion: their numbers."""
+    # touching: 1 for the left foot plus 2 for the right
     columns = np.broadcast_arrays(*(values[name] for name in NUMBERS), motion, BOUNCE_LAWS.index(bounce_law), touching)
     numbers: FloatArray = np.column_stack([np.ravel(each) for each in columns[:-3]]).astype(np.float64)
     choices = np.column_stack([np.ravel(each) for each in columns[-3:]]).astype(np.int64)

@@ -177,11 +177,8 @@ def _distance(history: History, base: PlaneBase, mode: Mode, start: float, end: 
 
 
 def impacts_of(history: History, base: PlaneBase) -> np.ndarray:
-    """Return the impacts of a history in order.
-
-    Returns of type `IMPACT`. On a flat base only the sum of the impulses along the ground is determined; it is shared
-    as the vertical impulses are.
-    """
+    """Return the impacts of a history in order."""
+    # of the impulses along the ground only the sum is determined: they are shared as the vertical ones are
     rows = []
     for blow in history.blows:
         normal = {foot: blow.struck.normal.get(foot, 0.0) for foot in (LEFT, RIGHT)}
@@ -195,10 +192,7 @@ def impacts_of(history: History, base: PlaneBase) -> np.ndarray:
 
 
 def places_of(history: History, time: FloatArray) -> FloatArray:
-    """Return where the body is at some times.
-
-    Returns x [m], rise [m] and theta [rad] along the last axis; at an instant between two pieces the later one counts.
-    """
+    """Return x [m], rise [m] and theta [rad] at some times; between two pieces the later one counts."""
     pieces = history.pieces
     if not pieces:
         return np.zeros((*time.shape, 3))

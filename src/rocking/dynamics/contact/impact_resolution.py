@@ -71,11 +71,8 @@ class Struck(NamedTuple):
 
 
 def strike(base: PlaneBase, state: ContactState, friction: float, bounce: dict[int, float]) -> Struck | Status:
-    """Return what an impact does.
-
-    bounce: e_N of each foot that touches [-]. Returns the state after it with the impulses; a status where there is no
-    solution, where two of them differ, or where energy would be created.
-    """
+    """Return what an impact does, e_N by foot [-]."""
+    # a status where there is no solution, where two differ, or where energy would be created
     good = list(placed(base, state, friction, bounce))
     if not good:
         return Status.NO_CONTACT_FORCE
@@ -105,10 +102,8 @@ def cleared(base: PlaneBase, struck: Struck, before: ContactState) -> bool:
 
 
 def largest_speed(base: PlaneBase, state: ContactState) -> float:
-    """Return the size of the velocities from which those of the feet are differences.
-
-    Returns by which their rounding is measured [m/s].
-    """
+    """Return the size of the velocities of which those of the feet are differences."""
+    # it measures their rounding [m/s]
     return max(abs(state.u), abs(state.w), base.size * abs(state.spin))
 
 
@@ -172,11 +167,8 @@ def _valid(base: PlaneBase, struck: Struck, friction: float, targets: dict[int, 
 
 
 def cleaned(base: PlaneBase, struck: Struck, stop: float) -> ContactState:
-    """Return the state after an impact with rounding taken out of velocities that are zero.
-
-    stop: velocities of a foot below this are zero [m/s]. Returns the state; its feet are still those that touched
-    before.
-    """
+    """Return the state after an impact, velocities of feet below `stop` [m/s] exactly zero."""
+    # its feet are still those before it
     state = struck.state
     resting = tuple(foot for foot in state.touching if abs(away(base, state, foot)) <= stop)
     if not resting:

@@ -41,11 +41,7 @@ def integral(first: FloatArray, second: FloatArray, at: float) -> float:
 
 
 def twice(acceleration: FloatArray, start: float, rate: float, unit: float) -> FloatArray:
-    """Return the position that follows from an acceleration.
-
-    acceleration: coefficients over a unit of time [m/s2]; start, rate: position [m] and velocity [m/s] at the start.
-    Returns coefficients of the position, as many [m].
-    """
+    """Return coefficients of the position [m] from those of its acceleration over a unit of time, and how it starts."""
     made = np.zeros(acceleration.size)
     made[0], made[1] = start, rate * unit
     k = np.arange(2, acceleration.size)

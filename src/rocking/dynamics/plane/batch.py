@@ -89,11 +89,7 @@ class Batch:
         progress: Callable[[int], None] | None = None,
         threads: int | None = None,
     ) -> tuple[fast_engine.Arrays, dict[str, int]]:
-        """Return the results of many histories.
-
-        Returns results: one array for each key of `fast_engine.RESULTS`; work: steps that were taken; empty
-        for the reference engine.
-        """
+        """Return arrays by the keys of `fast_engine.RESULTS`, and the steps taken (none by the reference engine)."""
         check_progress(progress)
         check_threads(threads)
         if self.law.per_history:
@@ -195,10 +191,7 @@ class Batch:
 
 
 def valid_row(row: dict[str, float]) -> bool:
-    """Return whether the numbers of a history are within the ranges that the engines take.
-
-    Returns false for what is not finite or outside.
-    """
+    """Return whether the numbers of a history are finite and within the ranges that the engines take."""
 
     def both(low: float, high: float, name: str) -> bool:
         return low < row[f"{name}_right"] < high and low < row[f"{name}_left"] < high
@@ -216,10 +209,7 @@ def valid_row(row: dict[str, float]) -> bool:
 
 
 def drawn_rows(rows: Rows, law: ImpactLaw) -> Rows:
-    """Return rows whose coefficients are multiplied by the draws of a law that draws once for every history.
-
-    Returns the same with the coefficients of the histories.
-    """
+    """Return rows whose coefficients are multiplied by the draws of a law that draws once for every history."""
     draws: Any = law.draws
     drawn, cut = {}, isinstance(law, DrawnRestitution) and law.truncates
     for foot in FEET:

@@ -88,27 +88,18 @@ class DenseOutput:
         return self.end - self.start
 
     def places(self, time: FloatArray) -> IntArray:
-        """Return the last interval that is over at each of some times.
-
-        Returns numbers of intervals; the first one where none is over.
-        """
+        """Return the last interval that is over at each of some times; the first one where none is."""
         return np.maximum(np.searchsorted(self.end, time * (1.0 + 1e-14), side="right") - 1, 0)
 
     def evaluated(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return rotation and velocity within every interval: the quintic through both ends.
-
-        Returns theta [rad] and theta' [rad/s] (shape (n, m)).
-        """
+        """Return theta [rad] and theta' [rad/s] at places x of every interval, by the quintics (shape (n, m))."""
         c = self.quintics()
         by_power = powers(x, 6).T
         slopes = np.arange(1, 6)[:, None] * by_power[:5]
         return times(c, by_power), times(c[:, 1:], slopes) / self.length[:, None]
 
     def quintics(self) -> FloatArray:
-        """Return the quintics that have the value, rate and acceleration of the motion at both ends.
-
-        Returns coefficients of the powers of the place x from 0 to 1 [rad].
-        """
+        """Return the coefficients over 0 <= x <= 1 that have value, rate and acceleration at both ends [rad]."""
         h = self.length
         a, b = self.rotation[:, 0], self.rotation[:, 1]
         va, vb = self.velocity[:, 0] * h, self.velocity[:, 1] * h
@@ -127,13 +118,8 @@ class DenseOutput:
         )
 
     def work(self, settings: Settings) -> FloatArray:
-        """Return the work that the ground does in each interval, per unit mass.
-
-        In the frame of the ground the inertia forces ``-m a_x`` and ``-m a_z`` act on the centre of mass; the
-        slender-linear equations have the corresponding terms.
-
-        Returns work [J/kg].
-        """
+        """Return the work of the ground in each interval per unit mass [J/kg]."""
+        # in the frame of the ground the inertia forces -m a_x and -m a_z act; the slender-linear terms correspond
         rotation, velocity = self.evaluated(_POINTS)
         middle = 0.5 * (self.start + self.end) / self._segments.step
         stretch = np.clip(middle.astype(np.int64), 0, self._segments.count - 1)

@@ -42,10 +42,7 @@ class ResponseEnergy:
 
 
 def energy_of(dense_output: DenseOutput, time: FloatArray, mass: float, settings: Settings) -> ResponseEnergy:
-    """Return the energy of a response.
-
-    time: times of the samples, the first one zero, and of a fall after the last of them [s].
-    """
+    """Return the energy of a response at the samples, from time zero, and at a fall after the last of them [s]."""
     place = dense_output.places(time[1:])
     both_ends = energies(dense_output, mass, settings)
     return ResponseEnergy(time, *(np.append(values[0, 0], values[place, 1]) for values in both_ends))
@@ -54,10 +51,7 @@ def energy_of(dense_output: DenseOutput, time: FloatArray, mass: float, settings
 def energies(
     dense_output: DenseOutput, mass: float, settings: Settings
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return the energy of a response at both ends of its dense_output.
-
-    Returns as `ResponseEnergy` has them [J] (shape (n, 2)).
-    """
+    """Return the energy at both ends of the intervals, as `ResponseEnergy` has it [J] (shape (n, 2))."""
     unit = (mass * settings.gravity * dense_output.semi_diagonal)[:, None]
     alpha, p = dense_output.alpha[:, None], dense_output.p[:, None]
     stored = unit * equations.energy(dense_output.rotation, dense_output.velocity, alpha, p, linear=settings.linear)
@@ -101,10 +95,7 @@ class GroundForces:
         return self.least_vertical < 0.0
 
     def warnings(self, friction: float = 0.5) -> list[str]:
-        """Return why pure rocking is not credible, in plain words; empty if it is.
-
-        Returns loss of contact, and what `slips` says.
-        """
+        """Return why pure rocking is not credible: loss of contact, and what `slips` says; empty if it is credible."""
         slips = self.slips(friction)
         return [f"the ground would have to pull: {LEAVES}; {_FOLLOWS}", *slips] if self.loses_contact else slips
 
@@ -128,10 +119,7 @@ class GroundForces:
 def contact_of(
     trajectory: Trajectory, dense_output: DenseOutput, time: FloatArray, body: Body, settings: Settings
 ) -> GroundForces:
-    """Return the forces of the ground on a body during a response.
-
-    time: times of the samples, and of a fall after the last of them [s].
-    """
+    """Return the forces of the ground at the samples of a response, and at a fall after the last of them [s]."""
     f_x, f_z, demand = forces(dense_output, settings.gravity)
     # a body that falls is past all questions of friction; the start counts even for one that is let go beyond the top
     late = dense_output.start >= trajectory.overturning_time - 1e-9 * dense_output.length
@@ -150,11 +138,8 @@ def contact_of(
 
 
 def forces(dense_output: DenseOutput, gravity: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the forces of the ground at both ends of the intervals of a response.
-
-    Returns horizontal, vertical: over the mass [N/kg] (shape (n, 2)); demand: friction that rocking without slip takes;
-    infinite where the ground would have to pull [-] (shape (n, 2)).
-    """
+    """Return horizontal and vertical force over mass at both ends of intervals [N/kg], and the friction demand [-]."""
+    # the demand is infinite where the ground would have to pull
     side = dense_output.side[:, None]
     f_x, f_z = equations.reactions(
         dense_output.rotation, dense_output.velocity, dense_output.acceleration, np.where(side == 0.0, 1.0, side),

@@ -21,37 +21,21 @@ from rocking.portable import each
 def angular_acceleration(
     rotation: Any, side: Any, alpha: Any, p: Any, push: Any, weight: Any = 1.0, *, linear: bool = False
 ) -> FloatArray:
-    """Return the angular acceleration of the body.
-
-    rotation: theta [rad]; push: a_x / g [-]; weight: 1 + a_z / g [-]. Returns theta'' [rad/s2].
-
-    >>> angular_acceleration(0.0, 1, 0.2, 2.0, -0.3, linear=True).round(12).item()
-    0.4
-    """
+    """Return theta'' [rad/s2]; push: a_x / g [-]; weight: 1 + a_z / g [-]."""
     to_top = np.asarray(alpha) * side - rotation
     sine, cosine = (to_top, np.ones_like(to_top)) if linear else (np.sin(to_top), np.cos(to_top))  # Eq. 15
     return np.asarray(-np.square(p) * (np.asarray(weight) * sine + np.asarray(push) * cosine))  # Eq. 14
 
 
 def holding_moment(side: Any, alpha: Any, push: Any, weight: Any = 1.0, *, linear: bool = False) -> FloatArray:
-    """Return the moment that keeps a body at rest from turning about a foot, over m g R; it lifts where this is < 0.
-
-    push: a_x / g [-]; weight: 1 + a_z / g [-]. Returns ``(1 + a_z / g) sin(alpha) + s (a_x / g) cos(alpha)`` [-].
-
-    >>> import numpy as np
-    >>> round(holding_moment(-1, np.arctan(0.25), 0.25).item(), 12)
-    0.0
-    """
+    """Return ``(1 + a_z / g) sin(alpha) + s (a_x / g) cos(alpha)``, over m g R."""
+    # a body at rest lifts where it is < 0
     sine, cosine = (np.asarray(alpha), 1.0) if linear else (np.sin(alpha), np.cos(alpha))
     return np.asarray(np.asarray(weight) * sine + np.asarray(side) * np.asarray(push) * cosine)  # Eq. 24
 
 
 def energy(rotation: Any, angular_velocity: Any, alpha: Any, p: Any, *, linear: bool = False) -> FloatArray:
-    """Return kinetic and potential energy above rest, over m g R.
-
-    rotation: theta or its size [rad]; angular_velocity: theta' [rad/s]. Returns ``theta'^2 / (2 p^2) + cos(alpha -
-    |theta|) - cos(alpha)`` [-].
-    """
+    """Return energy above rest over m g R, ``theta'^2 / (2 p^2) + cos(alpha - |theta|) - cos(alpha)`` [-]."""
     size, angle = np.abs(rotation), np.asarray(alpha)
     kinetic = 0.5 * np.square(np.asarray(angular_velocity) / p)
     if linear:
@@ -89,12 +73,8 @@ def reactions(  # noqa: PLR0917 - the state of body and ground, in the order of 
     horizontal: Any,
     vertical: Any,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the force of the ground on a rocking body, per unit mass.
-
-    rotation, angular_velocity, acceleration: theta [rad], theta' [rad/s], theta'' [rad/s2]; semi_diagonal: R of that
-    side [m]; horizontal: a_x [m/s2]; vertical: g + a_z [m/s2]. Returns horizontal force, and vertical force which must
-    stay above zero [N/kg].
-    """
+    """Return horizontal and vertical force of the ground per unit mass [N/kg]."""
+    # horizontal: a_x, vertical: g + a_z [m/s2]
     psi = np.asarray(alpha) - np.asarray(side) * rotation
     outward = np.asarray(side) * acceleration  # |theta|''
     rate2 = np.square(angular_velocity)

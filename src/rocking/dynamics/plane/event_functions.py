@@ -44,10 +44,7 @@ class RestoringMoments:
         return value(self.moments[sign][stretch].tolist(), tau)
 
     def next_uplift(self, stretch: int, tau: float) -> tuple[int, float, int] | None:
-        """Return when the body is next lifted.
-
-        Returns side: side on which it then stands; None instead of all three if the ground never lifts it.
-        """
+        """Return when the body is next lifted, and the side on which it then stands; None if it never is."""
         for k in self._candidates[np.searchsorted(self._candidates, stretch) :].tolist():
             start = tau if k == stretch else 0.0
             right, left = self._release(1, k, start), self._release(-1, k, start)

@@ -154,10 +154,7 @@ def run(
     rotation: float = 0.0,
     velocity: float = 0.0,
 ) -> Trajectory:
-    """Return one history by the engine that was asked for; the fast one gives the bits that it gives within a batch.
-
-    rotation, velocity: theta [rad] and theta' [rad/s] at time 0.
-    """
+    """Return one history by the engine that was asked for; the fast one gives the bits that it gives within a batch."""
     taken = chosen(engine, parameters.law)
     if engine != "reference" and settings.order != _ORDER:
         raise InvalidValueError(

@@ -74,10 +74,7 @@ class Reference:
     # ---- the course of a history ------------------------------------------------------------------------------------
 
     def run(self, rotation: float = 0.0, velocity: float = 0.0) -> Trajectory:
-        """Return the history from given initial conditions.
-
-        rotation, velocity: theta [rad] and theta' [rad/s] at time zero.
-        """
+        """Return the history from theta [rad] and theta' [rad/s] at time zero."""
         self.rotations[0], self.velocities[0] = rotation, velocity
         ended = self._start(rotation, velocity)
         while ended is None:

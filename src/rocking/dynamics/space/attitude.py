@@ -32,33 +32,21 @@ def cross(left: FloatArray, right: FloatArray) -> FloatArray:
 
 
 def matrix(quaternion: FloatArray) -> FloatArray:
-    """Return the rotation matrices of quaternions.
-
-    quaternion: unit quaternions (s, x, y, z) [-]. Returns body axes to axes of the ground [-].
-
-    >>> matrix(turn([0.0, 0.0, 1.0], 0.5 * math.pi)).round(12)[:, 0].tolist()  # a quarter turn takes x to y
-    [0.0, 1.0, 0.0]
-    """
+    """Return the rotation matrices, from body axes to axes of the ground, of unit quaternions (s, x, y, z) [-]."""
     q = quaternion.tolist() if quaternion.ndim == 1 else list(np.moveaxis(quaternion, -1, 0))
     made: FloatArray = np.array(rows_of([[a * b for b in q] for a in q]))
     return made if quaternion.ndim == 1 else np.moveaxis(made, (0, 1), (-2, -1))
 
 
 def turn(axis: FloatArray | list[float], angle: float) -> FloatArray:
-    """Return the quaternion of a rotation about an axis.
-
-    axis: any length above zero [-]; angle: by the right hand [rad]. Returns unit quaternion [-].
-    """
+    """Return the unit quaternion of a rotation about an axis of any length by the right hand [rad]."""
     unit = np.asarray(axis, dtype=np.float64)
     unit = unit / norm(unit)
     return np.concatenate([[math.cos(0.5 * angle)], math.sin(0.5 * angle) * unit])
 
 
 def product(left: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the rotation `right` followed by the rotation `left`, both in axes of the ground.
-
-    Returns their Hamilton product [-].
-    """
+    """Return the rotation `right` followed by the rotation `left`, both in axes of the ground: a Hamilton product."""
     scalar = left[0] * right[0] - dot(left[1:], right[1:])  # Eq. 80
     return np.concatenate([[scalar], left[0] * right[1:] + right[0] * left[1:] + cross(left[1:], right[1:])])
 
@@ -69,18 +57,12 @@ def normalised(quaternion: FloatArray) -> FloatArray:
 
 
 def flat(quaternion: FloatArray) -> FloatArray:
-    """Return the attitude of a body on its whole base: what is left of an attitude without its tilt.
-
-    quaternion: attitude, tilted by less than half a turn [-]. Returns turned about the vertical only [-].
-    """
+    """Return an attitude without its tilt, which is below half a turn: that of a body on its whole base."""
     return normalised(np.array([quaternion[0], 0.0, 0.0, quaternion[3]]))
 
 
 def levelled(quaternion: FloatArray, axis: FloatArray) -> FloatArray:
-    """Return an attitude turned by the least angle so that an axis of the body is horizontal.
-
-    axis: unit vector in body axes, nearly horizontal [-]. Returns attitude [-].
-    """
+    """Return an attitude turned by the least angle that makes an axis of the body, nearly so already, horizontal."""
     direction = applied(matrix(quaternion), axis)
     rise = float(direction[2])
     if rise == 0.0:
@@ -92,20 +74,13 @@ def levelled(quaternion: FloatArray, axis: FloatArray) -> FloatArray:
 
 
 def tilt(quaternion: FloatArray) -> FloatArray:
-    """Return the tilts: angles between the axis of the body and the vertical, from 0 to pi [rad].
-
-    >>> round(float(tilt(turn([1.0, 1.0, 0.0], 0.3))), 12)
-    0.3
-    """
+    """Return the tilts: angles between the axis of the body and the vertical, from 0 to pi [rad]."""
     s, x, y, z = np.moveaxis(quaternion, -1, 0)
     return 2.0 * each(math.atan2, np.sqrt(x * x + y * y), np.sqrt(s * s + z * z))  # Eq. 81
 
 
 def azimuth(quaternion: FloatArray) -> FloatArray:
-    """Return the directions in which bodies lean: of the horizontal part of their axis.
-
-    Returns from x towards y, in (-pi, pi]; zero for a body that does not lean [rad].
-    """
+    """Return directions, from x towards y in (-pi, pi], in which bodies lean; zero for a body that does not [rad]."""
     s, x, y, z = np.moveaxis(quaternion, -1, 0)
     return each(math.atan2, y * z - s * x, x * z + s * y)  # Eq. 82
 

@@ -38,12 +38,7 @@ _FEW = 100  # up to so many bodies are spelled out; of more of them the digest a
 
 @dataclass(frozen=True, eq=False)
 class SpatialBatch:
-    """The results of a batch; every array has one axis for each of its dimensions.
-
-    >>> batch = SpatialBatch((1, 1, 1, 1, 1), {"outcome": np.array([2]), "status": np.array([0])}, "none")
-    >>> batch.overturned.item()
-    1.0
-    """
+    """The results of a batch; every array has one axis for each of its dimensions."""
 
     shape: tuple[int, ...]
     values: dict[str, np.ndarray] = field(repr=False)  # results by name, one after another; see `rocking.quantities`
@@ -113,11 +108,8 @@ def batch_in_space(  # noqa: PLR0913, PLR0917 - what the front door hands on
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> SpatialBatch:
-    """Return the outcome of every combination of bodies, motions, scales, restitutions and starts in space.
-
-    motions: tuples of components; scales: factors on them [-]; duration: how long to follow the bodies [s]; the
-    reference engine takes thousands of times as long as the compiled one.
-    """
+    """Return the outcome of every combination; motions: tuples of components."""
+    # the reference engine is thousands of times slower
     settings = settings or Settings(mechanics="space, many")
     several, refused = _bodies(bodies)
     motion_list = _listed("motions", motions)

@@ -17,10 +17,7 @@ from rocking.portable import applied, dot, norm
 
 @dataclass(frozen=True, eq=False)
 class Matter:
-    """A solid and where it is in the axes of a body, made when somebody asks.
-
-    Most models of an impact need mass, centre and inertia alone; those that need every mass point ask for this.
-    """
+    """A solid in the axes of a body, made when asked for: most impact models need mass, centre and inertia alone."""
 
     make: Callable[[], Solid]  # returns the solid
     shift: FloatArray  # origin of the body's axes in the coordinates in which the solid is described [m]; shape (3,)
@@ -32,10 +29,7 @@ class Matter:
         return solid, solid.origin - self.shift
 
     def __call__(self) -> tuple[Solid, FloatArray]:
-        """Return `placed`, as impacts ask for it.
-
-        Returns origin: origin of its own frame in axes of the body [m] (shape (3,)).
-        """
+        """Return `placed`, as impacts ask for it, with the origin of its own frame in axes of the body [m]."""
         return self.placed
 
 

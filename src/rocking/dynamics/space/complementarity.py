@@ -100,10 +100,8 @@ def of_impact(
 def of_forces(
     body: SpatialBody, state: SpatialState, touching: tuple[int, ...], first: ContactSet | None = None
 ) -> list[Continuation]:
-    """Return every contact set that stays when no gap opens with a speed, a preferred one first.
-
-    Returns empty if the ground would have to pull.
-    """
+    """Return every contact set that stays when no gap opens with a speed, a preferred one first."""
+    # empty if the ground must pull
     found: list[Continuation] = []
     scale, every = norm(state.field), list(candidates(body, touching))
     if first is not None:
@@ -122,10 +120,8 @@ def of_forces(
 
 
 def impulses(body: SpatialBody, state: SpatialState, contact: ContactSet, velocity: FloatArray) -> FloatArray:
-    """Return the impulses of the ground in an impact.
-
-    velocity: angular velocity after, in body axes [rad/s]. Returns as of `supports` of the contact [N s].
-    """
+    """Return the impulses of the ground in an impact, as `supports` of the contact [N s]."""
+    # velocity: afterwards, in body axes
     new = body.centre - contact.pivot
     push = body.mass * (cross(velocity, new) - cross(state.velocity, body.centre - state.pivot))  # Eq. 90
     moment = applied(body.inertia, velocity - state.velocity) + cross(new, push)  # Eq. 90
@@ -135,11 +131,8 @@ def impulses(body: SpatialBody, state: SpatialState, contact: ContactSet, veloci
 def forces(
     body: SpatialBody, contact: ContactSet, velocity: FloatArray, up: FloatArray, field: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the angular acceleration on a contact and the forces of the ground.
-
-    field: gravity less the acceleration of the ground, in body axes [m/s2]. Returns acceleration: Angular, in body axes
-    [rad/s2] (shape (3,)); supports: as of `supports` of the contact [N].
-    """
+    """Return angular acceleration in body axes [rad/s2] and supports [N]."""
+    # field: gravity less the ground's acceleration [m/s2]
     arm, inertia = body.centre - contact.pivot, body.inertia_about(contact.pivot)
     rate: FloatArray
     gyroscopic, weight = cross(velocity, applied(inertia, velocity)), body.mass * cross(arm, field)

@@ -43,10 +43,7 @@ def vertex(body: SpatialBody, number: int) -> ContactSet:
 
 
 def rim(body: SpatialBody, direction: FloatArray) -> ContactSet:
-    """Return standing on a point of a round base.
-
-    Returns turning about that point: what rolling starts with while the base is nearly flat.
-    """
+    """Return standing on a point of a round base, turning about it: rolling starts so on a base that is nearly flat."""
     unit = direction / norm(direction)
     return ContactSet(ContactMode.VERTEX, (), np.array([*(body.radius * unit), 0.0]))
 
@@ -83,10 +80,8 @@ def supports(
 
 
 def touching_point(body: SpatialBody, contact: ContactSet, up: FloatArray) -> FloatArray:
-    """Return the point of the body that is on the ground.
-
-    Returns the pivot; of a rolling body the lowest point of its rim, in body axes [m].
-    """
+    """Return the point of the body on the ground, in body axes: the pivot."""
+    # of a rolling body the lowest of its rim [m]
     if contact.mode is not ContactMode.ROLLING:
         return contact.pivot
     level = up[:2] / norm(up[:2])
@@ -94,10 +89,7 @@ def touching_point(body: SpatialBody, contact: ContactSet, up: FloatArray) -> Fl
 
 
 def rise(body: SpatialBody, pivot: FloatArray, up: FloatArray) -> float:
-    """Return how much higher the centre of mass is than at rest.
-
-    pivot: A point on the ground, in body axes [m]. Returns rise [m].
-    """
+    """Return how much higher the centre of mass is than at rest; pivot: a point on the ground, in body axes [m]."""
     arm = body.centre - pivot
     level2 = float(up[0] ** 2 + up[1] ** 2)
     # 1 - cos(tilt) without the loss of digits

@@ -81,10 +81,7 @@ class Step:
 
 
 def watched(body: SpatialBody, contact: ContactSet) -> tuple[int, ...]:
-    """Return the vertices whose gaps must be watched: the base is convex, so no other one closes before them.
-
-    Returns both neighbours of a vertex; the vertex farthest from an edge.
-    """
+    """Return the vertices whose gaps may close first: both neighbours of a vertex, or the one farthest from an edge."""
     count = len(body.vertices)
     if contact.mode is ContactMode.VERTEX and contact.points:
         return ((contact.points[0] - 1) % count, (contact.points[0] + 1) % count)

@@ -94,11 +94,8 @@ class RowTable:
         return int(np.prod(self.shape))
 
     def piece(self, first: int, last: int) -> tuple[FloatArray, IntArray]:
-        """Return some rows as the engine takes them.
-
-        Numbers are coefficient, scale, horizon, attitude and angular velocity in body axes, NaN for a start that is
-        none (shape (n, 10)); choices are body, motion and law (shape (n, 3)).
-        """
+        """Return coefficient, scale, horizon, attitude, angular velocity (NaN: no start; (n, 10))."""
+        # body, motion, law (n, 3)
         body, motion, scale, law, start = np.unravel_index(np.arange(first, last), self.shape)
         none = np.full(7, np.nan)
         states = [np.concatenate([s.quaternion, s.body_velocity]) if s.valid else none for s in self.starts]
@@ -143,10 +140,7 @@ def steps_of(
     start: SpatialStart | None = None,
     settings: Settings | None = None,
 ) -> np.ndarray:
-    """Return the steps and events of a history as the compiled engine computes it in any batch, bit for bit.
-
-    horizon: how long to follow the body [s]. Fields of `STEP`, in order of time.
-    """
+    """Return a history's steps, fields of `STEP`, as the compiled engine computes them in any batch, bit for bit."""
     settings = settings or Settings(mechanics="space, many")
     laws, starts, horizons = [batch_law(restitution)], [start or SpatialStart()], np.array([[horizon]])
     table = RowTable((1, 1, 1, 1, 1), np.array([scale]), laws, starts, horizons)
@@ -214,10 +208,8 @@ def _body_table(bodies: Bodies, gravity: float) -> tuple[FloatArray, IntArray, F
 
 
 def _moment_table(bodies: Bodies) -> FloatArray:
-    """Return the moments of the mass that ked-3d-point needs, for every vertex and then every edge of every body.
-
-    117 numbers each; NaN for a body whose distribution of mass is not known [kg, kg m, kg m2].
-    """
+    """Return 117 moments for ked-3d-point of every vertex, then every edge."""
+    # NaN where the mass is not known [kg, kg m, kg m2]
     if any(body is not None and body.round for body in bodies):
         raise InvalidValueError(
             "ked-3d-point on a round base lands on any point of its rim: no moments there; take ked-3d, or "

@@ -36,11 +36,7 @@ class SpatialGround:
         return float(self.times[-1])
 
     def part(self, stretch: int, start: float, length: float) -> FloatArray:
-        """Return the accelerations over a part of a stretch.
-
-        start, length: when the part starts, and its duration [s]. Returns by power, over a unit of time that is the
-        part [m/s2].
-        """
+        """Return accelerations by power over a part of a stretch, over a unit of time that is the part [m/s2]."""
         if stretch >= self.count:
             return np.zeros((3, 1))
         whole = self.times[stretch + 1] - self.times[stretch]
@@ -63,11 +59,8 @@ class SpatialGround:
 def ground_of(
     x: Component = None, y: Component = None, vertical: Component = None, *, until: float = np.inf, scale: float = 1.0
 ) -> SpatialGround:
-    """Return three motions with one clock as one.
-
-    x, y, vertical: components; None for a direction without motion [m/s2]; until: when the ground is taken to stop, if
-    that is before the motions end [s]. Returns the motion; no stretches if there is none.
-    """
+    """Return three motions [m/s2], or None, with one clock as one."""
+    # until: when the ground stops, if before they end [s]
     rows = [_component(name, motion) for name, motion in (("x", x), ("y", y), ("vertical", vertical))]
     ends = [times for times, _ in rows if times.size]
     if not ends:
@@ -113,13 +106,7 @@ def _recut(stops: FloatArray, polynomials: FloatArray, times: FloatArray) -> Flo
 
 
 def joined(components: tuple[Component, ...], until: float) -> SpatialGround:
-    """Return up to three components as one motion, the same as `ground_of` gives.
-
-    until: when the ground is taken to stop, if that is before the motions end [s].
-
-    >>> joined((GroundMotion([0.0, 1.0, 0.0], 0.5), None), np.inf).coefficients[:, 0].tolist()
-    [[0.0, 1.0], [1.0, -1.0]]
-    """
+    """Return up to three components as one motion, the same as `ground_of` gives."""
     if not _alike([part for part in components if part is not None]):
         return ground_of(*components, until=until)
     parts = [(which, part.segments()) for which, part in enumerate(components) if part is not None]

@@ -97,11 +97,7 @@ class FixedSpatial:
 
 
 def law_of(restitution: Any, body: SpatialBody | None = None) -> SpatialImpactLaw:
-    """Return an impact law.
-
-    >>> law_of("ked-3d", SpatialBody.box(1.0, 1.0, 4.0)).label
-    'ked-3d'
-    """
+    """Return an impact law of a word, a coefficient or a law."""
     if isinstance(restitution, (str, SpatialModel)):
         model = spatial_model(restitution)
         if model.needs_solid and body is not None and body.matter is None:

@@ -26,13 +26,8 @@ CLOSED = 1e-12
 
 
 def landed(body: SpatialBody, state: SpatialState, touching: tuple[int, ...], law: SpatialImpactLaw) -> Continuation:
-    """Return what an impact on some vertices leaves.
-
-    Where no contact set is without pull (a vertex that grazes the ground while it moves fast along it would stick only
-    if it were pulled down), the one with the least pull is taken; its impulses show it.
-
-    Returns what stays, and the angular velocity after.
-    """
+    """Return what an impact on some vertices leaves, and the angular velocity after."""
+    # where all contacts pull (a vertex that grazes fast would stick only if pulled) the one with the least, which shows
     found = of_impact(body, state, touching, law)
     return found[0] if found else _least_pull(body, state, touching)
 
@@ -65,20 +60,15 @@ def stuck(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> 
 
 
 def laid_down(body: SpatialBody, state: SpatialState) -> Continuation | None:
-    """Return a round base laid flat, where the ground would hold it there: rolling alone never comes to rest.
-
-    Returns at rest; None where it would be lifted at once.
-    """
+    """Return a round base laid flat at rest, which rolling alone never reaches."""
+    # None where it would be lifted at once
     flat, still = contact_mode.face(body), np.zeros(3)
     holds = forces(body, flat, still, state.up, state.field)[1].min() > 0.0
     return Continuation(flat, still, impulses(body, state, flat, still)) if holds else None
 
 
 def rim_landed(body: SpatialBody, state: SpatialState, law: SpatialImpactLaw) -> Continuation:
-    """Return what the impact of a round base that falls flat leaves: its far side, or all of it.
-
-    Returns what stays, and the angular velocity after.
-    """
+    """Return what a round base that falls flat stands on, its far side or all of it, and the angular velocity after."""
     far = contact_mode.rim(body, -state.pivot[:2])
     push = impulses(body, state, far, state.plastic(body, far))
     velocity = law.velocity_after(body, state.impact(body, far))
@@ -92,11 +82,7 @@ def rim_landed(body: SpatialBody, state: SpatialState, law: SpatialImpactLaw) ->
 def settled(
     body: SpatialBody, state: SpatialState, choice: Continuation, touching: tuple[int, ...], slow: float, *, weak: bool
 ) -> Continuation:
-    """Return what a body stands on once points that would fall back at once are taken to stay.
-
-    slow: speed below which a point that leaves the ground counts as staying [m/s]. Returns the same contact where
-    forces hold it.
-    """
+    """Return what a body stands on once points that leave slower than `slow` [m/s] are taken to stay."""
     if body.round:
         push = forces(body, contact_mode.face(body), np.zeros(3), state.up, state.field)[1]
         rests = (weak or choice.contact.mode is ContactMode.REST) and push.min() >= 0.0
@@ -109,10 +95,8 @@ def settled(
 
 
 def started(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> tuple[ContactSet, tuple[int, ...]]:
-    """Return the contact that initial conditions imply: the lowest of the touching points stay where they are.
-
-    Returns edge, vertex or rim; the face for a body that stands still on it.
-    """
+    """Return the contact that initial conditions imply: the lowest touching points stay."""
+    # the face for a body that stands still
     if body.round:
         return _started_round(body, velocity, up), ()
     height = applied(body.vertices, up)

@@ -33,11 +33,8 @@ class IntegrationState:
     def add(
         self, piece: StepPiece, until: float, up: FloatArray, pivot: FloatArray, vertical: FloatArray | None = None
     ) -> None:
-        """Keep a step, and what it says about tilt and fall.
-
-        until: where it ends, in units of its length [-]; up, pivot: vertical and point of contact in body axes at its
-        end [-], [m]; vertical: series of the cosine of the tilt; None for a body at rest [-].
-        """
+        """Keep a step, ended at `until` of its length."""
+        # vertical: series of the cosine of the tilt, None of a body at rest
         if until > 0.0 or not self.pieces:
             self.pieces.append(replace(piece, until=until))
         if vertical is None:
@@ -51,12 +48,7 @@ class IntegrationState:
     def ended(
         self, time: float, quaternion: FloatArray, velocity: FloatArray, pivot: FloatArray, final: bool | None
     ) -> tuple[Outcome, Status] | None:
-        """Return how a history has ended, if it has.
-
-        time: now [s]; quaternion, velocity, pivot: attitude (4,) [-], angular velocity (3,) [rad/s] and point of
-        contact (3,) in body axes [m]. Returns outcome: it lies, or it can no longer overturn: less energy is left than
-        that takes; status: Good; None instead of both if it goes on.
-        """
+        """Return outcome and status of a history that lies or lacks the energy to overturn; None if it goes on."""
         up = attitude.matrix(quaternion)[2]
         if up[2] <= 0.0:
             self.over_time = time if math.isnan(self.over_time) else self.over_time
@@ -71,10 +63,7 @@ class IntegrationState:
         return None
 
     def falls(self, pivot: FloatArray, up: FloatArray) -> Outcome:
-        """Return what a loss of contact means: a body whose centre is beyond its support falls.
-
-        pivot, up: point of contact and vertical in body axes [m], [-].
-        """
+        """Return what a loss of contact means: a body whose centre is beyond its support falls."""
         return Outcome.OVERTURNED if _leaning_over(self.body, up, pivot) > 0.0 else Outcome.FAILED
 
     def trajectory(self, outcome: Outcome, status: Status) -> SpatialTrajectory:

@@ -41,10 +41,7 @@ def first_release(body: SpatialBody, contact: ContactSet, step: Step) -> tuple[f
 
 
 def end_forces(body: SpatialBody, contact: ContactSet, step: Step, at: float) -> tuple[float, float]:
-    """Return the vertical forces per unit mass at both ends of an edge.
-
-    Returns below zero the ground would have to pull [N/kg].
-    """
+    """Return vertical forces per unit mass at both ends of an edge; below zero the ground would have to pull [N/kg]."""
     second = value(_second(body, contact, step).tolist(), at)
     return value(_normal(body, contact, step).tolist(), at) - second, second
 

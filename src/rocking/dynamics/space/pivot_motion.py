@@ -36,22 +36,15 @@ def turned(products: Sequence[Sequence[float]], share: float) -> list[float]:
 
 
 def carried(quaternion: FloatArray, field: FloatArray) -> list[float]:
-    """Return vectors of the ground in body axes at the start of a step.
-
-    They turn backwards, ``v' = v x w``, and each derivative of G(t) is what the one before changes by as well.
-
-    quaternion: attitude [-]. Returns the components of the vertical, of G, and of its derivatives.
-    """
+    """Return the vertical, G and its derivatives in body axes at the start of a step."""
+    # they turn backwards, v' = v x w, and each derivative of G changes by what the one before does as well
     back, factorials = matrix(quaternion).T, np.multiply.accumulate([1.0, *range(1, field.shape[1])])
     vectors = [back[:, 2], *[applied(back, g) for g in (field * factorials).T]]
     return [float(x) for vector in vectors for x in vector.tolist()]
 
 
 class PivotFlow:
-    """Motion about a fixed point of the body, or about an axis through it.
-
-    pivot: the fixed point, in body axes [m]; axis: unit vector of a fixed axis, in body axes and horizontal [-].
-    """
+    """Motion about a fixed point of the body [m], or about a fixed horizontal axis through it, both in body axes."""
 
     def __init__(self, body: SpatialBody, pivot: FloatArray, axis: FloatArray | None = None) -> None:
         inertia = body.inertia_about(pivot)
@@ -63,12 +56,7 @@ class PivotFlow:
     def series(
         self, quaternion: FloatArray, velocity: FloatArray, length: float, field: FloatArray, order: int
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the Taylor series of a step, over a unit of time that is the step.
-
-        field: gravity less the acceleration of the ground over the step, coefficients by power [m/s2]. Returns
-        quaternions, velocities: coefficients by power (shape (order + 1, 4)); up: coefficients of the vertical in body
-        axes [-] (shape (order + 1, 3)).
-        """
+        """Return the Taylor series of a step: quaternions, velocities (order + 1, 4), vertical (order + 1, 3)."""
         inertia, mobility, (x, y, z) = self.gyroscopic.tolist(), self.mobility.tolist(), self.arm.tolist()
         w, state = velocity.tolist(), [*quaternion.tolist(), *carried(quaternion, field)]
         rows = np.zeros((order + 1, 6 + len(state)))
@@ -104,10 +92,7 @@ def terms_needed(rate: float, most: int) -> int:
 
 
 def trusted_part(quaternions: FloatArray, velocities: FloatArray, length: float, tolerance: float) -> float:
-    """Return the part of a step over which the last two terms of its series stay below a tolerance.
-
-    tolerance: for quaternions of unit length [-]. Returns from 0, where a coefficient is not finite, to 1.
-    """
+    """Return the part of a step, 0 (not finite) to 1, over which the last two terms stay below a tolerance."""
     if not (np.isfinite(quaternions).all() and np.isfinite(velocities).all()):
         return 0.0
     part, last = 1.0, len(quaternions) - 1

@@ -52,11 +52,8 @@ class SpatialReference:
     # ---- the course of a history ------------------------------------------------------------------------------------
 
     def run(self, quaternion: FloatArray, velocity: FloatArray, horizon: float) -> SpatialTrajectory:
-        """Return the history from given initial conditions.
-
-        quaternion: attitude at time zero; the lowest points of the base are on the ground [-]; horizon: how long to
-        follow the body; longer where its fate is still open then [s].
-        """
+        """Return the history from an attitude on the ground."""
+        # horizon: how long, or longer where its fate is open then [s]
         self.horizon = horizon
         self.integration_state = IntegrationState(self.body, self.settings)
         self.quaternion, self.velocity = attitude.normalised(quaternion), velocity

@@ -83,12 +83,7 @@ class RollingFlow:
         field: FloatArray,
         order: int,
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return the Taylor series of a step, over a unit of time that is the step.
-
-        state: attitude (4,) [-], angular velocity in body axes (3,) [rad/s], place of the contact on the ground (2,)
-        [m]; field: gravity less the acceleration of the ground over the step, coefficients by power [m/s2]. Returns
-        coefficients by power; shapes (order + 1, 4), (order + 1, 3), (order + 1, 3), (order + 1, 2).
-        """
+        """Return the Taylor series of a step: attitude, velocity, vertical, and place of contact on the ground (2,)."""
         s = _Series(state, field)
         for k in range(order):
             self._contact(s, k)

@@ -175,11 +175,7 @@ def states_of(body: SpatialBody, trajectory: SpatialTrajectory, time: FloatArray
 
 
 def pivots(body: SpatialBody, piece: StepPiece, quaternions: FloatArray) -> FloatArray:
-    """Return the points on the ground, in body axes.
-
-    quaternions: attitudes within it [-]. Returns pivot of the contact; of a rolling body the lowest points of its rim
-    [m].
-    """
+    """Return points on the ground, in body axes: the pivot, or the lowest points of the rim of a rolling body [m]."""
     if piece.contact.mode is not ContactMode.ROLLING:
         return np.broadcast_to(piece.contact.pivot, (len(quaternions), 3))
     level = attitude.matrix(quaternions)[:, 2, :2]
