@@ -132,11 +132,7 @@ def foot(name: str, value: Any) -> Foot:
 
 
 def length_unit(value: Any) -> float:
-    """Return the length of a unit in metres.
-
-    >>> length_unit("cm")
-    0.01
-    """
+    """Return the length of a unit in metres."""
     return LENGTH_UNITS[one_of("length unit", value, LENGTH_UNITS)]
 
 

@@ -64,9 +64,5 @@ def percent(share: float) -> str:
 
 
 def opposite(foot: Foot) -> Foot:
-    """Return the other foot.
-
-    >>> opposite("left")
-    'right'
-    """
+    """Return the other foot."""
     return "left" if foot == "right" else "right"

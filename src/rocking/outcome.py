@@ -83,11 +83,8 @@ UNCOUNTED = 1_000_000
 
 
 def overturned(outcome: Any) -> FloatArray:
-    """Return 1 for histories that overturned, 0 for others; NaN without a result, which is neither a fall nor a stand.
-
-    >>> overturned([0, 1, 2, 3]).tolist()
-    [0.0, 0.0, 1.0, nan]
-    """
+    """Return 1 for histories that overturned, 0 for others."""
+    # NaN without a result, which is neither a fall nor a stand
     return of_results(outcome, np.asarray(outcome) == Outcome.OVERTURNED.code)
 
 
@@ -110,10 +107,7 @@ def lost_contact(results: Any) -> FloatArray:
 
 
 def flags(results: Any) -> dict[str, FloatArray]:
-    """Return what is true or false of histories, as numbers.
-
-    `overturned`, `still_rocking` and `lost_contact`, each 1 or 0, and NaN where there is no result [-].
-    """
+    """Return `overturned`, `still_rocking` and `lost_contact` as 1 or 0, and NaN without a result [-]."""
     outcome = results["outcome"]
     still = of_results(outcome, np.asarray(results["still_rocking"]) == 1)
     return {"overturned": overturned(outcome), "still_rocking": still, "lost_contact": lost_contact(results)}

@@ -76,10 +76,7 @@ _UNITS = {
 
 
 class JsonAnswer(JSONResponse):
-    """JSON of plain values and arrays, quick for long series; a NaN or an infinity is an error here.
-
-    An endpoint with long series returns it itself: ``return JsonAnswer({...})``.
-    """
+    """JSON of plain values and arrays, quick for long series; a NaN or an infinity is an error here."""
 
     def render(self, content: Any) -> bytes:
         """Return the bytes of an answer."""

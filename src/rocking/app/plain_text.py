@@ -84,24 +84,12 @@ def record_file_name(name: str, otherwise: str = "record.txt") -> str:
 
 
 def toml_of(document: Mapping[str, Any]) -> str:
-    r"""Return tables as TOML; numbers keep every digit, and what is None is left out.
-
-    >>> print(toml_of({"body": {"units": "m", "block": {"width": 0.5}}}), end="")
-    [body]
-    units = "m"
-    <BLANKLINE>
-    [body.block]
-    width = 0.5
-    """
+    r"""Return tables as TOML; numbers keep every digit, and what is None is left out."""
     return "\n".join(_lines(document, ())).strip("\n") + "\n"
 
 
 def toml_value(value: Any) -> str:
-    r"""Return one value as TOML in one line.
-
-    >>> toml_value([0.1, True, 'a "b"\x00'])
-    '[0.1, true, "a \\"b\\"\\u0000"]'
-    """
+    r"""Return one value as TOML in one line."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (int, float)):

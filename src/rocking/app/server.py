@@ -92,10 +92,7 @@ def _bound(host: str, port: int) -> socket.socket:
 
 
 def warm_up(*more: Step) -> None:
-    """Fit the calibration, answer one question of each kind and draw one picture.
-
-    What cannot be had, such as pictures without their extra, is left for the request that asks for it.
-    """
+    """Fit the calibration, answer one question of each kind and draw one picture, as far as the extras are there."""
     for step in (_impact, _response, _picture, *more):
         with contextlib.suppress(ImportError, RockingError):
             step()

@@ -108,10 +108,7 @@ class Known:
 
 
 def largest_gyration(vertices: FloatArray, x: float, y: float) -> float | None:
-    """Return the largest squared radius of gyration [m2] of masses within the hull of vertices about their centre.
-
-    None if the centre (x, y) lies outside.
-    """
+    """Return the largest squared radius of gyration about (x, y) of masses in a hull, None outside of it [m2]."""
     low, high, centre = vertices.min(axis=0), vertices.max(axis=0), np.array([x, y])
     corners = vertices[((vertices == low) | (vertices == high)).all(axis=1)]
     if len(np.unique(corners, axis=0)) == 4:  # the hull is the box

@@ -106,11 +106,7 @@ Nested = tuple[FloatArray, list[FloatArray]]
 
 
 def nested(rings: Sequence[FloatArray], names: Sequence[str]) -> list[Nested]:
-    """Sort rings into outlines and their holes by the even-odd rule.
-
-    A ring inside no other or inside an even number of others is an outline; one inside an odd number is a hole of the
-    innermost of them.
-    """
+    """Sort rings into outlines, inside an even number of others, and the holes of the innermost outline around them."""
     import shapely
 
     kept = [checked_ring(name, ring) for name, ring in zip(names, rings, strict=True)]

@@ -31,12 +31,8 @@ class PlaneMoments:
 
 
 def ring_moments(ring: FloatArray) -> PlaneMoments:
-    """Exact moments of the area inside a closed ring of straight edges (Green's theorem).
-
-    The ring is moved to the middle of its own box first, so that nothing cancels far from the origin.
-
-    ring: vertices [m], the first one not repeated; counter-clockwise gives a positive area.
-    """
+    """Return exact moments of the area inside a ring, positive if counter-clockwise, by Green's theorem."""
+    # from the middle of its own box, so that nothing cancels far from the origin
     middle = 0.5 * (ring.min(axis=0) + ring.max(axis=0))
     x, y = (ring - middle).T
     x1, y1 = np.roll(x, -1), np.roll(y, -1)

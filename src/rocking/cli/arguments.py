@@ -138,11 +138,7 @@ def typed(context: "typer.Context", *names: str) -> list[str]:
 def document_file(
     context: "typer.Context", word: str | None, tables: Collection[str], beside: Collection[str] = (), has: str = ""
 ) -> Path | None:
-    """Return the file that says everything, if a word is one: TOML with one of some tables.
-
-    beside: options that go with it, besides `--set`, `--out` and `--json`; has: what it has, for the sentence that
-    refuses the others.
-    """
+    """Return the file with everything, TOML with one of some tables; beside: other options that go with it."""
     if word is None or not set(tables) & set(tables_in(Path(word)) or ()):
         return None
     taken = {"body", "objects", "motions", "out", "as_json", "sets", *beside}

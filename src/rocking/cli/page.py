@@ -59,11 +59,7 @@ class Page:
         dense: bool = False,
         whole: Container[int] = (),
     ) -> None:
-        """Write a table without lines.
-
-        left: columns of text, the others being numbers; bold: numbers of rows that stand out; whole: numbers of
-        columns that are never folded.
-        """
+        """Write a table; left: columns of text; bold: rows that stand out; whole: columns that are never folded."""
         from rich.table import Table
         from rich.text import Text
 
@@ -87,12 +83,7 @@ def print_json(facts: Any) -> None:
 
 
 def plain(values: Any) -> Any:
-    """Return values as JSON knows them.
-
-    >>> import numpy as np
-    >>> plain({"a": np.array([[1.0, float("nan")]]), "b": (1, float("inf"))})
-    {'a': [[1.0, None]], 'b': [1, None]}
-    """
+    """Return values as JSON knows them."""
     if isinstance(values, dict):
         return {str(name): plain(one) for name, one in values.items()}
     if isinstance(values, (list, tuple)):

@@ -215,10 +215,7 @@ def body_facts(solid: Solid) -> dict[str, Any]:
 
 
 def base_facts(base: Base) -> dict[str, Any]:
-    """Return on what a body stands.
-
-    Returns ``polygon`` with ``vertices_m``, or ``circle`` with ``centre_m`` and ``radius_m``.
-    """
+    """Return on what a body stands: a polygon or a circle."""
     if isinstance(base, SupportPolygon):
         return {"kind": "polygon", "vertices_m": base.vertices.tolist()}
     if isinstance(base, RoundBase):

@@ -82,11 +82,7 @@ def spectrum(
 
 
 def _angles(text: str) -> list[float]:
-    """Return slenderness angles [rad].
-
-    >>> _angles("1,2")
-    [0.7853981633974483, 0.4636476090008061]
-    """
+    """Return slenderness angles [rad]."""
     import numpy as np
 
     values, unit = row("--slenderness", text, "rad")

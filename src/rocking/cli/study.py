@@ -99,10 +99,7 @@ def family(arguments: Arguments, usual: Mapping[str, Any]) -> dict[str, Any] | N
 
 
 def contact_lines(settings: Settings, *, varied: bool = False) -> list[tuple[str, str]]:
-    """Return what is printed of the ground on which bodies may slide and hop; nothing where they rock alone.
-
-    varied: whether the friction is an axis.
-    """
+    """Return what is printed of ground on which bodies may slide and hop: its friction, unless that is varied."""
     if settings.friction is None:
         return []
     bounce = f"; bounce {settings.bounce:g} ({settings.bounce_law})" if settings.bounce else ""

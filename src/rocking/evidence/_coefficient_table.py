@@ -46,10 +46,7 @@ class CoefficientRow:
 
 
 def default_models() -> list[RestitutionModel]:
-    """Return every registered model that needs no value by hand.
-
-    Returns with default parameters, in the order of the registry.
-    """
+    """Return every registered model that needs no value by hand, in the order of the registry."""
     return [model(name) for name in models() if name != "fixed"]
 
 
@@ -111,10 +108,7 @@ def _row(
 
 
 def outside_evidence(body: Body, onto: Foot = "right") -> str:
-    """Say whether a body lies outside the slendernesses that were measured.
-
-    Returns A sentence, or nothing if the body lies inside.
-    """
+    """Say that a body lies outside the slendernesses that were measured; nothing if it lies inside."""
     low, high = CALIBRATED_RANGE
     ratio = body.side(onto).slenderness_ratio
     if low <= ratio <= high:

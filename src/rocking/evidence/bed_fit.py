@@ -168,12 +168,7 @@ class BedFit:
 
 
 def fit_bed(physics: Physics, data: DataSet | None = None, *, points: Sequence[int] = POINTS) -> BedFit:
-    """Fit one explanation with each of some numbers of contact points [-].
-
-    >>> fit = fit_bed(explanations()[0], points=(11,))
-    >>> fit.points, fit.rmse < 0.03
-    (11, True)
-    """
+    """Fit one explanation with each of some numbers of contact points [-]."""
     rows = data or all_measurements()
     first = np.array([*physics.start, *_SCATTER[0]])
     tried = [(*_most_likely(physics, rows, n, first, _FIRST), n) for n in points]

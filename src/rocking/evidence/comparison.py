@@ -79,10 +79,7 @@ class Comparison:
 
 
 def compare(data: DataSet, one: FloatArray, other: FloatArray, measure: str = "r") -> Comparison:
-    """Compare the predictions of two models.
-
-    one, other: predicted coefficients [-]. Returns exchanging the models changes its signs and nothing else.
-    """
+    """Compare the predictions of two models; to exchange them changes the signs and nothing else."""
     of = MEASURES[measure]
     with np.errstate(divide="ignore"):
         squares = [(of(np.asarray(r)) - of(data.coefficient)) ** 2 for r in (one, other)]
@@ -107,10 +104,7 @@ def _compared(
 def errors_of_groups(
     model: RestitutionModel, one: str, other: str, against: RestitutionModel | None = None
 ) -> Difference:
-    """Return how much larger a model's error is in one group of blocks than in another, drawn independently.
-
-    Returns of root mean square errors of r [-].
-    """
+    """Return how much larger a model's RMSE of r is in one group of blocks than in another, drawn independently."""
     data = blocks()
     weight, group = np.vstack([np.ones(len(data)), drawn(data)]), np.array(data.group)
     error = np.zeros((2, len(weight)))

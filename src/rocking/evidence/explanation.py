@@ -115,10 +115,7 @@ _WIDTHS = (
 
 @lru_cache(maxsize=1)
 def explanation() -> Explanation:
-    """Compare the explanations on all 39 measurements.
-
-    Returns ranked by BIC, each with its left-out scores.
-    """
+    """Compare the explanations on all 39 measurements, ranked by BIC, each with its left-out scores."""
     fits = bed_fits()
     scores = {fit.physics.name: left_out(fit) for fit in fits}
     return Explanation(tuple(_ranked(fit, scores, fits[0].bic) for fit in fits))

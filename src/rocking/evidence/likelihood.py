@@ -43,10 +43,7 @@ def scatter(mean: FloatArray, floor: float, slope: float) -> FloatArray:
 
 
 def gaussian_bic(residuals: FloatArray, parameters: int) -> float:
-    """Bayesian information criterion of least squares, n ln(RSS/n) + (parameters + 1) ln n, the variance not counted.
-
-    Lower is better; differences below 2 mean nothing, above 10 a lot.
-    """
+    """Return BIC of least squares, n ln(RSS/n) + (parameters + 1) ln n, the variance not counted; lower is better."""
     n = residuals.size
     return n * math.log(float(residuals @ residuals) / n) + (parameters + 1) * math.log(n)  # Eq. 138
 
@@ -66,8 +63,5 @@ def fit_scatter(data: DataSet, mean: FloatArray) -> tuple[float, float, float]:
 
 
 def rounding_bic(data: DataSet, mean: FloatArray, parameters: int) -> float:
-    """Bayesian information criterion by the rounding-aware likelihood, -2 ln L + (parameters + 2) ln n.
-
-    Two parameters beside those of the model are of the scatter.
-    """
+    """Return BIC by the rounding-aware likelihood, -2 ln L + (parameters + 2) ln n: two more are of the scatter."""
     return -2.0 * fit_scatter(data, mean)[2] + (parameters + 2) * math.log(len(data))  # Eq. 138

@@ -146,10 +146,7 @@ def all_measurements() -> DataSet:
 
 @lru_cache(maxsize=1)
 def blocks() -> DataSet:
-    """Return the measurements of single blocks, Table 3.
-
-    Returns 27 rows, of the groups S, M and L.
-    """
+    """Return the measurements of single blocks, Table 3: 27 rows, of the groups S, M and L."""
     every = all_measurements()
     return every.rows([k for k, group in enumerate(every.group) if group != "table1"])
 

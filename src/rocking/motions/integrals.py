@@ -198,12 +198,7 @@ def velocity_of(samples: FloatArray, time_step: float) -> FloatArray:
 
 
 def quadratic_roots(second: FloatArray, first: FloatArray, zeroth: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return both real roots of many quadratic equations, without cancellation; not finite where there is none.
-
-    >>> one, other = quadratic_roots(np.array([1.0]), np.array([-3.0]), np.array([2.0]))
-    >>> float(one[0]), float(other[0])
-    (2.0, 1.0)
-    """
+    """Return both real roots of many quadratic equations, without cancellation; not finite where there is none."""
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         q = -0.5 * (first + np.copysign(np.sqrt(first * first - 4.0 * second * zeroth), first))
         return q / second, zeroth / q

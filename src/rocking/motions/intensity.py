@@ -462,11 +462,7 @@ def measure(name: Any) -> IntensityMeasure:
 
 
 def spectral_period(name: str) -> tuple[float, float] | None:
-    """Return period [s] and damping ratio [-] of a spectral measure by its name; None of another kind.
-
-    >>> spectral_period("sa(0.5)")
-    (0.5, 0.05)
-    """
+    """Return period [s] and damping ratio [-] of a spectral measure by its name; None of another kind."""
     found = _SPECTRAL.fullmatch(name)
     return None if found is None else (float(found[1]), float(found[2] or 0.05))
 

@@ -80,12 +80,7 @@ def animate_html(response: Response, path: str | Path) -> Path:
 
 
 def page(response: Response) -> str:
-    """Return the web page of a response.
-
-    >>> import rocking as rk
-    >>> page(rk.free_rocking(rk.Block(width=0.5, height=2.0), rotation=0.1))[:15]
-    '<!DOCTYPE html>'
-    """
+    """Return the web page of a response."""
     style, form = _part("animation_page.css"), _part("animation_page.html")
     script = _part("animation_page.js") + _part("animation_drawing.js")
     policy = f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; base-uri 'none'"

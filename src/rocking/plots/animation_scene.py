@@ -98,10 +98,7 @@ class Scene:
 
 
 def scene_of(response: Response, step: float | None = None) -> Scene:
-    """Return a response from its start to where nothing happens any more, or the body lies.
-
-    step: step of time [s]; if not given, 120 samples a second or fewer.
-    """
+    """Return a response until nothing happens any more or the body lies; by default at most 120 samples a second."""
     shape = DrawnShape.of(response.body)
     fall = fall_of(response, shape.lying)
     end = scene_until(response, fall)
@@ -160,16 +157,7 @@ class Fall:
 
 
 def fall_of(response: Response, lying: tuple[float, float]) -> Fall:
-    """Return how the fall of a response goes on after its last state.
-
-    lying: rotations at which the body lies on its left and on its right side [rad].
-
-    >>> import rocking as rk
-    >>> body, quarter = rk.Block(width=0.5, height=2.0), 0.5 * np.pi
-    >>> fall = fall_of(rk.free_rocking(body, rotation=0.25), (-quarter, quarter))
-    >>> bool(abs(fall.rotation[-1] - quarter) < 1e-12)
-    True
-    """
+    """Return how the fall of a response goes on after its last state; lying: rotations at which the body lies [rad]."""
     if response.outcome is not Outcome.OVERTURNED:
         return Fall(np.empty(0), np.empty(0), np.empty(0))
     last = response.dense_output

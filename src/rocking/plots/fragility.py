@@ -196,11 +196,7 @@ def _widths(at: FloatArray, ratios: bool) -> tuple[FloatArray, FloatArray]:
 
 
 def state_colors(states: int) -> list[str]:
-    """Return colours from no rocking to overturned.
-
-    >>> len(state_colors(3))
-    4
-    """
+    """Return colours from no rocking to overturned."""
     between = [STATES[1], STATES[2], STATES[3], "#009E73"]
     return [STATES[0], *(between[k % 4] for k in range(states - 1)), STATES[-1]]
 
@@ -216,11 +212,7 @@ def _legends(upper: "Axes", lower: "Axes", analysis: Any) -> None:
 
 
 def symbol(state: str) -> str:
-    r"""Return the name of a state with its symbols.
-
-    >>> symbol("rotation > 0.5 alpha")
-    '$\\theta > 0.5\\,\\alpha$'
-    """
+    r"""Return the name of a state with its symbols."""
     if not state.startswith("rotation > "):
         return "rocks" if state == "rocking" else state
     return rf"$\theta > {state.split()[2]}\,\alpha$"

@@ -42,11 +42,7 @@ PEAK = r"peak rotation $\theta\,/\,\alpha$ [-]"
 
 
 def axis_label(name: str, unit: str = "1", *, linear: bool = False) -> str:
-    """Return the label of an axis or a measure, with symbol and unit.
-
-    >>> axis_label("pgv"), axis_label("sa(0.5)", "m/s2")
-    ('peak ground velocity [m/s]', 'Sa(0.5 s) [m/s$^2$]')
-    """
+    """Return the label of an axis or a measure, with symbol and unit."""
     words, one = SYMBOLS.get(name, short_name(name)), MEASURES.get(name)
     if name not in SYMBOLS:
         unit = unit if one is None else one.unit
@@ -57,11 +53,7 @@ def axis_label(name: str, unit: str = "1", *, linear: bool = False) -> str:
 
 
 def short_name(name: str) -> str:
-    """Return the short name of a measure.
-
-    >>> short_name("sa(1.0)"), short_name("pga")
-    ('Sa(1.0 s)', 'PGA')
-    """
+    """Return the short name of a measure."""
     if name in MEASURES:
         symbol = MEASURES[name].symbol or plain(name)
         for part, drawn in TYPESET.items():
@@ -82,20 +74,12 @@ def plain(words: object) -> str:
 
 
 def wrapped(words: str, width: int, most: int = 4) -> str:
-    r"""Return words in lines, cut off after the last.
-
-    >>> wrapped("one two three four", 9, 2)
-    'one two\nthree ...'
-    """
+    r"""Return words in lines, cut off after the last."""
     return "\n".join(wrap(words, width, max_lines=most, placeholder=" ..."))
 
 
 def geometric(values: FloatArray) -> bool:
-    """Return whether numbers grow by equal ratios rather than by equal steps: they are drawn on a log axis.
-
-    >>> geometric(np.array([1.0, 2.0, 4.0])), geometric(np.array([1.0, 2.0, 3.0]))
-    (True, False)
-    """
+    """Return whether numbers grow by equal ratios rather than by equal steps: they are drawn on a log axis."""
     if values.size < 3 or values[0] <= 0.0:
         return False
     ratios, steps = np.diff(np.log(values)), np.diff(values)

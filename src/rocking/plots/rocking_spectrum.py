@@ -90,10 +90,7 @@ def _curve(axes: "Axes", found: "xr.Dataset", place: int, alpha: float) -> None:
 
 
 def fractiles(found: "xr.Dataset", place: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return 16 %, 50 % and 84 % of the peak rotation over the motions, overturning counted as beyond all rotations.
-
-    Returns one entry a period; NaN where the fractile overturned or nothing could be computed [-].
-    """
+    """Return 16 %, 50 % and 84 % of the peak rotation by period [-]; NaN where that overturned or is unknown."""
     part = found.isel(slenderness_angle=place)
     mode = np.asarray(part["mode"].values)
     peak = np.where(mode >= 0, math.inf, np.asarray(part["peak_ratio"].values))

@@ -36,12 +36,7 @@ class Traces:
 
 
 def traces(motion: GroundMotion | Pulse) -> Traces:
-    """Return the curves of a motion, fine enough to be drawn, with their exact peaks.
-
-    >>> at, value = traces(GroundMotion([1.0, -1.0], time_step=1.0)).peaks["velocity"]
-    >>> at, value
-    (0.5, 0.25)
-    """
+    """Return the curves of a motion, fine enough to be drawn, with their exact peaks."""
     if isinstance(motion, GroundMotion):
         return _of_samples(motion)
     time = np.linspace(0.0, motion.duration, _steps(motion) + 1)
@@ -56,15 +51,8 @@ def traces(motion: GroundMotion | Pulse) -> Traces:
 
 
 def fine_samples(motion: GroundMotion | Pulse) -> GroundMotion:
-    """Return a motion as samples: a record as it is, a pulse cut so finely that straight lines between will do.
-
-    The samples of a pulse begin and end with it, so that jumps at its ends stay jumps.
-
-    >>> from rocking.motions.pulses import rectangular
-    >>> motion = fine_samples(rectangular(amplitude=2.0, duration=0.5))
-    >>> len(motion), motion.duration, motion.acceleration.min().item()
-    (1001, 0.5, 2.0)
-    """
+    """Return a motion as samples: a record as it is, a pulse cut so finely that straight lines between will do."""
+    # the samples of a pulse begin and end with it, so that jumps at its ends stay jumps
     if isinstance(motion, GroundMotion):
         return motion
     steps = _steps(motion)

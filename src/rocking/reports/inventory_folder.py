@@ -24,10 +24,7 @@ _WIDTHS = {"name": 28, "in words": 70, "what to do": 70, "note": 28, "light": 14
 
 
 def write_inventory(assessment: Assessment, folder: Path) -> tuple[list[Path], list[str]]:
-    """Write an assessment in every form, each file as a whole or not at all.
-
-    Returns the files, and a sentence for each that needs a library that is not installed, with how to get it.
-    """
+    """Write an assessment in every form; return the files, and sentences on those that need a missing library."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

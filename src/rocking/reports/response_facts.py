@@ -151,11 +151,7 @@ def other_facts(found: Response | str) -> dict[str, Any]:
 
 
 def finite(value: float) -> float | None:
-    """Return a number, or None where it is infinite or does not exist.
-
-    >>> finite(1.5), finite(float("nan"))
-    (1.5, None)
-    """
+    """Return a number, or None where it is infinite or does not exist."""
     return float(value) if math.isfinite(value) else None
 
 

@@ -124,10 +124,8 @@ def nodes() -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
 
 @lru_cache(maxsize=1)
 def bed_table() -> BedTable:
-    """Return the table that is shipped; `rocking.studies.impact_laboratory.tabulated` computes it again.
-
-    Returns the table, its positions stored as whole multiples of `STEP`.
-    """
+    """Return the shipped table, in whole multiples of `STEP`."""
+    # `studies.impact_laboratory.tabulated` computes it again
     with files(__package__).joinpath("data", "contact_bed.npy").open("rb") as file:
         stored = np.load(file, allow_pickle=False)
     return BedTable(*nodes(), stored.astype(np.float64) * STEP)

@@ -43,10 +43,7 @@ def restitutions_of(
     *,
     friction: float | None = None,
 ) -> dict[str, Any]:
-    """Return models, coefficients, pairs by side or laws, as `simulate` takes them, by their label.
-
-    friction: with it a word stands for no restitution [-].
-    """
+    """Return models, coefficients, pairs by side or laws by their label; with friction a word may stand for none."""
     in_space = any(isinstance(body, Solid) for body in bodies)
     with located("restitution"):
         if in_space and (table.distribution is not None or table.left is not None):

@@ -60,11 +60,7 @@ class InputFiles:
         return path
 
     def named(self, pattern: str) -> list[str]:
-        """Return the names of the files that a pattern finds, in the order of the alphabet.
-
-        pattern: name of a file, or with ``*``, ``?``, ``[...]`` and ``**`` for those of several. Returns relative to
-        the folder of the job file.
-        """
+        """Return the files that a pattern, such as ``**/*.at2``, finds beside the job file, in alphabetic order."""
         if not any(mark in pattern for mark in _SPECIAL) or (self.folder / pattern).exists():
             return [pattern]
         root, rest = (Path(Path(pattern).anchor), Path(pattern).parts[1:]) if Path(pattern).is_absolute() else (

@@ -85,11 +85,7 @@ class ResponseProblem:
 def problem_of(
     tables: "ResponseTables", body: Any, motion: Any, *, scale: float | None = None, inputs: InputFiles | None = None
 ) -> ResponseProblem:
-    """Return the problem that tables describe, with the body and the motion that have been made.
-
-    scale: factor on the motion; what the tables say of their motion if not given [-]; inputs: files that may hold
-    models of the user's own, none where no file may be named.
-    """
+    """Return the problem of tables with its body and motion made; scale, if given, in place of the tables' own."""
     table, start = getattr(tables, "motion", None), tables.response
     mechanics = "rocking" if start.friction is None else "contact"
     if isinstance(body, Solid):

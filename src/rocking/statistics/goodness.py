@@ -132,11 +132,7 @@ def goodness_of(
 
 
 def group_of(trials: FloatArray, groups: int) -> IntArray:
-    """Return the group of each level: groups of neighbours hold about equally many trials.
-
-    >>> group_of(np.ones(6), 3)
-    array([0, 0, 1, 1, 2, 2])
-    """
+    """Return the group of each level: groups of neighbours hold about equally many trials."""
     if trials.size <= groups:
         return np.arange(trials.size)
     middle = (np.cumsum(trials) - 0.5 * trials) / trials.sum()

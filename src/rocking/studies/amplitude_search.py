@@ -175,15 +175,7 @@ _SHIFTS, _ENOUGH = (0.25, 0.75, 0.5, 0.125), 2
 
 
 def below_minimum(samples: Samples) -> dict[int, FloatArray]:
-    """Return the scales of each body up to the first that overturns: all but the last survive.
-
-    Returns by the number of the body; without those that never overturn, or do so at the lowest sample.
-
-    >>> n, x = np.array([0, 0, 0, 1, 1]), np.array([1.0, 2.0, 3.0, 1.0, 2.0])
-    >>> found = below_minimum(Samples(n, x, np.array([-1, -1, 2, -1, -1]), n, x, x, x))
-    >>> {k: scales.tolist() for k, scales in found.items()}
-    {0: [1.0, 2.0, 3.0]}
-    """
+    """Return by body the scales up to the first that overturns, if that is not the lowest sampled."""
     bodies, start = np.unique(samples.body, return_index=True)
     below = {}
     for body, first, last in zip(bodies.tolist(), start, np.append(start, samples.body.size)[1:], strict=True):

@@ -199,11 +199,7 @@ _ENDS = ((0, 1), (1, 2), (3, 2), (0, 3))
 
 
 def crossed_edges(inside: BoolArray) -> BoolArray:
-    """Return which edges of cells have one end inside and one outside.
-
-    >>> crossed_edges(np.array([[True, False, False, False]])).tolist()
-    [[True, False, False, True]]
-    """
+    """Return which edges of cells have one end inside and one outside."""
     return np.stack([inside[:, a] != inside[:, b] for a, b in _ENDS], axis=1)
 
 
@@ -231,11 +227,7 @@ def segments(inside: BoolArray, edges: IntArray, centre: BoolArray) -> IntArray:
 
 
 def chains(joined: IntArray) -> list[list[int]]:
-    """Return the polylines that segments make, open ones first; of closed ones the first edge is repeated at the end.
-
-    >>> chains(np.array([[1, 2], [3, 2], [5, 6], [6, 7], [7, 5]]))
-    [[1, 2, 3], [5, 6, 7, 5]]
-    """
+    """Return the polylines that segments make, open ones first, closed ones with the first edge again at the end."""
     neighbours: dict[int, list[int]] = {}
     for a, b in joined.tolist():
         neighbours.setdefault(a, []).append(b)

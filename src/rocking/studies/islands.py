@@ -104,13 +104,8 @@ def safe_islands(overturning: "xr.Dataset | MapArrays", *, enclosed: bool = True
 
 
 def connected(survived: BoolArray) -> IntArray:
-    """Return the number of the region of each point, from 1 as rows are read; neighbours also diagonally, 0 for none.
-
-    `scipy.ndimage.label` numbers them alike; to import it takes as long as a map of 6 by 6.
-
-    >>> connected(np.array([[1, 0, 1, 0], [0, 1, 0, 0], [0, 0, 0, 1]], dtype=bool)).tolist()
-    [[1, 0, 1, 0], [0, 1, 0, 0], [0, 0, 0, 2]]
-    """
+    """Return the number of the region of each point, from 1 as rows are read, 0 for none; diagonals join."""
+    # `scipy.ndimage.label` numbers them alike; to import it takes as long as a map of 6 by 6
     steps = np.diff(survived.astype(np.int8), axis=1, prepend=0, append=0)
     row, first = np.nonzero(steps == 1)  # runs of survival along the rows
     last = np.nonzero(steps == -1)[1] - 1

@@ -184,11 +184,7 @@ def _motion_at(study: OpenStudy, number: int, stretch: float) -> tuple[Motion, d
 
 
 def stretched_words(words: str, stretch: float) -> str:
-    """Return a pulse, in words, whose time is stretched by a factor [-] while its acceleration stays.
-
-    >>> stretched_words("sine:amplitude=3,period=0.5", 2.0)
-    'sine:amplitude=3,period=1.0'
-    """
+    """Return a pulse, in words, whose time is stretched by a factor [-] while its acceleration stays."""
     if stretch == 1.0:
         return words
     name, _, tail = words.partition(":")

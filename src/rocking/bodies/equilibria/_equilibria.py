@@ -418,10 +418,7 @@ def _simplified(
     *,
     always: set[int],
 ) -> tuple[dict[int, int], set[int]]:
-    """Return which minimum each leads to where barriers below the least do not count, and the edges cancelled.
-
-    always: minima that count whatever their barrier.
-    """
+    """Return where minima lead if barriers below `least` do not count but of those in `always`, and edges cancelled."""
     joined = {each: each for each in minima.tolist()}
     leads = dict(joined)
     cut = set()

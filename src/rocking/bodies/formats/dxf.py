@@ -260,13 +260,7 @@ def sides(angle: float, radius: float, tolerance: float) -> int:
 
 
 def closed_ellipse(centre: complex, major: complex, minor: complex, tolerance: float) -> FloatArray:
-    """Return a full ellipse, or circle, as an inscribed polygon.
-
-    Returns Vertices; n is a multiple of 4, so that the polygon has the symmetry of the ellipse.
-
-    >>> closed_ellipse(0j, 2.0 + 0j, 1j, 1.0).tolist()[0]
-    [2.0, 0.0]
-    """
+    """Return a full ellipse as an inscribed polygon of 4 k sides, so that it has the symmetry of the ellipse."""
     # an ellipse is a stretched circle, and the stretch makes no chord error larger than on the circle of its major axis
     count = 4 * math.ceil(sides(2.0 * math.pi, abs(major), tolerance) / 4)
     angle = 2.0 * math.pi * np.arange(count) / count
@@ -275,17 +269,8 @@ def closed_ellipse(centre: complex, major: complex, minor: complex, tolerance: f
 
 
 def closed_polyline(points: Sequence[complex], bulges: Sequence[float], tolerance: float) -> FloatArray:
-    """Return a closed polyline with its bulges flattened.
-
-    bulges: of the segment that starts at each vertex: the tangent of a quarter of the arc's angle, above zero where the
-    arc turns counter-clockwise [-].
-
-    A square whose top is a half circle:
-
-    >>> ring = closed_polyline([0j, 2 + 0j, 2 + 2j, 2j], [0.0, 0.0, 1.0, 0.0], tolerance=0.01)
-    >>> round(float(ring[:, 1].max()), 2)
-    3.0
-    """
+    """Return a closed polyline with its bulges flattened."""
+    # bulges: tan of a quarter of the angle of the arc from each vertex, above zero where it turns counter-clockwise [-]
     found: list[complex] = []
     for i, (start, bulge) in enumerate(zip(points, bulges, strict=True)):
         end = points[(i + 1) % len(points)]

@@ -50,11 +50,8 @@ def mesh_from_file(
     surface: Surface = "faces",
     wall: float | None = None,
 ) -> Repaired:
-    """Return the volume inside a surface mesh: welded, oriented, closed, centred; z up, with a sentence for each doubt.
-
-    weld_tolerance: vertices this close are merged [m]; by default equal ones, and if that leaves the surface open,
-    those within 1e-6 of its size.
-    """
+    """Return the volume inside a mesh: welded, oriented, closed, centred, z up; with a sentence for each doubt."""
+    # with no weld tolerance equal vertices are merged; if that leaves the surface open, those within 1e-6 of its size
     path = Path(path)
     scale = length_unit(units)
     turn = _turn(up)

@@ -21,10 +21,7 @@ _TWICE = 2e-3
 
 
 def turned_consistently(faces: IntArray, changes: Changes) -> IntArray:
-    """Return the faces turned so that neighbours across an edge agree.
-
-    In each connected piece the smaller number of faces is turned.
-    """
+    """Return the faces turned so that neighbours across an edge agree; in each connected piece the smaller number."""
     first, second, disagree = neighbours(faces)
     labels = connected(len(faces), first, second)
     flip = _parities(len(faces), first, second, disagree)

@@ -12,10 +12,7 @@ from rocking.portable import gauss_legendre, gauss_rule, times
 
 
 class Surface(ABC):
-    """A batch of surface cells that can be split in four and sampled by a Gauss rule.
-
-    A cell array holds one cell a row; what a row means is the subclass's own business.
-    """
+    """A batch of surface cells, one a row, that can be split in four and sampled by a Gauss rule."""
 
     @abstractmethod
     def cells(self) -> FloatArray:
@@ -23,11 +20,7 @@ class Surface(ABC):
 
     @abstractmethod
     def outline(self, cells: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return points that span each cell, with the area vectors they stand for.
-
-        Returns points: the middle first [m] (shape (n, m, 3)); areas: outward normal times the area of the whole cell,
-        as it is at each of the points [m2] (shape (n, m, 3)).
-        """
+        """Return points that span each cell, the middle first [m], and outward area vectors of the cell there [m2]."""
 
     @abstractmethod
     def split(self, cells: FloatArray) -> FloatArray:
@@ -51,14 +44,8 @@ def gauss(order: int) -> tuple[FloatArray, FloatArray]:
 
 @cache
 def gauss_triangle(order: int) -> tuple[FloatArray, FloatArray]:
-    """Return a rule for the triangle: a Gauss square collapsed onto it.
-
-    Towards the corner that the square collapses to, the nodes are those of the weight u (Gauss-Jacobi, by Golub and
-    Welsch's eigenvalues), so that nothing of the order is lost to the collapse.
-
-    Returns shares: shares of the three corners [-] (shape (n^2, 3)); weights: weights of sum 1; exact for polynomials
-    of degree ``2 n - 1`` (shape (n^2,)).
-    """
+    """Return shares of the corners (n^2, 3) and weights of sum 1 of a rule for degree 2 n - 1: a collapsed square."""
+    # towards that corner Gauss-Jacobi nodes of the weight u, so that nothing of the order is lost to the collapse
     k = np.arange(1.0, order)
     side = np.sqrt(k * (k + 1.0)) / (2.0 * k + 1.0)
     i = np.arange(order)
@@ -101,10 +88,7 @@ class TriangleSurface(Surface):
         return self.corners
 
     def outline(self, cells: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return centroid and corners of each triangle, with its area vector.
-
-        cells: triangles [m]. Returns points [m] and area vectors [m2] (shape (n, 4, 3)).
-        """
+        """Return centroid and corners of each triangle [m], with its area vector [m2] (shape (n, 4, 3))."""
         points = np.concatenate([cells.mean(axis=1, keepdims=True), cells], axis=1)
         return points, np.repeat(area_vectors(cells)[:, None], 4, axis=1)
 
@@ -157,10 +141,7 @@ class TurnedSurface(Surface):
         return np.array([(*u[i : i + 2], *phi[j : j + 2]) for i in range(len(u) - 1) for j in range(8)])
 
     def outline(self, cells: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the middle and eight points around of each cell, with area vectors.
-
-        Returns points [m] and area vectors [m2] (shape (n, 9, 3)).
-        """
+        """Return the middle and eight points around of each cell [m], with area vectors [m2] (shape (n, 9, 3))."""
         ends = np.array([0.5, 0.0, 1.0])
         s, t = (grid.ravel() for grid in np.meshgrid(ends, ends, indexing="ij"))
         return self._at(cells, s, t)

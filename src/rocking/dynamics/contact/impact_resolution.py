@@ -102,8 +102,7 @@ def cleared(base: PlaneBase, struck: Struck, before: ContactState) -> bool:
 
 
 def largest_speed(base: PlaneBase, state: ContactState) -> float:
-    """Return the size of the velocities of which those of the feet are differences."""
-    # it measures their rounding [m/s]
+    """Return the size of velocities whose differences are those of the feet: it measures their rounding [m/s]."""
     return max(abs(state.u), abs(state.w), base.size * abs(state.spin))
 
 
@@ -167,8 +166,7 @@ def _valid(base: PlaneBase, struck: Struck, friction: float, targets: dict[int, 
 
 
 def cleaned(base: PlaneBase, struck: Struck, stop: float) -> ContactState:
-    """Return the state after an impact, velocities of feet below `stop` [m/s] exactly zero."""
-    # its feet are still those before it
+    """Return the state after an impact, velocities of its feet below `stop` [m/s] exactly zero."""
     state = struck.state
     resting = tuple(foot for foot in state.touching if abs(away(base, state, foot)) <= stop)
     if not resting:

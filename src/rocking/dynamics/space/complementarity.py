@@ -100,8 +100,7 @@ def of_impact(
 def of_forces(
     body: SpatialBody, state: SpatialState, touching: tuple[int, ...], first: ContactSet | None = None
 ) -> list[Continuation]:
-    """Return every contact set that stays when no gap opens with a speed, a preferred one first."""
-    # empty if the ground must pull
+    """Return every contact set that stays without a pull when no gap opens with a speed, a preferred one first."""
     found: list[Continuation] = []
     scale, every = norm(state.field), list(candidates(body, touching))
     if first is not None:

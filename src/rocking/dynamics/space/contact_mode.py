@@ -80,8 +80,7 @@ def supports(
 
 
 def touching_point(body: SpatialBody, contact: ContactSet, up: FloatArray) -> FloatArray:
-    """Return the point of the body on the ground, in body axes: the pivot."""
-    # of a rolling body the lowest of its rim [m]
+    """Return the point of the body on the ground, in body axes [m]: the pivot, or the lowest of a rolling rim."""
     if contact.mode is not ContactMode.ROLLING:
         return contact.pivot
     level = up[:2] / norm(up[:2])

@@ -60,8 +60,7 @@ def stuck(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> 
 
 
 def laid_down(body: SpatialBody, state: SpatialState) -> Continuation | None:
-    """Return a round base laid flat at rest, which rolling alone never reaches."""
-    # None where it would be lifted at once
+    """Return a round base laid flat, as rolling alone never comes to rest; None where it would lift at once."""
     flat, still = contact_mode.face(body), np.zeros(3)
     holds = forces(body, flat, still, state.up, state.field)[1].min() > 0.0
     return Continuation(flat, still, impulses(body, state, flat, still)) if holds else None

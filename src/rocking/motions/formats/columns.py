@@ -73,11 +73,8 @@ class Columns(RecordFormat):
         return found
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, with a component for each column of accelerations.
-
-        The step must be given where there is no column of times. Without names components are called
-        "acceleration", or "column 2", "column 3", "column 4" after the times.
-        """
+        """Return the record, a component for each column of accelerations; without times it needs the step."""
+        # without names they are "acceleration", or "column 2", "column 3", "column 4" after the times
         if not source.is_text:
             raise source.error(None, "not a text file")
         text = ColumnText.of(source)

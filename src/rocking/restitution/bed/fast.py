@@ -22,10 +22,7 @@ def _module() -> ModuleType | None:
 
 
 def available() -> bool:
-    """Return whether the bed's fast engine was built with this installation.
-
-    Returns true if it is there; otherwise the reference serves.
-    """
+    """Return whether the bed's fast engine was built with this installation; else the reference serves."""
     return _module() is not None
 
 

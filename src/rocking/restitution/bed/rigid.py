@@ -33,10 +33,7 @@ class RigidRocking:
         return int(np.argmax(self._lifts(rotation)))
 
     def lift(self, rotation: float) -> float:
-        """Return how far the base centre is above the ground at a rotation.
-
-        rotation: theta [rad]. Returns height of the base centre [m].
-        """
+        """Return how far the base centre is above the ground at a rotation [rad, m]."""
         return float(self._lifts(rotation).max())
 
     def _lifts(self, rotation: float) -> FloatArray:
@@ -45,18 +42,12 @@ class RigidRocking:
         return np.asarray(self.bed.positions * math.sin(rotation) - self.bed.heights * math.cos(rotation))
 
     def potential(self, rotation: float) -> float:
-        """Return the potential energy above standing upright on the bed.
-
-        rotation: theta [rad]. Returns m g (lift + h (cos theta - 1)), zero at theta = 0 [J].
-        """
+        """Return the potential energy above standing upright on the bed, m g (lift + h (cos theta - 1)) [J]."""
         fall = 2.0 * self.height * math.sin(0.5 * rotation) ** 2
         return self.mass * self.gravity * (self.lift(rotation) - self.lift(0.0) - fall)  # Eq. 126
 
     def inertia_about(self, point: int) -> float:
-        """Return the inertia of rocking about a point.
-
-        Returns I_c + m (h^2 + s^2) [kg m2].
-        """
+        """Return the inertia of rocking about a point, I_c + m (h^2 + s^2) [kg m2]."""
         return float(self.inertia + self.mass * (self.height**2 + self.bed.positions[point] ** 2))
 
     def support(self, rotation: float, velocity: float) -> float:
@@ -70,10 +61,7 @@ class RigidRocking:
         return self.mass * (self.gravity + lever * turning / self.inertia_about(point) - spin)  # Eq. 127
 
     def furthest(self, side: float) -> float:
-        """Return the rotation of greatest potential on one side: rigid rocking beyond it topples.
-
-        Returns |theta|, at most pi/4 for a squat body [rad].
-        """
+        """Return |theta| of greatest potential on a side, at most pi/4 of a squat body [rad]: beyond it, it topples."""
         reach = max(side * self.bed.ends[1 if side > 0 else 0], 0.0)
         angle = (
             math.asin(min(reach / self.height, 1.0))
@@ -84,11 +72,7 @@ class RigidRocking:
 
 
 def settlement(rigid: RigidRocking, law: LawNumbers, rotation: float, load: float) -> tuple[float, float]:
-    """Return the static depth of the pivot and the elastic energy, all points that touch counted.
-
-    rotation: theta of the base [rad]; load: vertical force [N]. Returns below rigid rocking [m], and what the points
-    store [J].
-    """
+    """Return the static depth of the pivot below rigid rocking [m] and the elastic energy [J] under a load [N]."""
     bed, pivot = rigid.bed, rigid.pivot(rotation)
     tilt = rotation if bed.kinematics == "small" else math.sin(rotation)
     turned = 1.0 if bed.kinematics == "small" else math.cos(rotation)

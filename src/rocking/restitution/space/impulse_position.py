@@ -28,10 +28,9 @@ _PIECE = 4096  # points at a time: what is computed of them stays in the cache
 
 
 class ImpulsePosition:
-    """Position k of a landing of the whole base, for every direction in which a solid may land.
+    """Position k of a landing of the whole base by direction."""
 
-    `breaks` are the azimuths at which a foot changes, in order, the last one a turn after the first [rad].
-    """
+    # breaks: azimuths at which a foot changes, in order [rad]
 
     def __init__(self, solid: Solid) -> None:
         self.solid = solid

@@ -73,10 +73,7 @@ class OutcomeBrackets:
 
 
 def brackets_of(motion: IntArray, levels: FloatArray, sides: IntArray) -> OutcomeBrackets:
-    """Return the pairs of neighbouring levels, increasing along each row, between which the outcome changes.
-
-    Those between overturning to one side and to the other too.
-    """
+    """Return neighbouring levels, increasing along each row, between which the outcome, or the side of it, changes."""
     row, place = np.nonzero(sides[:, 1:] != sides[:, :-1])
     return OutcomeBrackets(
         motion[row], levels[row, place], levels[row, place + 1], sides[row, place], sides[row, place + 1]

@@ -347,10 +347,7 @@ def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Exce
 
 
 def nested(model: FragilityModel, crossing: Crossing = "refuse", highest: float | None = None) -> FragilityModel:
-    """Return curves that may be written: no worse state is likelier than a lesser one up to the highest level.
-
-    The model itself if its curves do not cross, or the one with common dispersion if that was asked for.
-    """
+    """Return curves that do not cross up to the highest level: the model, or one of common dispersion if asked for."""
     if check_crossing(crossing) == "common-dispersion":
         return with_common_dispersion(model)
     worst = largest_excess(model, model.uplift_threshold or 0.0, model.highest if highest is None else highest)

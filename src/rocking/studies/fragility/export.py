@@ -163,11 +163,7 @@ def fema_p58_table(
 
 
 def with_added_dispersion(dispersion: float, *others: float) -> float:
-    """Return the dispersion with others [-], of modelling or construction, added: the root of the sum of squares.
-
-    >>> round(with_added_dispersion(0.3, 0.4), 12)
-    0.5
-    """
+    """Return the dispersion with others [-], of modelling or construction, added: the root of the sum of squares."""
     parts = [checks.positive("dispersion", dispersion)]
     parts += [checks.within("dispersion", other, 0.0, 10.0) for other in others]
     return math.hypot(*parts)
@@ -371,11 +367,7 @@ def to_nrml(
 
 
 def intensity_type(measure: str) -> tuple[str, float]:
-    """Return what OpenQuake calls a measure, and the factor from SI to its unit: g, cm/s, cm, m/s or g s.
-
-    >>> intensity_type("pgv")
-    ('PGV', 100.0)
-    """
+    """Return what OpenQuake calls a measure, and the factor from SI to its unit: g, cm/s, cm, m/s or g s."""
     period = spectral_period(measure)
     one = MEASURES.get(measure) if period is None else spectral_measure(*period)
     if one is None or one.openquake is None:
@@ -388,12 +380,7 @@ def intensity_type(measure: str) -> tuple[str, float]:
 
 
 def moments_of_lognormal(median: float, dispersion: float) -> tuple[float, float]:
-    """Return mean and standard deviation of a lognormal variable, in the unit of its median.
-
-    >>> mean, deviation = moments_of_lognormal(1.0, 0.5)
-    >>> round(mean, 6), round(deviation, 6)
-    (1.133148, 0.603901)
-    """
+    """Return mean and standard deviation of a lognormal variable, in the unit of its median."""
     if dispersion > 25.0:
         raise InvalidValueError(f"dispersion must be at most 25 for a finite standard deviation, got {dispersion:g}")
     mean = median * math.exp(0.5 * dispersion**2)  # Eq. 228

@@ -170,11 +170,7 @@ class LimitState:
 
 
 def limit_states(levels: Sequence[float] = (0.5,)) -> tuple[LimitState, ...]:
-    """Return rocking, rotations beyond levels (over alpha, increasing [-]), overturned.
-
-    >>> [state.name for state in limit_states((0.2, 0.5))]
-    ['rocking', 'rotation > 0.2 alpha', 'rotation > 0.5 alpha', 'overturned']
-    """
+    """Return rocking, rotations beyond levels (over alpha, increasing [-]), overturned."""
     rotations = np.atleast_1d(np.asarray(levels))
     rotations = checks.positive_array("states", rotations) if rotations.size else np.empty(0)
     if rotations.ndim != 1 or np.any(np.diff(rotations) <= 0.0):

@@ -85,10 +85,7 @@ def flip_map(first: Any, second: Any) -> np.ndarray:
 
 
 def difference_of(first: "xr.Dataset", second: "xr.Dataset", name: str) -> "xr.DataArray":
-    """Return second less first of a value (of peak rotations their sizes), where the history stood in both.
-
-    Missing (NaN) where either overturned or failed: its peak is then no rotation of rocking.
-    """
+    """Return second less first of a value, of peaks their sizes; NaN unless the history stood in both."""
     if name == "verdict":
         flag = "-1 overturned in the baseline only, 0 same verdict, 1 overturned only here, 2 one of the two failed"
         flips = first["outcome"].copy(data=flip_map(first["outcome"].values, second["outcome"].values))
@@ -227,12 +224,7 @@ def _moved(log_median: FloatArray, dispersion: FloatArray) -> tuple[FloatArray, 
 
 
 def curve_distance(log_median: FloatArray, dispersion: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the largest vertical distance between pairs of lognormal curves [-], and the ln of the level.
-
-    >>> distance, where = curve_distance(np.array([0.0, 1.0]), np.array([0.5, 0.5]))
-    >>> round(float(distance), 6), float(where)
-    (0.682689, 0.5)
-    """
+    """Return the largest vertical distance between pairs of lognormal curves [-], and the ln of the level."""
     from scipy.special import ndtr
 
     (m, n), (s, t) = log_median, dispersion
