@@ -64,5 +64,9 @@ def percent(share: float) -> str:
 
 
 def opposite(foot: Foot) -> Foot:
-    """Return the other foot."""
+    """Return the other foot.
+
+    >>> opposite("left")
+    'right'
+    """
     return "left" if foot == "right" else "right"

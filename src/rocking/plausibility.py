@@ -16,17 +16,13 @@ from rocking.errors import InvalidValueError, PlausibilityWarning
 CENTRE_HEIGHTS = 0.025, 50.0
 """Half the heights of the smallest and largest things that are studied [m]: specimens 5 cm high; towers of 100 m."""
 
-SLENDERNESS = 0.05, 200.0
-"""h/b of a slab of 1 x 0.05 m and of a sheet of glass 2 m high and 1 cm thick [-]."""
-
-DENSITIES = 10.0, 23000.0
-"""Polystyrene foam; osmium, the densest element, has 22590 [kg/m3]."""
+SLENDERNESS = 0.05, 200.0  # h/b of a slab of 1 x 0.05 m and of a sheet of glass 2 m high and 1 cm thick [-]
+DENSITIES = 10.0, 23000.0  # polystyrene foam; osmium, the densest element, has 22590 [kg/m3]
 
 LARGEST_PGA = 41.0
 """No record has more: 40.2 m/s2, all components, Iwate-Miyagi 2008 (Aoi et al. 2008, Science 322:727) [m/s2]."""
 
-GRAVITIES = 1.6, 25.0
-"""Of the Moon, 1.62, and of Jupiter, 24.8 [m/s2]."""
+GRAVITIES = 1.6, 25.0  # of the Moon, 1.62, and of Jupiter, 24.8 [m/s2]
 
 FRICTIONS = 10.0, 100.0
 """Feet that should not slide are often given 10, more than any surface has; from 100 on they never slide [-]."""
@@ -34,8 +30,7 @@ FRICTIONS = 10.0, 100.0
 PERIODS = 0.01, 60.0
 """Of a pulse: shorter than records resolve; longer than the slowest pulses near a fault, of about 14 s [s]."""
 
-LONGEST_STEP = 0.2
-"""Between samples of a record: at 5 Hz nothing of a strong motion is left [s]."""
+LONGEST_STEP = 0.2  # between samples of a record: at 5 Hz nothing of a strong motion is left [s]
 
 LEAST_COEFFICIENT = 0.25
 """Housner's coefficient of a block as wide as it is high; the least that was measured is 0.67, at h/b = 1.5 [-]."""

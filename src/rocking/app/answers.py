@@ -19,11 +19,8 @@ from rocking.app.plain_text import safe_name
 from rocking.errors import RockingError
 from rocking.quantities import QUANTITIES
 
-Point = tuple[float, float]
-"""x and y [m]."""
-
-Foot = Literal["left", "right"]
-"""Where a body stands or lands."""
+Point = tuple[float, float]  # x and y [m]
+Foot = Literal["left", "right"]  # where a body stands or lands
 
 Kind = Literal[
     "invalid-value", "record", "body-file", "geometry", "unknown-model", "missing-extra", "not-found", "too-large",

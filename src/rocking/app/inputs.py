@@ -61,12 +61,8 @@ Hash = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$", description="SHA-256 of a
 Points = Annotated[int, Field(ge=10, le=2000)]
 """Over how many dots curves are drawn; each keeps the lowest and the highest value of every curve."""
 
-LONGEST = 4 << 20
-"""Bytes of a TOML file that is read."""
-
-_LIGHTEST = 1e-200
-"""Products of smaller masses and moments leave the range of numbers that have all their digits."""
-
+LONGEST = 4 << 20  # bytes of a TOML file that is read
+_LIGHTEST = 1e-200  # products of smaller masses and moments leave the range of numbers that have all their digits
 _DEEPEST = 32
 _LARGEST = 2**63
 

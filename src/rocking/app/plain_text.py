@@ -8,9 +8,7 @@ from typing import Any
 
 from rocking.errors import InvalidValueError
 
-LONGEST_CELL = 2000
-"""Characters of a text that are kept in one cell."""
-
+LONGEST_CELL = 2000  # characters of a text that are kept in one cell
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 _STRANGE = re.compile(r"(?:[^A-Za-z0-9._-]|(?<![A-Za-z0-9])\.|\.(?![A-Za-z0-9]))+")
 _OURS = ("response.toml", "readme.txt")

@@ -23,8 +23,7 @@ _DIGITS = frozenset("0123456789abcdef")
 _HELD = 128 * 1024 * 1024
 """Motions that are kept in memory [bytes]."""
 
-MOST_RECORDS = 5_000
-"""Files that are kept at once."""
+MOST_RECORDS = 5_000  # files that are kept at once
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,7 @@ from rocking.bodies.moments import PlaneMoments
 from rocking.conventions import Assumed, FloatArray
 from rocking.errors import GeometryError, InvalidValueError
 
-_SLACK = 1e-6
-"""A moment may lie this far, relative to itself, beyond what its outline allows: rounding."""
+_SLACK = 1e-6  # a moment may lie this far, relative to itself, beyond what its outline allows: rounding
 
 
 Place = tuple[float, float]

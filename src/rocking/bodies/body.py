@@ -74,8 +74,7 @@ class Side:
 
 Interval = tuple[float, float]
 
-DEFAULT_DENSITY = Assumed(2400.0)
-"""Plain concrete [kg/m3]; no coefficient of a homogeneous body depends on it."""
+DEFAULT_DENSITY = Assumed(2400.0)  # plain concrete [kg/m3]; no coefficient of a homogeneous body depends on it
 
 # Feet closer to the plumb line of the centre than this, relative to their distance, are no support.
 _SUPPORT_TOLERANCE = 1e-12

@@ -13,8 +13,7 @@ from rocking.bodies.moments import PlaneMoments
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError, InvalidValueError
 
-HEAVIEST = 1e36
-"""No point is heavier than this [kg]: sums and moments stay far from overflow."""
+HEAVIEST = 1e36  # no point is heavier than this [kg]: sums and moments stay far from overflow
 
 
 class MassPoints(Body):

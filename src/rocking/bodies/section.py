@@ -348,8 +348,7 @@ class Section(Body):
         return max(left, base[0]), min(right, base[1])
 
 
-GROUND_TOLERANCE = 1e-9
-"""Vertices this close to the ground, relative to the body's size, stand on it."""
+GROUND_TOLERANCE = 1e-9  # vertices this close to the ground, relative to the body's size, stand on it
 
 
 def _level_edges(outline: FloatArray, tolerance: float) -> FloatArray:

@@ -16,9 +16,7 @@ from rocking.cli.page import print_json
 from rocking.errors import InvalidValueError, RockingError, extra
 from rocking.tables import target_of
 
-REPORT, PICTURE = "report", "picture"
-"""The ranked table of an inventory with its lights; the picture of a study."""
-
+REPORT, PICTURE = "report", "picture"  # the ranked table of an inventory with its lights; the picture of a study
 _SAFE = "the campaign itself is safe"
 
 

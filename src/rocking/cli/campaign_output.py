@@ -25,8 +25,7 @@ from rocking.campaigns.jobs.rounds import resume
 from rocking.cli.page import print_json
 from rocking.errors import InvalidValueError
 
-INTERRUPTED, STORAGE, BUSY, DAMAGED = 3, 4, 5, 6
-"""Exit codes beside 0 (done) and 2 (bad input)."""
+INTERRUPTED, STORAGE, BUSY, DAMAGED = 3, 4, 5, 6  # exit codes beside 0 (done) and 2 (bad input)
 
 _CODES: dict[type[BaseException], int] = {
     CampaignInterrupted: INTERRUPTED,

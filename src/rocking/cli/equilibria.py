@@ -22,8 +22,7 @@ from rocking.errors import InvalidValueError
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-DIRECTIONS = 12
-"""Azimuths towards which barriers are printed, from x towards y."""
+DIRECTIONS = 12  # azimuths towards which barriers are printed, from x towards y
 
 EXPORTS = {
     "picture": Export(PICTURES, draw),

@@ -25,14 +25,9 @@ MOST_HISTORIES = 10_000_000
 _REACH = (0.9, 9.0, 16)
 """Levels of PGA that serve where none are given: from, to in what lifts the body, how many, in equal ratios."""
 
-COUNT, SEED = 100, 1
-"""What serves where nobody says otherwise."""
-
-MOST_MOTIONS = 5000
-"""All of them are held in memory."""
-
-MOST_IN_PICTURE = 6
-"""Restitutions that can be told apart in a picture."""
+COUNT, SEED = 100, 1  # what serves where nobody says otherwise
+MOST_MOTIONS = 5000  # all of them are held in memory
+MOST_IN_PICTURE = 6  # restitutions that can be told apart in a picture
 
 
 def _csv(answer: "FragilityAnswer", path: Path) -> None:

@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from rocking.statistics.lognormal import LognormalFit
     from rocking.tables import Table
 
-WIDE = 0.01
-"""Survivals of less width over their level are named apart: in them the body balances on its corner [-]."""
+WIDE = 0.01  # survivals of less width over their level are named apart: in them the body balances on its corner [-]
 
 
 @dataclass(eq=False)

@@ -22,14 +22,9 @@ if TYPE_CHECKING:
     from rocking.studies._overturning_map import MapArrays
     from rocking.studies.axis import Axis
 
-MOST_CELLS = 10_000_000
-"""A larger map is a campaign."""
-
-_LINE = 1e-4
-"""How closely the boundary of a picture is bisected: finer than a pixel."""
-
-_LAST = 3
-"""Overturning after more impacts than that is printed together; JSON parts it."""
+MOST_CELLS = 10_000_000  # a larger map is a campaign
+_LINE = 1e-4  # how closely the boundary of a picture is bisected: finer than a pixel
+_LAST = 3  # overturning after more impacts than that is printed together; JSON parts it
 
 _AXIS = (
     ": NAME=FIRST:LAST:COUNT, with :log for equal ratios, or NAME=A,B,C; with units where the axis has one, "

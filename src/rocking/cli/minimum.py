@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
     from rocking.studies.minimum_acceleration import Transitions
 
-_SPOKEN = 4
-"""Stretches of overturning that a sentence names."""
+_SPOKEN = 4  # stretches of overturning that a sentence names
 
 
 _COLUMNS = {

@@ -19,9 +19,7 @@ UNITS: dict[str, dict[str, float]] = {
 }
 """By the unit in which a value is computed: the units in which it may be written."""
 
-MOST_VALUES = 100_000
-"""No row of values has more."""
-
+MOST_VALUES = 100_000  # no row of values has more
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z/][A-Za-z0-9/]*)?")
 
 

@@ -14,12 +14,8 @@ from rocking.outcome import Outcome, Regime
 from rocking.spec.construction import COMPLEMENTARITY
 from rocking.spec.response import ResponseProblem
 
-_FIRST_IMPACTS = 10
-"""Impacts of pure rocking that are printed."""
-
-_FIRST = 12
-"""Contacts, modes and impacts of the others that are printed."""
-
+_FIRST_IMPACTS = 10  # impacts of pure rocking that are printed
+_FIRST = 12  # contacts, modes and impacts of the others that are printed
 _IN_PYTHON = "simulate(body, motion, friction=...)"
 _CLOSURE = "{:.1e} of the largest energy"
 

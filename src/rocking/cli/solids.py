@@ -16,14 +16,9 @@ from rocking.conventions import LENGTH_UNITS
 from rocking.errors import GeometryError
 from rocking.restitution.space import SpatialModel, impact_in_space, spatial_model, spatial_models
 
-PARALLEL = 1e-3
-"""Edges of a mesh whose directions differ by less count as parallel: files round coordinates [rad]."""
-
-MOST_EDGES = 16
-"""Of a base with more edges those over which the body falls most easily are computed."""
-
-DIRECTIONS = 4
-"""Directions in which a round base is tipped, from x towards y."""
+PARALLEL = 1e-3  # edges of a mesh whose directions differ by less count as parallel: files round coordinates [rad]
+MOST_EDGES = 16  # of a base with more edges those over which the body falls most easily are computed
+DIRECTIONS = 4  # directions in which a round base is tipped, from x towards y
 
 ROUND_BASE = (
     "a round base rolls round its rim and has no impact in one plane: these values hold only if the body is held to "
@@ -31,8 +26,7 @@ ROUND_BASE = (
 )
 """What must be known before a plane coefficient of a round base is used."""
 
-_MOST = 12
-"""Corners of a base that are printed."""
+_MOST = 12  # corners of a base that are printed
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 
     from rocking.dynamics.settings import Settings
 
-_MOST = 10_000_000
-"""Histories; more are a campaign."""
+_MOST = 10_000_000  # histories; more are a campaign
 
 
 EXPORTS = {

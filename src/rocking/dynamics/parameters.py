@@ -15,11 +15,8 @@ from rocking.errors import InvalidValueError
 from rocking.restitution import RestitutionModel, model
 from rocking.restitution.implied import energy_bound
 
-COMPLEMENTARITY = "complementarity alone"
-"""What restitution=None is called, with friction."""
-
-UNIMPOSED = -1.0
-"""A coefficient that stands for none: impacts are plastic by complementarity, or as `bounce` says [-]."""
+COMPLEMENTARITY = "complementarity alone"  # what restitution=None is called, with friction
+UNIMPOSED = -1.0  # a coefficient that stands for none: impacts are plastic by complementarity, or as `bounce` says [-]
 
 # rounding in I_O and r together
 _ROUNDING = 1e-9

@@ -13,14 +13,12 @@ from rocking import checks, conventions, errors, plausibility
 from rocking.bodies import Body
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
 
-ORDERS = (4, 6, 8)
-"""Orders that the fast engine has been compiled for."""
+ORDERS = (4, 6, 8)  # orders that the fast engine has been compiled for
 
 BOUNCE_LAWS = ("newton", "poisson", "stronge")
 """What the coefficient of normal restitution may be the ratio of: velocities, impulses or, squared, energies."""
 
-SHORTEST_STEP = 1e-6
-"""Least `Settings.longest_step` [-]."""
+SHORTEST_STEP = 1e-6  # least `Settings.longest_step` [-]
 
 # usual, least and most value of what the mechanics have of their own; the others are the same for all
 _OWN: dict[str, dict[str, tuple[float, float, float]]] = {

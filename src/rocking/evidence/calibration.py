@@ -27,9 +27,7 @@ from rocking.restitution import Fixed, ImpactGeometry, Interface, RestitutionMod
 from rocking.restitution.implied import energy_bound
 from rocking.restitution.shifted_impulse import shifted
 
-CALIBRATED_RANGE = (1.5, 9.75)
-"""Slendernesses h/b that were measured; outside, an interval is an extrapolation."""
-
+CALIBRATED_RANGE = (1.5, 9.75)  # slendernesses h/b that were measured; outside, an interval is an extrapolation
 NAMES = ("eta", "k", "s", "gamma")
 LEVEL = 0.95
 KEPT = Path(__file__).parent / "data" / "calibration.npz"

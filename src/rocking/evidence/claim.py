@@ -8,11 +8,8 @@ from rocking.evidence.comparison import Difference
 from rocking.evidence.measurements import DataSet, datasets
 from rocking.restitution import Housner, Ked
 
-Judge = Callable[[], tuple[str, str]]
-"""Returns a verdict, and the numbers."""
-
-JUDGES: list[tuple[str, str, str, Judge]] = []
-"""Section, quote and test of every claim, and who judges it."""
+Judge = Callable[[], tuple[str, str]]  # returns a verdict, and the numbers
+JUDGES: list[tuple[str, str, str, Judge]] = []  # section, quote and test of every claim, and who judges it
 
 HOLDS, IN_PART, FAILS, UNTESTABLE = "holds", "holds in part", "does not hold", "not testable"
 UNRESOLVED = "not resolved"

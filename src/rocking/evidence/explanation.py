@@ -9,8 +9,7 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.evidence.bed_fit import BLOCKS, BedFit, bed_fits, left_out
 
-UNRESOLVED = 2.0
-"""Difference in BIC below which two explanations are not told apart."""
+UNRESOLVED = 2.0  # difference in BIC below which two explanations are not told apart
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,8 +11,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
 
-GROUPS = ("table1", "S", "M", "L")
-"""The independent data sets; Table 2 holds means of Table 1."""
+GROUPS = ("table1", "S", "M", "L")  # the independent data sets; Table 2 holds means of Table 1
 
 BANDS = (("h/b <= 3", 0.0, 3.0), ("3 < h/b <= 6", 3.0, 6.0), ("h/b > 6", 6.0, np.inf))
 """Slenderness bands of the league table: name, above, up to."""

@@ -17,8 +17,7 @@ LEGEND = (
 )
 """What the columns of the table are, those of r apart."""
 
-APART = 3.92
-"""Standard errors between two values, so that 97.5 % of measurements lie nearer to the right one."""
+APART = 3.92  # standard errors between two values, so that 97.5 % of measurements lie nearer to the right one
 
 
 def evidence(made: "Recommendation") -> list[str]:

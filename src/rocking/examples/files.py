@@ -7,8 +7,7 @@ from rocking.errors import InvalidValueError
 from rocking.examples.table import Example
 from rocking.motions.motion import GroundMotion
 
-HERE = Path(__file__).parent
-"""Where the files of examples are, within the package."""
+HERE = Path(__file__).parent  # where the files of examples are, within the package
 
 
 def record_text(motions: Mapping[str, GroundMotion]) -> str:

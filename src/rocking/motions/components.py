@@ -70,8 +70,7 @@ def leading(motion: Any) -> Any:
     return motion.leading if isinstance(motion, Components) else motion
 
 
-ANGLES = np.radians(np.arange(180.0))
-"""Directions for RotD: every degree over half a turn."""
+ANGLES = np.radians(np.arange(180.0))  # directions for RotD: every degree over half a turn
 
 
 def with_vertical(horizontal: GroundMotion, vertical: GroundMotion) -> GroundMotion:

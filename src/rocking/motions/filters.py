@@ -21,8 +21,7 @@ _LANES = 4
 NEIGHBOURS = 10
 """Oscillators that share an impulse; the compiled module has the same number."""
 
-LEAST_CYCLES = 1e-6
-"""Smallest corner of the high pass in cycles a step [-]: below, its long memory drowns in rounding."""
+LEAST_CYCLES = 1e-6  # smallest corner of the high pass in cycles a step [-]: below, its long memory drowns in rounding
 
 
 @cache

@@ -28,8 +28,7 @@ from rocking.motions.pulse import Pulse
 from rocking.motions.spectrum import response_spectrum
 from rocking.portable import trapezoid
 
-HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)
-"""Periods of Housner's spectrum intensity [s]: every 0.01 s."""
+HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)  # periods of Housner's spectrum intensity [s]: every 0.01 s
 
 SAMPLES_PER_PERIOD = 4000
 """Samples of the shortest period of a pulse: its measures are off by less than 1e-6, its PGA by nothing."""

@@ -12,11 +12,8 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 
-LARGEST_ACCELERATION = 1e6
-"""No ground moves harder than this [m/s2]: a larger number is a wrong unit or a damaged file."""
-
-SHORTEST_STEP, LONGEST_STEP = 1e-9, 1e3
-"""Allowed range of the time step [s]."""
+LARGEST_ACCELERATION = 1e6  # no ground moves harder than this [m/s2]: a larger number is a wrong unit or a damaged file
+SHORTEST_STEP, LONGEST_STEP = 1e-9, 1e3  # allowed range of the time step [s]
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,11 +14,8 @@ from rocking.motions.integrals import significant_times, velocity_of
 from rocking.motions.intensity import RockingScale
 from rocking.motions.motion import LONGEST_STEP, SHORTEST_STEP, GroundMotion, checked_motion
 
-ROUNDING = 1e-6
-"""A ratio of times this close to a whole number is one."""
-
-MOST_SAMPLES = 100_000_000
-"""No motion has more samples: asking for more is a wrong unit."""
+ROUNDING = 1e-6  # a ratio of times this close to a whole number is one
+MOST_SAMPLES = 100_000_000  # no motion has more samples: asking for more is a wrong unit
 
 
 def demeaned(motion: GroundMotion) -> GroundMotion:

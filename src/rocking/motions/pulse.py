@@ -14,9 +14,7 @@ from rocking.motions.filters import cosine_sine, exponential
 from rocking.motions.motion import LARGEST_ACCELERATION, LONGEST_STEP, SHORTEST_STEP, GroundMotion
 from rocking.motions.segments import Segments
 
-MOST_SAMPLES = 2_000_000
-"""No pulse is sampled to more than this: asking for more is a wrong unit."""
-
+MOST_SAMPLES = 2_000_000  # no pulse is sampled to more than this: asking for more is a wrong unit
 _PER_RADIAN = 8.0
 Wave = tuple[float, float, float]
 """Amplitude [m/s2], circular frequency [rad/s] and phase [rad] of ``amplitude * sin(frequency * t + phase)``."""

@@ -22,17 +22,11 @@ FREE_POINTS = 288
 MARGIN = 1.001
 """Room for cubics, which leave the true response by less than 0.01 %, in the bound of what a step can hold [-]."""
 
-HIGH = 0.8
-"""Samples whose state is so large, compared with the largest, give the first guess of the peaks [-]."""
-
-TOGETHER = 180_000
-"""Steps times periods that are held at once: more are no quicker, and take more memory."""
-
+HIGH = 0.8  # samples whose state is so large, compared with the largest, give the first guess of the peaks [-]
+TOGETHER = 180_000  # steps times periods that are held at once: more are no quicker, and take more memory
 _BLOCK = 16  # samples of a row that follow one another in the recurrence of its states
 
-SHORTEST_PERIOD = 0.05
-"""Shortest period in time steps: below, the record says nothing about what the oscillator feels."""
-
+SHORTEST_PERIOD = 0.05  # shortest period in time steps: below, the record says nothing about what the oscillator feels
 ComplexArray = NDArray[np.complex128]
 Pairs = list[tuple[FloatArray, FloatArray]]
 """Displacement, velocity and absolute acceleration, each with its rate of change."""

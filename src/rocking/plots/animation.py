@@ -28,9 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
     from matplotlib.transforms import Affine2D
 
-MOST_FRAMES = 500
-"""Frames of a GIF: more would make a file that no page wants to carry."""
-
+MOST_FRAMES = 500  # frames of a GIF: more would make a file that no page wants to carry
 _LIFTED = "The vertical motion of the ground counts in the forces but is not drawn."
 _FALLS = (
     "The fall is computed by the same equation until a corner meets the ground; there the body is left lying, since a "

@@ -12,9 +12,7 @@ from rocking.dynamics.response import Response
 from rocking.outcome import Outcome
 from rocking.plots.response import ground_place, shown_until, velocity_at
 
-FASTEST_RATE, MOST_SAMPLES = 120.0, 60_000
-"""Samples in a second, and in all."""
-
+FASTEST_RATE, MOST_SAMPLES = 120.0, 60_000  # samples in a second, and in all
 _MARGIN = 0.10
 _FAR = 1.5
 _POSES = 400

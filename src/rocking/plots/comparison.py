@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 _DOTS, _WIDTH, _HEAD, _CAPTION, _CURVES = 110, 7.4, 0.34, 0.5, 1.45
 """Dots in an inch, and sizes of what stands above one another [in]."""
 
-_HOLD = 2.0
-"""How long the last frame stays [s]."""
+_HOLD = 2.0  # how long the last frame stays [s]
 
 _MOST_PANELS, _SHADES, _PAPER = 4, 64, 248
 _VERDICTS = {True: ("overturned", "#A23B00"), False: ("stands", "#00664A")}

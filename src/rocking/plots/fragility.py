@@ -35,8 +35,7 @@ stripes as long as there is room."""
 STATES = ("#E3EDF5", "#7FB2D6", "#E69F00", "#CC79A7", "#7A2E00")
 """From no rocking, light, to overturned, dark: apart in grey too."""
 
-_APART = 2.2
-"""Points of different states are drawn side by side, this far apart [pt]."""
+_APART = 2.2  # points of different states are drawn side by side, this far apart [pt]
 
 
 @in_journal_style

@@ -21,11 +21,8 @@ _PASSED: dict[str, Any] = {"color": _CROSS, "linewidth": 1.0, "linestyle": "--"}
 WIDE = 0.01
 """Survivals of less width over their level are not counted: in them the body balances on its corner [-]."""
 
-_OVER = 1.06
-"""Larger rotations of bodies that stood all the same are drawn here."""
-
-_FIRST, _LAST = 1.12, 1.72
-"""Where the lanes of the motions begin and end, on the axis of rotation."""
+_OVER = 1.06  # larger rotations of bodies that stood all the same are drawn here
+_FIRST, _LAST = 1.12, 1.72  # where the lanes of the motions begin and end, on the axis of rotation
 
 
 @in_journal_style

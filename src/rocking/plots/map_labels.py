@@ -12,8 +12,7 @@ from rocking.plots.style import broken
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-FINE = (240, 300)
-"""Rows and columns of the grid of pixels on which places are sought."""
+FINE = (240, 300)  # rows and columns of the grid of pixels on which places are sought
 
 _COLOR, _BACK = "#0072B2", "#E4EFF8"
 _ROOM = 0.035

@@ -28,8 +28,7 @@ _RASTER = 700
 _PANEL = (2.95, 2.55)
 """Width and height of the panel, roughly [in]."""
 
-FAILED, UNLIFTED, ROCKED, ISLAND, FIRST, SECOND, LATER, FELL = range(8)
-"""What is told apart in a map."""
+FAILED, UNLIFTED, ROCKED, ISLAND, FIRST, SECOND, LATER, FELL = range(8)  # what is told apart in a map
 
 CLASSES: dict[int, tuple[str, str]] = {
     FAILED: ("not computed", "#000000"),
@@ -46,9 +45,7 @@ CLASSES: dict[int, tuple[str, str]] = {
 _SHORT = {UNLIFTED: "", FIRST: "no impact", SECOND: "after 1 impact", LATER: "after 2 or more"}
 """Words where those of `CLASSES` do not fit."""
 
-_LEAST = 4
-"""Islands of fewer points are drawn as any survival: a coarse grid cuts a narrow channel into such pieces."""
-
+_LEAST = 4  # islands of fewer points are drawn as any survival: a coarse grid cuts a narrow channel into such pieces
 _CONTOURS = (0.1, 0.25, 0.5, 0.75)
 _BOUNDARY: dict[str, Any] = {"color": INK, "linewidth": 0.9, "zorder": 4, "solid_joinstyle": "round"}
 

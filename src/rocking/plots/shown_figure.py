@@ -7,8 +7,7 @@ from typing import Any
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-_DOTS, _PIXELS = 144.0, 96.0
-"""Dots of the image, and pixels of a page, per inch."""
+_DOTS, _PIXELS = 144.0, 96.0  # dots of the image, and pixels of a page, per inch
 
 
 class ShownFigure(Figure):

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 P = ParamSpec("P")
 T = TypeVar("T")
 
-SINGLE, DOUBLE = 90.0 / 25.4, 190.0 / 25.4
-"""Widths of one and of two journal columns [in]."""
+SINGLE, DOUBLE = 90.0 / 25.4, 190.0 / 25.4  # widths of one and of two journal columns [in]
 
 INK, GREY, PALE = "#222222", "#8a8a8a", "#e6e6e6"
 
@@ -32,11 +31,8 @@ LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (6, 2)))
 MARKS = "osv^D<"
 """Okabe and Ito's colours, with a line and a mark for each so that grey print keeps them apart."""
 
-_OVERHANG = 12.0
-"""Dots by which a label may be longer than its axis."""
-
-DASHED = (0, (4, 2))
-"""How limits are drawn."""
+_OVERHANG = 12.0  # dots by which a label may be longer than its axis
+DASHED = (0, (4, 2))  # how limits are drawn
 
 _SETTINGS: Any = {
     "font.family": "sans-serif",

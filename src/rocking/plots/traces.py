@@ -11,16 +11,14 @@ from rocking.motions.integrals import ground_displacement, ground_velocity, quad
 from rocking.motions.motion import SHORTEST_STEP, GroundMotion
 from rocking.motions.pulse import Pulse
 
-_ENOUGH = 2000
-"""Points from which on a curve looks smooth."""
+_ENOUGH = 2000  # points from which on a curve looks smooth
 
 _PER_PERIOD = 1000
 """Steps in a period of the fastest part of a pulse: straight lines between miss a sine by 5 millionths."""
 
 _MOST = 400_000
 
-Peak = tuple[float, float]
-"""Time [s] and signed value."""
+Peak = tuple[float, float]  # time [s] and signed value
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,9 +13,7 @@ from rocking.errors import InvalidValueError
 from rocking.statistics.counts import LEAST_CLUSTERS
 from rocking.statistics.scores import REPETITIONS, Forecasts, Score, logistic_left_out
 
-PREDICTION, LOGISTIC, BASE_RATE = "prediction", "logistic", "base rate"
-"""The forecasts that are compared, by name."""
-
+PREDICTION, LOGISTIC, BASE_RATE = "prediction", "logistic", "base rate"  # the forecasts that are compared, by name
 MEASURES = ("brier", "logarithmic")
 BETTER, WORSE, MIXED, NOT_RESOLVED = "better", "worse", "mixed", "not resolved"
 _HAPPENED = {"overturning": "overturned", "uplift": "rocked", "sliding": "slid"}

@@ -32,8 +32,7 @@ from rocking.prediction.uncertain import Uncertain
 from rocking.restitution import ImpactGeometry, RestitutionModel
 from rocking.restitution.shifted_impulse import shifted
 
-BASE = 0.02
-"""Share of the base within which feet lie where nobody says otherwise."""
+BASE = 0.02  # share of the base within which feet lie where nobody says otherwise
 
 DIRECTIONS = 36
 """Over half a turn, to which azimuths are rounded: a motion of two components is turned into each that was drawn."""

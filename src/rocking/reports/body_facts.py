@@ -15,9 +15,7 @@ from rocking.evidence._coefficient_table import CoefficientRow, coefficient_tabl
 from rocking.evidence.measurements import all_measurements
 from rocking.restitution import IdentityCheck, RestitutionModel, energy_balance, identity_report
 
-_MOST_VERTICES = 2000
-"""Vertices of a ring that is drawn."""
-
+_MOST_VERTICES = 2000  # vertices of a ring that is drawn
 _RATIOS = np.geomspace(0.8, 12.0, 40)
 
 

@@ -14,8 +14,7 @@ from rocking.reports.render import render_pdf, write_html
 from rocking.studies.inventory.assessment import Assessment
 from rocking.studies.inventory.table import HEADER, LIMITS, as_csv, as_plain, rows
 
-STEM = "inventory"
-"""Name of every file, before its suffix."""
+STEM = "inventory"  # name of every file, before its suffix
 
 FILLS = {"G": "C6E7D6", "A": "FFE3A3", "R": "F6C1BC", "n": "E3E6EA"}
 """Background of a light by the first letter of its words; the words stand in the cell."""

@@ -11,17 +11,10 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.portable import each
 
-POINTS: Final = (2, 3, 5, 11, 41)
-"""Numbers of contact points that were tabulated."""
-
-DAMPING: Final = (0.05, 5.0)
-"""Range of the damping ratio [-]."""
-
-HARDNESS: Final = (30.0, 1000.0)
-"""Range of the hardness [-]."""
-
-STEP: Final = 2.0**-13
-"""What the positions are stored in whole multiples of [-]."""
+POINTS: Final = (2, 3, 5, 11, 41)  # numbers of contact points that were tabulated
+DAMPING: Final = (0.05, 5.0)  # range of the damping ratio [-]
+HARDNESS: Final = (30.0, 1000.0)  # range of the hardness [-]
+STEP: Final = 2.0**-13  # what the positions are stored in whole multiples of [-]
 
 BANDS: Final = (0.05, 0.1, 0.3, 0.5, 1.0)
 """Damping ratios from which each row of `STATED_ERRORS` holds, and `DAMPED` [-]."""

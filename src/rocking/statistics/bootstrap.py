@@ -33,14 +33,12 @@ Resampling = Literal["parametric", "cases", "clusters"]
 Ends = Literal["studentised", "percentile", "basic"]
 Pair = tuple[FloatArray, FloatArray]
 
-OUTWARD = 6
-"""Steps that look for a value outside the interval, each twice as long: an end beyond them is open."""
+OUTWARD = 6  # steps that look for a value outside the interval, each twice as long: an end beyond them is open
 
 NEAR = 0.05
 """An end is taken from a line whose last two places are this part of the first step apart: far nearer than that."""
 
-NODES = (-3.0, -1.5, -0.7, 0.0, 0.7, 1.5, 3.0)
-"""Variates whose fractiles bound a band; between them it is interpolated."""
+NODES = (-3.0, -1.5, -0.7, 0.0, 0.7, 1.5, 3.0)  # variates whose fractiles bound a band; between them it is interpolated
 
 
 def resample(

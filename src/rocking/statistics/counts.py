@@ -11,11 +11,8 @@ from rocking import checks
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
 
-NARROWEST = 1e-9
-"""Least relative distance between the lowest and the highest level [-]."""
-
-LEAST_CLUSTERS = 5
-"""Distinct clusters below which drawing them again says nothing about clusters that were not seen."""
+NARROWEST = 1e-9  # least relative distance between the lowest and the highest level [-]
+LEAST_CLUSTERS = 5  # distinct clusters below which drawing them again says nothing about clusters that were not seen
 
 MANY_CLUSTERS = 30
 """Clusters from which drawing them again covers as often as it says, whatever their outcomes have in common."""

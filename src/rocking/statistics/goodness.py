@@ -16,8 +16,7 @@ from rocking.statistics.maximum_likelihood import FittedCurves, LogScale, find_c
 if TYPE_CHECKING:
     from rocking.statistics.lognormal import LognormalFit
 
-Ends = tuple[float | None, float | None]
-"""Both ends of an interval; None where it is open."""
+Ends = tuple[float | None, float | None]  # both ends of an interval; None where it is open
 
 STATISTICS = {
     "deviance": "twice the log likelihood lost against a curve free at every level",
@@ -27,15 +26,9 @@ STATISTICS = {
 }
 """Statistics of the goodness of fit, and what they are."""
 
-REPETITIONS, FEWEST = 1000, 99
-"""Data sets that are drawn from a curve for its p-values, and how few will do."""
-
-MOST_DRAWN = 2_000_000
-"""Levels times data sets that are drawn for p-values without being asked for: seconds of work."""
-
-MOST_REPEATED = 50_000_000
-"""Levels times data sets of a bootstrap that are held at once: about a gigabyte."""
-
+REPETITIONS, FEWEST = 1000, 99  # data sets that are drawn from a curve for its p-values, and how few will do
+MOST_DRAWN = 2_000_000  # levels times data sets that are drawn for p-values without being asked for: seconds of work
+MOST_REPEATED = 50_000_000  # levels times data sets of a bootstrap that are held at once: about a gigabyte
 _NONE = (math.nan, math.nan)
 
 

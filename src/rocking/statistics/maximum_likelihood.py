@@ -14,23 +14,12 @@ from rocking.statistics.counts import Counts
 from rocking.statistics.probit import Derivatives, PenalisedProbit, Probit, starts, tails
 from rocking.statistics.separation import Separation, classify
 
-DECREMENT = 1e-18
-"""Largest squared distance to the maximum, in standard errors, that counts as having arrived [-]."""
-
-SEARCH_STEPS = 60
-"""Most steps from each of several starts [-]."""
-
-STEPS = 200
-"""Most steps; a dozen are usual [-]."""
-
-DEFINITE = 1e-13
-"""Smallest determinant, over the product of the diagonal, of a curvature that counts as definite [-]."""
-
-LEAST = 1e-12
-"""Smallest share of the variance in any direction, so that the inverse of the covariance exists [-]."""
-
-FULLEST = 2_000_000
-"""Numbers that are held at once."""
+DECREMENT = 1e-18  # Largest squared distance to the maximum, in standard errors, that counts as having arrived [-]
+SEARCH_STEPS = 60  # most steps from each of several starts [-]
+STEPS = 200  # most steps; a dozen are usual [-]
+DEFINITE = 1e-13  # smallest determinant, over the product of the diagonal, of a curvature that counts as definite [-]
+LEAST = 1e-12  # smallest share of the variance in any direction, so that the inverse of the covariance exists [-]
+FULLEST = 2_000_000  # numbers that are held at once
 
 
 class Objective(Protocol):

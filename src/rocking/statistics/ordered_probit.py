@@ -19,9 +19,7 @@ from rocking.statistics.lognormal import LognormalFit, fit_lognormal, levels_of,
 from rocking.statistics.maximum_likelihood import LogScale, maximise
 from rocking.statistics.probit import Derivatives, tails
 
-Curve = tuple[float, float]
-"""Median [unit of the levels] and dispersion [-]."""
-
+Curve = tuple[float, float]  # median [unit of the levels] and dispersion [-]
 OrderedMethod = Literal["separate", "common-dispersion"]
 ORDERED_METHODS: tuple[OrderedMethod, ...] = get_args(OrderedMethod)
 

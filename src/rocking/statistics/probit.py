@@ -15,17 +15,10 @@ from scipy.special import erfcx
 
 from rocking.conventions import FloatArray
 
-FAR = 300.0
-"""Beyond this many standard deviations the curvature comes from its series: the closed form cancels [-]."""
-
-WIDEST = 1 << 16
-"""Levels that are looked at together: what is in between takes a hundred bytes of each."""
-
-SLOPES = np.array([0.3, 1.0, 3.0, 10.0, 30.0])
-"""Slopes b that the search for the maximum starts from [-]."""
-
-PLACES = 9
-"""Number of positions that the search starts from [-]."""
+FAR = 300.0  # beyond this many standard deviations the curvature comes from its series: the closed form cancels [-]
+WIDEST = 1 << 16  # levels that are looked at together: what is in between takes a hundred bytes of each
+SLOPES = np.array([0.3, 1.0, 3.0, 10.0, 30.0])  # slopes b that the search for the maximum starts from [-]
+PLACES = 9  # number of positions that the search starts from [-]
 
 
 class Tails(NamedTuple):

@@ -14,11 +14,8 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.statistics.maximum_likelihood import maximise, maximise_from
 from rocking.statistics.probit import SLOPES, Derivatives, Probit, places
 
-FARTHEST = 300.0
-"""Distance at which an end counts as open [-]."""
-
-ROOT = 1e-10
-"""Error of the root of the fall at which an end is found [-]."""
+FARTHEST = 300.0  # distance at which an end counts as open [-]
+ROOT = 1e-10  # error of the root of the fall at which an end is found [-]
 
 
 class Line(NamedTuple):

@@ -12,8 +12,7 @@ from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.statistics.counts import share_interval
 
-REPETITIONS = 2000
-"""Bootstrap samples of an interval."""
+REPETITIONS = 2000  # bootstrap samples of an interval
 
 
 @dataclass(frozen=True)

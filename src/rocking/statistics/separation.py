@@ -13,11 +13,8 @@ import numpy as np
 from rocking.conventions import FloatArray, IntArray
 from rocking.statistics.counts import Counts
 
-FLATNESS = 1e-13
-"""Trend over the largest possible one below which it is rounding [-]."""
-
-LEVEL = 0.95
-"""Confidence level of the bounds that a verdict states [-]."""
+FLATNESS = 1e-13  # trend over the largest possible one below which it is rounding [-]
+LEVEL = 0.95  # confidence level of the bounds that a verdict states [-]
 
 
 class Separation(Enum):

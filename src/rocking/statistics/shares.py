@@ -9,8 +9,7 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 
-REPETITIONS = 1000
-"""Bootstrap samples of an interval."""
+REPETITIONS = 1000  # bootstrap samples of an interval
 
 
 @dataclass(frozen=True)

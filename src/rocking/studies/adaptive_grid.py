@@ -76,9 +76,7 @@ class Plane:
         return x.ravel(), y.ravel()
 
 
-MOST_LEVELS = 12
-"""A spacing 4096 times finer: a boundary is better bisected than refined beyond it."""
-
+MOST_LEVELS = 12  # a spacing 4096 times finer: a boundary is better bisected than refined beyond it
 Label = Callable[[IntArray], Any]
 
 # cells whose corners are looked at together: what is looked at takes many times the room of what is known

@@ -18,8 +18,7 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion, Ricker, Sinusoids
 from rocking.studies.question import Case, Question
 
-BODY, RESTITUTION, TIME, AMPLITUDE, VELOCITY = range(5)
-"""Stages in which axes are applied, in this order."""
+BODY, RESTITUTION, TIME, AMPLITUDE, VELOCITY = range(5)  # stages in which axes are applied, in this order
 
 
 @dataclass(frozen=True, eq=False)

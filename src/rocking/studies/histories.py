@@ -28,8 +28,7 @@ MOTIONS_AT_ONCE = 128
 MOTIONS_KEPT = 128 << 20
 """Room for motions that are kept for the next piece, where histories of one motion do not stand together [bytes]."""
 
-LARGEST_CHUNK = 1 << 22
-"""A chunk is held in memory as a whole: 0.3 GB."""
+LARGEST_CHUNK = 1 << 22  # a chunk is held in memory as a whole: 0.3 GB
 
 
 @dataclass(frozen=True, eq=False)

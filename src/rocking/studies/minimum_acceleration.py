@@ -23,8 +23,7 @@ from rocking.studies.question import FAILED, Question
 
 Interval = tuple[float, float]
 
-_FEW = 3
-"""As many stretches are printed one by one."""
+_FEW = 3  # as many stretches are printed one by one
 
 
 @dataclass(frozen=True, eq=False, repr=False)

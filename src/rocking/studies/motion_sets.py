@@ -111,8 +111,7 @@ def digest(motion: Any) -> str:
     return hashed.hexdigest()
 
 
-MOST_MOTIONS = 10_000_000
-"""No set has more motions: asking for more is a slip."""
+MOST_MOTIONS = 10_000_000  # no set has more motions: asking for more is a slip
 
 
 class SyntheticSet(MotionSet):

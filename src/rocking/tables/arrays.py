@@ -19,9 +19,7 @@ from rocking.tables.table import Column, Grid, Table
 if TYPE_CHECKING:
     import xarray as xr
 
-MOST_BYTES_OF_MATLAB = 2**31 - 1
-"""Largest variable of a MATLAB file of version 5 [bytes]."""
-
+MOST_BYTES_OF_MATLAB = 2**31 - 1  # Largest variable of a MATLAB file of version 5 [bytes]
 _TEXT = 80  # a text is a matrix of its own there [bytes]
 _MARGIN = 150_000  # attributes, and what HDF5 needs for itself [bytes]
 

@@ -17,9 +17,7 @@ from rocking.tables.table import Cell, Column, Grid, Table, decoded, safe_cell
 if TYPE_CHECKING:
     import pandas as pd
 
-MOST_ROWS_OF_EXCEL = 1_048_575
-"""Rows of a sheet, its header apart."""
-
+MOST_ROWS_OF_EXCEL = 1_048_575  # rows of a sheet, its header apart
 _LONGEST_CELL = 32_000
 _LONGEST_TITLE = 31
 _WIDEST = 60

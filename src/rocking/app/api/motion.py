@@ -20,8 +20,7 @@ from rocking.reports.motion_facts import measures_of, motion_facts
 router = APIRouter(prefix="/api", tags=["motion"])
 _HELD: Remembered[JsonAnswer] = Remembered(32)
 
-DAMPING = 0.05
-"""Damping ratio of the spectrum [-]."""
+DAMPING = 0.05  # damping ratio of the spectrum [-]
 
 _LONGEST, _SHORTEST, _COUNT = 10.0, 0.03, 100
 

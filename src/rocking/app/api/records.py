@@ -22,15 +22,9 @@ from rocking.motions.formats import formats, read_record
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.motion import GroundMotion
 
-_STAND_IN = {"units": "m/s2", "time_step": 0.01}
-"""What stands for an answer that is missing, to find out what else is."""
-
-_QUIETEST = 1e-100
-"""Smaller accelerations have no energy: their squares vanish in floating point, whatever the unit."""
-
-_FOR_PROGRAMS = "; say "
-"""What follows in the words of the library names an argument; people see the choices instead."""
-
+_STAND_IN = {"units": "m/s2", "time_step": 0.01}  # what stands for an answer that is missing, to find out what else is
+_QUIETEST = 1e-100  # smaller accelerations have no energy: their squares vanish in floating point, whatever the unit
+_FOR_PROGRAMS = "; say "  # what follows in the words of the library names an argument; people see the choices instead
 _ORDER = ("format", "units", "time_step", "component")
 router = APIRouter(prefix="/api/records", tags=["records"])
 _STATIONS = b"<FDSNStationXML"

@@ -16,9 +16,7 @@ from rocking.bodies.formats.words import sentence
 from rocking.conventions import Assumed
 from rocking.version import SOFTWARE
 
-FILE_NAME = "response.toml"
-"""What such a file is called."""
-
+FILE_NAME = "response.toml"  # what such a file is called
 _TABLES = ("response", "body", "motion", "restitution", "settings")
 _SHAPES = {"block", "trapezoid", "ellipse", "regular_polygon", "section", "mass_points", "units"}
 _HASH = re.compile(r"[0-9a-f]{64}")

@@ -31,11 +31,8 @@ if TYPE_CHECKING:
 
 PictureKind = Literal["png", "svg"]
 
-_ENOUGH = 2700
-"""Runs of a curve whose extremes are drawn: one for each dot of the widest picture."""
-
-ONE_AT_A_TIME = RLock()
-"""Held by whoever draws."""
+_ENOUGH = 2700  # runs of a curve whose extremes are drawn: one for each dot of the widest picture
+ONE_AT_A_TIME = RLock()  # held by whoever draws
 
 
 What = Literal["body", "coefficients", "stages", "motion", "response"]
@@ -46,9 +43,7 @@ _DASHES = ((0, (3, 2, 8, 2)), (0, (12, 3)), (0, (5, 3, 1, 3)), (0, (2, 2)), "-")
 _BEYOND = 2.2
 """How far a falling body is followed, in slenderness angles."""
 
-_SMALL = 0.2
-"""Below this share of the slenderness angle the rotations fill their panel and +-1 is left out."""
-
+_SMALL = 0.2  # below this share of the slenderness angle the rotations fill their panel and +-1 is left out
 _SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
 
 router = APIRouter(prefix="/api", tags=["take away"], default_response_class=Answer)

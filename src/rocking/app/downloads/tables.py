@@ -35,8 +35,7 @@ from rocking.tables import Cell, Column, Table, text_array, to_csv, to_dataset, 
 What = Literal["body", "coefficients", "measures", "motion", "spectrum", "response", "outcomes", "impacts"]
 Kind = Literal["csv", "xlsx", "mat", "nc"]
 
-MOST_CELLS = 2_000_000
-"""Cells of a workbook; more would take minutes to write and longer to open."""
+MOST_CELLS = 2_000_000  # cells of a workbook; more would take minutes to write and longer to open
 
 _UNITS = {"m_s2": "m/s2", "rad_s": "rad/s", "rad": "rad", "kg_m2": "kg m2", "kg": "kg", "m": "m"}
 """Endings of keys; the longer ones come first."""

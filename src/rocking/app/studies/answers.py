@@ -8,9 +8,7 @@ from rocking.app.answers import QuantityAnswer, shape
 from rocking.app.api.response import ResponseFacts
 from rocking.app.inputs import Inputs
 
-Number = float | None
-"""Null where there is no finite number."""
-
+Number = float | None  # null where there is no finite number
 Interval = tuple[Number, Number]
 Counts = list[list[list[int]]]
 """By restitution, then rows along y; or by restitution, body and scale."""

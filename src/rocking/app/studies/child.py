@@ -14,9 +14,7 @@ from pathlib import Path
 
 from rocking.app.studies import GRACE
 
-DONE, REFUSED, STOPPED = 0, 2, 3
-"""Exit codes."""
-
+DONE, REFUSED, STOPPED = 0, 2, 3  # exit codes
 _PATIENCE = 3.0
 
 

@@ -34,12 +34,8 @@ from rocking.app.work import Remembered
 from rocking.campaigns import disk
 from rocking.dynamics.settings import processors
 
-_RESULTS, _ANSWERS = 256 * 2**20, 64 * 2**20
-"""Memory for results and for answers [byte]."""
-
-_BYTES = 100
-"""Disk for a history, generously [byte]."""
-
+_RESULTS, _ANSWERS = 256 * 2**20, 64 * 2**20  # memory for results and for answers [byte]
+_BYTES = 100  # disk for a history, generously [byte]
 _FULL = {errno.ENOSPC, errno.EDQUOT} if hasattr(errno, "EDQUOT") else {errno.ENOSPC}
 _DELETED = ".deleted-"
 _UNREADABLE = f"its {META} cannot be read; nothing was changed: mend it and start the server again, or delete the study"

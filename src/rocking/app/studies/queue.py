@@ -9,12 +9,8 @@ from rocking.app.errors import Busy, NotFound
 from rocking.app.studies.study import HostedStudy, StudyProcess
 from rocking.app.studies.study_folder import FAILED, INTERRUPTED, RUNNING, WAITING
 
-LOOK = 0.2
-"""Time between looks at what runs [s]."""
-
-SAVE_AGAIN = 2.0
-"""Time after which a state is written again that the disk did not take [s]."""
-
+LOOK = 0.2  # time between looks at what runs [s]
+SAVE_AGAIN = 2.0  # time after which a state is written again that the disk did not take [s]
 _LOG = logging.getLogger(__name__)
 GONE = "there is no such study; it may have been deleted"
 

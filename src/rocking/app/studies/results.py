@@ -20,9 +20,7 @@ from rocking.version import __version__
 MODES = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: "overturns without impact"}
 """Ways to end in words; n > 0 overturns after n impacts."""
 
-NAME = f"result-{__version__}.json"
-"""Another version may tell other things."""
-
+NAME = f"result-{__version__}.json"  # another version may tell other things
 _LARGEST = 20_000
 _FINE = 120
 _WIDE = 0.01

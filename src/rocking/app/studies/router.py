@@ -35,9 +35,7 @@ _ONE = answered(StudyFacts, "State and progress.")
 SHORTEST = 0.2
 """Time between two messages, at least [s]."""
 
-MOST = 64
-"""Browsers that are told at the same time."""
-
+MOST = 64  # browsers that are told at the same time
 _TRY_LATER = 1013
 
 

@@ -9,9 +9,7 @@ import numpy as np
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import GeometryError
 
-FLAT = 1e-7
-"""Facets whose neighbours' corners lie this close to their plane are one facet, relative to the body's size."""
-
+FLAT = 1e-7  # facets whose neighbours' corners lie this close to their plane are one facet, relative to the body's size
 _DIRECTIONS = (30, 200)
 _MANY = 20_000
 _COARSE = 1e-9

@@ -35,8 +35,7 @@ from rocking.errors import BodyFileError
 if TYPE_CHECKING:
     from rocking.bodies.formats import schema
 
-LARGEST_TOML = 16 * 2**20
-"""Larger TOML files are refused [byte]: large outlines belong in WKT, GeoJSON or DXF."""
+LARGEST_TOML = 16 * 2**20  # larger TOML files are refused [byte]: large outlines belong in WKT, GeoJSON or DXF
 
 
 class _Options(TypedDict, total=False):

@@ -29,9 +29,7 @@ if TYPE_CHECKING:
 INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
 """Codes of the header variable $INSUNITS (DXF reference, HEADER section) that this package has units for."""
 
-CHORD_SHARE = 1e-5
-"""Default chord tolerance, as a share of the curve's larger dimension [-]."""
-
+CHORD_SHARE = 1e-5  # default chord tolerance, as a share of the curve's larger dimension [-]
 _TEXTS = ("TEXT", "MTEXT", "ATTDEF", "LEADER", "MULTILEADER", "MLEADER", "TOLERANCE", "ACAD_TABLE")
 _DIMENSIONS = ("DIMENSION", "ARC_DIMENSION", "LARGE_RADIAL_DIMENSION")
 _PASSED_OVER = frozenset((*_TEXTS, *_DIMENSIONS, "POINT", "HATCH", "VIEWPORT", "RAY", "XLINE", "IMAGE", "WIPEOUT"))
@@ -241,9 +239,7 @@ def _flat(point: Any) -> complex:
 _READERS = {"CIRCLE": _circle, "ELLIPSE": _ellipse, "LWPOLYLINE": _lwpolyline, "POLYLINE": _old_polyline}
 
 
-FINEST = 1e-9
-"""Chord tolerances below this share of a curve's size are refused: the vertices would be too many."""
-
+FINEST = 1e-9  # chord tolerances below this share of a curve's size are refused: the vertices would be too many
 _LARGEST_BULGE = 1000.0
 
 

@@ -18,9 +18,7 @@ from rocking.bodies.section import Section
 from rocking.conventions import FloatArray
 from rocking.errors import BodyFileError
 
-DEEPEST = 16
-"""Collections nested deeper are refused."""
-
+DEEPEST = 16  # collections nested deeper are refused
 _Found = tuple[str, list[Any], float]
 
 

@@ -27,9 +27,7 @@ from rocking.conventions import LENGTH_UNITS, FloatArray, IntArray
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, MissingExtraError, how_to_install
 from rocking.portable import applied, norm, times
 
-MESH_FORMATS = ("stl", "obj", "ply", "glb", "xyz")
-"""Formats that are read, by the end of the file's name."""
-
+MESH_FORMATS = ("stl", "obj", "ply", "glb", "xyz")  # formats that are read, by the end of the file's name
 _UP = {"z": (0.0, 0.0, 1.0), "y": (0.0, 1.0, 0.0)}
 FEWEST_POINTS = 50
 """Fewer points without faces are no cloud [-]."""

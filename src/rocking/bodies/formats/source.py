@@ -7,11 +7,8 @@ from typing import TypedDict
 
 from rocking.errors import BodyFileError, MissingExtraError, RockingError
 
-LARGEST_FILE = 64 * 2**20
-"""Larger files are refused [byte]."""
-
-MOST_VERTICES = 1_000_000
-"""Bodies with more vertices are refused [-]."""
+LARGEST_FILE = 64 * 2**20  # larger files are refused [byte]
+MOST_VERTICES = 1_000_000  # bodies with more vertices are refused [-]
 
 
 class Placement(TypedDict, total=False):

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from shapely import Polygon
     from shapely.geometry.base import BaseGeometry
 
-DEEPEST = 16
-"""Collections nested deeper are refused, before GEOS would run out of stack."""
+DEEPEST = 16  # collections nested deeper are refused, before GEOS would run out of stack
 
 
 def section_from_wkt(

@@ -10,9 +10,7 @@ from rocking.bodies.solid.polyhedron import Polyhedron
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
 
-GRID = 20
-"""Points along each side of the box that two parts share; smaller overlaps than its cells may pass."""
-
+GRID = 20  # points along each side of the box that two parts share; smaller overlaps than its cells may pass
 _SHARED = 1e-9
 
 

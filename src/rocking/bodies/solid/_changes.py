@@ -15,11 +15,8 @@ Repair = Literal["none", "safe", "all"]
 REPAIRS: tuple[Repair, ...] = ("none", "safe", "all")
 """Merging equal vertices alone; what stays within the bounds below; whatever it takes."""
 
-MOST_VOLUME = 0.01
-"""What safe repairs together may change of the volume [-]."""
-
-MOST_SHIFT = 0.005
-"""How far safe repairs together may move the centre of mass, over the size of the body [-]."""
+MOST_VOLUME = 0.01  # what safe repairs together may change of the volume [-]
+MOST_SHIFT = 0.005  # how far safe repairs together may move the centre of mass, over the size of the body [-]
 
 HELP = (
     'repair="all" takes it all the same, surface="wrap" or surface="hull" a skin over its points instead; best is to '

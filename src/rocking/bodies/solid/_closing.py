@@ -11,8 +11,7 @@ from rocking.bodies.solid.surfaces import area_vectors
 from rocking.conventions import FloatArray, IntArray, percent
 from rocking.errors import GeometryError
 
-LOW = 0.1
-"""A rim is that of a bottom if half of it lies so low, over the height of the body [-]."""
+LOW = 0.1  # a rim is that of a bottom if half of it lies so low, over the height of the body [-]
 
 _LEVEL, _NOTCH, _LISTED, _SLIT, _LOOSE, _LEANS = 0.7, 0.01, 3, 1e-6, 0.5, 0.05
 

@@ -12,15 +12,9 @@ from rocking.errors import GeometryError
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-MOST_FACES = 200_000
-"""Surfaces of more faces are simplified [-]."""
-
-FINEST = 1e-4
-"""By how much of the size their hull may move then [-]."""
-
-WORTH = 0.7
-"""It is done if no more than so much of the faces stays [-]."""
-
+MOST_FACES = 200_000  # surfaces of more faces are simplified [-]
+FINEST = 1e-4  # by how much of the size their hull may move then [-]
+WORTH = 0.7  # it is done if no more than so much of the faces stays [-]
 _MOST_DISTANCES = 20_000_000
 
 

@@ -12,13 +12,11 @@ from rocking.bodies.solid.surfaces import area_vectors
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import GeometryError
 
-THIN = 0.05
-"""Thickness of a sheet over its width [-]."""
+THIN = 0.05  # thickness of a sheet over its width [-]
 DUST, SPECK = 1e-3, 1e-6
 """Boxes of pieces left out over the largest one's: open pieces, closed ones [-]."""
 
-FIN = 0.05
-"""Fins are up to so much of the surface [-]."""
+FIN = 0.05  # fins are up to so much of the surface [-]
 
 _ROUNDS, _RELAX, _MOST_SWEPT = 12, 0.5, 0.5
 

@@ -8,12 +8,8 @@ import numpy as np
 from rocking.bodies.solid.surfaces import area_vectors, boxes
 from rocking.conventions import BoolArray, FloatArray, IntArray
 
-DEPTH = 1e-6
-"""Faces that reach through each other by less of the size are said to touch [-]."""
-
-MOST_PAIRS = 20_000_000
-"""So many pairs of faces whose boxes meet are tried [-]."""
-
+DEPTH = 1e-6  # faces that reach through each other by less of the size are said to touch [-]
+MOST_PAIRS = 20_000_000  # so many pairs of faces whose boxes meet are tried [-]
 _THINNEST = 1e-7
 
 

@@ -22,8 +22,7 @@ from rocking.bodies.solid.polyhedron import Polyhedron, alone, numbered, open_ed
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import GeometryError
 
-WELD = 1e-6
-"""Vertices closer than this share of the size are merged if exact merging leaves the surface open [-]."""
+WELD = 1e-6  # vertices closer than this share of the size are merged if exact merging leaves the surface open [-]
 
 
 @dataclass(frozen=True, eq=False)

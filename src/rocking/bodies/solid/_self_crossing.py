@@ -64,8 +64,7 @@ def _plumbed(points: FloatArray, triangles: FloatArray) -> FloatArray:
     return counts
 
 
-PROBED = 500
-"""Faces beside which the winding number is asked for [-]."""
+PROBED = 500  # faces beside which the winding number is asked for [-]
 
 _REPAIR = (
     "what it encloses is not defined: repair it in the program that made it, for instance by a boolean union or by "

@@ -11,13 +11,11 @@ from rocking.bodies.solid.surfaces import area_vectors
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import GeometryError
 
-MOST_SHELLS = 200
-"""Surfaces in more pieces are refused [-]."""
+MOST_SHELLS = 200  # surfaces in more pieces are refused [-]
 
 _PROBES, _GRID = 40, 12
 
-_TWICE = 2e-3
-"""Two shells this close, over the size, may be one surface scanned twice [-]."""
+_TWICE = 2e-3  # two shells this close, over the size, may be one surface scanned twice [-]
 
 
 def turned_consistently(faces: IntArray, changes: Changes) -> IntArray:

@@ -15,8 +15,7 @@ Surface = Literal["faces", "wrap", "hull"]
 SURFACES: tuple[Surface, ...] = ("faces", "wrap", "hull")
 """The faces of a mesh; a skin over its points; the convex hull of its points."""
 
-MOST_POINTS = 30_000
-"""Denser clouds are thinned, their convex hull apart [-]."""
+MOST_POINTS = 30_000  # denser clouds are thinned, their convex hull apart [-]
 
 _STABLE, _GROWTH, _COVERED, _BOTTOM, _EMPTY, _SECTORS = 0.01, 1.5, 0.95, 0.02, 0.2, 24
 _JIGGLE, _CRUMB = 1e-7, 1e-2

@@ -10,9 +10,7 @@ from rocking.bodies.solid.solid import Solid
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError
 
-MOST_UNITS = 20_000_000
-"""Finer divisions are refused [-]."""
-
+MOST_UNITS = 20_000_000  # finer divisions are refused [-]
 _SUBGRID = 3
 _Pieces = tuple[FloatArray, FloatArray, int]  # masses [kg], centres [m], order of convergence
 

@@ -16,8 +16,7 @@ from rocking.dynamics.contact.base import BOTH, Mode, PlaneBase
 from rocking.dynamics.contact.mode_series import ModeSeries, padded
 from rocking.dynamics.taylor import first_fall
 
-_DEPTH = 7
-"""Coefficients that are asked for a sign."""
+_DEPTH = 7  # coefficients that are asked for a sign
 
 
 class ModeEnd(Enum):

@@ -18,8 +18,7 @@ SAMPLED = (
     "impact_loss", "slid", "regime",
 )  # fmt: skip
 
-_LIGHT = 1e-9
-"""Force over the weight below which a foot that is let go holds rounding, and no friction is asked for."""
+_LIGHT = 1e-9  # force over the weight below which a foot that is let go holds rounding, and no friction is asked for
 
 
 class SmoothPiece(NamedTuple):

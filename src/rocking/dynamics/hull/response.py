@@ -25,9 +25,7 @@ from rocking.motions.motion import GroundMotion
 from rocking.outcome import Outcome
 from rocking.portable import applied
 
-FINE = 0.05
-"""Time between samples where no record gives it, over sqrt(size / g)."""
-
+FINE = 0.05  # time between samples where no record gives it, over sqrt(size / g)
 _NO_SLIP = 1e-6  # over the size: what an answer does not speak of
 
 HULL_IMPACT = np.dtype([("time", "f8"), ("energy_before", "f8"), ("energy_after", "f8"), ("vertices", "U64")])

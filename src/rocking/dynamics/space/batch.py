@@ -29,9 +29,7 @@ from rocking.version import SOFTWARE
 if TYPE_CHECKING:
     import xarray as xr
 
-DIMENSIONS = ("body", "motion", "scale", "restitution", "start")
-"""Axes of the arrays of a batch, in order."""
-
+DIMENSIONS = ("body", "motion", "scale", "restitution", "start")  # axes of the arrays of a batch, in order
 _LONG = 300.0
 _FEW = 100  # up to so many bodies are spelled out; of more of them the digest alone is kept
 

@@ -13,8 +13,7 @@ from rocking.dynamics.taylor import first_fall
 from rocking.outcome import ContactMode
 from rocking.portable import applied, convolved, norm
 
-NOTHING = 1e-13
-"""Coefficients below this share of the largest one are rounding."""
+NOTHING = 1e-13  # coefficients below this share of the largest one are rounding
 
 
 def first_zero(series: FloatArray, *, started: bool, floor: float = 0.0) -> float | None:
@@ -59,11 +58,8 @@ def padded(series: FloatArray, count: int) -> FloatArray:
     return np.pad(series, (0, max(0, count - len(series))))[:count]
 
 
-SLOW_OPENING = 1e-9
-"""Accelerations of a gap below this share of gravity count as none, as in the choice of what stays."""
-
-START_ROLLING, STOP_ROLLING = 1e-11, 1e-13
-"""Sines of the tilt at which a round base rolls, and at which it lies flat."""
+SLOW_OPENING = 1e-9  # accelerations of a gap below this share of gravity count as none, as in the choice of what stays
+START_ROLLING, STOP_ROLLING = 1e-11, 1e-13  # sines of the tilt at which a round base rolls, and at which it lies flat
 NEARLY_FLAT = 0.01
 """Share of the slenderness angle below which a round base that would lose contact is held down; see `nearly_flat`."""
 

@@ -19,8 +19,7 @@ from rocking.restitution.space.impulse_position import HIGHEST, impulse_position
 PIECE = 1 << 15
 """Histories handed to the engine at a time: memory beside the results does not grow with their number."""
 
-MOST_CORNERS = 64
-"""Most vertices of a base that the compiled engine takes."""
+MOST_CORNERS = 64  # most vertices of a base that the compiled engine takes
 
 FLOATS = (
     "peak_tilt", "peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "end_time", "held", "lost",

@@ -21,8 +21,7 @@ from rocking.dynamics.space.impact_laws import SpatialImpactLaw
 from rocking.outcome import ContactMode
 from rocking.portable import applied, dot, norm
 
-CLOSED = 1e-12
-"""Gaps below this share of the size of a body are closed."""
+CLOSED = 1e-12  # gaps below this share of the size of a body are closed
 
 
 def landed(body: SpatialBody, state: SpatialState, touching: tuple[int, ...], law: SpatialImpactLaw) -> Continuation:

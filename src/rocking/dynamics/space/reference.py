@@ -27,8 +27,7 @@ _STUCK, _PILED = 100, 60
 _PATIENCE, _MOST_LATE = 300.0, 10_000  # time over 1 / p, and steps, after the end
 
 
-Ending = tuple[Outcome, Status] | None
-"""How a history has ended; None while it goes on."""
+Ending = tuple[Outcome, Status] | None  # how a history has ended; None while it goes on
 
 
 class SpatialReference:

@@ -8,9 +8,7 @@ from rocking.conventions import ACCELERATION_UNITS
 from rocking.motions.formats.headers import acceleration_unit
 from rocking.motions.formats.record import Source
 
-MOST_NAMED = 20
-"""Columns of a file that names them."""
-
+MOST_NAMED = 20  # columns of a file that names them
 _FIRST_ROWS = 50
 MARK = "\xef\xbb\xbf"
 """The three bytes with which some programs begin a file in UTF-8."""

@@ -17,9 +17,7 @@ from rocking.errors import MissingExtraError, RecordError, how_to_install
 from rocking.motions.formats import foreign_worker
 from rocking.motions.formats.record import Source
 
-TO_START = 60.0
-"""Time to start and to load the reader, on a busy machine [s]."""
-
+TO_START = 60.0  # time to start and to load the reader, on a busy machine [s]
 _MOST_IDLE = 2
 _TROUBLE = {"missing", "error", "memory", "died"}
 

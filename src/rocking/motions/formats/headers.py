@@ -15,8 +15,7 @@ from rocking.motions.formats.record import Component, Record, Source, metadata_o
 Channel = tuple[list[str], str, Component]
 """Header lines of a channel, the one with its number and direction, and its samples."""
 
-LONGEST_LINE = 200
-"""Characters of a header line that patterns look at."""
+LONGEST_LINE = 200  # characters of a header line that patterns look at
 
 
 def acceleration_unit(source: Source, stated: str | None, asked: str | None) -> str:

@@ -13,8 +13,7 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
 
-LARGEST_FILE = 256 * 1024 * 1024
-"""Larger files are refused [bytes]."""
+LARGEST_FILE = 256 * 1024 * 1024  # larger files are refused [bytes]
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,7 @@ from rocking.motions.filters import exponential, recurrence, transition
 from rocking.motions.motion import GroundMotion
 from rocking.motions.synthetic.sampling import described, normals, times
 
-LEAST_PHASE = 1e-3
-"""Smallest phase of the filter in one step [rad]: below, the covariance of a step drowns in rounding."""
+LEAST_PHASE = 1e-3  # smallest phase of the filter in one step [rad]: below, the covariance of a step drowns in rounding
 
 
 @dataclass(frozen=True)

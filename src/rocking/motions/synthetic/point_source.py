@@ -18,8 +18,7 @@ from rocking.motions.filters import exponential, logarithm
 from rocking.motions.motion import GroundMotion
 from rocking.motions.synthetic.sampling import described, normals, times
 
-REFERENCE_DISTANCE = 1000.0
-"""Distance at which the source spectrum holds [m]."""
+REFERENCE_DISTANCE = 1000.0  # distance at which the source spectrum holds [m]
 
 PEAK_AT, LEVEL_AT_END, STRETCH = 0.2, 0.05, 2.0
 """Window: place of its peak, level at its end, and its length over the duration of the motion."""

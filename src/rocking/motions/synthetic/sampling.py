@@ -12,8 +12,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import LONGEST_STEP, SHORTEST_STEP
 
-MOST_SAMPLES = 10_000_000
-"""No synthetic motion has more samples: asking for more is a wrong unit."""
+MOST_SAMPLES = 10_000_000  # no synthetic motion has more samples: asking for more is a wrong unit
 
 
 _GRID = 2.0**32

@@ -18,17 +18,13 @@ from rocking.motions.filters import NEIGHBOURS, cosine_sine, exponential, highpa
 from rocking.motions.motion import GroundMotion
 from rocking.motions.synthetic.sampling import described, normals, times
 
-MIDDLE = 0.45
-"""Share of the Arias intensity at the middle of the strong shaking (Rezaeian & Der Kiureghian 2010)."""
+MIDDLE = 0.45  # share of the Arias intensity at the middle of the strong shaking (Rezaeian & Der Kiureghian 2010)
 
 WIDEST, NARROWEST = 1.0, 1e4
 """Allowed shapes of the gamma distribution of the energy: from one that starts at once to a narrow burst."""
 
-FORGOTTEN = 27.0
-"""Decays of an impulse response after which it is left out: exp(-27) = 2e-12."""
-
-SPACING = 0.05
-"""Distance of the frequencies of oscillators that share impulses, over the slowest rate of decay [-]."""
+FORGOTTEN = 27.0  # decays of an impulse response after which it is left out: exp(-27) = 2e-12
+SPACING = 0.05  # distance of the frequencies of oscillators that share impulses, over the slowest rate of decay [-]
 
 
 @dataclass(frozen=True)

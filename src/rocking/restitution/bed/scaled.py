@@ -17,9 +17,7 @@ from rocking.restitution.bed.impact import bed_impacts
 from rocking.restitution.bed.laws import KelvinVoigt
 from rocking.restitution.bed.setup import Setup, setup_of
 
-RELEASE = 0.05
-"""Rotation from which the body falls, over the least slenderness angle: rocking of small amplitude [-]."""
-
+RELEASE = 0.05  # rotation from which the body falls, over the least slenderness angle: rocking of small amplitude [-]
 _TOLERANCES = (1e-8, 3e-8, 1e-7, 1e-6)
 
 

@@ -23,8 +23,7 @@ RESULTS: Final = (
 )  # fmt: skip
 """Columns of the results of an impact."""
 
-COUNTS: Final = ("status", "steps", "rejected", "switches", "contacts", "forced")
-"""Columns of its whole numbers."""
+COUNTS: Final = ("status", "steps", "rejected", "switches", "contacts", "forced")  # columns of its whole numbers
 
 SAMPLES: Final = (
     "time", "travel", "normal", "shear", "moment", "bed_loss", "friction_loss", "y", "rotation", "u", "w",
@@ -33,8 +32,7 @@ SAMPLES: Final = (
 """Columns of its history."""
 
 
-Results = dict[str, Any]
-"""A number, or a column of them, of each of `RESULTS` and `COUNTS`."""
+Results = dict[str, Any]  # a number, or a column of them, of each of `RESULTS` and `COUNTS`
 
 Run = tuple[Results, dict[str, FloatArray], FloatArray, FloatArray]
 """Results of one impact, columns of `SAMPLES`, forces of the points, and intervals of contact."""

@@ -11,11 +11,8 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.portable import applied, dot, norm, solution, times
 
-Placed = tuple[Solid, FloatArray]
-"""A solid, and the origin of its own frame in axes of the body [m]."""
-
-UP = np.array([0.0, 0.0, 1.0])
-"""Normal of the ground."""
+Placed = tuple[Solid, FloatArray]  # a solid, and the origin of its own frame in axes of the body [m]
+UP = np.array([0.0, 0.0, 1.0])  # normal of the ground
 
 NO_MATTER = (
     "this model needs the distribution of mass, got a body known by its mass, centre and inertia alone: use a Solid of "

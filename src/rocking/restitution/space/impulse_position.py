@@ -19,8 +19,7 @@ from rocking.bodies.solid.sampling import samples
 from rocking.conventions import FloatArray
 from rocking.restitution.space.integrals import extruded_moment, height_squared
 
-HIGHEST = 32
-"""Degree of the polynomials, at most."""
+HIGHEST = 32  # degree of the polynomials, at most
 
 _SAME, _CONVERGED, _NEGLIGIBLE = 1e-9, 1e-9, 1e-7
 _ARCS = 8

@@ -31,8 +31,7 @@ FRACTION = (
     "whatever they do below or above: that of the stripes"
 )
 
-OWN, RANDOM = -1, 2
-"""Kinds of `ImpactLaw`: one of one's own, and one whose coefficients are drawn."""
+OWN, RANDOM = -1, 2  # kinds of `ImpactLaw`: one of one's own, and one whose coefficients are drawn
 
 OWN_LAW = (
     "the restitution is a law of one's own: boundaries between levels are those of the body only if its factor is the "

@@ -15,11 +15,8 @@ from rocking.studies.histories import results_of
 Outcomes = Callable[[IntArray, FloatArray], tuple[IntArray, BoolArray]]
 """Takes numbers of motions and levels; returns sides overturned to (0 if none), and which could be computed."""
 
-PARTS = 16
-"""Pieces that a bracket is cut into in the first round, and as long as there are few of them."""
-
-FEW = 1000
-"""Brackets up to which more pieces cost less than more rounds; above, brackets are halved."""
+PARTS = 16  # pieces that a bracket is cut into in the first round, and as long as there are few of them
+FEW = 1000  # brackets up to which more pieces cost less than more rounds; above, brackets are halved
 
 
 @dataclass(frozen=True)

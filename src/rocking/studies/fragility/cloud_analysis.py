@@ -22,8 +22,7 @@ from rocking.studies.histories import Product, results_of
 if TYPE_CHECKING:
     import xarray as xr
 
-LEAST = 0.01
-"""Rotation over alpha below which a history counts as barely lifted, unless another one is chosen [-]."""
+LEAST = 0.01  # rotation over alpha below which a history counts as barely lifted, unless another one is chosen [-]
 
 DEFINITION = (
     "cloud: overturning is fitted to the outcome of each motion at its own level; among histories that rocked, not "

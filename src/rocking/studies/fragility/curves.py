@@ -22,13 +22,10 @@ from rocking.studies.fragility.subject import Subject, checked_levels
 if TYPE_CHECKING:
     import xarray as xr
 
-CLAIMS = ("method", "verdict", "interval_method")
-"""What is said of each curve wherever it goes."""
-
+CLAIMS = ("method", "verdict", "interval_method")  # what is said of each curve wherever it goes
 Crossing = Literal["refuse", "common-dispersion"]
 
-TOLERANCE = 1e-6
-"""Largest probability by which a worse state may be likelier than a lesser one in a file [-]."""
+TOLERANCE = 1e-6  # Largest probability by which a worse state may be likelier than a lesser one in a file [-]
 
 
 @dataclass(frozen=True)

@@ -28,9 +28,7 @@ from rocking.tables import to_excel as tables_to_excel
 from rocking.tables import to_mat as structure_to_mat
 from rocking.tables import to_netcdf as dataset_to_netcdf
 
-TABLES = ("parameters", "points", "fema-p58")
-"""Tables that can be written."""
-
+TABLES = ("parameters", "points", "fema-p58")  # tables that can be written
 Destination = str | os.PathLike[str]
 
 

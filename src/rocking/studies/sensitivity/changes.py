@@ -16,12 +16,8 @@ from rocking.statistics.maximum_likelihood import LogScale, find_curves, log_dis
 if TYPE_CHECKING:
     import xarray as xr
 
-UNKNOWN = 2
-"""In a map of flips: no verdict, because one of the two histories could not be computed."""
-
-LEVEL = 0.95
-"""Confidence of the intervals [-]."""
-
+UNKNOWN = 2  # in a map of flips: no verdict, because one of the two histories could not be computed
+LEVEL = 0.95  # confidence of the intervals [-]
 _SIGNED = "peak_rotation"
 
 
