@@ -76,7 +76,6 @@ class JsonAnswer(JSONResponse):
     """JSON of plain values and arrays, quick for long series; a NaN or an infinity is an error here."""
 
     def render(self, content: Any) -> bytes:
-        """Return the bytes of an answer."""
         data = to_json(content, inf_nan_mode="constants", fallback=_plain)
         if b"NaN" in data or b"Infinity" in data:  # in a name perhaps; if it is a number, this refuses it
             json.dumps(content, allow_nan=False, default=_plain)

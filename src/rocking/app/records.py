@@ -97,7 +97,6 @@ class RecordStore:
         return sorted(records, key=lambda record: (record.uploaded, record.record), reverse=True)
 
     def get(self, sha: str) -> StoredRecord:
-        """Return one file."""
         record = read_note(self.folder / f"{sha}.json") if is_hash(sha) else None
         path = self._place(record) if record else None
         # what was written here is no link, nor is its folder

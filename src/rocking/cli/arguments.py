@@ -207,7 +207,6 @@ class Arguments:
         return body, [*positional, *(motions or ())]
 
     def body_table(self, file: str | None) -> Tables:
-        """Return the table [body]."""
         values = {name: self.options.get(name) for name in ("width", "height", "depth", "density", *_KNOWN)}
         if values["centre"] is not None:
             values["centre"] = _numbers("--centre", values["centre"])

@@ -32,7 +32,6 @@ class Page:
         self._console = Console(highlight=False, soft_wrap=True)
 
     def line(self, text: str = "", style: str | None = None) -> None:
-        """Write a line."""
         self._console.print(text, style=style, markup=False)
 
     def rich(self, renderable: Any, **options: Any) -> None:

@@ -213,7 +213,6 @@ class CompiledEngine:
     instead: str = "the reference engine runs instead"
 
     def built(self) -> ModuleType | None:
-        """Return the compiled module, or None."""
         try:
             return import_module(self.name)
         except ImportError:

@@ -26,7 +26,6 @@ class Ranked:
 
     @property
     def name(self) -> str:
-        """Name of the explanation."""
         return self.fit.physics.name
 
     @property

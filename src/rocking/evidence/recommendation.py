@@ -173,7 +173,6 @@ class Recommendation:
     overturned: Overturned | None = None
 
     def __getitem__(self, name: str) -> ModelForBody:
-        """Return a model by its name."""
         found = next((each for each in self.models if each.name == name), None)
         if found is None:
             raise KeyError(f"{name!r} is none of {', '.join(each.name for each in self.models)}")

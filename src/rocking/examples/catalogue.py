@@ -21,7 +21,6 @@ class Catalogue(Mapping[str, Example]):
         self._examples = dict(examples)
 
     def __getitem__(self, name: str) -> Example:
-        """Return one example."""
         return self._examples[name]
 
     def __iter__(self) -> Iterator[str]:

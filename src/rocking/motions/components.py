@@ -36,7 +36,6 @@ class Components:
 
     @property
     def name(self) -> str:
-        """Names of the components."""
         return ", ".join("none" if part is None else part.name for part in self.parts)
 
     @property

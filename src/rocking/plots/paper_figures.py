@@ -219,7 +219,6 @@ def _figure_9() -> "Figure":
 
 
 def _relative_error(name: str, data: DataSet) -> FloatArray:
-    """Return the relative errors of a model [%]."""
     return 100.0 * relative_error(model(name).of_slenderness(data.slenderness), data.coefficient)
 
 

@@ -164,7 +164,6 @@ class ModelAgreement:
 
     @classmethod
     def of(cls, responses: Mapping[str, Response]) -> "ModelAgreement":
-        """Compare responses."""
         groups: dict[str, list[str]] = {}
         for name, one in responses.items():
             groups.setdefault(OUTCOME_WORDS[one.outcome], []).append(name)

@@ -65,7 +65,6 @@ class Values(JobTable):
         return self
 
     def numbers(self) -> FloatArray:
-        """Return the numbers."""
         if self.values is not None:
             return np.array(self.values, dtype=np.float64)
         start, stop, count = self.start or 0.0, self.stop or 0.0, self.count or 1  # all are there: checked above

@@ -37,7 +37,6 @@ class PredictionProblem:
         return cls(body, motions, options_of(document, body, inputs))
 
     def answer(self, progress: Callable[[int], None] | None = None, threads: int | None = None) -> Prediction:
-        """Compute it."""
         return predict(self.body, self.motions, **self.options, threads=threads, progress=progress)
 
 

@@ -83,7 +83,6 @@ class CommandFiles(InputFiles):
     """The files that a command names: whoever reads one says what is wrong with it, and none is hashed."""
 
     def file(self, name: str) -> Path:
-        """Return the path of a file."""
         return self.folder / name
 
 

@@ -173,7 +173,6 @@ class _Records:
         self._inputs, self._keys, self._read = inputs, keys, dict[str, GroundMotion | RockingError]()
 
     def motion(self, trial: Trial) -> dict[str, GroundMotion]:
-        """Return the components of a trial."""
         motion = {}
         for axis, word in trial.files:
             if word not in self._read:

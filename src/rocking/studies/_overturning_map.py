@@ -110,7 +110,6 @@ class MapArrays:
         return len(self["refined_mode"]) if "refined_mode" in self.variables else None
 
     def to_xarray(self) -> "xr.Dataset":
-        """Return the labelled dataset."""
         xarray = extra("xarray", "overturning_map")
         x, y = self.axes
         own = {"refined_x": x.attributes, "refined_y": y.attributes}

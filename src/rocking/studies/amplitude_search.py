@@ -45,7 +45,6 @@ class Samples:
 
     @property
     def falls(self) -> BoolArray:
-        """Whether each overturned."""
         return self.mode >= 0
 
     @property

@@ -73,7 +73,6 @@ class Laboratory:
 
     @property
     def block(self) -> Block:
-        """The block."""
         return Block(width=self.width, height=self.slenderness * self.width, density=self.density)
 
     @property

@@ -68,7 +68,6 @@ class OpenStudy:
         return {name: values.reshape(study.shape) for name, values in derived.items()}
 
     def history(self, number: int) -> dict[str, Any]:
-        """Return the results of one history."""
         alone = {name: values[number : number + 1] for name, values in self.raw.items()}
         return {name: values[0] for name, values in self.job.study.derived(number, number + 1, alone).items()}
 

@@ -71,7 +71,6 @@ class StudyManager:
         return list(self.queue.published.values())
 
     def get(self, study: str) -> dict[str, Any]:
-        """Return one study."""
         facts = self.queue.published.get(study)
         if facts is None:
             raise NotFound(GONE)

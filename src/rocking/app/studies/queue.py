@@ -30,7 +30,6 @@ class StudyQueue:
         self.publish()
 
     def study(self, name: str) -> HostedStudy:
-        """Return a study."""
         if name not in self._studies:
             raise NotFound(GONE)
         return self._studies[name]

@@ -72,7 +72,6 @@ class StudyFolder:
 
     @property
     def campaign(self) -> Path:
-        """Folder of the campaign."""
         return self.path / CAMPAIGN
 
     def create(self, meta: Meta, job: "JobDocument", records: "RecordStore") -> None:

@@ -33,7 +33,6 @@ class PlaneBase:
 
     @classmethod
     def of_body(cls, body: Body) -> "PlaneBase":
-        """Return the base of a body."""
         if not isinstance(body, Body):
             raise InvalidValueError(f"body must be a Block, Section or MassPoints, got {body!r:.60}")
         left, right = body.side("left"), body.side("right")

@@ -63,7 +63,6 @@ class ContactEngine:
         self.latest: ModeSeries | None = None
 
     def run(self, state: ContactState | None = None) -> History:
-        """Return the history from a state."""
         self.state = state or ContactState()
         if any(away(self.base, self.state, foot) < 0.0 for foot in self.state.touching):
             self._strike(FLIGHT)

@@ -121,7 +121,6 @@ class History:
                 self.usage = max(self.usage, tangential / normal / friction if friction else 1.0)  # Eq. 78
 
     def sample(self, row: int, state: ContactState, mode: Mode, series: ModeSeries | None, at: float) -> None:
-        """Write a sample."""
         if row > self.count:
             return
         forces = [0.0, 0.0, 0.0]

@@ -81,7 +81,6 @@ class ModeSeries:
     stiff: float = 1.0  # below or at zero no force is possible (Painleve) [-]
 
     def state(self, at: float, touching: tuple[int, ...]) -> ContactState:
-        """Return the state at an instant."""
         x, rise, rotation = (value(c, at) for c in (self.x, self.rise, self.rotation))
         u, w, spin = (value(derivative(c), at) / self.unit for c in (self.x, self.rise, self.rotation))
         return ContactState(x, rise, rotation, u, w, spin, touching)

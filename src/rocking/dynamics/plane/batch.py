@@ -61,7 +61,6 @@ class Rows:
         return int(self.motion.size)
 
     def part(self, first: int, last: int) -> "Rows":
-        """Return some of the rows."""
         values = {name: self.values[name][first:last] for name in ROWS}
         return Rows(values, self.motion[first:last], self.stream[first:last])
 

@@ -49,7 +49,6 @@ class DenseOutput:
     def of(
         cls, trajectory: Trajectory, segments: Segments, parameters: RockingParameters, settings: Settings, scale: float
     ) -> "DenseOutput":
-        """Return the intervals of a trajectory."""
         time, before, after = _nodes(trajectory, segments.step)
         added = _inner_states(trajectory, segments, parameters, settings, scale, time, before, after)
         if added:

@@ -82,7 +82,6 @@ class FixedSpatial:
 
     @property
     def label(self) -> str:
-        """The coefficient."""
         return f"{self.coefficient:.6g}"
 
     def velocity_after(self, body: SpatialBody, impact: SpatialImpact) -> FloatArray:

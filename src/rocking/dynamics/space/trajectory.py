@@ -85,7 +85,6 @@ class SpatialTrajectory:
 
     @property
     def impacts(self) -> list[SpatialEvent]:
-        """The impacts."""
         return [event for event in self.events if event.kind is SpatialEventKind.IMPACT]
 
     @property

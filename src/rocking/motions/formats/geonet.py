@@ -43,7 +43,6 @@ class GeonetV2A(RecordFormat):
     top: ClassVar[int] = _TEXTS + 3
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the components."""
         unit = headers.acceleration_unit(source, "mm/s2", units)
         components: list[Component] = []
         line = 0

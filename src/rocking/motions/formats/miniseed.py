@@ -55,7 +55,6 @@ class MiniSeed(RecordFormat):
         return re.match(rb"\d{6}[DRQM][ \0]", source.content) is not None
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the channels."""
         if not self.recognises(source):
             raise source.error(None, "no miniSEED file of version 2")
         _check_room(source)

@@ -42,7 +42,6 @@ class Sac(RecordFormat):
         return _byte_order(source) is not None
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the time series."""
         order = _byte_order(source)
         if order is None:
             raise source.error(None, "no SAC file of version 6 or 7")

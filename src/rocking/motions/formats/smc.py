@@ -60,7 +60,6 @@ class SmcUsgs(RecordFormat):
         return (wholes[-1][60:70].strip() == str(_HIGH_PRECISION)) == (self._precision == _HIGH_PRECISION)
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the accelerogram."""
         if not self.recognises(source):
             raise source.error(
                 None, f"no {self.name} file: the 16 lines of numbers after 11 lines of text are not there"

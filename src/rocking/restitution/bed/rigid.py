@@ -24,7 +24,6 @@ class RigidRocking:
 
     @classmethod
     def of_body(cls, body: Body, bed: ContactBed, gravity: float) -> "RigidRocking":
-        """Return the rigid rocking of a body."""
         moments = body.local_moments
         return cls(moments.mass, moments.polar, moments.y, gravity, bed)
 

@@ -41,7 +41,6 @@ class MultipleStripeAnalysis(FragilityAnalysis):
 
     @property
     def history_levels(self) -> FloatArray:
-        """Level of each history."""
         return np.broadcast_to(self.levels, self.responses.outcome.shape)
 
     @property

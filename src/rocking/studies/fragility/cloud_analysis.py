@@ -53,7 +53,6 @@ class CloudAnalysis(FragilityAnalysis):
 
     @property
     def history_levels(self) -> FloatArray:
-        """Level of each history."""
         return self.motion_levels
 
     @cached_property

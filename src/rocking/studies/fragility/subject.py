@@ -92,7 +92,6 @@ class Subject:
 
     @cached_property
     def names(self) -> list[str]:
-        """Names of the motions."""
         names, horizontal = [], True
         for k in range(len(self.motions)):
             motion = self.motions[k]
