@@ -6,10 +6,8 @@ from typing import Any
 
 
 def exports(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """Return `__getattr__` and `__dir__` of a package whose names stand in other modules.
-
-    No module of the package may have the name of an export: once imported it would stand in its place.
-    """
+    """Return `__getattr__` and `__dir__` of a package whose names stand in other modules."""
+    # no module of the package may have the name of an export: once imported it would stand in its place
 
     def get(name: str) -> Any:
         if name not in homes:

@@ -123,11 +123,9 @@ def each(function: Callable[..., float], *values: Any) -> FloatArray:
 
 
 def gauss_rule(diagonal: FloatArray, side: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return Gauss's rule of a measure of mass one, given by the recurrence of its orthogonal polynomials.
-
-    Golub and Welsch's eigenvalues tell where the nodes are to eight digits; from there Newton's method goes on
-    alike everywhere, whatever LAPACK left in the last digits.
-    """
+    """Return Gauss's rule of a measure of mass one, given by the recurrence of its orthogonal polynomials."""
+    # Golub and Welsch's eigenvalues tell where the nodes are to eight digits; from there Newton's method goes on alike
+    # everywhere, whatever LAPACK left in the last digits
     x = np.round(np.linalg.eigvalsh(np.diag(diagonal) + np.diag(side, 1) + np.diag(side, -1)), 8)
     ahead = [*side.tolist(), 1.0]  # the last polynomial may have any scale
     for _ in range(4):

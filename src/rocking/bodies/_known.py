@@ -47,12 +47,10 @@ class Known:
         return {name: value for name, value in named.items() if value is not None}
 
     def moments(self, homogeneous: PlaneMoments, vertices: FloatArray, origin: Place = (0.0, 0.0)) -> PlaneMoments:
-        """Return the moments of the body, from those of a homogeneous one and its vertices in the local frame [m].
-
-        A moment of inertia that is not known is the share of the largest possible one that it is of the homogeneous
-        body: of a rectangle that of four quarters about the centre, each homogeneous. How much of it is of width and
-        how much of height follows in the same way.
-        """
+        """Return the moments of the body, from those of a homogeneous one and its vertices in the local frame [m]."""
+        # A moment of inertia that is not known is the share of the largest possible one that it is of the homogeneous
+        # body: of a rectangle that of four quarters about the centre, each homogeneous. How much of it is of width and
+        # how much of height follows in the same way.
         x, y = self.centre or (homogeneous.x, homogeneous.y)
         (left, low), (right, high) = vertices.min(axis=0).tolist(), vertices.max(axis=0).tolist()
         gyration = largest_gyration(vertices, x, y) if left < x < right and low < y < high else None

@@ -56,12 +56,10 @@ def combined_plane(parts: Iterable[PlaneMoments]) -> PlaneMoments:
 def quarters(
     moments: PlaneMoments, box: tuple[float, float, float, float]
 ) -> tuple[list[FloatArray], FloatArray, FloatArray]:
-    """Return a distribution of mass within a box that has these moments, as `Body.assumed` says.
-
-    Returns rectangles, counter-clockwise from the centre [m]; the corners of the box [m], shape (4, 2); and masses
-    in rectangle and corner, shape (2, 4) [kg]. Rectangles of the whole quarters have a third of the moment of all mass
-    in the corners.
-    """
+    """Return a distribution of mass within a box that has these moments, as `Body.assumed` says."""
+    # Returns rectangles, counter-clockwise from the centre [m]; the corners of the box [m], shape (4, 2); and masses in
+    # rectangle and corner, shape (2, 4) [kg]. Rectangles of the whole quarters have a third of the moment of all mass
+    # in the corners.
     centre = np.array([moments.x, moments.y])
     left, low, right, high = box
     corners = np.array([[left, low], [right, low], [right, high], [left, high]])

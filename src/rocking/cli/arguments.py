@@ -175,11 +175,9 @@ class Arguments:
         spelt: Mapping[str, str] | None = None,
         keys: Collection[str] | None = None,
     ) -> Tables:
-        """Return a table of what options say, and `--set`, which wins over what was not typed.
-
-        spelt: how values were typed that are no option of that name, empty if they were not; keys: those of `--set`
-        that are meant, all if not given.
-        """
+        """Return a table of what options say, and `--set`, which wins over what was not typed."""
+        # spelt: how values were typed that are no option of that name, empty if they were not; keys: those of `--set`
+        # that are meant, all if not given
         sets = {key: value for key, value in self.sets.get(name, {}).items() if keys is None or key in keys}
         for key in sets:
             option = (spelt or {}).get(key, self.spelt(key))
@@ -253,10 +251,8 @@ class Arguments:
         return {**table, **component, **({} if same else {"vertical_file": upright["record"]})}
 
     def components(self, motions: Sequence[str]) -> Tables:
-        """Return the table [motion] of a body in space: a motion along each axis that was named.
-
-        What `--set` says of format, unit and step is for every file, the rest for the one along x, or the first.
-        """
+        """Return the table [motion] of a body in space: a motion along each axis that was named."""
+        # what `--set` says of format, unit and step is for every file, the rest for the one along x, or the first
         along = _along(motions)
         if not along:
             raise InvalidValueError(f"{NO_MOTION}, along y and z with --motion y=FILE and --motion z=FILE")

@@ -21,11 +21,9 @@ _CLOSURE = "{:.1e} of the largest energy"
 
 
 def answer_of(problem: ResponseProblem, length: str, acceleration: str, *, listed: bool) -> Any:
-    """Return what a problem has for an answer.
-
-    length, acceleration: units in which it is printed; listed: whether the restitutions beside the first are those
-    that the problem lists, in place of every model that needs no value.
-    """
+    """Return what a problem has for an answer."""
+    # length, acceleration: units in which it is printed; listed: whether the restitutions beside the first are those
+    # that the problem lists, in place of every model that needs no value
     response = problem.answer()
     if response.outcome is Outcome.FAILED:
         raise RockingError(f"there is no response: {response.status.value}")

@@ -45,11 +45,9 @@ def bed_coefficients(
     share: FloatArray | float = 1.0,
     shift: FloatArray | float = 0.0,
 ) -> FloatArray:
-    """Return the bed's coefficients of rectangles of a slenderness h/b that stand on the middle of their base [-].
-
-    share: part of the base that the bed reaches over [-]; shift: added to the position of the impulse, which stays
-    between the middle and the foot [-].
-    """
+    """Return the bed's coefficients of rectangles of a slenderness h/b that stand on the middle of their base [-]."""
+    # share: part of the base that the bed reaches over [-]; shift: added to the position of the impulse, which stays
+    # between the middle and the foot [-]
     block = ImpactGeometry.of_slenderness(slenderness)
     lever = share * block.old_lever
     geometry = ImpactGeometry(block.height, lever, lever, block.spread_x, block.spread_y)
@@ -60,11 +58,9 @@ def bed_coefficients(
 
 
 def relative_width(data: DataSet) -> FloatArray:
-    """Return widths of the blocks over that of a 1 kg cube, as far as masses tell: (mass / slenderness)^(1/3).
-
-    The paper gives no widths. Blocks of one material with depth in proportion to width have this scale; nothing but
-    ratios of it enters. Table 1 gives no masses: there the width is infinite, which leaves unevenness out.
-    """
+    """Return widths of the blocks over that of a 1 kg cube, as far as masses tell: (mass / slenderness)^(1/3)."""
+    # The paper gives no widths. Blocks of one material with depth in proportion to width have this scale; nothing but
+    # ratios of it enters. Table 1 gives no masses: there the width is infinite, which leaves unevenness out.
     width = np.cbrt(data.mass / data.slenderness)
     return np.where(np.isnan(width), np.inf, width)
 

@@ -262,10 +262,8 @@ def _unseen(data: DataSet) -> FloatArray:
 
 
 def marginal_quantiles(grid: FloatArray, weight: FloatArray, levels: tuple[float, ...]) -> list[float]:
-    """Return quantiles of a marginal posterior at some probabilities [-] between the nodes of its grid.
-
-    They are of the density whose logarithm is a cubic spline through the nodes: fourth order in their distance.
-    """
+    """Return quantiles of a marginal posterior at some probabilities [-] between the nodes of its grid."""
+    # they are of the density whose logarithm is a cubic spline through the nodes: fourth order in their distance
     from scipy.interpolate import CubicSpline
 
     even = np.allclose(np.diff(grid, 2), 0.0, atol=1e-9 * abs(grid[-1]))
@@ -411,10 +409,8 @@ class Coverage:
 
 
 def coverage(data: DataSet | None = None) -> Coverage:
-    """Return the coverage of measurements that a calibration has not seen.
-
-    The posterior without some rows is the posterior over their likelihood, so that one grid serves them all.
-    """
+    """Return the coverage of measurements that a calibration has not seen."""
+    # the posterior without some rows is the posterior over their likelihood, so that one grid serves them all
     data = all_measurements() if data is None else data
     grid = posterior_grid(data)
     whole = grid.log_prior + grid.terms.sum(axis=-1)

@@ -12,10 +12,8 @@ _erfc = np.frompyfunc(math.erfc, 1, 1)
 
 
 def interval_log_likelihood(low: FloatArray, high: FloatArray, mean: FloatArray, sd: FloatArray) -> FloatArray:
-    """Logarithm of the probability that a normal value lies in the interval that rounding leaves open.
-
-    ``ln(Phi((high - mean)/sd) - Phi((low - mean)/sd))``, stable far out in the tails; arrays broadcast.
-    """
+    """Logarithm of the probability that a normal value lies in the interval that rounding leaves open."""
+    # ``ln(Phi((high - mean)/sd) - Phi((low - mean)/sd))``, stable far out in the tails; arrays broadcast
     from scipy.special import log_ndtr, ndtr
 
     a, b = (low - mean) / sd, (high - mean) / sd

@@ -172,11 +172,9 @@ def transition(omega: float, damping: float, step: float) -> FloatArray:
 
 
 def highpassed(acceleration: FloatArray, time_step: float, frequency: float) -> FloatArray:
-    """Return the acceleration of a critically damped oscillator that a motion from rest drives [m/s2, s, Hz].
-
-    The response of ``z'' + 2 w z' + w^2 z = a`` is a high pass of the motion: its velocity and displacement come
-    back to zero (Rezaeian & Der Kiureghian 2008). It is exact at the samples for straight lines between them.
-    """
+    """Return the acceleration of a critically damped oscillator that a motion from rest drives [m/s2, s, Hz]."""
+    # The response of ``z'' + 2 w z' + w^2 z = a`` is a high pass of the motion: its velocity and displacement come back
+    # to zero (Rezaeian & Der Kiureghian 2008). It is exact at the samples for straight lines between them.
     low, high = LEAST_CYCLES / time_step, 0.5 / time_step
     w = 2.0 * math.pi * checks.within("corner frequency", frequency, low, high, unit="Hz", open_high=True)
     move = transition(w, 1.0, time_step)

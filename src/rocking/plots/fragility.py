@@ -123,10 +123,8 @@ def _fine(levels: FloatArray) -> FloatArray:
 
 
 def gathered(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return increasing levels with their counts [-], neighbours together where there are too many for points.
-
-    The level of a group is the geometric mean, weighted by trials; groups without trials are left out.
-    """
+    """Return increasing levels with their counts [-], neighbours together where there are too many for points."""
+    # the level of a group is the geometric mean, weighted by trials; groups without trials are left out
     group = np.arange(levels.size)
     stripes = trials.sum() >= _OUTCOMES * levels.size
     if levels.size > (_MOST_STRIPES if stripes else _MOST):

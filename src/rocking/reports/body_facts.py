@@ -47,12 +47,10 @@ def side_facts(body: Body, foot: Foot, gravity: float) -> dict[str, float]:
 
 
 def outline_facts(body: Body) -> dict[str, Any]:
-    """Return what draws a body, in the user's coordinates.
-
-    Returns ``outline``: polygons with holes [m] and density [kg/m3], rings of more than 2000 vertices thinned;
-    ``points``: x, y [m] and mass [kg] of mass points; ``centre``; ``base``: both feet; ``ground``: its height;
-    ``contact``: stretches of the base that touch [m].
-    """
+    """Return what draws a body, in the user's coordinates."""
+    # returns ``outline``: polygons with holes [m] and density [kg/m3], rings of more than 2000 vertices thinned;
+    # ``points``: x, y [m] and mass [kg] of mass points; ``centre``; ``base``: both feet; ``ground``: its height;
+    # ``contact``: stretches of the base that touch [m]
     shift = body.origin_x
     points = np.column_stack([body.points, body.masses]).tolist() if isinstance(body, MassPoints) else []
     return {

@@ -17,10 +17,9 @@ Step = Callable[[str], None]
 
 
 def write_folder(result: Reproduction, folder: Path, step: Step) -> tuple[list[Path], list[str]]:
-    """Write report, tables, figures and numbers.
-
-    Returns the files to look at, and what was not written since an optional package is missing, with how to install it.
-    """
+    """Write report, tables, figures and numbers."""
+    # returns the files to look at, and what was not written since an optional package is missing, with how to install
+    # it
     pictures, tables = folder / "figures", folder / "tables"
     try:
         for each in (pictures, tables):

@@ -23,13 +23,10 @@ _FEW = 256
 
 
 def fill_rectangles(ratio: FloatArray, least: float, out: FloatArray) -> None:
-    """Write KED's coefficients of homogeneous rectangles (Eq. 17, Mao et al. 2024, in closed form).
-
-    ``r^2 = N/D`` with ``N/B^4 = l^3/12 - l/4 + atan(l)/4 + (l^4/4) atan(1/l)`` and ``D/B^4 = l (1 + l^2)/3``.
-
-    ratio: slenderness ratios l = h/b > 0 [-]; least: the least of them, or less [-]; out: of the same shape; receives
-    r, relative error below 3e-14 [-].
-    """
+    """Write KED's coefficients of homogeneous rectangles (Eq. 17, Mao et al. 2024, in closed form)."""
+    # ``r^2 = N/D`` with ``N/B^4 = l^3/12 - l/4 + atan(l)/4 + (l^4/4) atan(1/l)`` and ``D/B^4 = l (1 + l^2)/3``. ratio:
+    # slenderness ratios l = h/b > 0 [-]; least: the least of them, or less [-]; out: of the same shape; receives r,
+    # relative error below 3e-14 [-]
     # N/D in partial fractions, t = 1/l: r^2 = 1/4 + (3 pi t/8 - 1) / (1 + l^2) + 3/4 atan(t) (l - t)
     t = np.divide(1.0, ratio, out=np.empty(ratio.shape))
     np.subtract(ratio, t, out=out)
@@ -58,11 +55,9 @@ def _series(t: FloatArray) -> FloatArray:
 
 
 def ring_integral(ring: FloatArray) -> float:
-    """Return the exact integral of y^4 / (x^2 + y^2) over the area inside a ring.
-
-    By Green's theorem it is a quarter of the integral of y^4 d(phi) along the boundary, phi the polar angle: an
-    elementary integral for every straight edge.
-    """
+    """Return the exact integral of y^4 / (x^2 + y^2) over the area inside a ring."""
+    # by Green's theorem it is a quarter of the integral of y^4 d(phi) along the boundary, phi the polar angle: an
+    # elementary integral for every straight edge
     start, end = ring, np.roll(ring, -1, axis=0)
     length = np.sqrt(np.square(end - start).sum(axis=1))
     tau = (end - start) / length[:, None]

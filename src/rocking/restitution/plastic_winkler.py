@@ -104,15 +104,12 @@ _State = tuple[float, ...]
 
 
 def land(kappa: float, back: float, stretches: FloatArray) -> tuple[float, float]:
-    """Return how a body leaves the bed, for levers in units of the new one.
-
-    The state is (v, omega, Int v dt, Int omega dt): a point x of the base descends while omega x > v, and is pushed
-    with k_w times its indentation as long. Where the edge v / omega of the pressure passes an end of a stretch, the
-    equations have a kink: there the integration stops and begins anew.
-
-    Returns the end of the base that leaves the bed last, or the foot if that is nearer, over the lever of the new foot
-    [-]; and the angular velocity then, over the one before; zero where the body stops [-].
-    """
+    """Return how a body leaves the bed, for levers in units of the new one."""
+    # The state is (v, omega, Int v dt, Int omega dt): a point x of the base descends while omega x > v, and is pushed
+    # with k_w times its indentation as long. Where the edge v / omega of the pressure passes an end of a stretch, the
+    # equations have a kink: there the integration stops and begins anew. Returns the end of the base that leaves the
+    # bed last, or the foot if that is nearer, over the lever of the new foot [-]; and the angular velocity then, over
+    # the one before; zero where the body stops [-].
     bed = _Bed(kappa, stretches)
     state: _State = (-back, 1.0, 0.0, 0.0)
     part, towards = bed.first_part(-back), 1

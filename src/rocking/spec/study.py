@@ -69,10 +69,9 @@ class StudyProblem:
         return next(iter(self.restitutions.values()))
 
     def answer(self, progress: Callable[[int], None] | None = None, threads: int | None = None) -> Any:
-        """Compute the study in memory.
-
-        Returns what its function in `rocking.studies` does, a map as `MapArrays`; of several restitutions a comparison.
-        """
+        """Compute the study in memory."""
+        # returns what its function in `rocking.studies` does, a map as `MapArrays`; of several restitutions a
+        # comparison
         from rocking.spec.document import NEEDS
 
         compute = _ANSWERS[NEEDS[self.document.campaign.kind]]

@@ -105,11 +105,9 @@ class BootstrapSample:
         return int(np.sum(self.curves.penalised & self.curves.found))
 
     def log_interval(self, variate: float | None, level: float, ends: Ends = "studentised") -> tuple[float, float]:
-        """Return both ends of a variate's logarithmic fractile, without one of the logarithmic dispersion.
-
-        They follow from the distances of the repetitions in standard errors, which is second-order accurate; as
-        their percentiles; or mirrored; and are infinite where the repetitions leave them open.
-        """
+        """Return both ends of a variate's logarithmic fractile, without one of the logarithmic dispersion."""
+        # they follow from the distances of the repetitions in standard errors, which is second-order accurate; as their
+        # percentiles; or mirrored; and are infinite where the repetitions leave them open
         one, many = (
             (
                 log_quantity(curves.theta, self.scale, variate)[:, None],
@@ -198,11 +196,9 @@ class CapacitySample:
         return float(self.scale.log_level(np.array(-a / b))), math.log(self.scale.spread / b)
 
     def rarity(self, variate: float | None, value: float) -> float:
-        """Return how often the study would find less than it did, had a logarithmic parameter some value.
-
-        The other parameter is then the likeliest one of capacities that are all known, with records less one
-        for records; half of the repetitions that find the same count.
-        """
+        """Return how often the study would find less than it did, had a logarithmic parameter some value."""
+        # the other parameter is then the likeliest one of capacities that are all known, with records less one for
+        # records; half of the repetitions that find the same count
         median, log_dispersion = self._found
         if variate is None:
             slopes = self._repeated(median, math.exp(value))[:, 1]

@@ -75,11 +75,9 @@ def fit_moments(levels: FloatArray) -> CensoredFit:
 
 
 def fit_censored(levels: FloatArray, censored: BoolArray) -> CensoredFit:
-    """Return the lognormal fit of maximum likelihood to levels of which some only have a lower bound.
-
-    With 1 / sigma and mu / sigma as parameters the likelihood is concave (Olsen 1978, Econometrica 46:1211), so
-    that a vanishing gradient proves the maximum; it is verified.
-    """
+    """Return the lognormal fit of maximum likelihood to levels of which some only have a lower bound."""
+    # with 1 / sigma and mu / sigma as parameters the likelihood is concave (Olsen 1978, Econometrica 46:1211), so that
+    # a vanishing gradient proves the maximum; it is verified
     logs = np.log(checks.positive_array("levels", levels))
     known, bounds = logs[~censored], logs[censored]
     if known.size < 2:

@@ -256,11 +256,9 @@ def check_spread(levels: FloatArray) -> None:
 
 
 def pooled(levels: FloatArray, good: BoolArray, reached: Sequence[BoolArray], cluster: IntArray) -> list[Counts]:
-    """Return the counts of several states of the same histories, as `count_outcomes` would of each.
-
-    Motions, the first axis, at the same levels with the same outcomes are one row and a number, so that ten million
-    histories take no more room than the outcomes they can have; by cluster where one has more than one history.
-    """
+    """Return the counts of several states of the same histories, as `count_outcomes` would of each."""
+    # motions, the first axis, at the same levels with the same outcomes are one row and a number, so that ten million
+    # histories take no more room than the outcomes they can have; by cluster where one has more than one history
     size = np.bincount(cluster, good.reshape(cluster.size, -1).sum(axis=1))
     if good.any() and size.max() <= 1.0:  # independent: levels and trials are kept once for all states
         distinct, where = np.unique(levels[good], return_inverse=True)

@@ -44,11 +44,9 @@ class Maximum:
 
 
 def maximise(objective: Objective, start: FloatArray, *, steps: int = STEPS) -> Maximum:
-    """Return the maxima of many functions, each of which must have one, from rows of coefficients.
-
-    Of a function that grows without end the steps get lost far out, where gradient and curvature vanish alike: that
-    the maximum exists must be known beforehand.
-    """
+    """Return the maxima of many functions, each of which must have one, from rows of coefficients."""
+    # of a function that grows without end the steps get lost far out, where gradient and curvature vanish alike: that
+    # the maximum exists must be known beforehand
     theta = np.array(start, dtype=np.float64)
     count, order = theta.shape
     value, decrement = np.full(count, -np.inf), np.full(count, np.inf)

@@ -96,11 +96,9 @@ def _trend(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> tupl
 
 
 def verdict_of(counts: Counts, separation: Separation, curve: tuple[float, float] | None, rise: float | None) -> str:
-    """Return what the outcomes allow to be said, in a sentence or two, and what the likelihood does not know.
-
-    The curve is median and dispersion; `rise` its likelihood ratio against a line that does not depend on the
-    level, a chi-square of one degree of freedom; None for a penalised fit.
-    """
+    """Return what the outcomes allow to be said, in a sentence or two, and what the likelihood does not know."""
+    # The curve is median and dispersion; `rise` its likelihood ratio against a line that does not depend on the level,
+    # a chi-square of one degree of freedom; None for a penalised fit.
     parts = [_finding(counts, separation, curve, penalised=rise is None)]
     if rise is not None and rise < 3.841:
         parts.append("Chance alone explains the growth with the level (5 % test): intervals may be open.")

@@ -64,14 +64,11 @@ class SaltelliDesign:
         return np.vstack([first, second, *mixed])
 
     def shares(self, answers: FloatArray, repetitions: int = REPETITIONS) -> dict[str, VarianceShare]:
-        """Return the shares of the inputs, all zero where nothing varies.
-
-        First-order indices by Saltelli's estimator (2010), exactly zero where an input does nothing, total ones by
-        Jansen's (1999); intervals by drawing the points again.
-
-        answers: what was found at `points`; with several columns, such as motions, which of them it is counts as one
-        input more, `case`. A point without an answer, NaN, is left out.
-        """
+        """Return the shares of the inputs, all zero where nothing varies."""
+        # First-order indices by Saltelli's estimator (2010), exactly zero where an input does nothing, total ones by
+        # Jansen's (1999); intervals by drawing the points again. answers: what was found at `points`; with several
+        # columns, such as motions, which of them it is counts as one input more, `case`. A point without an answer,
+        # NaN, is left out.
         found = np.asarray(answers, dtype=np.float64)
         found = found[:, None] if found.ndim == 1 else found
         rows = (2 + len(self.inputs)) * self.count

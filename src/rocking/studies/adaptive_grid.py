@@ -220,10 +220,8 @@ def refined(
 
 
 def refine(grid: AdaptiveGrid, modes: IntArray, peaks: Any = None) -> tuple[RefinedMap, tuple[IntArray, IntArray]]:
-    """Return a map that is known, refined on a grid of which nothing is known yet, and its mixed finest cells.
-
-    The map's own points come first, in its order; the cells, whose corners differ, are where `outlines` begins.
-    """
+    """Return a map that is known, refined on a grid of which nothing is known yet, and its mixed finest cells."""
+    # the map's own points come first, in its order; the cells, whose corners differ, are where `outlines` begins
     first = grid.base()
     known = np.full(first.size, np.nan) if peaks is None else np.asarray(peaks, dtype=np.float64).ravel()
     grid.learn(first, np.asarray(modes, dtype=np.int64).ravel(), known)

@@ -102,11 +102,9 @@ class AmplitudeSearch:
         self.samples = self.samples.joined(self.compute(s.body[:-1][wanted], middle[wanted]))
 
     def hunt(self) -> None:
-        """Look for survival between neighbours that overturn differently: one must pass it to get to the other.
-
-        Each such pair is bisected between its own two ways of overturning until a survivor is met; of a third way the
-        nearest is followed.
-        """
+        """Look for survival between neighbours that overturn differently: one must pass it to get to the other."""
+        # each such pair is bisected between its own two ways of overturning until a survivor is met; of a third way the
+        # nearest is followed
         s = self.samples.good
         ways = 2 * s.mode + (s.side > 0)
         changes = s.same_body & s.falls[1:] & s.falls[:-1] & (ways[1:] != ways[:-1])
@@ -123,10 +121,8 @@ class AmplitudeSearch:
             pairs.move(rows, 2 * middle.mode + (middle.side > 0) != lower[rows], middle)
 
     def brackets(self, tolerance: float) -> ScaleBrackets:
-        """Return all changes of verdict between neighbouring samples, bisected together to a relative width [-].
-
-        One whose middle failed stays as wide as it was.
-        """
+        """Return all changes of verdict between neighbouring samples, bisected together to a relative width [-]."""
+        # one whose middle failed stays as wide as it was
         s = self.samples.good
         brackets = ScaleBrackets.between(s, s.same_body & (s.falls[1:] != s.falls[:-1]))
         stuck = np.zeros(brackets.body.size, dtype=np.bool_)
@@ -144,11 +140,9 @@ class AmplitudeSearch:
 
 
 def suspicious(s: Samples) -> BoolArray:
-    """Return in which intervals between neighbouring samples of equal verdict another may hide.
-
-    Where the peak of survivors, carried on as steeply as next to it, passes the top; next to a largest peak of
-    survivors; next to a longest time of overturning.
-    """
+    """Return in which intervals between neighbouring samples of equal verdict another may hide."""
+    # where the peak of survivors, carried on as steeply as next to it, passes the top; next to a largest peak of
+    # survivors; next to a longest time of overturning
     same = s.same_body
     peak = np.where(s.falls, np.nan, s.peak)
     steps = np.where(same, np.abs(np.diff(peak)), np.nan)
@@ -185,11 +179,9 @@ def below_minimum(samples: Samples) -> dict[int, FloatArray]:
 
 
 def search_below(scan: AmplitudeSearch, points: int) -> None:
-    """Sample below the least amplitude that overturns until it holds.
-
-    A round spreads points over the range up to the first sample that overturns. A body is done when two rounds in a row
-    have found nothing that overturns below the survivors next to that sample, or after four.
-    """
+    """Sample below the least amplitude that overturns until it holds."""
+    # A round spreads points over the range up to the first sample that overturns. A body is done when two rounds in a
+    # row have found nothing that overturns below the survivors next to that sample, or after four.
     held: dict[int, int] = {}
     for shift in _SHIFTS:
         known = {k: each for k, each in below_minimum(scan.samples.good).items() if held.get(k, 0) < _ENOUGH}

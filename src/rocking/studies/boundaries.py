@@ -169,10 +169,8 @@ def _cells_passed(grid: AdaptiveGrid, inside: Inside, seeds: tuple[IntArray, Int
 
 
 def bisected(grid: AdaptiveGrid, inside: Inside, numbers: IntArray, tolerance: float) -> tuple[FloatArray, IntArray]:
-    """Return where the boundary of a region crosses edges of a grid, and the modes outside and inside, of each.
-
-    One batch for each halving.
-    """
+    """Return where the boundary of a region crosses edges of a grid, and the modes outside and inside, of each."""
+    # one batch for each halving
     upright = numbers % 2 == 1
     i, j = (numbers // 2) % grid.columns, (numbers // 2) // grid.columns
     ends = [(i, j), (i + ~upright, j + upright)]
@@ -210,11 +208,9 @@ def edge_numbers(i: IntArray, j: IntArray, columns: int) -> IntArray:
 
 
 def segments(inside: BoolArray, edges: IntArray, centre: BoolArray) -> IntArray:
-    """Return which crossed edges a boundary joins within each cell, as numbers of the edges at both ends.
-
-    A saddle, whose inside corners are opposite, is decided by its centre: the inside corners are joined if the centre
-    is inside, else the outside ones.
-    """
+    """Return which crossed edges a boundary joins within each cell, as numbers of the edges at both ends."""
+    # a saddle, whose inside corners are opposite, is decided by its centre: the inside corners are joined if the centre
+    # is inside, else the outside ones
     crossed = crossed_edges(inside)
     count = crossed.sum(axis=1)
     plain = edges[count == 2][crossed[count == 2]].reshape(-1, 2)

@@ -74,12 +74,10 @@ class Question:
         stream: Any = None,
         progress: Callable[[int], None] | None = None,
     ) -> tuple[Arrays, dict[str, int]]:
-        """Return the results of many variations, their modes and relative peaks [-] with them.
-
-        A motion stretched in time by s does to a body of frequency parameter p what the motion itself does to one of p
-        s, all times multiplied by s: so one motion serves all stretches, and nothing is approximated. Values: sides and
-        scale, by the names of `batch.ROWS`, one entry a history.
-        """
+        """Return the results of many variations, their modes and relative peaks [-] with them."""
+        # A motion stretched in time by s does to a body of frequency parameter p what the motion itself does to one of
+        # p s, all times multiplied by s: so one motion serves all stretches, and nothing is approximated. Values: sides
+        # and scale, by the names of `batch.ROWS`, one entry a history.
         count = stretch.size
         if np.any(stretch != 1.0):
             self.check_stretching("an axis")

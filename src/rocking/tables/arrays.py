@@ -114,10 +114,8 @@ def _room(values: np.ndarray) -> int:
 def to_mat(
     content: Table | Grid | Mapping[str, Any], path: Path, name: str = "rocking", *, apart: bool = False
 ) -> Path:
-    """Write one structure as a MATLAB file of version 5: a table, results over dimensions, or the structure itself.
-
-    apart: columns of the table, their full names and meanings have structures of their own.
-    """
+    """Write one structure as a MATLAB file of version 5: a table, results over dimensions, or the structure itself."""
+    # apart: columns of the table, their full names and meanings have structures of their own
     from scipy.io import savemat
 
     match content:

@@ -32,11 +32,9 @@ def to_dataframe(table: Table) -> "pd.DataFrame":
 
 
 def to_csv(table: Table | Grid, path: Path, *, blank: bool = True, for_excel: bool = False) -> Path:
-    """Write a table as comma-separated values, all digits kept; units stand in the header.
-
-    for_excel: a mark before the first line tells Excel that it is UTF-8, and text is quoted: a semicolon separates
-    nothing then, whatever Excel takes for the separator.
-    """
+    """Write a table as comma-separated values, all digits kept; units stand in the header."""
+    # for_excel: a mark before the first line tells Excel that it is UTF-8, and text is quoted: a semicolon separates
+    # nothing then, whatever Excel takes for the separator
     with path.open("w", newline="", encoding="utf-8-sig" if for_excel else "utf-8") as file:
         writer = csv.writer(file, quoting=csv.QUOTE_NONNUMERIC if for_excel else csv.QUOTE_MINIMAL)
         writer.writerow(map(safe_cell, table.header))
@@ -73,12 +71,10 @@ def to_excel(
     sheets: Sequence[tuple[str, Table | Grid]], path: Path, provenance: Mapping[str, Any] | None = None, *,
     others: str = ".parquet or .csv", dressed: bool = False,
 ) -> None:  # fmt: skip
-    """Write tables as a workbook, whose text is text and never a formula.
-
-    It is packed in memory: an archive that a full disk cuts off cannot be closed, and complains when it is forgotten.
-    others: the formats that take more rows. dressed: headings are bold and stay in sight, columns are as wide as they
-    need, and numbers keep all digits (16 otherwise), which takes longer.
-    """
+    """Write tables as a workbook, whose text is text and never a formula."""
+    # it is packed in memory: an archive that a full disk cuts off cannot be closed, and complains when it is forgotten.
+    # others: the formats that take more rows. dressed: headings are bold and stay in sight, columns are as wide as they
+    # need, and numbers keep all digits (16 otherwise), which takes longer
     for _, table in sheets:
         if len(table) > MOST_ROWS_OF_EXCEL:
             kind = f" {table.row}" if isinstance(table, Grid) else ""

@@ -198,11 +198,9 @@ def stretched_words(words: str, stretch: float) -> str:
 
 
 def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict[str, Any]:
-    """Return the history behind a point of a picture, `HistoryAnswer`.
-
-    ``difference_rad`` is of the peak rotations of the study and of the response here, which take other steps to the
-    same accuracy.
-    """
+    """Return the history behind a point of a picture, `HistoryAnswer`."""
+    # ``difference_rad`` is of the peak rotations of the study and of the response here, which take other steps to the
+    # same accuracy
     cell: dict[str, Any] = {"stored": stored(study, place), "inputs": None, "answer": None, "difference_rad": None}
     if study.job.problem.settings.friction is not None:
         return cell | {

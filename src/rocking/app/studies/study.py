@@ -38,11 +38,9 @@ class StudyPace:
         self._speed, self._pace = Speed(), 0.0
 
     def look(self, done: int, work: float, now: float | None = None) -> tuple[float, float]:
-        """Note how many histories are finished and what all workers spent on them [s]; now: instant of a clock [s].
-
-        Returns histories a second over the last seconds [1/s], and the work done in a second since the first were
-        finished [-]; 0 while nothing is known.
-        """
+        """Note how many histories are finished and what all workers spent on them [s]; now: instant of a clock [s]."""
+        # returns histories a second over the last seconds [1/s], and the work done in a second since the first were
+        # finished [-]; 0 while nothing is known
         instant = time.monotonic() if now is None else now
         # a study finishes in jumps, a piece at a time: only looks that found more say anything
         if not self._looks or done > self._looks[-1][1]:

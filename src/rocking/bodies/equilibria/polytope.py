@@ -123,10 +123,8 @@ class Polytope:
         return corner[turned], self.sides[edge, 1 - side][turned], first
 
     def descent(self, vertex: int, down: FloatArray) -> int:
-        """Return the stable facet to which the steepest descent of the centre leads, from a contact on a vertex.
-
-        vertex: the lowest one where `down` (unit vector, in the body's frame) is downward.
-        """
+        """Return the stable facet to which the steepest descent of the centre leads, from a contact on a vertex."""
+        # vertex: the lowest one where `down` (unit vector, in the body's frame) is downward
         return self.rolled(self._swung(vertex, down))
 
     def rolled(self, facet: int) -> int:
@@ -200,10 +198,8 @@ class Polytope:
 
 
 def polytope(points: FloatArray, centre: FloatArray, faces: IntArray | None = None) -> Polytope:
-    """Return the convex hull of points about a centre; facets within 1e-7 of the size of one plane are merged.
-
-    faces: triangles of the surface; if it is convex it is its own hull, which is not sought.
-    """
+    """Return the convex hull of points about a centre; facets within 1e-7 of the size of one plane are merged."""
+    # faces: triangles of the surface; if it is convex it is its own hull, which is not sought
     around = points - centre
     flat = FLAT * float(np.ptp(around, axis=0).max())
     if faces is not None and (surface := _closed(around, faces)) is not None:
@@ -297,10 +293,8 @@ def _slopes(corners: FloatArray, triangles: IntArray, beside: IntArray) -> Slope
 
 
 def _merged(corners: FloatArray, triangles: IntArray, beside: IntArray, slopes: Slopes, flat: float) -> Polytope:
-    """Return the polytope of triangles, coplanar ones as one facet.
-
-    The tolerance is lowered until no facet departs from its plane by more than ten times as much.
-    """
+    """Return the polytope of triangles, coplanar ones as one facet."""
+    # the tolerance is lowered until no facet departs from its plane by more than ten times as much
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 

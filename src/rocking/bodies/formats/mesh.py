@@ -95,13 +95,11 @@ def solid_from_mesh(
     inertia: ArrayLike | None = None,
     **options: Any,
 ) -> Solid:
-    """Return the body that a surface mesh describes, standing, with what was repaired.
-
-    It stands as it is in the file if its centre lies above the points that touch the ground; otherwise it is let down
-    from there until it rests. base: points (x, y) that it stands on as it is in the file [m]; base_tolerance: vertices
-    this close to the lowest one touch the ground [m]; mass [kg], centre [m] and inertia [kg m2], where they are known,
-    as the mesh is before it is let down.
-    """
+    """Return the body that a surface mesh describes, standing, with what was repaired."""
+    # it stands as it is in the file if its centre lies above the points that touch the ground; otherwise it is let down
+    # from there until it rests. base: points (x, y) that it stands on as it is in the file [m]; base_tolerance:
+    # vertices this close to the lowest one touch the ground [m]; mass [kg], centre [m] and inertia [kg m2], where they
+    # are known, as the mesh is before it is let down
     path = Path(path)
     mesh = mesh_from_file(path, units=units, **options)
     with blamed(path.name):

@@ -15,10 +15,8 @@ _SHARED = 1e-9
 
 
 def check_disjoint(parts: Sequence[Part]) -> None:
-    """Refuse parts that overlap; shared faces are welcome.
-
-    Two parts overlap if any of 20 x 20 x 20 points in the common box of both lies inside both.
-    """
+    """Refuse parts that overlap; shared faces are welcome."""
+    # two parts overlap if any of 20 x 20 x 20 points in the common box of both lies inside both
     boxes = np.array([part.box() for part in parts])
     for i in range(len(parts)):
         for j in range(i + 1, len(parts)):
@@ -47,13 +45,11 @@ _CAUSE = "does its surface pass through itself, or look inward in part?"
 
 
 def check_possible(parts: Sequence[Part]) -> None:
-    """Refuse parts whose moments are not those of any mass inside their box and hull.
-
-    The volume is above zero; the centre lies in the box, and for a mesh in the convex hull; the second moments J are
-    nowhere negative, which is the triangle inequality of the inertia ``tr(J) 1 - J``; and along each axis they are at
-    most ``m (c - low) (high - c)``, the greatest that masses between low and high with the centre c can have (R.
-    Bhatia, C. Davis, "A better bound on the variance", 2000).
-    """
+    """Refuse parts whose moments are not those of any mass inside their box and hull."""
+    # The volume is above zero; the centre lies in the box, and for a mesh in the convex hull; the second moments J are
+    # nowhere negative, which is the triangle inequality of the inertia ``tr(J) 1 - J``; and along each axis they are at
+    # most ``m (c - low) (high - c)``, the greatest that masses between low and high with the centre c can have (R.
+    # Bhatia, C. Davis, "A better bound on the variance", 2000).
     for number, part in enumerate(parts):
         words = _impossible(part.moments(), part.box()) or _out_of_hull(part)
         if words:

@@ -52,11 +52,9 @@ class Changes:
         self.made.append((sentence, volume, where))
 
     def bounds(self, whole: SolidMoments, size: float) -> list[tuple[float, float]]:
-        """Return what each repair may have changed of the volume [-] and how far it may have moved the centre [m].
-
-        whole: volume and centre of the result; size: its largest side [m], half of which is how far from the centre a
-        change is taken to be that has no place.
-        """
+        """Return what each repair may have changed of the volume [-] and how far it may have moved the centre [m]."""
+        # whole: volume and centre of the result; size: its largest side [m], half of which is how far from the centre a
+        # change is taken to be that has no place
         found = []
         for _, volume, where in self.made:
             arm = 0.5 * size if where is None else float(np.linalg.norm(where - whole.centre))

@@ -114,10 +114,8 @@ def _notched(height: FloatArray, ring: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def _levelled(points: FloatArray, ring: IntArray, changes: Changes) -> tuple[FloatArray, IntArray]:
-    """Return points with those of a rim let down to the lowest one, and the faces down there and beneath.
-
-    Down is across the plane of the rim, so that a body that leans stands upright once it is set on its bottom.
-    """
+    """Return points with those of a rim let down to the lowest one, and the faces down there and beneath."""
+    # down is across the plane of the rim, so that a body that leans stands upright once it is set on its bottom
     ring, _ = _notched(points[:, 2], ring)
     normal = np.linalg.svd(points[ring] - points[ring].mean(axis=0), full_matrices=False)[2][2]
     upright = set_down(-normal * (1.0 if normal[2] > 0.0 else -1.0))

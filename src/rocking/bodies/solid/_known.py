@@ -24,12 +24,10 @@ ASSUMED = (
 
 
 def known_moments(parts: Sequence[Part], own: SolidMoments, centre: FloatArray | None, inertia: Any) -> SolidMoments:
-    """Return the moments of parts with what is known in place of their own.
-
-    centre: in the frame of the parts [m]; inertia: tensor about the centre of mass, or principal moments along x, y and
-    z [kg m2]. An inertia that is not known comes from second moments scaled along each axis as the greatest that masses
-    between the ends of the body can have, ``m (c - low) (high - c)``.
-    """
+    """Return the moments of parts with what is known in place of their own."""
+    # centre: in the frame of the parts [m]; inertia: tensor about the centre of mass, or principal moments along x, y
+    # and z [kg m2]. An inertia that is not known comes from second moments scaled along each axis as the greatest that
+    # masses between the ends of the body can have, ``m (c - low) (high - c)``.
     place = own.centre if centre is None else centre
     boxes = np.array([part.box() for part in parts])
     low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
@@ -70,11 +68,9 @@ def _second(inertia: Any) -> FloatArray:
 
 
 def _reached(parts: Sequence[Part], found: SolidMoments, lowest: FloatArray, size: FloatArray, *, given: bool) -> float:
-    """Return which share of the second moments masses within the hull can have; refuse a centre outside of it.
-
-    In every direction they are at most ``m (c - low) (high - c)`` (R. Bhatia, C. Davis, "A better bound on the
-    variance", 2000); 64 directions are tried. given: refuse less than all of them.
-    """
+    """Return which share of the second moments masses within the hull can have; refuse a centre outside of it."""
+    # In every direction they are at most ``m (c - low) (high - c)`` (R. Bhatia, C. Davis, "A better bound on the
+    # variance", 2000); 64 directions are tried. given: refuse less than all of them.
     share = 1.0
     for direction in _directions():
         frame = _frame(direction)

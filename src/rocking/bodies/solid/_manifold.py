@@ -81,11 +81,9 @@ _ROUND, _MOST_HOLLOWED, _COARSE = 12, 2000, (0.02, 0.05, 0.1, 0.2)
 
 
 def hollowed(points: FloatArray, faces: IntArray, wall: float, changes: Changes) -> tuple[FloatArray, IntArray]:
-    """Return the surface with another one within, a wall [m] inside it: parts thinner than two walls stay solid.
-
-    The hollow is where a ball whose radius is the wall finds room for its middle (the Minkowski difference). The ball
-    is a polyhedron, and the surface is simplified first, by up to a fifth of the wall; the radius makes up for both.
-    """
+    """Return the surface with another one within, a wall [m] inside it: parts thinner than two walls stay solid."""
+    # The hollow is where a ball whose radius is the wall finds room for its middle (the Minkowski difference). The ball
+    # is a polyhedron, and the surface is simplified first, by up to a fifth of the wall; the radius makes up for both.
     from manifold3d import Manifold
 
     whole = manifold(points, faces)

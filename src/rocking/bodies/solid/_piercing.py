@@ -24,12 +24,10 @@ class Piercing:
 
 
 def pierced(triangles: FloatArray) -> Piercing:
-    """Return where triangles pass through each other; those that share corners or edges, or touch, do not.
-
-    Two triangles cross if each has corners on both sides of the other's plane and the pieces of the common line of both
-    planes that lie in them overlap (T. Moeller, "A fast triangle-triangle intersection test", 1997), all by more than
-    1e-6 of the size. Triangles in one plane do not cross, nor do those that are thinner than 1e-7 of the size.
-    """
+    """Return where triangles pass through each other; those that share corners or edges, or touch, do not."""
+    # Two triangles cross if each has corners on both sides of the other's plane and the pieces of the common line of
+    # both planes that lie in them overlap (T. Moeller, "A fast triangle-triangle intersection test", 1997), all by more
+    # than 1e-6 of the size. Triangles in one plane do not cross, nor do those that are thinner than 1e-7 of the size.
     low, high = boxes(triangles)
     size = float(max(high[:, i].max() - low[:, i].min() for i in range(3)))
     doubled = area_vectors(triangles) * 2.0
@@ -94,11 +92,9 @@ _CHUNK = 200_000
 
 
 def meeting_boxes(low: FloatArray, high: FloatArray) -> Iterator[tuple[IntArray, IntArray]]:
-    """Return the pairs of boxes that have a point in common, a piece at a time.
-
-    The boxes are halved at the median of their middles, along the longest side of each half, down to single ones; the
-    tree is then walked against itself from its root. Memory stays bounded, however many pairs there are.
-    """
+    """Return the pairs of boxes that have a point in common, a piece at a time."""
+    # The boxes are halved at the median of their middles, along the longest side of each half, down to single ones; the
+    # tree is then walked against itself from its root. Memory stays bounded, however many pairs there are.
     order = _halved(0.5 * (low + high))
     layers = _layers(order, low, high)
     stack = [(0, np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.int64))]

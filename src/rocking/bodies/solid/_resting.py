@@ -21,11 +21,9 @@ def stands(points: FloatArray, centre: FloatArray, tolerance: float) -> bool:
 
 
 def settled(points: FloatArray, centre: FloatArray) -> FloatArray:
-    """Return the rotation that lets a body down, from as it is onto a facet of its hull that holds its centre.
-
-    The ray from the centre downward leaves the hull through a facet; the body is turned onto that, and again, until the
-    ray leaves through the facet that it lies on. The centre comes lower each time: from z / cos(angle) to z.
-    """
+    """Return the rotation that lets a body down, from as it is onto a facet of its hull that holds its centre."""
+    # The ray from the centre downward leaves the hull through a facet; the body is turned onto that, and again, until
+    # the ray leaves through the facet that it lies on. The centre comes lower each time: from z / cos(angle) to z.
     from scipy.spatial import ConvexHull
 
     equations = ConvexHull(points - centre).equations

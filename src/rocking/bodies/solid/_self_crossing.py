@@ -15,11 +15,9 @@ _MOST_PAIRS = 2_000_000
 
 
 def inside(points: FloatArray, triangles: FloatArray) -> BoolArray:
-    """Return which points lie inside a closed, oriented surface.
-
-    Upward faces above a point count +1, downward ones -1; inside, the sum is 1. Points and faces are sorted into tiles
-    of the plan first, so that each point meets the faces near its own plumb line only.
-    """
+    """Return which points lie inside a closed, oriented surface."""
+    # Upward faces above a point count +1, downward ones -1; inside, the sum is 1. Points and faces are sorted into
+    # tiles of the plan first, so that each point meets the faces near its own plumb line only.
     return winding(points, triangles) > 0.5
 
 

@@ -33,11 +33,9 @@ def turned_consistently(faces: IntArray, changes: Changes) -> IntArray:
 
 
 def oriented_shells(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[FloatArray, IntArray]:
-    """Return the surface with outer shells looking outward and shells inside others looking inward.
-
-    Shells that overlap are united; of two that lie closely one within the other and look the same way, which is what a
-    surface scanned twice looks like, the inner one goes.
-    """
+    """Return the surface with outer shells looking outward and shells inside others looking inward."""
+    # shells that overlap are united; of two that lie closely one within the other and look the same way, which is what
+    # a surface scanned twice looks like, the inner one goes
     labels = connected(len(faces), *neighbours(faces)[:2])
     count = int(labels.max()) + 1
     if count > MOST_SHELLS:
@@ -137,10 +135,8 @@ def connected(count: int, first: IntArray, second: IntArray) -> IntArray:
 
 
 def _parities(count: int, first: IntArray, second: IntArray, disagree: BoolArray) -> BoolArray:
-    """Whether each face disagrees with the first of its piece, along a tree of neighbours.
-
-    Every face stands twice, as it is and turned; along the tree the one that agrees with the first is connected to it.
-    """
+    """Whether each face disagrees with the first of its piece, along a tree of neighbours."""
+    # every face stands twice, as it is and turned; along the tree the one that agrees with the first is connected to it
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import minimum_spanning_tree
 

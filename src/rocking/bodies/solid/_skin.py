@@ -125,15 +125,11 @@ def _thinned(points: FloatArray, keep: IntArray) -> IntArray:
 
 
 def _wrapped(points: FloatArray) -> tuple[IntArray, float, float, float]:
-    """Faces and volume of a skin, the volume with a wider ball, and the ball's radius.
-
-    The skin is what is left of the hull when balls have come in from outside.
-
-    The tetrahedra between the points (Delaunay) are entered through faces that a ball passes, whose own circle is wider
-    than it (J.-D. Boissonnat, "Geometric structures for three-dimensional shape representation", 1984).
-    The ball is the smallest with which the skin holds all but a few points and a half wider one changes the volume by
-    less than 1 %.
-    """
+    """Faces and volume of a skin, the volume with a wider ball, and the ball's radius."""
+    # The skin is what is left of the hull when balls have come in from outside. The tetrahedra between the points
+    # (Delaunay) are entered through faces that a ball passes, whose own circle is wider than it (J.-D. Boissonnat,
+    # "Geometric structures for three-dimensional shape representation", 1984). The ball is the smallest with which the
+    # skin holds all but a few points and a half wider one changes the volume by less than 1 %.
     from scipy.spatial import Delaunay
 
     size = float(np.ptp(points, axis=0).max())

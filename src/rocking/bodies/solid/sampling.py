@@ -22,11 +22,9 @@ _MOST_SAMPLES = 400_000
 
 
 def gauss_order(ratio: float) -> int:
-    """Return the points a direction that a cell needs, from its size over its distance to the singular set.
-
-    The integrand is analytic within a Bernstein ellipse through the singular set; with ``z = 2/ratio`` its size is ``z
-    + sqrt(1 + z^2)``, and a rule of n points errs by that to the power -2n.
-    """
+    """Return the points a direction that a cell needs, from its size over its distance to the singular set."""
+    # the integrand is analytic within a Bernstein ellipse through the singular set; with ``z = 2/ratio`` its size is
+    # ``z + sqrt(1 + z^2)``, and a rule of n points errs by that to the power -2n
     z = 2.0 / ratio
     return math.ceil(_DIGITS * math.log(10.0) / (2.0 * math.log(z + math.hypot(1.0, z))))
 

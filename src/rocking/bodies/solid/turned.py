@@ -56,11 +56,9 @@ class Turned(Shape):
         return f"Turned({len(self.meridians)} pieces, {self.moments().mass:g} m3)"
 
     def moments(self) -> SolidMoments:
-        """Return volume, centre and second moments, in closed form for every piece.
-
-        ``V = pi a b Int rho^2 dz``, ``Int x^2 dV = pi a^3 b/4 Int rho^4 dz``: rho or its square is a polynomial of
-        the height, and three Gauss points integrate degree five exactly.
-        """
+        """Return volume, centre and second moments, in closed form for every piece."""
+        # ``V = pi a b Int rho^2 dz``, ``Int x^2 dV = pi a^3 b/4 Int rho^4 dz``: rho or its square is a polynomial of
+        # the height, and three Gauss points integrate degree five exactly
         (a, b), (nodes, weights) = self.half_axes, gauss(3)
         sums = np.zeros(4)
         middle = 0.5 * float(self.extent(np.eye(3))[:, 2].sum())

@@ -33,11 +33,9 @@ class RowsWithContact:
         return library_of(self.motions)
 
     def run(self, values: dict[str, FloatArray], motion: np.ndarray, threads: int) -> dict[str, np.ndarray]:
-        """Return the results of some rows by the names that studies know; NaN for what this mechanics has not.
-
-        values: the keys of `ROWS`; a coefficient r that is `UNIMPOSED` is not imposed, a friction that is NaN is that
-        of the settings; rows of another r below zero, or not finite, are refused by themselves.
-        """
+        """Return the results of some rows by the names that studies know; NaN for what this mechanics has not."""
+        # values: the keys of `ROWS`; a coefficient r that is `UNIMPOSED` is not imposed, a friction that is NaN is that
+        # of the settings; rows of another r below zero, or not finite, are refused by themselves
         right, left = _side(values, "right", self.settings), _side(values, "left", self.settings)
         same = np.isclose(right["height"], left["height"], rtol=1e-6) & np.isclose(
             right["inertia"], left["inertia"], rtol=1e-6

@@ -61,12 +61,10 @@ def event_functions(
 
 
 def leading(function: EventFunction, stretch: float, tolerance: float) -> int:
-    """Return which coefficient decides the sign of a function a moment after the start.
-
-    stretch: duration of the series over the natural time of the body, so that all coefficients are measured alike [-];
-    tolerance: below it, over the scale, a coefficient counts as zero [-]. Returns its number; -1 where all of them
-    vanish.
-    """
+    """Return which coefficient decides the sign of a function a moment after the start."""
+    # stretch: duration of the series over the natural time of the body, so that all coefficients are measured alike
+    # [-]; tolerance: below it, over the scale, a coefficient counts as zero [-]. Returns its number; -1 where all of
+    # them vanish.
     bound = tolerance * function.scale
     for k, c in enumerate(function.series[:_DEPTH].tolist()):
         size = abs(c) if k < function.exact else abs(c) - bound * stretch ** (k - function.exact)

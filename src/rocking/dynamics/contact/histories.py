@@ -46,11 +46,9 @@ def response_with_contact(  # noqa: PLR0913 - what the front door hands on
     scale: float = 1.0,
     duration: float | None = None,
 ) -> ContactResponse:
-    """Return how a body rests, slides, rocks, slides while it rocks, and flies; on ground at rest without a motion.
-
-    restitution: None for impacts by complementarity alone; duration: how long to follow the body [s]; if not given, the
-    motion and 15 sqrt(R / g) after it, 60 sqrt(R / g) on ground at rest.
-    """
+    """Return how a body rests, slides, rocks, slides while it rocks, and flies; on ground at rest without a motion."""
+    # restitution: None for impacts by complementarity alone; duration: how long to follow the body [s]; if not given,
+    # the motion and 15 sqrt(R / g) after it, 60 sqrt(R / g) on ground at rest
     base = PlaneBase.of_body(body)
     law = GroundContact(
         friction if isinstance(friction, conventions.Assumed) else checks.number("friction", friction),

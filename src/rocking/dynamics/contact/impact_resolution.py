@@ -181,12 +181,10 @@ _IMPOSED_ROUNDING = 1e-12
 
 
 def strike_with(base: PlaneBase, state: ContactState, foot: int, friction: float, r: float) -> Struck | Status | None:
-    """Return what a rocking impact does when its coefficient of restitution is imposed.
-
-    r: theta_dot_after / theta_dot_before of the impact without slip [-]. Returns the state after it with the impulses;
-    a status where energy would be created; None where an impulse at that place would pull, or press the old foot into
-    the ground.
-    """
+    """Return what a rocking impact does when its coefficient of restitution is imposed."""
+    # r: theta_dot_after / theta_dot_before of the impact without slip [-]. Returns the state after it with the
+    # impulses; a status where energy would be created; None where an impulse at that place would pull, or press the old
+    # foot into the ground.
     place = foot * (1.0 - r) * (base.inertia + base.height**2)
     place /= abs(base.lever(-foot)) + r * abs(base.lever(foot))  # Eq. 4
     speed = abs(away(base, state, foot)) + abs(along(base, state, foot))

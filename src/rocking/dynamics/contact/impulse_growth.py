@@ -29,10 +29,8 @@ _ROUNDING, _ALMOST = 1e-13, 1e-6
 def impact_of(
     base: PlaneBase, state: ContactState, law: GroundContact, bounce: dict[int, float]
 ) -> tuple[Struck | Status, bool]:
-    """Return what an impact does, and whether Stronge's law had to stand in for the one that was asked for.
-
-    It does where that one has no solution, two of them, or would create energy. bounce: e of each foot [-].
-    """
+    """Return what an impact does, and whether Stronge's law had to stand in for the one that was asked for."""
+    # it does where that one has no solution, two of them, or would create energy. bounce: e of each foot [-]
     if law.bounce_law == "newton":
         found = strike(base, state, law.friction, bounce)
     else:

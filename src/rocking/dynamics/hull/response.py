@@ -49,10 +49,8 @@ def response_on_hull(
     scale: float = 1.0,
     duration: float | None = None,
 ) -> "HullResponse":
-    """Return how a body in space moves that may rock, slide, hop and fall; without components, when it is let go.
-
-    duration: how long to follow the body at least [s]; if not given, until it rests after the motion.
-    """
+    """Return how a body in space moves that may rock, slide, hop and fall; without components, when it is let go."""
+    # duration: how long to follow the body at least [s]; if not given, until it rests after the motion
     made, law = HullBody.of(body), law_on_hull(restitution)
     scale = checks.within("scale", scale, -1e6, 1e6)
     start = started(start, math.sqrt(settings.gravity / made.size))

@@ -175,12 +175,10 @@ def _inner_states(  # noqa: PLR0917 - a history, and what it ran on
     before: FloatArray,
     after: FloatArray,
 ) -> list[tuple[float, float, float]]:
-    """Return the states to be added to those at samples and events.
-
-    time: times of samples and events, in order [s]; before, after: theta [rad] and theta' [rad/s] just before and
-    just after each. Returns time [s], theta [rad], theta' [rad/s]: within long intervals; when the body passes over
-    its foot for good; and after the last sample, until it lies.
-    """
+    """Return the states to be added to those at samples and events."""
+    # time: times of samples and events, in order [s]; before, after: theta [rad] and theta' [rad/s] just before and
+    # just after each. Returns time [s], theta [rad], theta' [rad/s]: within long intervals; when the body passes over
+    # its foot for good; and after the last sample, until it lies.
     fall, step, g = trajectory.overturning_time, segments.step, settings.gravity
     shortest = _ROUNDING * step
 

@@ -63,11 +63,9 @@ class RestoringMoments:
         return int(self._stops[np.searchsorted(self._stops, stretch, side="right")]) - stretch
 
     def window(self, stretch: int, tau: float, stretches: int) -> tuple[dict[int, float], float, float] | None:
-        """Return what holds the body down from an instant to the end of some stretches; None if a side is not held.
-
-        Least holding moment on each side [-], a bound on the total variation of the logarithm of the holding moments
-        [-], and one on their change with the rotation [1/rad].
-        """
+        """Return what holds the body down from an instant to the end of some stretches; None if a side is not held."""
+        # least holding moment on each side [-], a bound on the total variation of the logarithm of the holding moments
+        # [-], and one on their change with the rotation [1/rad]
         rows = slice(stretch, stretch + stretches)
         x_least, x_most, x_variation = _extent(self.push.horizontal[rows], tau)
         z_least, z_most, z_variation = _extent(self.push.vertical[rows], tau)
@@ -130,14 +128,10 @@ def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine
     tau: float,
     rest_speed: float,
 ) -> bool:
-    """Return whether the impacts to come provably add up to rest before the body could rise again.
-
-    Flights take disjoint times, so that the speed gained by moments that change is bounded by their total variation;
-    the sum of the flights is a geometric series. The proof is in docs/theory/rest.md.
-
-    after: speed after the impact [rad/s]; rest_speed: speed over p alpha above which the question is not asked; below
-    `NOTHING` it always is [-].
-    """
+    """Return whether the impacts to come provably add up to rest before the body could rise again."""
+    # Flights take disjoint times, so that the speed gained by moments that change is bounded by their total variation;
+    # the sum of the flights is a geometric series. The proof is in docs/theory/rest.md. after: speed after the impact
+    # [rad/s]; rest_speed: speed over p alpha above which the question is not asked; below `NOTHING` it always is [-].
     side = parameters.side(sign)
     unit = side.frequency_parameter * side.slenderness_angle
     held = ground.held(sign, stretch, tau)

@@ -32,11 +32,9 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
     engine: str = "auto",
     stream: int = 0,
 ) -> Response:
-    """Return how a plane body rocks without sliding or flying; on ground at rest without a motion.
-
-    rotation, angular_velocity: theta [rad] and theta' [rad/s] at the start; duration: how long to follow the body [s];
-    if not given, the motion and 15 / p after it, on ground at rest until it rests or lies, or 300 / p.
-    """
+    """Return how a plane body rocks without sliding or flying; on ground at rest without a motion."""
+    # rotation, angular_velocity: theta [rad] and theta' [rad/s] at the start; duration: how long to follow the body
+    # [s]; if not given, the motion and 15 / p after it, on ground at rest until it rests or lies, or 300 / p
     scale = checks.within("scale", scale, -1e6, 1e6)
     plausibility.warn(plausibility.of_scaled([motion], scale))
     parameters = RockingParameters.of_body(body, restitution, settings.gravity)

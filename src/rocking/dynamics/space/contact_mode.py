@@ -56,16 +56,13 @@ def rolling(contact: ContactSet) -> ContactSet:
 def supports(
     body: SpatialBody, contact: ContactSet, force: FloatArray, moment: FloatArray, up: FloatArray
 ) -> FloatArray:
-    """Return what must not be negative for the ground to give a force without pulling.
-
-    Horizontal forces are free, since nothing slips; what remains is where the vertical one acts. With M the moment
-    about the pivot and Z upwards, Z x M = sum N_i r_i over the points of contact: so an edge has the two forces at its
-    ends, and a face the moments of the vertical forces about each edge, over its distance scale.
-
-    force, moment: force of the ground and its moment about the pivot, in body axes [N], [N m]; or impulses; up:
-    vertical in body axes [-]. Returns vertical force at a vertex; at both ends of an edge; for a face N times the
-    distance of its centre of pressure from each edge over the size of the body [N].
-    """
+    """Return what must not be negative for the ground to give a force without pulling."""
+    # Horizontal forces are free, since nothing slips; what remains is where the vertical one acts. With M the moment
+    # about the pivot and Z upwards, Z x M = sum N_i r_i over the points of contact: so an edge has the two forces at
+    # its ends, and a face the moments of the vertical forces about each edge, over its distance scale. force, moment:
+    # force of the ground and its moment about the pivot, in body axes [N], [N m]; or impulses; up: vertical in body
+    # axes [-]. Returns vertical force at a vertex; at both ends of an edge; for a face N times the distance of its
+    # centre of pressure from each edge over the size of the body [N].
     normal = dot(force, up)
     if contact.axis is not None:
         second = dot(cross(up, moment), contact.axis) / contact.length  # Eq. 92

@@ -180,11 +180,9 @@ def _limits(settings: Settings) -> dict[str, Any]:
 
 
 def _body_table(bodies: Bodies, gravity: float) -> tuple[FloatArray, IntArray, FloatArray]:
-    """Return bodies as numbers.
-
-    Mass, frequency, size, lift, radius, centre, inertia; NaN where there is no body (shape (n, 17)). First vertex and
-    number of vertices, none for a round base (shape (n, 2)). Vertices of all of them [m] (shape (m, 2)).
-    """
+    """Return bodies as numbers."""
+    # Mass, frequency, size, lift, radius, centre, inertia; NaN where there is no body (shape (n, 17)). First vertex and
+    # number of vertices, none for a round base (shape (n, 2)). Vertices of all of them [m] (shape (m, 2)).
     numbers, corners = np.full((len(bodies), 17), np.nan), np.zeros((len(bodies), 2), np.int64)
     points: list[FloatArray] = []
     used = 0
@@ -234,11 +232,9 @@ def _moments(body: SpatialBody) -> FloatArray:
 
 
 def _position_table(bodies: Bodies) -> tuple[IntArray, FloatArray]:
-    """Return where the impulse of a landing of the whole base acts, which ked-3d needs.
-
-    First interval and number of intervals, none for a body whose distribution of mass is not known (shape (n, 2)).
-    First and last azimuth of an interval [rad], and the coefficients of k over it [-] (shape (m, 3 + HIGHEST)).
-    """
+    """Return where the impulse of a landing of the whole base acts, which ked-3d needs."""
+    # First interval and number of intervals, none for a body whose distribution of mass is not known (shape (n, 2)).
+    # First and last azimuth of an interval [rad], and the coefficients of k over it [-] (shape (m, 3 + HIGHEST)).
     places = np.zeros((len(bodies), 2), np.int64)
     rows: list[list[float]] = []
     for number, body in enumerate(bodies):
@@ -253,11 +249,9 @@ def _position_table(bodies: Bodies) -> tuple[IntArray, FloatArray]:
 
 
 def _motion_table(grounds: Sequence[SpatialGround]) -> tuple[int, IntArray, FloatArray, FloatArray]:
-    """Return motions as numbers.
-
-    Degree of all of them: 1 or 7. First time, first acceleration, number of stretches (shape (n, 3)). Ends of the
-    stretches of all of them [s]. Accelerations by motion, stretch, power and axis [m/s2].
-    """
+    """Return motions as numbers."""
+    # Degree of all of them: 1 or 7. First time, first acceleration, number of stretches (shape (n, 3)). Ends of the
+    # stretches of all of them [s]. Accelerations by motion, stretch, power and axis [m/s2].
     most = max(ground.coefficients.shape[2] for ground in grounds) - 1
     if most > 7:
         raise InvalidValueError(f"motions must be polynomials of degree at most 7, got {most}; sample them")

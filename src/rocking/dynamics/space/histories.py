@@ -33,11 +33,9 @@ def response_in_space(
     scale: float = 1.0,
     duration: float | None = None,
 ) -> SpatialResponse:
-    """Return how a body rocks in space; without any component, when it is let go.
-
-    duration: how long to follow the body [s]; if not given, the motion and 15 / p after it, on ground at rest until it
-    rests or lies, or 300 / p.
-    """
+    """Return how a body rocks in space; without any component, when it is let go."""
+    # duration: how long to follow the body [s]; if not given, the motion and 15 / p after it, on ground at rest until
+    # it rests or lies, or 300 / p
     made = SpatialBody.of(body)
     scale = checks.within("scale", scale, -1e6, 1e6)
     start = started(start, made.frequency(conventions.g))

@@ -46,13 +46,10 @@ def _least_pull(body: SpatialBody, state: SpatialState, touching: tuple[int, ...
 
 
 def stuck(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> Continuation:
-    """Return what impacts leave that pile up at one moment: the largest set of touching points, pulled or not.
-
-    A body that turns about the vertical on one corner while its neighbour chatters beside it comes to stick on both: in
-    the limit both are at rest, and without slip nothing else is. Its impulses show the pull: in truth a corner slips.
-
-    Returns edge or face, after a plastic impact.
-    """
+    """Return what impacts leave that pile up at one moment: the largest set of touching points, pulled or not."""
+    # A body that turns about the vertical on one corner while its neighbour chatters beside it comes to stick on both:
+    # in the limit both are at rest, and without slip nothing else is. Its impulses show the pull: in truth a corner
+    # slips. Returns edge or face, after a plastic impact.
     contact = next(candidates(body, touching))
     velocity = state.plastic(body, contact)
     return Continuation(contact, velocity, impulses(body, state, contact, velocity))

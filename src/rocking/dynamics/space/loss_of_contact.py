@@ -17,15 +17,11 @@ from rocking.portable import dot as dot_of
 
 
 def first_release(body: SpatialBody, contact: ContactSet, step: Step) -> tuple[float, int] | None:
-    """Return when the ground first lets go.
-
-    An end of an edge is released where its force would be a pull and its gap would open. Where it would not open (the
-    friction at that end holds it down, so that neither the edge nor its other end alone is without contradiction), the
-    edge stays, and the pull shows in `end_forces`: such a corner slips in truth.
-
-    Returns which: number of the end in the contact that is released, -1 for all contact; None instead of both if none
-    is.
-    """
+    """Return when the ground first lets go."""
+    # An end of an edge is released where its force would be a pull and its gap would open. Where it would not open (the
+    # friction at that end holds it down, so that neither the edge nor its other end alone is without contradiction),
+    # the edge stays, and the pull shows in `end_forces`: such a corner slips in truth. Returns which: number of the end
+    # in the contact that is released, -1 for all contact; None instead of both if none is.
     normal = _normal(body, contact, step)
     lost = first_zero(normal, started=False)
     found = [] if lost is None else [(lost, -1)]
@@ -112,15 +108,12 @@ _WHOLE = 1.0 - 1e-12
 def next_uplift(
     body: SpatialBody, ground: SpatialGround, rotation: FloatArray, gravity: float, since: tuple[int, float]
 ) -> tuple[int, float, tuple[int, ...]] | None:
-    """Return when the ground next lifts a body.
-
-    The centre of pressure is at c - h a / (g + a_z); it is inside while (c - v_i) . n_i (g + a_z) - h n_i . a >= 0 for
-    every edge, polynomials of time; for a round base while b^2 (g + a_z)^2 - |c (g + a_z) - h a|^2 >= 0.
-
-    gravity: acceleration of gravity [m/s2]. Returns tau: time within it, in units of its duration; edges: edges that
-    the centre of pressure crosses just then; empty where it jumps out of the base, and for a round base. None instead
-    of all three if it is never lifted.
-    """
+    """Return when the ground next lifts a body."""
+    # The centre of pressure is at c - h a / (g + a_z); it is inside while (c - v_i) . n_i (g + a_z) - h n_i . a >= 0
+    # for every edge, polynomials of time; for a round base while b^2 (g + a_z)^2 - |c (g + a_z) - h a|^2 >= 0. gravity:
+    # acceleration of gravity [m/s2]. Returns tau: time within it, in units of its duration; edges: edges that the
+    # centre of pressure crosses just then; empty where it jumps out of the base, and for a round base. None instead of
+    # all three if it is never lifted.
     stretch, tau = since
     if stretch >= ground.count:
         return None

@@ -156,10 +156,8 @@ class RecordFormat(ABC):
             raise TypeError(f"{cls.__name__}: say marks and top, or write recognises")
 
     def recognises(self, source: Source) -> bool:
-        """Return whether the content looks like this format: all marks but one are there; never raises.
-
-        A damaged header must not turn a file into a nameless table of numbers.
-        """
+        """Return whether the content looks like this format: all marks but one are there; never raises."""
+        # a damaged header must not turn a file into a nameless table of numbers
         top = source.lines[: self.top] if source.is_text else []
         return sum(any(re.match(mark, line) for line in top) for mark in self.marks) >= len(self.marks) - 1
 

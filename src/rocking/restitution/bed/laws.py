@@ -56,15 +56,12 @@ class ContactLaw(ABC):
 
 
 def force(law: LawNumbers, depth: FloatArray, speed: FloatArray, deepest: FloatArray) -> FloatArray:
-    """Return the force of one copy of a law, written without its branches.
-
-    Kelvin-Voigt ``F = max(0, k d + c d')``, Hunt-Crossley ``F = k d^n max(0, 1 + chi d')``, plastic unloading ``F =
-    max(0, min(k d, k / e^2 (d - d_p)))`` with the set ``d_p = (1 - e^2) d_max``; zero for d <= 0. See
-    docs/theory/contact_bed.md; Walton and Braun (1986) for the unloading branch.
-
-    depth: depths d of the points [m]; speed: their rates d', positive while they sink [m/s]; deepest: greatest depths
-    so far; only plastic unloading remembers them [m]. Returns forces on the body, upwards [N].
-    """
+    """Return the force of one copy of a law, written without its branches."""
+    # Kelvin-Voigt ``F = max(0, k d + c d')``, Hunt-Crossley ``F = k d^n max(0, 1 + chi d')``, plastic unloading ``F =
+    # max(0, min(k d, k / e^2 (d - d_p)))`` with the set ``d_p = (1 - e^2) d_max``; zero for d <= 0. See
+    # docs/theory/contact_bed.md; Walton and Braun (1986) for the unloading branch. depth: depths d of the points [m];
+    # speed: their rates d', positive while they sink [m/s]; deepest: greatest depths so far; only plastic unloading
+    # remembers them [m]. Returns forces on the body, upwards [N].
     pressed = np.maximum(depth, 0.0)
     if law.kind is LawKind.KELVIN_VOIGT:
         value = law.stiffness * depth + law.damping * speed  # Eq. 117

@@ -169,11 +169,9 @@ def _accelerations(values: object) -> tuple[float, float]:
 
 
 def _release(rigid: RigidRocking, rotation: float | None, angular_velocity: float | None) -> tuple[float, float]:
-    """Return the angle of release [rad] and the velocity of landing [rad/s], one from the other.
-
-    The body starts as high as it must to land with the velocity asked for, at rest if half its range of rotations is
-    enough.
-    """
+    """Return the angle of release [rad] and the velocity of landing [rad/s], one from the other."""
+    # the body starts as high as it must to land with the velocity asked for, at rest if half its range of rotations is
+    # enough
     if (rotation is None) == (angular_velocity is None):
         raise InvalidValueError("give rotation or angular_velocity, one of them: each follows from the other")
     if len(rigid.bed.positions) < 2 or not rigid.bed.ends[0] < 0.0 < rigid.bed.ends[1]:

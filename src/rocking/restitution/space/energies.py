@@ -116,10 +116,8 @@ def unit_energies(result: SpatialRestitution | SpatialImpact, units: Units | int
 
 
 def lost_density(impact: SpatialImpact, part: Part, points: FloatArray) -> FloatArray:
-    """Return the energy that stages 1 and 2 take at points of a part [m], over its volume [J/m3].
-
-    The body stands upright, and the points are in the user's coordinates.
-    """
+    """Return the energy that stages 1 and 2 take at points of a part [m], over its volume [J/m3]."""
+    # the body stands upright, and the points are in the user's coordinates
     (solid, origin), _ = impact.standing_solid, impact.placed_solid
     before, _, left = stage_velocities(impact, checks.real_array("points", points, "m") - solid.origin + origin)
     density: FloatArray = 0.5 * part.density * (np.square(before).sum(axis=1) - np.square(left).sum(axis=1))

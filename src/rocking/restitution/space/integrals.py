@@ -38,10 +38,8 @@ _CACHED = 256
 
 
 def line_moment(solid: Solid, edge: Edge) -> float:
-    """Return ``Int z^4/(t^2 + z^2) dm`` about a line, the numerator of Eq. 17 (Mao et al. 2024) in space.
-
-    For extrusions along the line it is the exact integral of the polygon times the length.
-    """
+    """Return ``Int z^4/(t^2 + z^2) dm`` about a line, the numerator of Eq. 17 (Mao et al. 2024) in space."""
+    # for extrusions along the line it is the exact integral of the polygon times the length
     return _line_moment(solid, *edge.point.tolist(), *edge.direction.tolist())
 
 

@@ -104,11 +104,9 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
         ]
 
     def resurrected(self, wider_than: float = 0.0) -> list[int]:
-        """Return which motions leave the body standing at levels above one at which they overturn it.
-
-        Long records have survivals as narrow as anyone cares to search for, in which the body balances on its corner; a
-        width over the lowest of these levels such as 0.01 leaves these out [-].
-        """
+        """Return which motions leave the body standing at levels above one at which they overturn it."""
+        # long records have survivals as narrow as anyone cares to search for, in which the body balances on its corner;
+        # a width over the lowest of these levels such as 0.01 leaves these out [-]
         least = checks.within("wider_than", wider_than, 0.0, 1e6)
         return sorted({motion for motion, low, high in self.survivals if high - low > least * low})
 

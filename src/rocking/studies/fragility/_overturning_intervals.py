@@ -78,13 +78,11 @@ def brackets_of(motion: IntArray, levels: FloatArray, sides: IntArray) -> Outcom
 
 
 def refined(brackets: OutcomeBrackets, outcomes: Outcomes, tolerance: float) -> OutcomeBrackets:
-    """Return narrower brackets, all cut at once in every round, to a width over level [-].
-
-    Levels that overturn to the right and levels that overturn to the left are both open sets, so that between two of
-    them there is one that leaves the body standing: it is searched for, and splits the bracket. The first round keeps
-    every change of outcome that it finds; later ones the lowest in each bracket, so that a fractal boundary cannot make
-    their number explode. A bracket within which a history fails stays as it is.
-    """
+    """Return narrower brackets, all cut at once in every round, to a width over level [-]."""
+    # Levels that overturn to the right and levels that overturn to the left are both open sets, so that between two of
+    # them there is one that leaves the body standing: it is searched for, and splits the bracket. The first round keeps
+    # every change of outcome that it finds; later ones the lowest in each bracket, so that a fractal boundary cannot
+    # make their number explode. A bracket within which a history fails stays as it is.
     done = brackets.chosen(slice(0, 0))
     first = True
     while len(brackets):

@@ -94,10 +94,8 @@ class CloudAnalysis(FragilityAnalysis):
         return clearly_lifted(self.responses, self.least)
 
     def clear_share(self, level: FloatArray) -> FloatArray:
-        """Return how many of the histories that rocked and stayed standing were clearly lifted, at levels [-].
-
-        A lognormal curve where the outcomes fix one, else their share at all levels.
-        """
+        """Return how many of the histories that rocked and stayed standing were clearly lifted, at levels [-]."""
+        # a lognormal curve where the outcomes fix one, else their share at all levels
         rocked, fit = self.responses.rocked, self._clear_fit
         if fit is not None and fit.exists:
             return np.asarray(fit.probability(level))
@@ -121,10 +119,8 @@ class CloudAnalysis(FragilityAnalysis):
         return np.asarray(self.fits["rocking"].probability(levels), dtype=np.float64)
 
     def probability(self, level: Any, rotation: float) -> FloatArray:
-        """Return the probability that the rotation exceeds a value over alpha, at least `least` [-], at levels.
-
-        P(overturned) + P(rocked, not overturned) P(rotation exceeded | rocked, not overturned).
-        """
+        """Return the probability that the rotation exceeds a value over alpha, at least `least` [-], at levels."""
+        # P(overturned) + P(rocked, not overturned) P(rotation exceeded | rocked, not overturned)
         parts = self.parts(level, rotation)
         return parts["overturned"] + parts["exceeded"]  # Eq. 221
 

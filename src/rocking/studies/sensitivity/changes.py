@@ -188,11 +188,9 @@ def curve_change(
     repetitions: int = 1000,
     seed: int = 0,
 ) -> CurveChange:
-    """Return what changes from one fragility curve (median, dispersion) to another, with 95 % intervals.
-
-    The intervals come from motions drawn with replacement. Both curves of a repetition are fitted to the same
-    motions, so that what the motions have in common cancels.
-    """
+    """Return what changes from one fragility curve (median, dispersion) to another, with 95 % intervals."""
+    # The intervals come from motions drawn with replacement. Both curves of a repetition are fitted to the same
+    # motions, so that what the motions have in common cancels.
     at = checks.positive_array("levels", levels)
     if at.ndim != 1 or at.size < 2 or np.any(np.diff(at) <= 0.0):
         raise InvalidValueError(f"levels must be two or more numbers, each above the one before, got {levels!r:.60}")
