@@ -56,42 +56,27 @@ __all__ = [
     "synthetic",
 ]
 
+_HOMES = {
+    "bodies": ("Block", "MassPoints", "Region", "Section", "Solid", "bodies"),
+    "bodies.formats": ("read_body",),
+    "campaigns": ("Campaign",),
+    "dynamics": ("Response", "dynamics", "free_rocking", "simulate", "simulate_many"),
+    "errors": ("errors",),
+    "evidence": ("evidence",),
+    "examples": ("examples",),
+    "motions": ("GroundMotion", "motions", "pulses", "synthetic"),
+    "motions.formats": ("read_motion",),
+    "outcome": ("Outcome",),
+    "plots": ("plots",),
+    "reports": ("reports",),
+    "restitution": ("coefficient_of_restitution", "restitution"),
+    "studies": ("minimum_overturning_acceleration", "overturning_map", "rocking_spectrum", "studies"),
+    "studies.fragility": ("fragility",),
+    "studies.inventory": ("inventory",),
+}
+
 __getattr__, __dir__ = exports(
-    "rocking",
-    {
-        "Block": "rocking.bodies",
-        "Campaign": "rocking.campaigns",
-        "GroundMotion": "rocking.motions",
-        "MassPoints": "rocking.bodies",
-        "Outcome": "rocking.outcome",
-        "Region": "rocking.bodies",
-        "Response": "rocking.dynamics",
-        "Section": "rocking.bodies",
-        "Solid": "rocking.bodies.solid",
-        "bodies": "rocking.bodies",
-        "coefficient_of_restitution": "rocking.restitution",
-        "dynamics": "rocking.dynamics",
-        "errors": "rocking.errors",
-        "evidence": "rocking.evidence",
-        "examples": "rocking.examples",
-        "fragility": "rocking.studies.fragility",
-        "free_rocking": "rocking.dynamics",
-        "inventory": "rocking.studies.inventory",
-        "minimum_overturning_acceleration": "rocking.studies",
-        "motions": "rocking.motions",
-        "overturning_map": "rocking.studies",
-        "plots": "rocking.plots",
-        "pulses": "rocking.motions",
-        "read_body": "rocking.bodies.formats",
-        "read_motion": "rocking.motions.formats",
-        "reports": "rocking.reports",
-        "restitution": "rocking.restitution",
-        "rocking_spectrum": "rocking.studies",
-        "simulate": "rocking.dynamics",
-        "simulate_many": "rocking.dynamics",
-        "studies": "rocking.studies",
-        "synthetic": "rocking.motions",
-    },
+    __name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}
 )
 
 presenters.update({

@@ -32,23 +32,17 @@ __all__ = [
     "verdict",
 ]
 
+_HOMES = {
+    "_claims": ("claims",),
+    "_coefficient_table": ("coefficient_table",),
+    "_errata": ("errata",),
+    "_league": ("league", "verdict"),
+    "_restitution_distribution": ("RestitutionDistribution", "restitution_distribution"),
+    "calibration": ("Calibration", "calibrate", "interval_for"),
+    "measurements": ("DataSet", "all_measurements", "datasets"),
+    "recommendation": ("ModelForBody", "Recommendation"),
+}
+
 __getattr__, __dir__ = exports(
-    __name__,
-    {
-        "Calibration": "rocking.evidence.calibration",
-        "DataSet": "rocking.evidence.measurements",
-        "ModelForBody": "rocking.evidence.recommendation",
-        "Recommendation": "rocking.evidence.recommendation",
-        "RestitutionDistribution": "rocking.evidence._restitution_distribution",
-        "all_measurements": "rocking.evidence.measurements",
-        "calibrate": "rocking.evidence.calibration",
-        "claims": "rocking.evidence._claims",
-        "coefficient_table": "rocking.evidence._coefficient_table",
-        "datasets": "rocking.evidence.measurements",
-        "errata": "rocking.evidence._errata",
-        "interval_for": "rocking.evidence.calibration",
-        "league": "rocking.evidence._league",
-        "restitution_distribution": "rocking.evidence._restitution_distribution",
-        "verdict": "rocking.evidence._league",
-    },
+    __name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}
 )
