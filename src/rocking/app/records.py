@@ -120,7 +120,6 @@ class RecordStore:
         return content
 
     def delete(self, sha: str) -> None:
-        """Remove a file."""
         with self._lock:
             self.get(sha)
             (self.folder / f"{sha}.json").unlink(missing_ok=True)

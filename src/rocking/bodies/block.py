@@ -95,7 +95,6 @@ class Block(Body):
         self._check_support()
 
     def __repr__(self) -> str:
-        """Sizes and density, and what is known beside."""
         named = {name: getattr(self, name) for name in ("width", "height", "depth", "density")}
         named |= {} if self.known is None else self.known.given()
         return f"Block({', '.join(f'{name}={value!r}' for name, value in named.items())})"

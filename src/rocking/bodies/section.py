@@ -105,7 +105,6 @@ class Section(Body):
         self._check_support()
 
     def __repr__(self) -> str:
-        """Name, regions and feet."""
         left, right = self.feet
         vertices = sum(len(ring) for region in self.regions for ring in region.rings)
         return f"Section({len(self.regions)} region(s), {vertices} vertices, feet=({left:g}, {right:g}) m)"

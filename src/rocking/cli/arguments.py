@@ -160,7 +160,6 @@ class Arguments:
 
     @property
     def solid(self) -> bool:
-        """Whether the body is one in space."""
         body = self.options.get("body")
         return body is not None and describes_solid(body)
 

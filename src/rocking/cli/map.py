@@ -160,12 +160,10 @@ class MapAnswer:
 
     @property
     def axes(self) -> "tuple[Axis, Axis]":
-        """Axes x and y."""
         return self.arrays.axes
 
     @property
     def islands(self) -> Any:
-        """Safe islands of the map."""
         from rocking.studies.islands import safe_islands
 
         return safe_islands(self.arrays)

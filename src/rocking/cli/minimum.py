@@ -115,7 +115,6 @@ class MinimumAnswer:
 
     @property
     def label(self) -> str:
-        """The restitution in words."""
         asked = self.problem.restitution
         return COMPLEMENTARITY if asked is None else str(getattr(asked, "label", asked))
 

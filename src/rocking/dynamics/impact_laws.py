@@ -163,7 +163,6 @@ class SpeedRestitution(ImpactLaw):
     seed: int = 0
 
     def __post_init__(self) -> None:
-        """Check the points."""
         speeds = _row("at", self.at, "rad/s")
         if speeds[0] < 0.0 or np.any(np.diff(speeds) <= 0.0):
             raise InvalidValueError(f"at must be speeds >= 0 that increase [rad/s], got {speeds[:4].tolist()}")
@@ -196,7 +195,6 @@ class DrawnRestitution(ImpactLaw):
     at: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
-        """Check quantiles and seed."""
         quantiles = _by_side(self.factors)
         if np.any(np.diff(quantiles) < 0.0):
             raise InvalidValueError("factors must be quantiles, which never decrease")

@@ -129,7 +129,6 @@ class ResponseBase(Exportable):
     trajectory: Any  # what the engine returned: outcome, status, overturning_time, still_rocking, engine
 
     def __repr__(self) -> str:
-        """Outcome in words, and which engine found it."""
         return f"<{type(self).__name__}: {self.summary} [{self.engine}]>"
 
     @property

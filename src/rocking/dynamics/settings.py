@@ -110,7 +110,6 @@ class Settings:
     bounce_law: str = "newton"
 
     def __post_init__(self) -> None:
-        """Check every value."""
         if self.friction is not None:
             self._check_ground()
         elif self.bounce or self.bounce_law != "newton":

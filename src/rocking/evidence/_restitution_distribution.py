@@ -54,7 +54,6 @@ class RestitutionDistribution:
     extrapolated: bool
 
     def __repr__(self) -> str:
-        """Return the numbers that matter, with what was cut off."""
         cut = ", ".join(f"{foot}={percent(self.cut[foot])} outside [0, {self.bounds[foot]:.6g}]" for foot in FEET)
         return (
             f"RestitutionDistribution(onto={self.onto!r}, mean={self.mean:.4g}, "

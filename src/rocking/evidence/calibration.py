@@ -396,7 +396,6 @@ class Coverage:
 
     @property
     def sentence(self) -> str:
-        """The counts in words."""
         groups = ", ".join(
             f"{inside} of {count} of {'Table 1' if name == 'table1' else 'group ' + name}"
             for name, (inside, count) in self.by_group.items()

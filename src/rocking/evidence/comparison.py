@@ -45,7 +45,6 @@ class Difference:
         return int(self.low > 0.0) - int(self.high < 0.0)
 
     def __str__(self) -> str:
-        """Return the difference and its interval."""
         return f"{self.value:+.4f} ({self.low:+.4f} to {self.high:+.4f})"
 
 
@@ -66,7 +65,6 @@ class Comparison:
         return int(self.low > 0.0) - int(self.high < 0.0)
 
     def sentence(self, one: str, other: str) -> str:
-        """Return the outcome in words."""
         numbers = (
             f"{self.first:.4f} for {one} against {self.second:.4f} for {other}, difference "
             f"{self.first - self.second:+.4f}, 95 % interval {self.low:+.4f} to {self.high:+.4f}"

@@ -56,12 +56,10 @@ class DataSet:
     printed: dict[str, FloatArray]
 
     def __repr__(self) -> str:
-        """Name, how much, and between what."""
         between = f", h/b {self.slenderness.min():g} to {self.slenderness.max():g}" if len(self) else ""
         return f"<DataSet {self.name}: {len(self)} measurements of r{between}>"
 
     def __len__(self) -> int:
-        """Return the number of rows."""
         return len(self.slenderness)
 
     @cached_property

@@ -134,7 +134,6 @@ class Overturned:
     high: float
 
     def __str__(self) -> str:
-        """Return the share and its interval."""
         share = percent(self.count / self.draws)
         return f"{share} of {self.draws} draws overturn (95 % interval {percent(self.low)} to {percent(self.high)})"
 
@@ -203,7 +202,6 @@ class Recommendation:
         return words.table(self)
 
     def __str__(self) -> str:
-        """Return the table and the sentences."""
         head, rows = self.table
         widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
         lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in (head, *rows)]

@@ -24,15 +24,12 @@ class Catalogue(Mapping[str, Example]):
         return self._examples[name]
 
     def __iter__(self) -> Iterator[str]:
-        """Go through the names."""
         return iter(self._examples)
 
     def __len__(self) -> int:
-        """Return how many there are."""
         return len(self._examples)
 
     def __repr__(self) -> str:
-        """Return a line for each: name, kind, what it is."""
         rows = [(each.name, each.kind, each.title) for each in self.values()]
         name, kind = (max((len(row[k]) for row in rows), default=0) for k in (0, 1))
         return "\n".join(f"{row[0]:<{name}}  {row[1]:<{kind}}  {row[2]}" for row in rows)

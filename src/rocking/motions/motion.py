@@ -59,7 +59,6 @@ class GroundMotion:
     provenance: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        """Check, copy and freeze the samples."""
         step = checks.within("time_step", self.time_step, SHORTEST_STEP, LONGEST_STEP, unit="s", hint="in seconds")
         object.__setattr__(self, "time_step", step)
         object.__setattr__(self, "acceleration", _samples("acceleration", self.acceleration))
@@ -85,11 +84,9 @@ class GroundMotion:
         )
 
     def __len__(self) -> int:
-        """Return the number of samples."""
         return int(self.acceleration.size)
 
     def __repr__(self) -> str:
-        """Name, samples, step and peak."""
         both = "" if self.vertical is None else ", with vertical"
         size = f"{len(self)} samples at {self.time_step:g} s, peak {self.peak:.4g} m/s2"
         return f"<GroundMotion {self.name!r}: {size}{both}>"

@@ -198,7 +198,6 @@ class Sinusoids(Pulse):
     largest: float  # peak acceleration [m/s2]
 
     def __post_init__(self) -> None:
-        """Check the peak."""
         self._check_peak()
 
     @property
@@ -256,7 +255,6 @@ class Ricker(Pulse):
     shape: Literal["symmetric", "antisymmetric"] = "symmetric"  # which of the two
 
     def __post_init__(self) -> None:
-        """Check the peak."""
         self._check_peak()
 
     @property

@@ -137,7 +137,6 @@ class Validation:
         return tuple(found)
 
     def __str__(self) -> str:
-        """Return the sentences."""
         return "\n".join(self.sentences)
 
     __repr__ = __str__

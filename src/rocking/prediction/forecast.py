@@ -151,7 +151,6 @@ class Prediction:
         return tuple(found)
 
     def __str__(self) -> str:
-        """Return the sentences and what was assumed."""
         return "\n".join([*self.sentences, *(f"assumed: {each}" for each in self.assumed)])
 
     __repr__ = __str__

@@ -108,7 +108,6 @@ class ContactBedModel(InertiaModel):
     inertia_only = True
 
     def __post_init__(self) -> None:
-        """Refuse what is no bed."""
         number = checks.within("points", self.points, 2, 1000)
         if number != int(number):
             raise InvalidValueError(f"points must be a whole number, got {self.points}")

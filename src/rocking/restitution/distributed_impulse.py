@@ -58,7 +58,6 @@ class DistributedImpulse(InertiaModel):
     trials = ("", "q=0", "q=0.5", "q=4")
 
     def __post_init__(self) -> None:
-        """Refuse an exponent that is no pressure law."""
         checks.within("q", self.q, 0.0, 1e6, hint="beyond, the model is Housner's")
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:

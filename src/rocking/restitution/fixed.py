@@ -45,7 +45,6 @@ class Fixed(RestitutionModel):
     trials = ("r=0.7",)
 
     def __post_init__(self) -> None:
-        """Refuse what is no coefficient."""
         checks.within("r", self.r, 0.0, 1.0, hint="a velocity ratio; is it an energy ratio or a percentage?")
         object.__setattr__(self, "slender_limit", self.r)
         object.__setattr__(self, "sees_old_foot", self.r == 1.0)

@@ -59,7 +59,6 @@ class ShiftedImpulse(InertiaModel):
     trials = ("", "k=0", "k=1")
 
     def __post_init__(self) -> None:
-        """Refuse an impulse outside the base."""
         checks.within("k", self.k, 0.0, 1.0, hint="the impulse acts between the plumb line (0) and the foot (1)")
         object.__setattr__(self, "keeps_energy", self.k >= 0.5)  # one behind may leave more than there was
 

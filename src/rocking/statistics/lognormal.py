@@ -73,7 +73,6 @@ class LognormalFit:
     curves: FittedCurves | None = None
 
     def __repr__(self) -> str:
-        """Median and dispersion, if there are any, and from how much."""
         found = "no curve" if self.curve is None else "median {:.4g}, dispersion {:.3g}".format(*self.curve)
         return f"<LognormalFit: {found}, from {self.observations:g} outcomes>"
 

@@ -35,7 +35,6 @@ class OnLine:
     line: Line  # the lines, one a row
 
     def rows(self, index: Any) -> Self:
-        """Return some of the functions."""
         return type(self)(self.model.rows(index), Line(*(part[index] for part in self.line)))
 
     def derivatives(self, theta: FloatArray) -> Derivatives:
@@ -77,7 +76,6 @@ class Constraint(ABC):
         return np.repeat(np.append(0.0, SLOPES)[:, None], value.size, axis=1)
 
     def rows(self, index: Any) -> Self:
-        """Return the constraint of some rows."""
         return type(self)(*(value[index] for value in vars(self).values()))
 
 

@@ -39,7 +39,6 @@ class SaltelliDesign:
     seed: int = 0  # of the scrambled Sobol sequence
 
     def __post_init__(self) -> None:
-        """Check the count."""
         count = checks.whole("count", self.count, 2, 1 << 24)
         if count & (count - 1):
             near = 1 << count.bit_length()

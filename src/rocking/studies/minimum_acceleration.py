@@ -58,7 +58,6 @@ class Transitions:
     lost_contact: FloatArray = field(default_factory=lambda: np.empty(0))
 
     def __repr__(self) -> str:
-        """Where it overturns, and how closely that was looked for."""
         stretches = self.overturning_intervals
         falls = " and ".join(f"from {low:.4g} to {high:.4g}" for low, high in stretches[:_FEW])
         if len(stretches) > _FEW:  # under a record there may be hundreds

@@ -62,7 +62,6 @@ class Column:
         return Quantity("", self.unit, self.meaning, dict(self.codes), self.standard_name).attributes
 
     def __len__(self) -> int:
-        """Return the number of rows."""
         return int(self.values.size if self.index is None else self.index.size)
 
     @property
@@ -109,7 +108,6 @@ class Table:
         return cls(row, {name: Column(values, "") for name, values in columns.items()})
 
     def __len__(self) -> int:
-        """Return the number of rows."""
         return len(next(iter(self.columns.values())))
 
     @property
@@ -152,7 +150,6 @@ class Grid:
         return tuple(self.dims.values())
 
     def __len__(self) -> int:
-        """Return the number of rows."""
         return math.prod(self.shape)
 
     @property

@@ -149,7 +149,6 @@ class Sessions:
         return hmac.compare_digest(_digest(key), _digest(self.key))
 
     def sign_out(self, value: str | None) -> None:
-        """Forget a session."""
         with self._lock:
             self._sessions.pop(_known(value, self._sessions) or b"", None)
 

@@ -40,7 +40,6 @@ class Polyhedron(Shape):
         self._check_volume()
 
     def __repr__(self) -> str:
-        """Vertices, faces and volume."""
         return (
             f"{type(self).__name__}({len(self.vertices)} vertices, {len(self.faces)} faces, {self._moments.mass:g} m3)"
         )

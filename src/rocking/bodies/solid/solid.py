@@ -132,7 +132,6 @@ class Solid:
         self._check_support()
 
     def __repr__(self) -> str:
-        """Parts, mass and base."""
         base = self.local_base
         kind = f"{len(base.vertices)} corners" if isinstance(base, SupportPolygon) else "a circle"
         return f"Solid({len(self.local_parts)} part(s), {self.mass:g} kg, on {kind})"

@@ -52,7 +52,6 @@ class Turned(Shape):
         self.meridians, self.half_axes = meridians, half_axes
 
     def __repr__(self) -> str:
-        """Pieces and volume."""
         return f"Turned({len(self.meridians)} pieces, {self.moments().mass:g} m3)"
 
     def moments(self) -> SolidMoments:

@@ -38,7 +38,6 @@ class Units:
     declared_order: int
 
     def __len__(self) -> int:
-        """Return the number of units."""
         return len(self.mass)
 
 

@@ -169,7 +169,6 @@ class Start:
     vertical_velocity: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check every value."""
         half = 0.5 * math.pi
         checks.within(
             "rotation", self.rotation, -half, half, unit="rad", open_low=True, open_high=True, hint="degrees?"

@@ -66,7 +66,6 @@ class History:
     end: float = 0.0  # when the history ends [s]
 
     def __post_init__(self) -> None:
-        """Make room for the samples."""
         self.samples = np.full((self.count + 1, len(SAMPLED)), math.nan)
 
     @property
@@ -77,7 +76,6 @@ class History:
 
     @property
     def outcome(self) -> Outcome:
-        """How it ended."""
         if self.status is not Status.GOOD or self.lies:
             return Outcome.OVERTURNED if self.status is Status.GOOD else Outcome.FAILED
         seen = {mode.regime for _, _, mode in self.intervals}

@@ -50,7 +50,6 @@ class GroundContact:
     bounce_law: str = "newton"
 
     def __post_init__(self) -> None:
-        """Check every value."""
         checks.within("friction", self.friction, 0.0, 1e6, hint="1e6 for feet that never slide")
         hint = "a ratio of velocities, impulses or, squared, of energies; at 1 bounces never end"
         checks.within("bounce", self.bounce, 0.0, 1.0, open_high=True, hint=hint)

@@ -36,7 +36,6 @@ class FixedPosition:
     k: float
 
     def __post_init__(self) -> None:
-        """Check the value."""
         object.__setattr__(self, "k", checks.within("k", self.k, 0.0, 1.0))
 
 

@@ -57,7 +57,6 @@ class Rows:
             raise InvalidValueError(f"rows must be numbers, or arrays of {count}: {error}") from error
 
     def __len__(self) -> int:
-        """Return the number of histories."""
         return int(self.motion.size)
 
     def part(self, first: int, last: int) -> "Rows":
@@ -76,7 +75,6 @@ class Batch:
     engine: str = "auto"  # which engine
 
     def __post_init__(self) -> None:
-        """Check the threads and the motions."""
         check_threads(self.threads)
         if any(isinstance(motion, Components) for motion in self.motions) and not hasattr(type(self.law), "on_hull"):
             raise InvalidValueError("a motion of several components is for bodies in space; a plane body takes one")

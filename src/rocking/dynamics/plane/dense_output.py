@@ -83,7 +83,6 @@ class DenseOutput:
 
     @property
     def length(self) -> FloatArray:
-        """Length of each interval [s]."""
         return self.end - self.start
 
     def places(self, time: FloatArray) -> IntArray:

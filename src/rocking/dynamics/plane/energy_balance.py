@@ -24,7 +24,6 @@ class ResponseEnergy:
     lost: FloatArray  # at impacts since the start [J]
 
     def __repr__(self) -> str:
-        """How much is lost, and how well the sum closes."""
         return f"<ResponseEnergy: {self.lost[-1]:.4g} J lost at impacts; closes to {self.closure:.1e}>"
 
     @property
@@ -81,7 +80,6 @@ class GroundForces:
     friction_of_impacts: float  # largest ratio of the impulses at an impact [-]
 
     def __repr__(self) -> str:
-        """Whether pure rocking is credible, and what it takes."""
         return f"<GroundForces: {'; '.join(self.warnings()) or f'friction {self.friction_demand:.3g} needed'}>"
 
     @property

@@ -51,7 +51,6 @@ class SpatialBatch:
         return self.values[name].reshape(self.shape)
 
     def __len__(self) -> int:
-        """Return the number of histories."""
         return int(np.prod(self.shape))
 
     @property

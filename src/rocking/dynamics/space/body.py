@@ -95,7 +95,6 @@ class SpatialBody:
     matter: Matter | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check and freeze."""
         object.__setattr__(self, "mass", checks.positive("mass", self.mass, "kg"))
         object.__setattr__(self, "centre", finite("centre", self.centre, (3,), "m"))
         object.__setattr__(self, "inertia", checked_inertia(self.inertia))

@@ -89,7 +89,6 @@ class RowTable:
     horizons: FloatArray  # how long to follow each body [s]; shape (bodies, motions)
 
     def __len__(self) -> int:
-        """Return the number of rows."""
         return int(np.prod(self.shape))
 
     def piece(self, first: int, last: int) -> tuple[FloatArray, IntArray]:

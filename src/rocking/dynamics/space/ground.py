@@ -27,7 +27,6 @@ class SpatialGround:
 
     @property
     def count(self) -> int:
-        """Number of stretches."""
         return len(self.coefficients)
 
     @property

@@ -53,7 +53,6 @@ class ModelLaw:
 
     @property
     def label(self) -> str:
-        """Name of the model."""
         return self.model.name
 
     def velocity_after(self, body: SpatialBody, impact: SpatialImpact) -> FloatArray:

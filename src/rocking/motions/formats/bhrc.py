@@ -62,7 +62,6 @@ class Bhrc(RecordFormat):
         return Record(self.name, tuple(components), header, metadata)
 
     def write(self, record: Record) -> bytes:
-        """Return a Volume 1 file."""
         rows = headers.in_unit(record, self.name, "g/10", 3)
         names = [part.name for part in record.components]
         if len(set(names)) != len(names) or not set(names) <= {"L", "V", "T"}:

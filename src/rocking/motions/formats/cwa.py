@@ -35,7 +35,6 @@ class Cwa(RecordFormat):
     top: ClassVar[int] = 40
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the three components."""
         first = next((k for k, line in enumerate(source.lines) if line.startswith("#Data:")), None)
         if first is None or not source.is_text:
             raise source.error(None, "the line #Data: is missing")

@@ -93,7 +93,6 @@ class SmcUsgs(RecordFormat):
         return Record(self.name, (Component(name, values, unit, step, stated),), raw, metadata)
 
     def write(self, record: Record) -> bytes:
-        """Return an SMC file."""
         (given,) = headers.in_unit(record, self.name, "cm/s2", 1)
         component = record.components[0]
         words = [self._word(value) for value in given.tolist()]

@@ -19,7 +19,6 @@ class Distribution(ABC):
     high: float
 
     def __post_init__(self) -> None:
-        """Check the ends."""
         object.__setattr__(self, "low", checks.number("low", self.low))
         object.__setattr__(self, "high", checks.number("high", self.high))
         if not self.low < self.high:
@@ -56,7 +55,6 @@ class Uniform(Distribution):
     """
 
     def __str__(self) -> str:
-        """Kind and ends."""
         return f"uniform from {self.low:g} to {self.high:g}"
 
     def _cdf(self, value: FloatArray) -> FloatArray:
@@ -82,12 +80,10 @@ class LogUniform(Distribution):
     """
 
     def __post_init__(self) -> None:
-        """Check the ends."""
         super().__post_init__()
         checks.positive("low", self.low)
 
     def __str__(self) -> str:
-        """Kind and ends."""
         return f"log-uniform from {self.low:g} to {self.high:g}"
 
     def _cdf(self, value: FloatArray) -> FloatArray:
@@ -120,14 +116,12 @@ class Lognormal(Distribution):
     deviation: float
 
     def __post_init__(self) -> None:
-        """Check the numbers."""
         super().__post_init__()
         checks.positive("low", self.low)
         checks.within("median", self.median, self.low, self.high)
         checks.positive("deviation", self.deviation)
 
     def __str__(self) -> str:
-        """Kind, median, deviation and ends."""
         cut = f"between {self.low:g} and {self.high:g}"
         return f"lognormal, median {self.median:g}, deviation of the logarithm {self.deviation:g}, {cut}"
 

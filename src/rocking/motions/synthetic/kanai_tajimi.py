@@ -38,7 +38,6 @@ class KanaiTajimi:
     damping: float = 0.6
 
     def __post_init__(self) -> None:
-        """Check the parameters."""
         object.__setattr__(self, "density", checks.positive("density", self.density, "m2/s3"))
         object.__setattr__(self, "frequency", checks.positive("frequency", self.frequency, "Hz"))
         damping = checks.within("damping", self.damping, 0.0, 1.0, open_low=True, open_high=True)
@@ -92,7 +91,6 @@ class Envelope:
     decay: float = 0.3
 
     def __post_init__(self) -> None:
-        """Check the parameters."""
         object.__setattr__(self, "rise", checks.within("rise", self.rise, 0.0, math.inf, unit="s"))
         plateau = checks.within("plateau", self.plateau, self.rise, math.inf, unit="s", hint="not before the rise")
         object.__setattr__(self, "plateau", plateau)

@@ -80,7 +80,6 @@ class PointSource:
     path_duration: float = 5e-5
 
     def __post_init__(self) -> None:
-        """Check the parameters."""
         checks.within("magnitude", self.magnitude, 0.0, 10.0)
         checks.within("distance", self.distance, REFERENCE_DISTANCE, 2e7, unit="m", hint="given in km?")
         checks.within("stress_drop", self.stress_drop, 1e3, 1e9, unit="Pa", hint="1 bar is 1e5 Pa")

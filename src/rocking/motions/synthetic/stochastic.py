@@ -51,7 +51,6 @@ class GammaModulation:
     a3: float
 
     def __post_init__(self) -> None:
-        """Check the parameters."""
         object.__setattr__(self, "a1", checks.positive("a1", self.a1, "m/s2"))
         object.__setattr__(self, "a2", checks.within("a2", self.a2, 1.0, 0.5 * (1.0 + NARROWEST)))
         object.__setattr__(self, "a3", checks.positive("a3", self.a3, "1/s"))
@@ -187,7 +186,6 @@ class NonstationaryFilter:
     lowest: float = 0.3
 
     def __post_init__(self) -> None:
-        """Check the parameters."""
         object.__setattr__(self, "frequency", checks.positive("frequency", self.frequency, "Hz"))
         object.__setattr__(self, "slope", checks.number("slope", self.slope, "Hz/s"))
         object.__setattr__(self, "middle", checks.within("middle", self.middle, 0.0, math.inf, unit="s"))

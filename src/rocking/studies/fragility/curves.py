@@ -153,7 +153,6 @@ class FragilityModel:
                 raise InvalidValueError(f"{name} must be {self.levels.size} counts, got shape {np.shape(counts)}")
 
     def __repr__(self) -> str:
-        """Name, measure, and the curves."""
         curves = "; ".join(f"{c.state}: median {c.median:.4g}, dispersion {c.dispersion:.3g}" for c in self.curves)
         return f"<FragilityModel {self.name!r} over {self.measure} [{self.unit}]: {curves or 'no curve'}>"
 

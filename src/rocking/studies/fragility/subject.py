@@ -311,7 +311,6 @@ class FragilityAnalysis(ABC):
     definition: ClassVar[str]
 
     def __repr__(self) -> str:
-        """How many histories, and what the curves are."""
         histories, measure = self.responses.outcome.size, self.subject.measure
         curves = "".join(f"\n  {name}: {fit!r}" for name, fit in self.fits.items())
         return f"<{type(self).__name__}: {histories} histories over {measure.name} [{measure.unit}]{curves}>"

@@ -182,7 +182,6 @@ class SampledHistories(Histories):
 
     @property
     def count(self) -> int:
-        """Number of histories."""
         return self.base.count
 
     @property
