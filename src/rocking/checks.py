@@ -30,6 +30,12 @@ def number(name: str, value: Any, unit: str = "-") -> float:
     return result
 
 
+def of_kind(name: str, value: object, kind: type | tuple[type, ...], words: str) -> None:
+    """Refuse what is of another kind than the one that the words say."""
+    if not isinstance(value, kind):
+        raise InvalidValueError(f"{name} must be {words}, got {value!r:.60}")
+
+
 def whole(name: str, value: Any, low: int = 0, high: int = 2**63 - 1) -> int:
     """Return `value` as a whole number between `low` and `high`."""
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= int(value) <= high:

@@ -227,13 +227,6 @@ class ResponseBase(Exportable):
         return figure
 
     def exported(self) -> "Table":
-        """Return what the files of this response hold.
-
-        Returns
-        -------
-        Table
-            Samples, impacts, what else there is in intervals, and provenance, with units.
-        """
         from rocking.tables import Column, Table
 
         def columns(values: dict[str, Any]) -> dict[str, Column]:

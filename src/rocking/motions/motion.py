@@ -69,9 +69,7 @@ class GroundMotion:
                     f"vertical must have as many samples as acceleration, {self.acceleration.size}, got {vertical.size}"
                 )
             object.__setattr__(self, "vertical", vertical)
-        name: object = self.name
-        if not isinstance(name, str):
-            raise InvalidValueError(f"name must be a string, got {name!r:.60}")
+        checks.of_kind("name", self.name, str, "a string")
         object.__setattr__(self, "metadata", _metadata(self.metadata))
         object.__setattr__(self, "provenance", _provenance(self.provenance))
         plausibility.warn(self.doubts)
@@ -202,8 +200,7 @@ def _samples(name: str, values: Any) -> FloatArray:
 
 
 def _metadata(given: Any) -> Mapping[str, str]:
-    if not isinstance(given, Mapping):
-        raise InvalidValueError(f"metadata must be a mapping of strings to strings, got {given!r:.60}")
+    checks.of_kind("metadata", given, Mapping, "a mapping of strings to strings")
     return MappingProxyType({str(k): str(v) for k, v in given.items()})
 
 

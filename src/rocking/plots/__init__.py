@@ -18,9 +18,8 @@ if TYPE_CHECKING:
     from rocking.plots.inventory import inventory_picture
     from rocking.plots.overturning_map import overturning_map_picture, refined_map_picture
     from rocking.plots.paper_figures import paper_figure
-    from rocking.plots.prediction import prediction_picture
+    from rocking.plots.prediction import prediction_picture, reliability_picture
     from rocking.plots.regimes import regime_map_picture, regimes_picture
-    from rocking.plots.reliability import reliability_picture
     from rocking.plots.response import response_picture
     from rocking.plots.rocking_spectrum import rocking_spectrum_picture
     from rocking.plots.sensitivity import difference_map_picture, sensitivity_picture
@@ -81,6 +80,7 @@ _OTHERS = {
     "prediction_picture": "prediction",
     "record_set_picture": "ground_motion",
     "refined_map_picture": "overturning_map",
+    "reliability_picture": "prediction",
     "regime_map_picture": "regimes",
     "slices_picture": "solid",
     "transitions_of_many_picture": "transitions",

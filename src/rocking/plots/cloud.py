@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.plots.fragility import STATES
 from rocking.plots.labels import PEAK, axis_label, plain, plain_log, short_name
@@ -57,8 +58,7 @@ def cloud_picture(analysis: CloudAnalysis) -> "Figure":
     >>> cloud_picture(cloud(rk.Block(width=0.4, height=1.6), pulses)).axes[1].get_xlabel()
     'peak ground acceleration [m/s$^2$]'
     """
-    if not isinstance(analysis, CloudAnalysis):
-        raise InvalidValueError(f"analysis must be of cloud, got {analysis!r:.60}")
+    checks.of_kind("analysis", analysis, CloudAnalysis, "of cloud")
     if not analysis.fits["overturned"].exists:
         raise InvalidValueError(f"there is no curve of overturning to draw: {analysis.fits['overturned'].verdict}")
     figure, (upper, lower) = new_figure(SINGLE, 4.0, rows=2, sharex=True, height_ratios=[1.5, 1.0])
@@ -157,8 +157,7 @@ def measures_picture(found: MeasureComparison) -> "Figure":
     >>> sorted(label.get_text() for label in measures_picture(found).axes[0].get_yticklabels())
     ['PGA', 'PGV']
     """
-    if not isinstance(found, MeasureComparison):
-        raise InvalidValueError(f"found must be of compare_measures, got {found!r:.60}")
+    checks.of_kind("found", found, MeasureComparison, "of compare_measures")
     columns = list(found.scores[0].sufficiency)
     height = 1.25 + 0.19 * len(found.scores)
     figure, axes = new_figure(

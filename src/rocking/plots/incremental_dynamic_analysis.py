@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.errors import InvalidValueError
 from rocking.plots.labels import PEAK, axis_label, geometric, plain_log
 from rocking.plots.style import DASHED, GREY, INK, SINGLE, in_journal_style, legend_below, new_figure, stroke
 from rocking.studies.fragility._incremental_dynamic_analysis import IncrementalDynamicAnalysis
@@ -59,8 +59,7 @@ def incremental_dynamic_analysis_picture(analysis: IncrementalDynamicAnalysis) -
     >>> len(incremental_dynamic_analysis_picture(found).axes)
     2
     """
-    if not isinstance(analysis, IncrementalDynamicAnalysis):
-        raise InvalidValueError(f"analysis must be incremental, got {analysis!r:.60}")
+    checks.of_kind("analysis", analysis, IncrementalDynamicAnalysis, "incremental")
     figure, (left, right) = new_figure(SINGLE, 3.6, columns=2, sharey=True, width_ratios=[2.5, 1.0])
     for curve in analysis.curves:
         _curve(left, analysis.levels, curve)

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
+from rocking import checks
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
 from rocking.plots.labels import plain, wrapped
@@ -55,8 +56,7 @@ def inventory_picture(assessment: Assessment) -> "Figure":
     >>> figure.axes[0].get_xlabel()
     'share of motions that overturn it [-]'
     """
-    if not isinstance(assessment, Assessment):
-        raise InvalidValueError(f"assessment must be of an inventory, got {assessment!r:.60}")
+    checks.of_kind("assessment", assessment, Assessment, "of an inventory")
     verdicts = assessment.verdicts
     if not 1 <= len(verdicts) <= _MOST:
         raise InvalidValueError(

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking import checks
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.outcome import UNCOUNTED
@@ -236,8 +237,7 @@ def refined_map_picture(
     """
     from rocking.studies.adaptive_grid import RefinedMap
 
-    if not isinstance(points, RefinedMap):
-        raise InvalidValueError(f"points must be of refined_map, got {points!r:.60}")
+    checks.of_kind("points", points, RefinedMap, "of refined_map")
     if not boundary:
         raise InvalidValueError("boundary must have at least one polyline; nothing changes over this map")
     if window is not None and not all(low < high for low, high in window):

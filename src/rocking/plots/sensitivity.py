@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking import checks
 from rocking.conventions import percent
 from rocking.errors import InvalidValueError
 from rocking.plots.fragility import symbol
@@ -64,8 +65,7 @@ def sensitivity_picture(found: Sensitivity, *, unit: tuple[str, float] | None = 
     >>> [panel.get_title(loc="left") for panel in figure.axes[:2]]
     ['housner', 'ked']
     """
-    if not isinstance(found, Sensitivity):
-        raise InvalidValueError(f"found must be a Sensitivity, got {found!r:.60}")
+    checks.of_kind("found", found, Sensitivity, "a Sensitivity")
     if not 2 <= len(found.labels) <= _MOST:
         raise InvalidValueError(f"a picture holds 2 to {_MOST} choices, got {len(found.labels)}")
     if found.states:

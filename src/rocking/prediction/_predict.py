@@ -158,8 +158,7 @@ def _mechanics(
         if bounce:
             raise InvalidValueError(f"bounce is of plane bodies: in space corners do not bounce, got {bounce:g}")
         return SpaceMechanics(body, motions, given, gravity)
-    if not isinstance(body, Body):
-        raise InvalidValueError(f"body must be a Block, Section, MassPoints or Solid, got {body!r:.60}")
+    checks.of_kind("body", body, Body, "a Block, Section, MassPoints or Solid")
     from rocking.prediction.plane import PlaneMechanics, whole_settings
 
     return PlaneMechanics(body, motions, given, whole_settings(gravity, bounce, bounce_law))

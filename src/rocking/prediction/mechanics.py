@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking import plausibility
+from rocking import checks, plausibility
 from rocking.conventions import FloatArray
 from rocking.dynamics._simulate import components_of
 from rocking.errors import InvalidValueError
@@ -97,8 +97,7 @@ def several(motions: Any) -> Any:
 
 def parts(motion: Any) -> tuple[Any, Any, Any]:
     """Return what moves the ground along x, across it and upwards."""
-    if not isinstance(motion, (Mapping, GroundMotion, Pulse)):
-        raise InvalidValueError(f"motions must be records, pulses or pairs x and y, got {motion!r:.60}")
+    checks.of_kind("motions", motion, (Mapping, GroundMotion, Pulse), "records, pulses or pairs x and y")
     x, y, z = components_of(motion) if isinstance(motion, Mapping) else (motion, None, None)
     if x is None:
         raise InvalidValueError("a motion of components has one along x, got none")

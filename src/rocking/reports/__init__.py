@@ -6,17 +6,16 @@ from rocking.lazy import exports
 from rocking.reports.document import Document
 
 if TYPE_CHECKING:
-    from rocking.reports._prediction_report import prediction_report
+    from rocking.reports._predictions import prediction_report, validation_report
     from rocking.reports._response_report import response_report
-    from rocking.reports._validation_report import validation_report
 
 __all__ = ["Document", "prediction_report", "response_report", "validation_report"]
 
 __getattr__, __dir__ = exports(
     "rocking.reports",
     {
-        "prediction_report": "rocking.reports._prediction_report",
+        "prediction_report": "rocking.reports._predictions",
         "response_report": "rocking.reports._response_report",
-        "validation_report": "rocking.reports._validation_report",
+        "validation_report": "rocking.reports._predictions",
     },
 )

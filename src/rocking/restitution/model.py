@@ -165,8 +165,7 @@ class RestitutionModel(ABC):
         InvalidValueError
             If the foot is unknown or the model does not return a finite number.
         """
-        if not isinstance(body, Body):
-            raise InvalidValueError(f"body must be a Block, Section or MassPoints, got {body!r:.60}")
+        checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
         raw = checks.number(f"coefficient of model {self.name}", self.raw_coefficient(body, checks.foot("onto", onto)))
         return Restitution(self, raw, max(raw, 0.0), (Flag.STOPS,) if raw <= 0.0 else ())
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking import quantities
+from rocking import checks, quantities
 from rocking.bodies import Block, Body
 from rocking.conventions import FloatArray
 from rocking.dynamics._simulate import together
@@ -44,8 +44,7 @@ class Question:
     def __post_init__(self) -> None:
         if not isinstance(self.body, Body):
             object.__setattr__(self, "motion", together(self.motion))
-        if not isinstance(self.motion, (GroundMotion, Pulse, Components)):
-            raise InvalidValueError(f"motion must be a GroundMotion or a pulse, got {self.motion!r:.60}")
+        checks.of_kind("motion", self.motion, (GroundMotion, Pulse, Components), "a GroundMotion or a pulse")
         _ = self.parameters
 
     @cached_property

@@ -38,15 +38,7 @@ class Meridian:
 
 
 class Turned(Shape):
-    """A profile turned about the z axis, its plan stretched to an ellipse where asked for.
-
-    Parameters
-    ----------
-    meridians : tuple of Meridian
-        Profile from the axis at the bottom, counter-clockwise, to the axis at the top.
-    half_axes : (float, float)
-        Stretch along x and y [m].
-    """
+    """A profile, counter-clockwise from the axis back to it, turned about z; half_axes: stretch of its plan [m]."""
 
     def __init__(self, meridians: tuple[Meridian, ...], half_axes: tuple[float, float]) -> None:
         self.meridians, self.half_axes = meridians, half_axes
@@ -92,18 +84,8 @@ class Turned(Shape):
         return np.array([(middle - reach).min(axis=0), (middle + reach).max(axis=0)])
 
     def profile(self, chords: int = 48) -> tuple[FloatArray, FloatArray]:
-        """Return the profile as a polygon in the half plane.
-
-        Parameters
-        ----------
-        chords : int
-            Chords of an arc [-].
-
-        Returns
-        -------
-        radius, height : ndarray
-            Corners, from the axis at the bottom to the axis at the top [-] and [m].
-        """
+        """Return radius [-] and height [m] of corners from the axis at the bottom to that at the top."""
+        # chords: of an arc
         ends = [piece.at(np.linspace(0.0, 1.0, chords + 1 if piece.arc else 2)[:-1]) for piece in self.meridians]
         last = self.meridians[-1].at(np.array([1.0]))
         radius, height = (np.concatenate([*(end[i] for end in ends), last[i]]) for i in range(2))

@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.errors import InvalidValueError
 from rocking.outcome import Regime
 
 LEFT, RIGHT = -1, 1
@@ -33,8 +32,7 @@ class PlaneBase:
 
     @classmethod
     def of_body(cls, body: Body) -> "PlaneBase":
-        if not isinstance(body, Body):
-            raise InvalidValueError(f"body must be a Block, Section or MassPoints, got {body!r:.60}")
+        checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
         left, right = body.side("left"), body.side("right")
         mass = body.mass
         return cls(mass, body.moment_of_inertia / mass, right.centre_height, left.half_width, right.half_width)

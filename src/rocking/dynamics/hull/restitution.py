@@ -20,18 +20,7 @@ ImpulseLaw = Callable[[Vector, Vector], float]
 
 @dataclass(frozen=True)
 class FixedPosition:
-    """Restitution as the position k of the impulse of every landing on the base, in any direction.
-
-    Parameters
-    ----------
-    k : float
-        From 0, at the middle of the step, to 1, at the new vertex: Housner's impact [-].
-
-    Raises
-    ------
-    InvalidValueError
-        If k is outside of [0, 1].
-    """
+    """Position k of the impulse of every landing on the base: 0 at the middle of the step, 1 (Housner) at its end."""
 
     k: float
 
@@ -40,28 +29,8 @@ class FixedPosition:
 
 
 def law_of(restitution: Any, body: HullBody, base: int) -> ImpulseLaw:
-    """Return a law of impacts.
-
-    Parameters
-    ----------
-    restitution : {"housner-3d", "ked-3d"}, FixedPosition or float
-        Housner's impact (k = 1); the pivot-consistent KED, which needs the body's solid; or the coefficient of a
-        landing of the whole base in any direction [-].
-    body : HullBody
-        The body.
-    base : int
-        Number of the facet to which the coefficient belongs; steps elsewhere take k = 1.
-
-    Returns
-    -------
-    ImpulseLaw
-        k of every step.
-
-    Raises
-    ------
-    InvalidValueError
-        If the law is not known, or needs a solid that the body has not.
-    """
+    """Return k of every step, from the name of a model, a k, or the coefficient of a landing of the whole base."""
+    # the base is the facet to which the law belongs: steps elsewhere take k = 1
     if restitution in ("housner", "housner-3d"):
         return lambda _old, _new: 1.0
     if restitution in ("ked", "ked-3d"):

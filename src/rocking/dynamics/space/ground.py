@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.dynamics.taylor import shifted
 from rocking.errors import InvalidValueError
@@ -79,8 +80,7 @@ def ground_of(
 def _component(name: str, motion: Component) -> tuple[FloatArray, FloatArray]:
     if motion is None:
         return np.zeros(0), np.zeros((0, 1))
-    if not isinstance(motion, (GroundMotion, Pulse)):
-        raise InvalidValueError(f"{name} must be a GroundMotion, a pulse or None, got {motion!r:.60}")
+    checks.of_kind(name, motion, (GroundMotion, Pulse), "a GroundMotion, a pulse or None")
     segments = motion.segments()
     if segments.vertical is not None:
         raise InvalidValueError(

@@ -147,8 +147,7 @@ def with_pulse(residual: GroundMotion, pulse: Pulse, arrival: float) -> GroundMo
     0.5
     """
     residual = checked_motion(residual, "residual")
-    if not isinstance(pulse, Pulse):
-        raise InvalidValueError(f"pulse must be a pulse such as pulses.mavroeidis_papageorgiou(..), got {pulse!r:.60}")
+    checks.of_kind("pulse", pulse, Pulse, "a pulse such as pulses.mavroeidis_papageorgiou(..)")
     step, half = residual.time_step, 0.5 * pulse.duration
     arrival = checks.within(
         "arrival", arrival, half, MOST_SAMPLES * step - half, unit="s", hint="the pulse would begin before the motion"

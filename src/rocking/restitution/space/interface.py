@@ -107,8 +107,7 @@ def impact_in_space(solid: Solid, velocity: Any, *, pivot: Any, onto: Any, model
     >>> round(result.coefficient * 71, 9)
     59.0
     """
-    if not isinstance(solid, Solid):
-        raise InvalidValueError(f"solid must be a Solid, got {solid!r:.60}")
+    checks.of_kind("solid", solid, Solid, "a Solid")
     found = spatial_model(model)
     start, landing = _local(solid, "pivot", pivot), _local(solid, "onto", onto)
     before = vector("velocity", velocity, "rad/s")

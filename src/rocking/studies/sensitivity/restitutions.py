@@ -130,9 +130,7 @@ class SampledRestitution(DrawnRestitution):
         InvalidValueError
             If it is no such law.
         """
-        given: object = law
-        if not isinstance(given, RandomRestitution):
-            raise InvalidValueError(f"law must be a RandomRestitution, got {law!r:.60}")
+        checks.of_kind("law", law, RandomRestitution, "a RandomRestitution")
         return cls(law.factors, law.seed, law.times, law.cut)
 
     def content(self) -> dict[str, Any]:

@@ -1,0 +1,178 @@
+"""The reports of a prediction and of a validation: verdict, pictures, tables, and what was assumed."""
+
+from pathlib import Path
+
+from rocking import checks
+from rocking.conventions import percent
+from rocking.plots.prediction import prediction_picture, reliability_picture
+from rocking.prediction import Prediction, Validation
+from rocking.reports.document import Document, Paragraph, Picture, ReportSection, ReportTable, table
+from rocking.reports.render import write_report
+from rocking.spec.validation import FolderValidation
+from rocking.tables import target_of
+from rocking.version import SOFTWARE
+
+_MARKS = ((0.05, "good"), (0.5, "fair"))
+_MARKS_OF_FINDINGS = {"better": "good", "not resolved": "fair", "mixed": "fair", "worse": "bad"}
+_SCORES = {
+    "brier": "Brier [-]", "logarithmic": "logarithmic [nat]", "balanced_accuracy": "balanced accuracy [-]",
+    "bias": "bias [-]",
+}  # fmt: skip
+_PREDICTED = (
+    "Bodies that may be the one in question are drawn from what is known of it, each is followed under every motion, "
+    "and those that overturn are counted. Intervals are of 95 %."
+)
+_VALIDATED = (
+    "Bodies that may be the one in question are drawn from what is known of it and followed under the motion of each "
+    "trial; nothing is fitted to the outcomes. The plain curves are fitted to the outcomes under all other motions. "
+    "Intervals are of 95 %, whole motions drawn anew; differences are drawn in pairs. The verdict rests on the "
+    "differences of the Brier and the logarithmic score: balanced accuracy does not see how sure a forecast was."
+)
+
+
+def prediction_report(found: Prediction, path: str | Path, *, name: str = "", date: str = "") -> Path:
+    """Write the report of a prediction: verdict, picture, probabilities, what decides them, and what was assumed.
+
+    Parameters
+    ----------
+    found : Prediction
+        Of `rocking.prediction.predict`.
+    path : str or Path
+        A document (.pdf), or a web page of one file (.html).
+    name : str
+        What the body is called.
+    date : str
+        Day of the report, as it should be printed.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no prediction, or the ending of the path is another.
+    MissingExtraError
+        If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
+    """
+    checks.of_kind("found", found, Prediction, "a Prediction")
+    target = target_of(path)
+    write_report(prediction_document(found, name, date), {"prediction": lambda: prediction_picture(found)}, target)
+    return target
+
+
+def validation_report(found: FolderValidation, path: str | Path, *, date: str = "") -> Path:
+    """Write the report of a validation: verdict, reliability diagram, scores, and what was assumed.
+
+    Parameters
+    ----------
+    found : FolderValidation
+        As `rocking validate` finds it.
+    path : str or Path
+        A document (.pdf), or a web page of one file (.html).
+    date : str
+        Day of the report, as it should be printed.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no validation, or the ending of the path is another.
+    MissingExtraError
+        If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
+    """
+    checks.of_kind("found", found, FolderValidation, "a FolderValidation")
+    target = target_of(path)
+    pictures = {event: (lambda each=each: reliability_picture(each)) for event, each in found.found.items()}
+    write_report(validation_document(found, date), pictures, target)
+    return target
+
+
+def prediction_document(found: Prediction, name: str, date: str) -> Document:
+    """Return the content of the report of a prediction."""
+    chance = found.chances["overturning"]
+    mark = next((word for most, word in _MARKS if chance.high <= most), "bad")
+    picture = Picture(
+        "prediction", "How likely it overturns and rocks under each motion, and what decides whether it does"
+    )
+    failed = f", {found.failed} without a result" if found.failed else ""
+    sections = [
+        ReportSection("What will become of it", [*map(Paragraph, found.sentences[1:]), picture, _motions(found)]),
+        *([ReportSection("What decides it", [_shares(found)])] if found.shares else []),
+        _assumed(found),
+        ReportSection(
+            "How it was computed", [Paragraph(_PREDICTED), Paragraph(f"{_count(found)}{failed}; seed {found.seed}.")]
+        ),
+    ]
+    several = f"Under {len(found.motions)} motion{'' if len(found.motions) == 1 else 's'}"
+    return _document(name or "A body in an earthquake", several, date, found.verdict, mark, sections)
+
+
+def validation_document(found: FolderValidation, date: str = "") -> Document:
+    """Return the content of the report of a validation."""
+    rows = [(str(each.line), each.reason) for each in found.refused]
+    left_out = [table(f"Rows of {found.source} that could not be taken", ["line", "why"], rows)] if rows else []
+    count = Paragraph(f"{_count(found.prediction)}.")
+    sections = [
+        *(_event(event, each) for event, each in found.found.items()),
+        _assumed(found.prediction),
+        ReportSection("How it was computed", [Paragraph(_VALIDATED), count, *left_out]),
+    ]
+    first = next(iter(found.found.values()))
+    mark = _MARKS_OF_FINDINGS["mixed" if first.finding == "better" and first.too_sure else first.finding]
+    several = f"{first.count} outcomes under {first.clusters} motions"
+    return _document(f"Predictions of {found.name}", several, date, first.verdict, mark, sections)
+
+
+def _document(title: str, several: str, date: str, verdict: str, mark: str, sections: list[ReportSection]) -> Document:
+    subtitle = several + (f". {date}" if date else "")
+    return Document(title, subtitle, sections, verdict=[Paragraph(verdict, "", mark)], footer=SOFTWARE)
+
+
+def _assumed(found: Prediction) -> ReportSection:
+    inputs = table("", ["input", "drawn from"], found.inputs.items())
+    return ReportSection("What is known, and what was assumed", [inputs, *map(Paragraph, found.assumed)])
+
+
+def _count(found: Prediction) -> str:
+    return f"{found.count} bodies under each motion, {found.histories} histories in all"
+
+
+def _motions(found: Prediction) -> ReportTable:
+    rows = [
+        (name, *(percent(float(chance.per_motion[k])) for chance in found.chances.values()))
+        for k, name in enumerate(found.motions)
+    ]
+    return table("Probabilities under each motion", ["motion", *found.chances], rows)
+
+
+def _shares(found: Prediction) -> ReportTable:
+    rows = [
+        (
+            "motion" if name == "case" else name,
+            f"{s.first:.2f}",
+            f"{s.total:.2f}",
+            f"{s.total_low:.2f} to {s.total_high:.2f}",
+        )
+        for name, s in sorted(found.shares.items(), key=lambda pair: -pair[1].total)
+    ]
+    note = "Sobol indices: shares of the variance of whether it overturns."
+    return table("", ["what is not known", "alone [-]", "with the others [-]", "95 %"], rows, note)
+
+
+def _event(event: str, found: Validation) -> ReportSection:
+    picture = Picture(event, f"What was said of {event} and how often it happened; and the differences of scores")
+    return ReportSection(event.capitalize(), [*map(Paragraph, found.sentences), picture, _scores(found)])
+
+
+def _scores(found: Validation) -> ReportTable:
+    rows = []
+    for name, each in found.forecasts.items():
+        scores = [getattr(each, measure) for measure in _SCORES]
+        rows.append((name, *(f"{s.value:.3f} ({s.low:.3f} to {s.high:.3f})" for s in scores)))
+    return table("Scores of each forecast", ["forecast", *_SCORES.values()], rows)
