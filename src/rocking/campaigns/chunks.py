@@ -29,8 +29,7 @@ WIDTH = sum(kind.itemsize for kind in _COLUMNS.values())
 DEFAULT_CHUNK = 65536
 """Histories of a chunk of the fast engine: about 0.3 s of work, beside which a few milliseconds of safety are small."""
 
-REFERENCE_CHUNK = 256
-"""Histories of a chunk of the reference engine, which takes a hundred times as long."""
+REFERENCE_CHUNK = 256  # histories of a chunk of the reference engine, which takes a hundred times as long
 
 
 class Chunk(NamedTuple):

@@ -25,9 +25,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 from rocking.studies.histories import Histories
 
-LAST_DIGITS = "another processor, build or ROCKING_ISA"
-"""What may make an engine compute other last digits."""
-
+LAST_DIGITS = "another processor, build or ROCKING_ISA"  # what may make an engine compute other last digits
 _EACH = 16
 _OF_REFERENCE = 4
 NAME = "campaign.json"

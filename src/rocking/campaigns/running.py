@@ -23,8 +23,7 @@ from rocking.studies.histories import Histories
 _LEAST, _FIRST, _MOST = 0.2, 0.25, 1.2
 """What a piece is to take at least, while parts were not measured yet, and at most, as far as that is known [s]."""
 
-_LONG = 20.0
-"""A campaign that takes longer is measured everywhere at first, by small pieces [s]."""
+_LONG = 20.0  # a campaign that takes longer is measured everywhere at first, by small pieces [s]
 
 
 class Remaining(Iterator[Chunk]):

@@ -47,11 +47,8 @@ from rocking.tables import (
     to_parquet,
 )
 
-MOST_REPETITIONS = 100_000
-"""Most repetitions of a bootstrap."""
-
-COMPARED = ("flips", "differences")
-"""Tables of a comparison."""
+MOST_REPETITIONS = 100_000  # most repetitions of a bootstrap
+COMPARED = ("flips", "differences")  # tables of a comparison
 
 FORMATS: dict[str, Callable[[Grid, Path], object]] = {
     ".nc": to_netcdf,

@@ -22,9 +22,7 @@ if TYPE_CHECKING:
 
     from rocking.studies.inventory.assessment import Assessment
 
-READ = ("outcome", "peak_rotation", "least_force")
-"""All that analyses and assessments read of a history: 17 bytes."""
-
+READ = ("outcome", "peak_rotation", "least_force")  # all that analyses and assessments read of a history: 17 bytes
 _NOTHING = "nothing to export because"
 
 

@@ -40,8 +40,7 @@ from rocking.spec.reading import InputFiles, document_of, located, refuse_change
 if TYPE_CHECKING:
     from rocking.spec.document import CampaignDocument
 
-JOB, INPUTS = "job.toml", "inputs.json"
-"""Files of the folder."""
+JOB, INPUTS = "job.toml", "inputs.json"  # files of the folder
 
 
 @dataclass(frozen=True)

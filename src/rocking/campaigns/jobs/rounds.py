@@ -32,8 +32,7 @@ _T = TypeVar("_T")
 NEEDED = ("outcome", "status", "side", "peak_rotation", "impacts", "overturning_time", "least_force")
 """What studies decide on: no more of a round is held in memory."""
 
-HISTORIES = "histories"
-"""The only round of a study that is not adaptive."""
+HISTORIES = "histories"  # the only round of a study that is not adaptive
 
 FINISHED = "finished.json"
 """Written when a study has asked for its last round: how many there were, and of how many histories."""

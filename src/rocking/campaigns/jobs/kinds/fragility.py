@@ -25,11 +25,8 @@ from rocking.studies.motion_sets import MotionList, MotionSet
 from rocking.studies.sensitivity.restitutions import sampled
 from rocking.tables import Column
 
-ANALYSES = ("fragility", "fragility-points", "fema-p58")
-"""What can be exported of the curves of one restitution."""
-
-MEASURES = "measures"
-"""What the ranking of intensity measures is called among the exports."""
+ANALYSES = ("fragility", "fragility-points", "fema-p58")  # what can be exported of the curves of one restitution
+MEASURES = "measures"  # what the ranking of intensity measures is called among the exports
 
 USUAL_COLUMNS = ("magnitude", "ln distance_km")
 """Metadata that the sufficiency is tested against, where all motions have them and the job names none."""

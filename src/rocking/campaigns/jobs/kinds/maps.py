@@ -27,9 +27,7 @@ from rocking.studies.question import Question, modes_of, peak_ratio
 from rocking.studies.sensitivity.restitutions import sampled
 from rocking.tables import PIECE, Column, Table, text_array
 
-MOST_POINTS = 10_000_000
-"""Points of a map that is refined: they take less than 2 GiB of memory."""
-
+MOST_POINTS = 10_000_000  # points of a map that is refined: they take less than 2 GiB of memory
 _PROBES = 1024
 # later histories over edges and halvings of a line across a map
 _EDGES = (2.0, 12.0)
