@@ -30,99 +30,10 @@ def motion_provenance(motion: Any) -> str:
     return "ground at rest" if motion is None else "; ".join(getattr(motion, "provenance", ())) or repr(motion)
 
 
-class Exportable(ABC):
-    """A response whose samples, impacts and provenance can leave Python."""
-
-    @abstractmethod
-    def exported(self) -> "Table":
-        """Return what the files of this response hold.
-
-        Returns
-        -------
-        Table
-            Samples, with tables of impacts and the like beside them, units and provenance.
-        """
-
-    def to_xarray(self) -> "xr.Dataset":
-        """Return the response as a labelled dataset with units and provenance.
-
-        Returns
-        -------
-        xarray.Dataset
-            Samples over `time`, impacts over `impact`, and intervals over `interval` where the response has them.
-        """
-        from rocking.tables import to_dataset
-
-        return to_dataset(self.exported())
-
-    def to_dataframe(self) -> "pd.DataFrame":
-        """Return the samples as a table.
-
-        Returns
-        -------
-        pandas.DataFrame
-            One row a sample, units in the column names.
-        """
-        from rocking.tables import to_dataframe
-
-        return to_dataframe(self.exported())
-
-    def to_csv(self, path: str | Path) -> Path:
-        """Write the samples as comma-separated values.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from rocking.tables import target_of, to_csv
-
-        return to_csv(self.exported(), target_of(path), blank=False)
-
-    def to_mat(self, path: str | Path) -> Path:
-        """Write a file that MATLAB loads.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from rocking.tables import target_of, to_mat
-
-        return to_mat(self.exported(), target_of(path))
-
-    def to_netcdf(self, path: str | Path) -> Path:
-        """Write a netCDF file, which xarray and MATLAB open.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from rocking.tables import target_of, to_netcdf
-
-        return to_netcdf(self.to_xarray(), target_of(path))
-
-
 _ROUNDING = 1e-9
 
 
-class ResponseBase(Exportable):
+class ResponseBase(ABC):
     """One history: how it ends, in words, in a picture, and on its way out."""
 
     settings: Settings
@@ -227,6 +138,13 @@ class ResponseBase(Exportable):
         return figure
 
     def exported(self) -> "Table":
+        """Return what the files of this response hold.
+
+        Returns
+        -------
+        Table
+            Samples, with tables of impacts and the like beside them, units and provenance.
+        """
         from rocking.tables import Column, Table
 
         def columns(values: dict[str, Any]) -> dict[str, Column]:
@@ -239,6 +157,81 @@ class ResponseBase(Exportable):
         settings = {f"setting_{name}": value for name, value in self.settings.stated.items()}
         beside = {row: Table(row, columns(values)) for row, values in self._beside.items()}
         return Table("time", columns(self._samples), ended | self._facts | settings, beside, no_unit="-")
+
+    def to_xarray(self) -> "xr.Dataset":
+        """Return the response as a labelled dataset with units and provenance.
+
+        Returns
+        -------
+        xarray.Dataset
+            Samples over `time`, impacts over `impact`, and intervals over `interval` where the response has them.
+        """
+        from rocking.tables import to_dataset
+
+        return to_dataset(self.exported())
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Return the samples as a table.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row a sample, units in the column names.
+        """
+        from rocking.tables import to_dataframe
+
+        return to_dataframe(self.exported())
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write the samples as comma-separated values.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        from rocking.tables import target_of, to_csv
+
+        return to_csv(self.exported(), target_of(path), blank=False)
+
+    def to_mat(self, path: str | Path) -> Path:
+        """Write a file that MATLAB loads.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        from rocking.tables import target_of, to_mat
+
+        return to_mat(self.exported(), target_of(path))
+
+    def to_netcdf(self, path: str | Path) -> Path:
+        """Write a netCDF file, which xarray and MATLAB open.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        from rocking.tables import target_of, to_netcdf
+
+        return to_netcdf(self.to_xarray(), target_of(path))
 
     def _known(self, time: Any, end: float) -> FloatArray:
         """Return times up to an end, to rounding; what lies outside is refused [s]."""
