@@ -114,11 +114,7 @@ def flags(results: Any) -> dict[str, FloatArray]:
 
 
 def contact_words(lost: Any) -> str:
-    """Return in how many histories the ground would have to pull, as a sentence that stands beside their verdicts.
-
-    >>> contact_words([1.0, 0.0, 0.0, np.nan])
-    'in 1 of 3 histories (33.3 %) the ground would have to pull; their verdicts assume contact'
-    """
+    """Return in how many histories the ground would have to pull, as a sentence that stands beside their verdicts."""
     known = np.asarray(lost, dtype=np.float64)
     known = known[np.isfinite(known)]
     return contact_sentence(int((known == 1.0).sum()), known.size)

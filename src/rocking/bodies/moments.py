@@ -123,20 +123,11 @@ def combined(parts: Iterable[SolidMoments]) -> SolidMoments:
 
 
 def polyhedron_moments(triangles: FloatArray) -> SolidMoments:
-    """Exact moments of the volume inside a closed surface of triangles (divergence theorem).
-
-    The surface is moved to the middle of its box first, so that nothing cancels far from the origin. Each triangle (a,
-    b, c) stands for the tetrahedron over it, of signed volume ``a.(b x c)/6`` and second moments ``V/20 (a a^T + b b^T
-    + c c^T + s s^T)``, ``s = a + b + c``.
-
-    triangles: corners [m], counter-clockwise seen from outside; inward faces count negative. Returns of the volume,
-    unit weight; the volume is negative if the surface is inside out.
-
-    >>> corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    >>> faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
-    >>> round(6.0 * polyhedron_moments(corners[faces]).mass, 12)
-    1.0
-    """
+    """Return exact moments of the volume inside a closed surface of triangles, by the divergence theorem."""
+    # unit weight
+    # From the middle of its box, so that nothing cancels far from the origin. Each triangle (a, b, c) stands for the
+    # tetrahedron over it, of signed volume a.(b x c)/6 and second moments V/20 (a a^T + b b^T + c c^T + s s^T),
+    # s = a + b + c; faces are counter-clockwise seen from outside, inward ones count negative.
     middle = np.array([0.5 * (triangles[..., i].min() + triangles[..., i].max()) for i in range(3)])
     a, b, c = np.moveaxis(triangles - middle, 1, 0)
     volumes = (a * np.cross(b, c)).sum(axis=1) / 6.0

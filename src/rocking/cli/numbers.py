@@ -65,12 +65,7 @@ def values_table(name: str, text: str, unit: str, spacing: str = "linear") -> tu
 
 
 def row(name: str, text: str, unit: str, spacing: str = "linear") -> tuple[FloatArray, str]:
-    """Return a row of values [unit], and the unit in which all were written, empty if none.
-
-    >>> values, _ = row("pga", "0.1g:0.3g:3", "m/s2")
-    >>> (values / 9.80665).round(12).tolist()
-    [0.1, 0.2, 0.3]
-    """
+    """Return a row of values [unit], and the unit in which all were written, empty if none."""
     from rocking.spec.fields import Values
 
     table, written = values_table(name, text, unit, spacing)

@@ -115,11 +115,7 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
 
 
 def phi(x: Any) -> tuple[Any, Any]:
-    """Return the phi functions ``(exp(x) - 1) / x`` and ``(exp(x) - 1 - x) / x^2``, to rounding also near zero.
-
-    >>> [complex(value) for value in phi(0.0)]
-    [(1+0j), (0.5+0j)]
-    """
+    """Return the phi functions ``(exp(x) - 1) / x`` and ``(exp(x) - 1 - x) / x^2``, to rounding also near zero."""
     given = np.asarray(x, dtype=np.complex128)
     near = np.abs(given) <= 1.0
     small, large = np.where(near, given, 0.0), np.where(near, 1.0, given)

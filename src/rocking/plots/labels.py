@@ -63,13 +63,7 @@ def short_name(name: str) -> str:
 
 
 def plain(words: object) -> str:
-    r"""Return words that are drawn as they are, on one line, whatever signs they hold.
-
-    Returns with dollar signs that start no formula.
-
-    >>> plain("a $5  vase")
-    'a \\$5 vase'
-    """
+    r"""Return words on one line that are drawn as they are: dollar signs start no formula."""
     return " ".join(str(words).split()).replace("$", r"\$")
 
 

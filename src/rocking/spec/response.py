@@ -124,16 +124,7 @@ def _refuse(reason: str, table: Any, keys: set[str]) -> None:
 
 
 def response_problem(document: "ResponseDocument", files: InputFiles) -> ResponseProblem:
-    r"""Return the problem that a file describes; files: those that it may name.
-
-    >>> from pathlib import Path
-    >>> from rocking.spec.document import ResponseDocument
-    >>> from rocking.spec.reading import validated
-    >>> text = '[response]\nfree = 0.5\n[body]\nunits = "m"\nwidth = 1\nheight = 4'
-    >>> problem = response_problem(validated(ResponseDocument, text), InputFiles(Path()))
-    >>> problem.free, list(problem.restitutions)
-    (0.5, ['ked'])
-    """
+    r"""Return the problem that a file describes; files: those that it may name."""
     with located("body"):
         body = any_body_of(document.body, files)
     table = document.motion

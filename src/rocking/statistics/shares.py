@@ -26,13 +26,7 @@ class VarianceShare:
 
 @dataclass(frozen=True, eq=False)
 class SaltelliDesign:
-    """Points of the unit cube at which an answer is asked: two samples, and mixtures of them for every input.
-
-    >>> design = SaltelliDesign(512, {"large": 1, "small": 1}, seed=1)
-    >>> answer = design.points @ [2.0, 1.0]
-    >>> {name: round(share.first, 1) for name, share in design.shares(answer).items()}
-    {'large': 0.8, 'small': 0.2}
-    """
+    """Points of the unit cube at which an answer is asked: two samples, and mixtures of them for every input."""
 
     count: int  # points of either sample, a power of two
     inputs: Mapping[str, int]  # how many numbers from 0 to 1 each input takes

@@ -254,15 +254,9 @@ def exported(found: "xr.Dataset") -> Table:
 
 
 def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> "xr.Dataset":
-    """Return what the bed says about blocks of one shape that grow [m], on a flat and on a hollow base, beside KED.
-
-    On a flat base of one layer r does not depend on the size at all (`study` of the width): neither does KED. What can
-    change with size is a length that does not grow: here a hollow of fixed height [m] under the base.
-
-    >>> found = large_bodies_study([0.1, 1.0, 10.0])
-    >>> bool((found.hollow.diff("width") > 0.0).all())
-    True
-    """
+    """Return what the bed says about blocks of one shape that grow [m], on a flat and on a hollow base, beside KED."""
+    # on a flat base of one layer neither r nor KED depends on the size (`study` of the width); what can change with
+    # size is a length that does not grow: here a hollow of fixed height [m] under the base
     extra("xarray", "the impact laboratory")
     results = large_bodies(widths, hollow=hollow, laboratory=laboratory)
     results["hollow_minus_ked"] = results["hollow"] - results["ked"]
@@ -294,14 +288,9 @@ class Convergence:
 def points_convergence(
     counts: Sequence[int] = (11, 21, 41, 81, 161), *, slenderness: float = 2.0, limit: float | None = None
 ) -> Convergence:
-    """Return the convergence of the viscous bed with its points, each count with twice the intervals of the one before.
-
-    Dashpots without springs absorb an impact in one contact: no hop hides the order, near 2 for half shares at the
-    ends. The limit is the exact r; by default extrapolated from the last two with order 2.
-
-    >>> points_convergence((21, 41, 81)).order.round(0).tolist()
-    [2.0, 2.0]
-    """
+    """Return how the viscous bed converges with its points, each count with twice the intervals of the one before."""
+    # Dashpots without springs absorb an impact in one contact: no hop hides the order, near 2 for half shares at the
+    # ends. The limit is the exact r; by default extrapolated from the last two with order 2.
     intervals = np.array(counts, dtype=np.float64) - 1.0
     if intervals.size < 3 or not bool((intervals[1:] == 2.0 * intervals[:-1]).all()):
         raise InvalidValueError(f"counts must be three or more with doubled intervals: 11, 21, 41; got {counts}")

@@ -195,15 +195,9 @@ def reference_side(body: Body) -> str:
 
 
 def changed_body(body: Any, parameters: Mapping[str, float]) -> Any:
-    """Return a body with other dimensions.
-
-    semi_diagonal [m] scales any body with all its lengths; slenderness_angle [rad], width and height [m] are for a
-    block. A slenderness alone keeps the semi-diagonal, a width alone the height, a height alone the width.
-
-    >>> changed = changed_body(Block(width=1.0, height=4.0), {"height": 3.0})
-    >>> changed.width, changed.height
-    (1.0, 3.0)
-    """
+    """Return a body with other dimensions."""
+    # semi_diagonal [m] scales any body with all its lengths; slenderness_angle [rad], width and height [m] are for a
+    # block. A slenderness alone keeps the semi-diagonal, a width alone the height, a height alone the width.
     if not parameters:
         return body
     if not isinstance(body, Body):

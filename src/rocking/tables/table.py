@@ -185,14 +185,7 @@ class Grid:
 
 
 def blocks(first: int, last: int, shape: tuple[int, ...]) -> Iterator[Block]:
-    """Return the rectangular blocks that entries first to last, numbered row by row, fill: where, and which entries.
-
-    >>> for place, part in blocks(1, 8, (3, 3)):
-    ...     print([(p.start, p.stop) for p in place], part.start, part.stop)
-    [(0, 1), (1, 3)] 0 2
-    [(1, 2), (0, 3)] 2 5
-    [(2, 3), (0, 2)] 5 7
-    """
+    """Return the rectangular blocks that entries first to last, numbered row by row, fill: where, and which entries."""
     at = first
     while at < last:
         place = [int(i) for i in np.unravel_index(at, shape)]

@@ -174,13 +174,7 @@ def map_result(study: OpenStudy) -> dict[str, Any]:
 def contours_of(
     inside: np.ndarray, x: FloatArray, y: FloatArray, known: np.ndarray | None = None
 ) -> list[list[list[float]]]:
-    """Return the polylines of x and y halfway between what is inside and what is not; closed ones end where they begin.
-
-    >>> inside = np.array([[False, False, False], [False, True, False], [False, False, False]])
-    >>> (ring,) = contours_of(inside, np.arange(3.0), np.arange(3.0))
-    >>> ring[0] == ring[-1], sorted(ring[1:])
-    (True, [[0.5, 1.0], [1.0, 0.5], [1.0, 1.5], [1.5, 1.0]])
-    """
+    """Return polylines of x and y halfway between what is inside and what is not; closed ones end where they begin."""
     if min(inside.shape) < 2:
         return []
     corners = _corners(inside)

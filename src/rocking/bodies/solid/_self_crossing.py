@@ -73,21 +73,11 @@ _REPAIR = (
 def check_crossings(
     triangles: FloatArray, place_words: Callable[[FloatArray], str] = in_words, found: Piercing | None = None
 ) -> bool:
-    """Refuse a surface that passes through itself.
-
-    Every pair of faces is tried, to a millionth of the size. Beside 500 faces, chosen by their area, the surface must
-    wind once or not at all round points on either side: that finds lobes that are inside out and overlaps that meet in
-    corners and edges of the mesh only. Not seen are such lobes where they take less than about a hundredth of the
-    surface, folds within one plane, which enclose nothing, and crossings shallower than a millionth of the size.
-
-    triangles: corners of the faces of a closed, oriented surface [m]; place_words: a place [m] in the user's words;
-    found: where faces cross, if that is known.
-    Returns whether every pair of faces could be tried; False on surfaces of which tens of millions lie side by side.
-
-    >>> from rocking.bodies.solid import box
-    >>> check_crossings(box(1.0, 1.0, 4.0).corners)
-    True
-    """
+    """Refuse a surface that passes through itself; return whether every pair of faces could be tried."""
+    # Every pair of faces is tried, to a millionth of the size. Beside 500 faces, chosen by their area, the surface must
+    # wind once or not at all round points on either side: that finds lobes that are inside out and overlaps that meet
+    # in corners and edges of the mesh only. Not seen are such lobes where they take less than about a hundredth of the
+    # surface, folds within one plane, which enclose nothing, and crossings shallower than a millionth of the size.
     low, high = boxes(triangles)
     middle = 0.5 * np.array([low[:, i].min() + high[:, i].max() for i in range(3)])
     centred = triangles - middle

@@ -32,18 +32,9 @@ def gauss_order(ratio: float) -> int:
 def samples(
     surfaces: Iterable[Surface], distance: Distance, negligible: float, bound: Distance | None = None
 ) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Yield Gauss points of a closed surface in batches, cells split until each is smaller than its distance.
-
-    surfaces: the surface, in a frame whose origin is the point B on the singular set [m]; distance: takes points (n, 3)
-    and returns their distances to the singular set [m]; bound: takes points (n, 3) and returns what the integrand
-    cannot exceed there; by default 1 [-]. Returns points [m] and weighted outward normals [m2] (shape (n, 3)).
-
-    >>> from rocking.bodies.solid import box
-    >>> batches = samples(box(1.0, 2.0, 3.0).surfaces(), lambda s: np.linalg.norm(s, axis=1), 1e-15)
-    >>> volume = sum(float((points * areas).sum()) for points, areas in batches) / 3.0
-    >>> round(volume, 12)
-    6.0
-    """
+    """Yield Gauss points [m] of a closed surface in batches, with weighted outward normals [m2] (shape (n, 3))."""
+    # Cells are split until each is smaller than its distance to the singular set, on which the frame has its origin.
+    # bound: what the integrand cannot exceed at points; by default 1 [-].
     for surface in surfaces:
         cells = surface.cells()
         for level in range(_MOST_LEVELS + 1):

@@ -84,14 +84,6 @@ def reactions(  # noqa: PLR0917 - the state of body and ground, in the order of 
 
 
 def friction_of_impact(height: float, old_lever: float, new_lever: float, coefficient: Any) -> FloatArray:
-    """Return the friction coefficient that an impact without slip needs: horizontal over vertical impulse.
-
-    height: height h of the centre of mass [m]; old_lever, new_lever: horizontal distances b of the old and the new foot
-    from the centre of mass [m]; coefficient: coefficient of restitution r [-]. Returns ``h (1 - r) / (b_old + b_new
-    r)``; for a symmetric body (h / b) (1 - r) / (1 + r) [-].
-
-    >>> round(friction_of_impact(2.0, 1.0, 1.0, 0.7).item(), 12)  # 3 lambda / (1 + 4 lambda^2)
-    0.352941176471
-    """
+    """Return the friction that an impact without slip needs, of the impulses, h (1 - r) / (b_old + b_new r) [-]."""
     r = np.asarray(coefficient)
     return np.asarray(height * (1.0 - r) / (old_lever + new_lever * r))  # Eq. 5

@@ -90,13 +90,7 @@ class ImpulsePosition:
 
 @lru_cache(maxsize=256)
 def impulse_position(solid: Solid) -> ImpulsePosition:
-    """Return where the impulse of a landing of the whole base acts, kept for the solid.
-
-    >>> from rocking.bodies.solid import box
-    >>> position = impulse_position(Solid(box(1.0, 1.0, 4.0)))
-    >>> round(position.at(np.array([1.0, 0.0])), 9)
-    0.585603709
-    """
+    """Return where the impulse of a landing of the whole base acts, kept for the solid."""
     return ImpulsePosition(solid)
 
 

@@ -49,14 +49,7 @@ class Flips:
 
 
 def flips_of(first: Any, second: Any, motions: Any = None, *, drawn: bool = False) -> Flips:
-    """Return how many verdicts differ between two results, with a 95 % interval of their share where there is one.
-
-    >>> found = flips_of([1, 2, 2, 2], [1, 1, 2, 2])
-    >>> found.count, found.gained, found.share, found.low
-    (1, 0, 0.25, nan)
-    >>> round(flips_of([1, 1, 1, 1], [1, 1, 1, 1], [1, 2, 3, 4]).high, 3)
-    0.602
-    """
+    """Return how many verdicts differ between two results, with a 95 % interval of their share where there is one."""
     sign = flip_map(first, second)
     known = sign != UNKNOWN
     compared = int(known.sum())
@@ -167,11 +160,7 @@ class CurveChange:
 
 
 def signed(share: float) -> str:
-    """Return a share [-] in percent with its sign.
-
-    >>> signed(0.14), signed(-0.02)
-    ('+14 %', '-2 %')
-    """
+    """Return a share [-] in percent with its sign."""
     return ("+" if share >= 0.0 else "") + percent(share)
 
 

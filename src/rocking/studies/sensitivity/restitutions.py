@@ -18,11 +18,7 @@ from rocking.studies.histories import Histories, described_law
 
 
 def named_restitutions(restitutions: Any) -> dict[str, Any]:
-    """Return restitutions by name: models, coefficients [-], pairs by side, laws; names are made for a sequence.
-
-    >>> named_restitutions(["housner", 0.9, {"left": 0.8, "right": 0.9}])
-    {'housner': 'housner', '0.9': 0.9, 'left 0.8, right 0.9': {'left': 0.8, 'right': 0.9}}
-    """
+    """Return restitutions by name: models, coefficients [-], pairs by side, laws; names are made for a sequence."""
     if isinstance(restitutions, Mapping):
         pairs = [(str(name), choice) for name, choice in restitutions.items()]
         if set(restitutions) == set(FEET):
@@ -203,12 +199,7 @@ def sampled(histories: Histories) -> Histories:
 
 
 def uniforms(seed: int, numbers: Any, impact: int = 0) -> FloatArray:
-    """Return numbers in [0, 1) that depend on seed, history and impact: `impact_laws.uniform` of many, to the last bit.
-
-    >>> from rocking.dynamics.impact_laws import uniform
-    >>> bool(uniforms(7, [123])[0] == uniform(7, 123, 0))
-    True
-    """
+    """Return numbers in [0, 1) by seed, history and impact: `impact_laws.uniform` of many, to the last bit."""
     keys = np.atleast_1d(np.asarray(numbers))
     if keys.dtype.kind not in "iu":
         raise InvalidValueError(f"numbers must be whole numbers of histories, got {keys.dtype} {numbers!r:.40}")
