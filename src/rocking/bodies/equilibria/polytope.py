@@ -98,10 +98,8 @@ class Polytope:
 
     def corners(self, facet: int) -> IntArray:
         """Return the vertices of a facet, counter-clockwise seen from outside."""
-        corners = np.unique(self.ends[self.edges_of(facet)[0]])
-        arms = self.vertices[corners] - self.vertices[corners].mean(axis=0)
-        across = np.cross(self.normals[facet], arms[0])
-        return corners[np.argsort(np.arctan2(arms @ across, arms @ arms[0]))]
+        corner, _, first = self.borders
+        return corner[first[facet] : first[facet + 1]]
 
     @cached_property
     def borders(self) -> tuple[IntArray, IntArray, IntArray]:

@@ -215,7 +215,7 @@ def point_source_motion(
 
 
 def window(place: FloatArray) -> FloatArray:
-    """Return the window of Saragoni and Hart as Boore uses it: 0 before it starts, 1 at 0.2 of its length, 0.05 at 1."""
+    """Return the window of Saragoni and Hart as Boore uses it: 0 before it, 1 at 0.2 of its length, 0.05 at 1."""
     power = -PEAK_AT * math.log(LEVEL_AT_END) / (1.0 + PEAK_AT * (math.log(PEAK_AT) - 1.0))
     ratio = np.maximum(place, 0.0) / PEAK_AT
     return exponential(power * (logarithm(ratio) + 1.0 - ratio))  # Eq. 177
