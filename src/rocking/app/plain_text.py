@@ -16,8 +16,7 @@ _LONGEST_FILE_NAME = 80
 _LONGEST_TITLE = 120
 _HIDDEN = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"}
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
-_ONE_LINE = 80
-"""Longest list that stands in one line [characters]."""
+_ONE_LINE = 80  # longest list that stands in one line [characters]
 
 
 def plain_line(text: str, longest: int = 160) -> str:

@@ -20,9 +20,7 @@ from rocking.motions.formats import read_motion
 from rocking.motions.motion import GroundMotion
 
 _DIGITS = frozenset("0123456789abcdef")
-_HELD = 128 * 1024 * 1024
-"""Motions that are kept in memory [bytes]."""
-
+_HELD = 128 * 1024 * 1024  # motions that are kept in memory [bytes]
 MOST_RECORDS = 5_000  # files that are kept at once
 
 

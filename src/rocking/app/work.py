@@ -14,8 +14,7 @@ from rocking.app.errors import Busy, Refused
 
 P = ParamSpec("P")
 T = TypeVar("T")
-_SMALL = 200
-"""Vertices up to which a body takes a few milliseconds."""
+_SMALL = 200  # vertices up to which a body takes a few milliseconds
 
 
 class ComputationQueue:

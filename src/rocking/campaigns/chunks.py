@@ -16,15 +16,12 @@ from rocking.errors import InvalidValueError
 from rocking.studies.histories import LARGEST_CHUNK
 
 MAGIC = b"ROCKSHRD"
-FORMAT = 2
-"""Version of the files of a campaign."""
-
+FORMAT = 2  # version of the files of a campaign
 _LENGTHS = struct.Struct("<8sII")
 _SEAL = 32
 _COLUMNS = {name: np.dtype(kind).newbyteorder("<") for name, kind in RESULTS.items()}
 _NAMES = [[name, kind.str] for name, kind in _COLUMNS.items()]
-WIDTH = sum(kind.itemsize for kind in _COLUMNS.values())
-"""Results of one history [bytes]."""
+WIDTH = sum(kind.itemsize for kind in _COLUMNS.values())  # results of one history [bytes]
 
 DEFAULT_CHUNK = 65536
 """Histories of a chunk of the fast engine: about 0.3 s of work, beside which a few milliseconds of safety are small."""

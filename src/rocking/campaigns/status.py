@@ -15,8 +15,7 @@ PARTS = 16
 """Equal parts of the histories, each of which is measured: costs change from the first history to the last one."""
 
 _SETTLED = 4.0
-NOISE = 0.1
-"""A machine is no steadier than this from one minute to the next [-]."""
+NOISE = 0.1  # a machine is no steadier than this from one minute to the next [-]
 
 
 @dataclass(frozen=True)

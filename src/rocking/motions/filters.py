@@ -18,9 +18,7 @@ _INVERSE = tuple(1.0 / math.factorial(k) for k in range(19))
 _LOG2 = (6.93147180369123816490e-01, 1.90821492927058770002e-10)
 _HALF_PI = (1.57079632673412561417e00, 6.07710050650619224932e-11)
 _LANES = 4
-NEIGHBOURS = 10
-"""Oscillators that share an impulse; the compiled module has the same number."""
-
+NEIGHBOURS = 10  # oscillators that share an impulse; the compiled module has the same number
 LEAST_CYCLES = 1e-6  # smallest corner of the high pass in cycles a step [-]: below, its long memory drowns in rounding
 
 

@@ -16,8 +16,7 @@ FASTEST_RATE, MOST_SAMPLES = 120.0, 60_000  # samples in a second, and in all
 _MARGIN = 0.10
 _FAR = 1.5
 _POSES = 400
-_LEVEL = 1e-9
-"""Height of a corner that stands on the ground, over its distance from the foot, to rounding."""
+_LEVEL = 1e-9  # height of a corner that stands on the ground, over its distance from the foot, to rounding
 
 _STEP = 0.01
 """Step of the integration of a fall, over 1 / p: what the fourth order leaves out is below 1e-8 of the angle."""

@@ -24,8 +24,7 @@ _OF_DATASETS: "dict[str, Callable[[Any], Figure]]" = {
 _OF_ANALYSES: "dict[str, Callable[[Any], Figure]]" = {
     "stripes": fragility_picture, "incremental": incremental_dynamic_analysis_picture, "cloud": fragility_picture,
 }  # fmt: skip
-WITHOUT = ("histories",)
-"""Kinds of campaigns that have no picture."""
+WITHOUT = ("histories",)  # kinds of campaigns that have no picture
 
 
 def check_picture(folder: JobFolder, restitution: str | None) -> None:

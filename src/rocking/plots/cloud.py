@@ -20,9 +20,7 @@ if TYPE_CHECKING:
 _ROCKS, _FALLS, _BAND = "#0072B2", "#A8420A", "#D6E6F2"
 
 _COLORS = ("#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#0072B2")
-_LEAST = 1e-4
-"""Smaller p-values are drawn here."""
-
+_LEAST = 1e-4  # smaller p-values are drawn here
 _ABOVE: dict[str, Any] = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "fontsize": 6.5, "borderaxespad": 0.2}
 
 

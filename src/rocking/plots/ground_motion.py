@@ -38,8 +38,7 @@ if TYPE_CHECKING:
 
 _DAMPING = 0.05
 _LONGEST_TITLE = 70
-_SET_PERIODS = np.geomspace(0.05, 4.0, 60)
-"""Periods of the spectra of sets, unless others are given [s]."""
+_SET_PERIODS = np.geomspace(0.05, 4.0, 60)  # periods of the spectra of sets, unless others are given [s]
 
 
 @in_journal_style

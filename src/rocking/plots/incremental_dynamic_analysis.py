@@ -18,9 +18,7 @@ if TYPE_CHECKING:
 _CROSS, _FALLEN, _AGAIN = "#7A2E00", "#DDB7A0", "#0072B2"
 _FRACTION: dict[str, Any] = {"color": INK, "linewidth": 1.2}
 _PASSED: dict[str, Any] = {"color": _CROSS, "linewidth": 1.0, "linestyle": "--"}
-WIDE = 0.01
-"""Survivals of less width over their level are not counted: in them the body balances on its corner [-]."""
-
+WIDE = 0.01  # survivals of less width over their level are not counted: in them the body balances on its corner [-]
 _OVER = 1.06  # larger rotations of bodies that stood all the same are drawn here
 _FIRST, _LAST = 1.12, 1.72  # where the lanes of the motions begin and end, on the axis of rotation
 

@@ -26,8 +26,7 @@ if TYPE_CHECKING:
 
 _HEIGHT = 3.3
 _RASTER = 700
-_PANEL = (2.95, 2.55)
-"""Width and height of the panel, roughly [in]."""
+_PANEL = (2.95, 2.55)  # width and height of the panel, roughly [in]
 
 FAILED, UNLIFTED, ROCKED, ISLAND, FIRST, SECOND, LATER, FELL = range(8)  # what is told apart in a map
 

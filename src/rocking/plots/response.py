@@ -17,14 +17,11 @@ if TYPE_CHECKING:
 
 _ROTATION, _VELOCITY, _IMPACT, _FALL = "#0072B2", "#009E73", "#D55E00", "#CC79A7"
 _KINETIC, _POTENTIAL, _LOST, _WORK = "#E69F00", "#0072B2", "#D55E00", "#222222"
-_BEYOND = 2.2
-"""How far a falling body is followed, in slenderness angles: what came before stays visible."""
-
+_BEYOND = 2.2  # how far a falling body is followed, in slenderness angles: what came before stays visible
 _SMALL = 0.2  # below this share of the slenderness angle the rotation fills its panel and +-1 is left out
 _LONGEST_LINE = 118  # characters that fit into one line of the small print
 _INSIDE = np.linspace(0.0, 1.0, 5)
-_REST = 0.06
-"""Rest that is shown after the last event, as a share of the time shown."""
+_REST = 0.06  # rest that is shown after the last event, as a share of the time shown
 
 
 @in_journal_style

@@ -23,9 +23,7 @@ GAINED, LOST, SAME, UNKNOWN = "#CC79A7", "#0072B2", "#F2F2F2", "#000000"
 """Overturns with the choice only, with the baseline only, the same verdict, one of the two not computed."""
 
 _BOTH = "#BDBDBD"
-_CHANGE = "PuOr_r"
-"""Purple to orange, white between: told apart by every eye, and unlike the colours of flips."""
-
+_CHANGE = "PuOr_r"  # purple to orange, white between: told apart by every eye, and unlike the colours of flips
 _PANEL = 2.35
 _MOST = 6
 

@@ -24,8 +24,7 @@ _COLOURS = {
 _SLIDES = "#CC79A7"
 _ON = {"face": PALE, "edge": "#0072B2", "vertex": "#E69F00", "flight": "#56B4E9"}
 _IMPACT, _TOP = "#D55E00", "#0072B2"
-_SMALL = 1e-3
-"""Below this share of the largest tilt the body leans nowhere in particular."""
+_SMALL = 1e-3  # below this share of the largest tilt the body leans nowhere in particular
 
 
 @in_journal_style

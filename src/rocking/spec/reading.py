@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 
 _PIECE = 1 << 20
 _SPECIAL = "*?["
-LARGEST_JOB = 16 * 2**20
-"""Larger job files are refused [byte]."""
+LARGEST_JOB = 16 * 2**20  # larger job files are refused [byte]
 
 _PLAIN = {
     "bool_type": "must be true or false",

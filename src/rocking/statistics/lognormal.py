@@ -42,8 +42,7 @@ from rocking.statistics.separation import Separation, median_interval, separatio
 Method = Literal["auto", "maximum-likelihood", "penalised"]
 IntervalMethod = Literal["profile", "bootstrap", "wald"]
 SIDES = np.array([-1.0, 1.0])
-LARGEST_LOGARITHM = 690.0
-"""Beyond this a median is no float64 [-]."""
+LARGEST_LOGARITHM = 690.0  # beyond this a median is no float64 [-]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -22,8 +22,7 @@ from rocking.motions.segments import Segments
 from rocking.studies.motion_sets import MotionSet
 
 _ROWS_AT_ONCE = 32768
-MOTIONS_AT_ONCE = 128
-"""Motions made from a seed that are laid out at a time."""
+MOTIONS_AT_ONCE = 128  # motions made from a seed that are laid out at a time
 
 MOTIONS_KEPT = 128 << 20
 """Room for motions that are kept for the next piece, where histories of one motion do not stand together [bytes]."""

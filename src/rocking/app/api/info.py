@@ -28,9 +28,7 @@ PARAMETERS = {
 """Unit and words of the parameters of pulses."""
 
 _DASHES = {"-": [], "--": [6.0, 4.0], "-.": [8.0, 3.0, 2.0, 3.0], ":": [2.0, 3.0]}
-UNLIMITED = "unlimited"
-"""What stands for an infinite default, which JSON has no number for."""
-
+UNLIMITED = "unlimited"  # what stands for an infinite default, which JSON has no number for
 EngineFacts: Any = shape("EngineFacts", "Which engine computes histories.", name=str, instruction_set=str | None)
 ParameterFacts: Any = shape(
     "ParameterFacts",

@@ -27,8 +27,7 @@ from rocking.reports.response_facts import ModelAgreement, finite, moved_facts, 
 from rocking.spec.response import ResponseProblem
 
 router = APIRouter(prefix="/api", tags=["response"])
-MOST_SAMPLES = 500_000
-"""Samples of a response whose forces and energy are computed here."""
+MOST_SAMPLES = 500_000  # samples of a response whose forces and energy are computed here
 
 MOST_TOGETHER = 3_000_000
 """Samples of all responses of one problem, those after an overturning among them: they are computed as well."""

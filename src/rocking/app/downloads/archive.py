@@ -24,9 +24,7 @@ from rocking.app.records import RecordStore
 
 _EARLIEST = (1980, 1, 1, 0, 0, 0)
 _ORDINARY_FILE = 0o644 << 16
-MOST_FILES = 8
-"""Files of an archive; ours have three at most."""
-
+MOST_FILES = 8  # files of an archive; ours have three at most
 _BEGINNINGS = (b"PK\x03\x04", b"PK\x05\x06")
 _ENTRY = b"PK\x01\x02"
 _MOST_ENTRIES = 64  # a packed record may hold the four bytes by chance

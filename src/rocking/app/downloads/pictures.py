@@ -40,9 +40,7 @@ Onto = Literal["left", "right", "both"]
 
 _SPARE = ("#4D9221", "#A6761D", "#7A5195", "#1A1A1A")
 _DASHES = ((0, (3, 2, 8, 2)), (0, (12, 3)), (0, (5, 3, 1, 3)), (0, (2, 2)), "-")
-_BEYOND = 2.2
-"""How far a falling body is followed, in slenderness angles."""
-
+_BEYOND = 2.2  # how far a falling body is followed, in slenderness angles
 _SMALL = 0.2  # below this share of the slenderness angle the rotations fill their panel and +-1 is left out
 _SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
 

@@ -45,8 +45,7 @@ _TIMES = {"period", "duration", "velocity"}
 """Parameters of pulses that grow with their time while the acceleration stays."""
 
 _CLOSE = 1e-12
-POINTS = 1000
-"""Samples of the curves."""
+POINTS = 1000  # samples of the curves
 
 _STORED = {
     "outcome": "outcome",

@@ -32,9 +32,7 @@ The tables of a job file (`rocking.examples`) as JSON. Records are named by the 
 uploaded, `{"records": ["64 hexadecimal digits"]}`; bodies are given as they are, not by the names of files."""
 Whole = Annotated[int, Field(ge=0, le=10_000_000)]
 _ONE = answered(StudyFacts, "State and progress.")
-SHORTEST = 0.2
-"""Time between two messages, at least [s]."""
-
+SHORTEST = 0.2  # time between two messages, at least [s]
 MOST = 64  # browsers that are told at the same time
 _TRY_LATER = 1013
 

@@ -30,8 +30,7 @@ META, JOB, CAMPAIGN, RECORDS, LOG = "meta.json", "job.toml", "campaign", "record
 
 WAITING, RUNNING, CANCELLED = "waiting", "running", "cancelled"
 INTERRUPTED, FAILED, DONE = "interrupted", "failed", "done"
-STATES = (WAITING, RUNNING, CANCELLED, INTERRUPTED, FAILED, DONE)
-"""What a study may be doing."""
+STATES = (WAITING, RUNNING, CANCELLED, INTERRUPTED, FAILED, DONE)  # what a study may be doing
 
 
 def new_id() -> str:

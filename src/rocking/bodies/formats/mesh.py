@@ -29,8 +29,7 @@ from rocking.portable import applied, norm, times
 
 MESH_FORMATS = ("stl", "obj", "ply", "glb", "xyz")  # formats that are read, by the end of the file's name
 _UP = {"z": (0.0, 0.0, 1.0), "y": (0.0, 1.0, 0.0)}
-FEWEST_POINTS = 50
-"""Fewer points without faces are no cloud [-]."""
+FEWEST_POINTS = 50  # fewer points without faces are no cloud [-]
 
 _LOWEST, _HIGHEST = 1e-3, 300.0
 _SINGLE = 2.0**-24

@@ -165,8 +165,7 @@ def _check_one(table: StrictTable, owner: str, keys: tuple[str, ...], shown: str
 
 Cut = Annotated[float, Field(ge=0.0)]
 Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
-MOST_PARTS = 500
-"""A body may have so many parts: each is tried against each for overlaps."""
+MOST_PARTS = 500  # a body may have so many parts: each is tried against each for overlaps
 
 
 class BoxTable(StrictTable):

@@ -13,9 +13,7 @@ from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import GeometryError
 
 THIN = 0.05  # thickness of a sheet over its width [-]
-DUST, SPECK = 1e-3, 1e-6
-"""Boxes of pieces left out over the largest one's: open pieces, closed ones [-]."""
-
+DUST, SPECK = 1e-3, 1e-6  # boxes of pieces left out over the largest one's: open pieces, closed ones [-]
 FIN = 0.05  # fins are up to so much of the surface [-]
 
 _ROUNDS, _RELAX, _MOST_SWEPT = 12, 0.5, 0.5

@@ -115,8 +115,7 @@ def _jumps(lines: FloatArray) -> np.ndarray:
 
 _LONGEST_WINDOW = 40.0
 _HEIGHTS = 0.1  # what the heights of flights to rest may add to the logarithm of their gain
-NOTHING = 1e-9
-"""Speed over p alpha that is none: a body that the ground holds, and that is no faster, is at rest."""
+NOTHING = 1e-9  # speed over p alpha that is none: a body that the ground holds, and that is no faster, is at rest
 
 
 def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine

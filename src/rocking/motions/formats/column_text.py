@@ -10,9 +10,7 @@ from rocking.motions.formats.record import Source
 
 MOST_NAMED = 20  # columns of a file that names them
 _FIRST_ROWS = 50
-MARK = "\xef\xbb\xbf"
-"""The three bytes with which some programs begin a file in UTF-8."""
-
+MARK = "\xef\xbb\xbf"  # the three bytes with which some programs begin a file in UTF-8
 _BLANKS = " \t\x1a"
 _MIXED = re.compile(r"\s*,\s*|\s+")
 _QUOTED = re.compile(r'"[^"]*"')
