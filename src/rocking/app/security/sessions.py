@@ -38,7 +38,10 @@ Link: Any = shape("Link", "A link that signs one more browser in.", url=str)
 
 @router.post("", summary="Exchange a one-time token for a session cookie")
 def sign_in(request: Request, token: SignIn) -> SignedIn:
-    """Exchange the token of a one-time link for a cookie: HttpOnly, SameSite=Strict."""
+    """Exchange the token of a one-time link for a cookie: HttpOnly, SameSite=Strict.
+
+    Returns True; the cookie is in the head of the answer.
+    """
     state = state_of(request)
     answer = JsonAnswer({"signed_in": True})
     answer.set_cookie(
