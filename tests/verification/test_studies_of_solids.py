@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -342,3 +343,99 @@ def test_commands_of_studies(tmp_path, capsys):
     least = asked("minimum", *words, "--points", "20", "--levels", "0")["minimum_m_s2"]
     python = minimum_overturning_acceleration(tall, PULSE, friction=0.6, points=20, levels=0).minimum
     assert least == pytest.approx(python, rel=1e-9)
+
+
+def _asked(capsys, *words):
+    """What a command prints as JSON."""
+    with pytest.raises(SystemExit) as stop:
+        main([*map(str, words), "--json"])
+    out, error = capsys.readouterr()
+    assert not stop.value.code, error
+    return json.loads(out)
+
+
+@pytest.fixture
+def records(tmp_path):
+    """Files of a statue without symmetry and of two motions of three components, and what Python makes of them."""
+    parts = "[[solid.part]]\nbox = { width = 0.5, depth = 0.7, height = 0.9 }\ndensity = 2400\n"
+    more = "[[solid.part]]\nbox = { width = 0.3, depth = 0.2, height = 0.5 }\ndensity = 1500\nat = [0.06, 0.1, 0.9]\n"
+    (tmp_path / "statue.toml").write_text(f'units = "m"\n{parts}{more}')
+    times, motions = np.arange(0.0, 1.5, 0.02), []
+    for k, period in enumerate((0.6, 0.9)):
+        both = {}
+        for axis, size, slow in (("x", 2.0, 1.0), ("y", 1.6, 1.4), ("z", 1.0, 0.5)):
+            values = size * np.sin(2.0 * np.pi * times / (slow * period))
+            path = tmp_path / f"{axis}{k}.csv"
+            np.savetxt(path, np.c_[times, values], "%.17g", ",", header="time [s],acceleration [m/s2]", comments="")
+            both[axis] = rk.read_motion(path)
+        motions.append(both)
+    return tmp_path, motions
+
+
+@pytest.mark.verifies("behaviour", control="without the motion along y the answer is another")
+def test_components_of_studies_in_files_and_commands(records, capsys):
+    """x, y and z of [[motions]], and of the option --motion, are the components that Python takes."""
+    folder, motions = records
+    body, (x, y, z) = folder / "statue.toml", (f"{axis}={folder / axis}0.csv" for axis in "xyz")
+    axes = ("--x", "scale=2.8,3.2", "--y", "friction=0.3,0.8")
+    told = _asked(capsys, "map", body, x, "--motion", y, "--motion", z, *axes)
+    ask = (("scale", [2.8, 3.2]), ("friction", [0.3, 0.8]))
+    python = overturning_map(STATUE, motions[0], *ask)
+    assert told["peak_ratio"] == pytest.approx(python.peak_ratio.values, rel=1e-12)
+    assert told["motion"]["name"] == "x0, y0, z0"
+    alone = _asked(capsys, "map", body, x, *axes)
+    assert alone["motion"]["name"] == "x0"
+    assert alone["peak_ratio"] != pytest.approx(python.peak_ratio.values, rel=1e-3)
+
+    job = "[body]\nfile = 'statue.toml'\n[map]\nx = { axis = 'scale', values = [1.4, 1.6] }\n"
+    job += "y = { axis = 'friction', values = [0.3, 0.8] }\n[motions]\nscale = 2\nx = { record = 'x0.csv' }\n"
+    job += "y = { record = 'y0.csv', scale = 1.0 }\nz = { record = 'z0.csv' }\n"
+    (folder / "job.toml").write_text(job)
+    assert _asked(capsys, "map", folder / "job.toml")["peak_ratio"] == told["peak_ratio"]
+    (folder / "job.toml").write_text(job.replace("scale = 1.0", "scale = 0.5"))
+    assert _asked(capsys, "map", folder / "job.toml")["peak_ratio"] != told["peak_ratio"]
+
+
+@pytest.mark.verifies("behaviour", control="the same files in another order are other motions")
+def test_fragilities_of_components_in_files_and_commands(records, capsys):
+    """An axis that is named again begins the next motion; a campaign of the job file has the numbers of Python."""
+    folder, motions = records
+    words = [f"{axis}={folder / axis}{k}.csv" for k in (0, 1) for axis in "xy"]
+    pairs = [{axis: motion[axis] for axis in "xy"} for motion in motions]
+    levels, how = [3.0, 6.0, 9.0], ("--friction", "0.7", "--levels", "3,6,9")
+    told = _asked(capsys, "fragility", folder / "statue.toml", *words, *how)
+    found = multiple_stripe_analysis(STATUE, pairs, levels, friction=0.7)
+    assert told["motions"]["names"] == ["x0, y0, none", "x1, y1, none"]
+    fell = found.responses.overturned.sum(axis=0).ravel().tolist()
+    assert told["results"][0]["reached"]["overturned"] == fell
+    assert 0 < sum(fell) < 6
+    crossed = [words[0], words[3], words[2], words[1]]
+    names = _asked(capsys, "fragility", folder / "statue.toml", *crossed, *how)["motions"]["names"]
+    assert names == ["x0, y1, none", "x1, y0, none"]
+    job = "[campaign]\nname = 'a'\nkind = 'stripes'\n[body]\nfile = 'statue.toml'\n[settings]\nfriction = 0.7\n"
+    job += "[fragility]\nlevels = [3, 6, 9]\n"
+    for k in (0, 1):
+        job += f"[[motions]]\nx = {{ record = 'x{k}.csv' }}\ny = {{ record = 'y{k}.csv' }}\n"
+    (folder / "job.toml").write_text(job)
+    assert _asked(capsys, "fragility", folder / "job.toml")["results"] == told["results"]
+
+
+@pytest.mark.verifies("damage")
+@pytest.mark.parametrize(
+    ("motions", "says"),
+    [
+        ("x = { record = 'x0.csv' }\nrecords = 'y0.csv'", "records stands with each of the motions along x, y and z"),
+        ("x = { record = 'x0.csv', vertical = 'UP' }\nz = { record = 'z0.csv' }", "vertical motion is given twice"),
+        ("x = { records = 'x0.csv' }", "unknown key"),
+        ("x = { record = 'x0.csv' }\ny = { record = 'gone.csv' }", "motions\\[0\\]: y: gone.csv"),
+    ],
+)
+def test_components_that_are_refused(records, capsys, motions, says):
+    """What components cannot be is said in one sentence."""
+    folder, _ = records
+    job = "[body]\nfile = 'statue.toml'\n[settings]\nfriction = 0.7\n[minimum]\n[[motions]]\n"
+    (folder / "job.toml").write_text(job + motions)
+    with pytest.raises(SystemExit) as stop:
+        main(["minimum", str(folder / "job.toml")])
+    assert stop.value.code
+    assert re.search(says, " ".join(capsys.readouterr().err.replace("│", " ").split()))

@@ -3,7 +3,7 @@
 import re
 import shlex
 import tomllib
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,9 +34,7 @@ _AS_TYPED = (
     (re.compile(r"(?<!--set )\brestitution\.model\b"), "--restitution"),
     (re.compile(r"\bblock\.(width|height|depth|density|mass|centre)\b"), r"--\1"),
 )
-_PLACE = re.compile(
-    r"(body|motion(\.[xyz])?|motions(\[\d+\])?|records: .*|restitution|settings|map|map\.[xy]|fragility)"
-)
+_PLACE = re.compile(r"(body|motion|[xyz]|motions(\[\d+\])?|records: .*|restitution|settings|map|map\.[xy]|fragility)")
 _KNOWN = ("mass", "centre", "moment_of_inertia")
 _SIZES = ("width", "height"), ("slenderness_angle", "semi_diagonal")
 _OF_EVERY_FILE = {"format", "units", "time_step"}
@@ -255,6 +253,8 @@ class Arguments:
         along = _along(motions)
         if not along:
             raise InvalidValueError(f"{NO_MOTION}, along y and z with --motion y=FILE and --motion z=FILE")
+        if list(along) == ["x"]:
+            return self.motion_table(along["x"])
         records = [axis for axis, word in along.items() if "record" in _place(word)]
         if len(records) > 1 and "component" in self.sets.get("motion", {}):
             raise InvalidValueError("motion.component is of one file, and there are several: say FILE#COMPONENT")
@@ -262,6 +262,20 @@ class Arguments:
         stated = {*self.sets.get("motion", {}), "units"} - {"scale"}  # which is of all of them
         keys = {axis: _OF_EVERY_FILE if axis in records else set() for axis in along} | {first: stated}
         return {axis: self.motion_table(word, keys[axis]) for axis, word in along.items()}
+
+    def of_body(self, motions: Sequence[str]) -> Tables:
+        """Return the table [motion] of the body, plane or in space."""
+        return self.components(motions) if self.solid else self.one_motion(motions)
+
+    @staticmethod
+    def each(motions: Sequence[str], table: Callable[[Sequence[str]], Tables]) -> list[Tables]:
+        """Return the tables of several motions: an axis that is named again begins the next one."""
+        groups: list[list[str]] = []
+        for word in motions:
+            if not groups or set(_along([word])) & set(_along(groups[-1])):
+                groups.append([])
+            groups[-1].append(word)
+        return [table(group) for group in groups]
 
 
 def _numbers(name: str, text: str) -> list[float]:

@@ -67,7 +67,7 @@ def fragility(
         list[str] | None,
         typer.Argument(help="Record files, file#COMPONENT, or pulses such as sine:amplitude=1,period=0.5."),
     ] = None,
-    motion: options.Motions = None,
+    motion: options.SeveralMotions = None,
     synthetic: Annotated[
         str | None,
         typer.Option(
@@ -209,7 +209,7 @@ def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":
     kind, restitution = arguments.options["analysis"], arguments.options["restitution"] or ["ked"]
     synthetic = family(arguments, {"count": COUNT, "seed": SEED})
     if synthetic is None:
-        motions = [in_lists(arguments.motion_table(word)) for word in arguments.body_and_motions()[1]]
+        motions = [in_lists(each) for each in arguments.each(arguments.body_and_motions()[1], arguments.of_body)]
     elif "synthetic" not in synthetic:
         raise InvalidValueError("what shakes it? Give --motion FILE, or --synthetic firm-ground")
     else:

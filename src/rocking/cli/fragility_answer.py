@@ -140,6 +140,7 @@ class FragilityAnswer:
         }
 
     def _motions_facts(self) -> dict[str, Any]:
+        from rocking.motions.components import leading
         from rocking.motions.pulse import Pulse
 
         table, motions = self.problem.document.motions[0], self.problem.motions
@@ -149,7 +150,7 @@ class FragilityAnswer:
             name = table.synthetic if family is None else family.name
             return {"kind": "synthetic", "count": len(motions), "family": name, "seed": seed}
         names = [motions[k].name for k in range(len(motions))]
-        kind = "pulses" if isinstance(motions[0], Pulse) else "records"
+        kind = "pulses" if isinstance(leading(motions[0]), Pulse) else "records"
         return {"kind": kind, "count": len(names), "names": names}
 
     def show(self, page: Page) -> None:

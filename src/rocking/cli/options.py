@@ -75,6 +75,14 @@ Motions = Annotated[
     list[str] | None,
     typer.Option("--motion", help="The same, as an option; again for more.", autocompletion=completion.pulses),
 ]
+SeveralMotions = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--motion",
+        help="The same, as an option; again for more; or x=FILE, y=FILE and z=FILE of one, again for the next.",
+        autocompletion=completion.pulses,
+    ),
+]
 Restitution = Annotated[
     str,
     typer.Option(

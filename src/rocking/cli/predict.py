@@ -48,9 +48,7 @@ def predict(
     context: typer.Context,
     body: options.BodyFile = None,
     record: Annotated[list[str] | None, typer.Argument(help="Record files, file#COMPONENT, or pulses.")] = None,
-    motion: Annotated[
-        list[str] | None, typer.Option(help="The same; again for more; or x=FILE and y=FILE, two components of one.")
-    ] = None,
+    motion: options.SeveralMotions = None,
     synthetic: Annotated[
         str | None, typer.Option(help="Family of motions in their place, such as firm-ground.")
     ] = None,
@@ -125,12 +123,8 @@ def _typed(context: typer.Context) -> "tuple[PredictionDocument, InputFiles]":
         synthetic = family(arguments, {"count": COUNT, "seed": SEED})
         if synthetic is not None and "synthetic" not in synthetic:
             raise InvalidValueError(f"{NO_MOTION}, or --synthetic firm-ground")
-        if any(word.startswith(("x=", "y=", "z=")) for word in named):
-            document["motion"] = arguments.components(named)
-        elif synthetic is None:
-            document["motions"] = [in_lists(arguments.motion_table(word)) for word in named]
-        else:
-            document["motions"] = [synthetic]
+        each = [synthetic] if synthetic else map(in_lists, arguments.each(named, arguments.components))
+        document["motions"] = list(each)
         return checked(PredictionDocument, document), CommandFiles(Path())
 
 

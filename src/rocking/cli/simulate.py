@@ -122,7 +122,7 @@ def _problem(arguments: Arguments) -> "ResponseProblem":
             "settings": arguments.sets.get("settings", {}),
         }
         if not free:
-            motion = arguments.components(motions) if arguments.solid else arguments.one_motion(motions)
+            motion = arguments.of_body(motions)
             scale = arguments.options["scale"] if arguments.spelt("scale") else None
             tables["motion"] = {**motion, **arguments.table("motion", {"scale": scale}, keys={"scale"})}
         return response_problem(checked(ResponseDocument, tables), CommandFiles(Path()))

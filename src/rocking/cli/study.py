@@ -12,6 +12,7 @@ from rocking.conventions import FEET, Foot
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space.body import SpatialBody
 from rocking.errors import InvalidValueError
+from rocking.motions.components import leading
 from rocking.motions.pulse import Pulse
 from rocking.spec.document import NEEDS, OF_FILES, CampaignDocument
 from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
@@ -63,7 +64,7 @@ def body_and_motion(arguments: Arguments, kind: str, own: dict[str, Any], restit
     _, named = arguments.body_and_motions()
     if not named:
         raise InvalidValueError(NO_MOTION)
-    return of_body(arguments, kind, own, restitution, [in_lists(arguments.one_motion(named))])
+    return of_body(arguments, kind, own, restitution, [in_lists(arguments.of_body(named))])
 
 
 def of_body(
@@ -127,7 +128,7 @@ def subject_facts(problem: StudyProblem) -> dict[str, Any]:
     """Return the body and the motion of a study of one of each as plain values for JSON."""
     body, motion = problem.bodies[0], problem.motions[0]
     facts = {"duration_s": motion.duration, "peak_acceleration_m_s2": motion.peak}
-    kind = "pulse" if isinstance(motion, Pulse) else "record"
+    kind = "pulse" if isinstance(leading(motion), Pulse) else "record"
     table = problem.document.map
     ground = [] if problem.settings.friction is None else ["friction"]
     if ground and isinstance(body, Body):

@@ -49,6 +49,11 @@ class Components:
         return float(max(part.duration for part in self.parts if part is not None))
 
     @property
+    def metadata(self) -> Any:
+        """What is known of the leading component."""
+        return getattr(self.leading, "metadata", {})
+
+    @property
     def provenance(self) -> tuple[str, ...]:
         """Where they come from."""
         told = ("; ".join(getattr(part, "provenance", ())) or repr(part) for part in self.parts if part is not None)

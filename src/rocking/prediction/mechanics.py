@@ -11,6 +11,7 @@ from rocking import checks, plausibility
 from rocking.conventions import FloatArray
 from rocking.dynamics._simulate import components_of
 from rocking.errors import InvalidValueError
+from rocking.motions.components import Components
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.prediction.uncertain import Uncertain
@@ -97,8 +98,8 @@ def several(motions: Any) -> Any:
 
 def parts(motion: Any) -> tuple[Any, Any, Any]:
     """Return what moves the ground along x, across it and upwards."""
-    checks.of_kind("motions", motion, (Mapping, GroundMotion, Pulse), "records, pulses or pairs x and y")
-    x, y, z = components_of(motion) if isinstance(motion, Mapping) else (motion, None, None)
+    checks.of_kind("motions", motion, (Mapping, Components, GroundMotion, Pulse), "records, pulses or pairs x and y")
+    x, y, z = components_of(motion) if isinstance(motion, (Mapping, Components)) else (motion, None, None)
     if x is None:
         raise InvalidValueError("a motion of components has one along x, got none")
     if y is not None and not (isinstance(x, GroundMotion) and isinstance(y, GroundMotion)):

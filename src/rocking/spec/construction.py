@@ -24,7 +24,14 @@ from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
 
 if TYPE_CHECKING:
     from rocking.motions.pulse import Motion
-    from rocking.spec.document import MotionKeys, MotionTable, OneMotionTable, RandomTable, RestitutionTable
+    from rocking.spec.document import (
+        ComponentsTable,
+        MotionKeys,
+        MotionTable,
+        OneMotionTable,
+        RandomTable,
+        RestitutionTable,
+    )
 
 MOST_IN_MEMORY = 100_000
 """Synthetic motions that may be put into a list with others; a set of one family alone is made piece by piece."""
@@ -219,6 +226,8 @@ def _motions(table: "MotionTable", inputs: InputFiles) -> "list[Motion] | Synthe
     if table.synthetic is not None:
         assert table.count is not None  # the table refuses to be without
         return _family(table, table.count)
+    if table.components:
+        return [components_of(table, inputs, table.scale)]
     motions: list[Motion] = [pulse(text) for text in table.pulse or ()] or _records(table, inputs)
     return motions if table.scale == 1.0 else [motion.scaled(table.scale) for motion in motions]
 
@@ -246,6 +255,16 @@ def _record(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion":
     upright = None if table.vertical_file is None else inputs.file(table.vertical_file)
     keys = (table.format, table.units, table.time_step, table.component, table.vertical)
     return read_motion(path, *keys, vertical_path=upright)
+
+
+def components_of(table: "ComponentsTable | MotionTable", inputs: InputFiles | None, scale: float = 1.0) -> Any:
+    """Return the motions along x, y and z by axis, each with its own factor, and one of all."""
+    found = {}
+    for axis, one in table.components.items():
+        with located(axis):
+            motion = motion_of(one, inputs)
+            found[axis] = motion if one.scale * scale == 1.0 else motion.scaled(one.scale * scale)
+    return found
 
 
 def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None) -> "Motion":

@@ -133,8 +133,55 @@ class MotionKeys(JobTable):
         return source
 
 
-class MotionTable(MotionKeys):
-    """Records, pulses, or a family of synthetic motions."""
+class OneMotionTable(MotionKeys):
+    """One pulse, one record, or one motion of a synthetic family."""
+
+    pulse: Text | None = _key("a pulse such as sine:amplitude=3,period=0.8")
+    record: Text | None = _key("a record file")
+    member: Annotated[int, Field(ge=0, lt=10_000_000)] | None = _key("which motion of the synthetic family, from 0")
+
+    @model_validator(mode="after")
+    def _whole(self) -> "OneMotionTable":
+        self._check_sources()
+        return self
+
+    def _check_sources(self) -> None:
+        own = {"seed", "member", "pga", "pgv", "time_step", "scale"}
+        self._one_source({"pulse": {"scale"}, "record": {*OF_FILES, "scale"}, "synthetic": own})
+        if self.pga is not None and self.pgv is not None:
+            raise refused("motions can be scaled to pga or to pgv, not to both")
+
+
+class _Along(JobTable):
+    """A motion along each of the axes x, y and z of a body in space; z is up."""
+
+    x: OneMotionTable | None = _key("motion along x")
+    y: OneMotionTable | None = _key("motion along y")
+    z: OneMotionTable | None = _key("motion along z, upwards")
+
+    @property
+    def components(self) -> dict[str, OneMotionTable]:
+        """The motions by their axis; none where there is one motion alone."""
+        along = {"x": self.x, "y": self.y, "z": self.z}
+        return {axis: table for axis, table in along.items() if table is not None}
+
+    def _check_components(self) -> None:
+        """Refuse what does not go with components."""
+        if odd := sorted(self.model_fields_set - {"x", "y", "z", "scale"}):
+            raise refused(f"{', '.join(odd)} stands with each of the motions along x, y and z")
+        if self.x is not None and self.z is not None and (self.x.vertical or self.x.vertical_file):
+            raise refused("the vertical motion is given twice: beside the one along x, and along z")
+
+
+class ComponentsTable(_Along, OneMotionTable):
+    """One motion, or one along each of the axes x, y and z of a body in space; z is up."""
+
+    def _check_sources(self) -> None:
+        self._check_components() if self.components else super()._check_sources()
+
+
+class MotionTable(_Along, MotionKeys):
+    """Records, pulses, a family of synthetic motions, or one motion along x, y and z of a body in space; z is up."""
 
     records: Names | None = _key("record files; a name may be a pattern such as *.at2")
     pulse: Names | None = _key("pulses such as sine:amplitude=3,period=0.8")
@@ -142,6 +189,9 @@ class MotionTable(MotionKeys):
 
     @model_validator(mode="after")
     def _whole(self) -> "MotionTable":
+        if self.components:
+            self._check_components()
+            return self
         own = {"count", "seed", "pga", "pgv", "time_step"}
         source = self._one_source({"records": {*OF_FILES, "scale"}, "pulse": {"scale"}, "synthetic": own})
         if source == "synthetic" and self.count is None:
@@ -376,47 +426,6 @@ class ResponseTable(JobTable):
         if self.friction is not None and "assumed_friction" in self.model_fields_set:
             raise refused("give friction, which lets the body slide, or assumed_friction, not both")
         return self
-
-
-class OneMotionTable(MotionKeys):
-    """One pulse, one record, or one motion of a synthetic family."""
-
-    pulse: Text | None = _key("a pulse such as sine:amplitude=3,period=0.8")
-    record: Text | None = _key("a record file")
-    member: Annotated[int, Field(ge=0, lt=10_000_000)] | None = _key("which motion of the synthetic family, from 0")
-
-    @model_validator(mode="after")
-    def _whole(self) -> "OneMotionTable":
-        self._check_sources()
-        return self
-
-    def _check_sources(self) -> None:
-        own = {"seed", "member", "pga", "pgv", "time_step", "scale"}
-        self._one_source({"pulse": {"scale"}, "record": {*OF_FILES, "scale"}, "synthetic": own})
-        if self.pga is not None and self.pgv is not None:
-            raise refused("motions can be scaled to pga or to pgv, not to both")
-
-
-class ComponentsTable(OneMotionTable):
-    """One motion, or one along each of the axes x, y and z of a body in space; z is up."""
-
-    x: OneMotionTable | None = _key("motion along x")
-    y: OneMotionTable | None = _key("motion along y")
-    z: OneMotionTable | None = _key("motion along z, upwards")
-
-    @property
-    def components(self) -> dict[str, OneMotionTable]:
-        """The motions by their axis; none where there is one motion alone."""
-        along = {"x": self.x, "y": self.y, "z": self.z}
-        return {axis: table for axis, table in along.items() if table is not None}
-
-    def _check_sources(self) -> None:
-        if not self.components:
-            super()._check_sources()
-        elif odd := sorted(self.model_fields_set - {"x", "y", "z", "scale"}):
-            raise refused(f"{', '.join(odd)} stands with each of the motions along x, y and z")
-        elif self.x is not None and self.z is not None and (self.x.vertical or self.x.vertical_file):
-            raise refused("the vertical motion is given twice: beside the one along x, and along z")
 
 
 class ResponseTables(JobTable):

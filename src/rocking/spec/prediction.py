@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rocking.bodies import Body, Solid
 from rocking.prediction import Prediction, predict
 from rocking.prediction.mechanics import COMPLEMENTARITY, MEASURED
-from rocking.spec.construction import any_body_of, motion_of, motions_of, restitutions_of
+from rocking.spec.construction import any_body_of, components_of, motion_of, motions_of, restitutions_of
 from rocking.spec.reading import InputFiles, located
 
 if TYPE_CHECKING:
@@ -31,9 +31,9 @@ class PredictionProblem:
         if document.motion is None:
             motions = motions_of(document.motions, inputs)
         else:
-            along = document.motion.components or {"x": document.motion}
+            alone = document.motion
             with located("motion"):
-                motions = [{axis: motion_of(each, inputs).scaled(each.scale) for axis, each in along.items()}]
+                motions = [components_of(alone, inputs) or {"x": motion_of(alone, inputs).scaled(alone.scale)}]
         return cls(body, motions, options_of(document, body, inputs))
 
     def answer(self, progress: Callable[[int], None] | None = None, threads: int | None = None) -> Prediction:

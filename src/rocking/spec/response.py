@@ -11,7 +11,7 @@ from rocking.conventions import DEFAULT_FRICTION
 from rocking.dynamics import free_rocking, simulate
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, PureRockingWarning
-from rocking.spec.construction import any_body_of, motion_of, restitutions_of
+from rocking.spec.construction import any_body_of, components_of, motion_of, restitutions_of
 from rocking.spec.reading import InputFiles, located
 
 if TYPE_CHECKING:
@@ -137,10 +137,6 @@ def response_problem(document: "ResponseDocument", files: InputFiles) -> Respons
             raise InvalidValueError(
                 "motion: a plane body has one motion and its vertical part; x, y and z are for solids"
             )
-        motion = {}
-        for axis, one in table.components.items():
-            with located(f"motion.{axis}"):
-                motion[axis] = motion_of(one, files)
-                if one.scale != 1.0:
-                    motion[axis] = motion[axis].scaled(one.scale)
+        with located("motion"):
+            motion = components_of(table, files)
     return problem_of(document, body, motion, inputs=files)
