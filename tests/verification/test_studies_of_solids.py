@@ -18,7 +18,7 @@ from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError
 from rocking.outcome import UNCOUNTED, Outcome, Status
-from rocking.studies import Product, minimum_overturning_acceleration, overturning_map
+from rocking.studies import Product, minimum_overturning_acceleration, overturning_map, rocking_spectrum
 from rocking.studies.fragility import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
 from rocking.studies.motion_sets import MotionList
 
@@ -313,6 +313,8 @@ def test_the_name_of_histories_knows_the_body():
         (lambda: minimum_overturning_acceleration(BASE_ALONE, PULSE, "housner", friction=0.3), "base is known alone"),
         (lambda: minimum_overturning_acceleration(SHORT, PULSE, None, friction=0.3), "restitution"),
         (lambda: multiple_stripe_analysis(PLANE, [BOTH, BOTH], [1.0]), "for bodies in space"),
+        (lambda: rocking_spectrum(SHORT, [0.2], [1.0]), "must be ground motions or pulses, got Solid"),
+        (lambda: rocking_spectrum(BOTH, [0.2], [1.0]), "for bodies in space"),
     ],
 )
 def test_refusals_of_studies(ask, says):

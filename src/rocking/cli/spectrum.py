@@ -11,7 +11,7 @@ from rocking.cli.exports import PICTURES, Export, Exports, draw, write_dataset
 from rocking.cli.numbers import row, values_table
 from rocking.cli.page import Page, bar, deliver
 from rocking.errors import InvalidValueError
-from rocking.spec.document import SpectrumTable
+from rocking.spec.document import OWN_BLOCKS, SpectrumTable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -51,7 +51,7 @@ def spectrum(
     as_json: options.AsJson = False,
 ) -> None:
     """Print the peak rotation of blocks of many sizes and slendernesses under motions, and which sizes overturn."""
-    from rocking.cli.arguments import NO_MOTION, Arguments, as_typed, document_file, hinted, is_body
+    from rocking.cli.arguments import NO_MOTION, Arguments, as_typed, document_file, hinted, is_body, is_file
     from rocking.cli.study import in_lists, problem_in, problem_of
 
     exports = Exports.of(out, EXPORTS)
@@ -65,7 +65,9 @@ def spectrum(
             raise InvalidValueError(NO_MOTION.replace("a record file", "record files"))
         own = {"slenderness_angles": _angles(slenderness), "periods": _periods(periods), "scale": scale}
         table = arguments.table("spectrum", own, {"slenderness_angles": arguments.spelt("slenderness")})
-        with hinted(None, next(filter(is_body, named), named[0])):
+        if body := next((word for word in named if is_body(word) and is_file(word)), None):
+            raise InvalidValueError(f"{body} is a body, and {OWN_BLOCKS}")
+        with hinted(None, named[0]):
             each = [in_lists(arguments.motion_table(word)) for word in named]
             problem = problem_of(
                 "rocking-spectrum", arguments, each, restitution={"model": restitution}, spectrum=table

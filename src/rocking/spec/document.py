@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 else:
     Kind = Literal[tuple(NEEDS)]
 
+OWN_BLOCKS = "a spectrum makes its own blocks; of a body, plane or in space, a map over semi_diagonal shows all sizes"
 _OWN_BODIES = {
-    "rocking-spectrum": "a spectrum makes its own blocks",
+    "rocking-spectrum": OWN_BLOCKS,
     "inventory": "the objects stand in the file that [inventory] names",
 }
 _MANY_BODIES = {"histories", "minimum-acceleration", *_OWN_BODIES}

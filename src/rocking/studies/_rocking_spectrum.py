@@ -38,6 +38,8 @@ def rocking_spectrum(
 ) -> "xr.Dataset":
     """Return the peak rotation of blocks under motions.
 
+    Of another body, plane or in space, a map over ``semi_diagonal`` shows all sizes.
+
     Parameters
     ----------
     motions : GroundMotion or Pulse, or a sequence of them

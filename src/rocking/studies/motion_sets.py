@@ -1,7 +1,7 @@
 """The motions of a study, by number: held in memory, or made from a seed when they are needed."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from typing import Any
 
@@ -65,8 +65,10 @@ class MotionList(MotionSet):
 
     def __init__(self, motions: Any) -> None:
         single = isinstance(motions, (GroundMotion, Pulse, Components, Mapping))
-        found = [together(each) for each in ([motions] if single else list(motions))]
         wanted = "motions must be ground motions or pulses"
+        if not single and not isinstance(motions, Iterable):
+            raise InvalidValueError(f"{wanted}, got {motions!r:.60}")
+        found = [together(each) for each in ([motions] if single else motions)]
         if not found:
             raise InvalidValueError(f"{wanted}, got none")
         for k, item in enumerate(found):

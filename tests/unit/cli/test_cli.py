@@ -85,7 +85,7 @@ REFUSED = {
     f"{SIZE} --restitution no.py:X": "no file no.py",
     "models kde": "no restitution model named 'kde'",
     "motion body.toml": "perhaps a body: see rocking cor body.toml",
-    "spectrum body.toml": "perhaps a body: see rocking cor body.toml",
+    "spectrum body.toml": "a map over semi_diagonal shows all sizes",
     "cor m.csv": "perhaps a record: see rocking motion m.csv",
     "fragility m.csv body.toml": "the body comes first, then the motion: body.toml m.csv",
 }
