@@ -15,7 +15,7 @@ from rocking.dynamics import SpatialBody, SpatialStart
 from rocking.dynamics.hull.law import RestitutionOnHull
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.batch import Batch, Rows
-from rocking.dynamics.settings import Settings, settings_of
+from rocking.dynamics.settings import NEVER_SLIDES, Settings, settings_of
 from rocking.errors import InvalidValueError
 from rocking.outcome import UNCOUNTED, Outcome, Status
 from rocking.studies import Product, minimum_overturning_acceleration, overturning_map, rocking_spectrum
@@ -232,6 +232,18 @@ def test_size_friction_and_restitution_are_axes():
     assert peaks[0] != peaks[1]
 
 
+@pytest.mark.verifies("second engine", "the engine of flat bases, without friction", within="1e-6", control="mu = .3")
+def test_without_friction_nothing_slides():
+    """A study that is told no friction has the peaks and falls of `simulate` without friction while contact holds."""
+    scales = [1.9, 2.6, 3.0]
+    ask = (STATUE, BOTH, ("scale", scales), ("period", [0.5]), "housner")
+    found = overturning_map(*ask)
+    peaks = [rk.simulate(STATUE, BOTH, "housner", scale=scale).peak_tilt for scale in scales]
+    assert found.peak_rotation.values.ravel() == pytest.approx(peaks, rel=1e-6)
+    assert found.attrs["setting_friction"] == NEVER_SLIDES
+    assert overturning_map(*ask, friction=0.3).peak_rotation.values.ravel() != pytest.approx(peaks, rel=1e-2)
+
+
 @pytest.mark.verifies("second engine", "histories on both sides of the minimum", within="1e-3")
 def test_the_minimum_is_where_the_verdict_changes():
     """Just below the least acceleration `simulate` stands, just above it falls; little friction needs no less."""
@@ -304,7 +316,6 @@ def test_the_name_of_histories_knows_the_body():
 @pytest.mark.parametrize(
     ("ask", "says"),
     [
-        (lambda: overturning_map(SHORT, PULSE, ("scale", [1.0]), ("period", [0.5])), "needs friction="),
         (lambda: overturning_map(SHORT, PULSE, ("width", [1.0]), ("period", [0.5]), friction=0.3), "only for a Block"),
         (
             lambda: overturning_map(PLANE, BOTH, ("scale", [1.0]), ("period", [0.5])),

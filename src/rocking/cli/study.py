@@ -9,7 +9,7 @@ from rocking.bodies.body import assumed_rows
 from rocking.cli.arguments import NO_MOTION, Arguments, hinted, parsed_sets, with_sets
 from rocking.cli.numbers import in_unit, side_line
 from rocking.conventions import FEET, Foot
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.settings import NEVER_SLIDES, Settings
 from rocking.dynamics.space.body import SpatialBody
 from rocking.errors import InvalidValueError
 from rocking.motions.components import leading
@@ -105,7 +105,8 @@ def contact_lines(settings: Settings, *, varied: bool = False) -> list[tuple[str
         return []
     bounce = f"; bounce {settings.bounce:g} ({settings.bounce_law})" if settings.bounce else ""
     friction = "varied" if varied else f"{settings.friction:g}"
-    return [("contact", f"friction {friction}{bounce}: it may slide, hop and fly")]
+    moves = "slide, hop" if settings.friction < NEVER_SLIDES else "hop"
+    return [("contact", f"friction {friction}{bounce}: it may {moves} and fly")]
 
 
 def body_lines(body: Any, settings: Settings, length: str = "m", *, varied: bool = False) -> list[tuple[str, str]]:

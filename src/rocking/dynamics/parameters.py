@@ -153,7 +153,7 @@ class RockingParameters:
         Parameters
         ----------
         body : Body, Solid or SpatialBody
-            The body; in space with the least slenderness angle of its base, and with friction.
+            The body; in space with the least slenderness angle of its base.
         restitution : str, RestitutionModel, float, pair of float, mapping or ImpactLaw
             A model or its name; one coefficient; one for landing left and one for landing right, as
             ``{"left": .., "right": ..}``; or a law for what changes from impact to impact.
@@ -175,7 +175,7 @@ class RockingParameters:
         """
         if not isinstance(body, Body):
             if in_space(body):
-                return cls._in_space(body, restitution, gravity, friction)
+                return cls._in_space(body, restitution, gravity)
             raise InvalidValueError(f"body must be a Block, Section, MassPoints or Solid, got {body!r:.60}")
         law = restitution if isinstance(restitution, ImpactLaw) else ConstantRestitution()
         base = getattr(restitution, "times", 1.0) if isinstance(restitution, ImpactLaw) else restitution
@@ -201,10 +201,10 @@ class RockingParameters:
         return cls(made["right"], made["left"], law, _label(law, {foot: made[foot].share for foot in FEET}, label))
 
     @classmethod
-    def _in_space(cls, body: Any, restitution: Any, gravity: float, friction: float | None) -> "RockingParameters":
+    def _in_space(cls, body: Any, restitution: Any, gravity: float) -> "RockingParameters":
         from rocking.dynamics.hull.law import RestitutionOnHull
 
-        law = RestitutionOnHull.of(body, restitution, gravity, friction)
+        law = RestitutionOnHull.of(body, restitution, gravity)
         r = UNIMPOSED if isinstance(law.model, str) else law.model
         side = RockingSide(law.slenderness_angle, law.frequency, law.size, r)
         return cls(side, side, law, law.label)

@@ -18,6 +18,9 @@ ORDERS = (4, 6, 8)  # orders that the fast engine has been compiled for
 BOUNCE_LAWS = ("newton", "poisson", "stronge")
 """What the coefficient of normal restitution may be the ratio of: velocities, impulses or, squared, energies."""
 
+# friction of a body in space for which a study is told none: it may hop, fly and fall into another pose [-]
+NEVER_SLIDES = 1e6
+
 SHORTEST_STEP = 1e-6  # least `Settings.longest_step` [-]
 
 # usual, least and most value of what the mechanics have of their own; the others are the same for all
@@ -186,8 +189,10 @@ def settings_of(gravity: float, options: dict[str, Any], body: Any = None) -> Se
     unknown = sorted(set(options) - known)
     if unknown:
         raise InvalidValueError(f"no option named {unknown[0]!r}; there are {', '.join(sorted(known))}")
-    spatial = in_space(body) and options.get("friction") is not None
-    return Settings(gravity=gravity, **options, mechanics="space with friction" if spatial else "rocking")
+    if not in_space(body):
+        return Settings(gravity=gravity, **options)
+    options = {**options, "friction": NEVER_SLIDES if options.get("friction") is None else options["friction"]}
+    return Settings(gravity=gravity, **options, mechanics="space with friction")
 
 
 def _whole(name: str, value: object, least: int = 1, most: float = math.inf, among: tuple[int, ...] = ()) -> int:

@@ -58,13 +58,8 @@ class RestitutionOnHull(ConstantRestitution):
         return self.model if isinstance(self.model, str) else f"{self.model:.6g}"
 
     @classmethod
-    def of(cls, body: Any, restitution: Any, gravity: float, friction: float | None) -> "RestitutionOnHull":
+    def of(cls, body: Any, restitution: Any, gravity: float) -> "RestitutionOnHull":
         """Return the law of a body in space."""
-        if friction is None:
-            raise InvalidValueError(
-                "a study of a body in space needs friction=, under which it may rock, slide, hop and fall into any of "
-                "its poses; friction=1e6 for one that never slides"
-            )
         if isinstance(restitution, ImpactLaw):
             raise InvalidValueError(
                 f"a body in space takes a model or one coefficient in a study, got {type(restitution).__name__}"
