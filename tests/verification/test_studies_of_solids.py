@@ -452,3 +452,60 @@ def test_components_that_are_refused(records, capsys, motions, says):
         main(["minimum", str(folder / "job.toml")])
     assert stop.value.code
     assert re.search(says, " ".join(capsys.readouterr().err.replace("│", " ").split()))
+
+
+LIST = """name,width_cm,depth_cm,height_cm,centre_of_mass_height_cm,friction,body_file,units
+plane,20,30,90,40,,,
+smooth,20,30,90,40,0.1,,
+rough,20,30,90,40,1e6,,
+statue,,,,,0.2,statue.toml,
+held,,,,,,statue.toml,
+gone,,,,,,gone.stl,mm
+both,20,30,90,,,statue.toml,
+negative,20,30,90,,-1,,
+"""
+
+
+@pytest.mark.verifies("second engine", "the plane engine, and `simulate_many` of the body itself", within="exact")
+def test_an_inventory_of_solids(records, capsys):
+    """A box on rough ground falls as often as its rectangle, a smooth one slides; bad rows are told and touch none."""
+    folder, motions = records
+    pairs = [rk.motions.scaled_to(both["x"], "pga", 7.0) for both in motions]
+    (folder / "list.csv").write_text(LIST)
+    found = rk.inventory(folder / "list.csv", pairs)
+    row = {str(name): k for k, name in enumerate(found.object.values)}
+    fell, slid = (found[name].values[0] for name in ("overturned", "slid"))
+    assert fell[row["rough"]].tolist() == fell[row["plane"]].tolist()
+    assert fell[row["rough"]].sum() > 0
+    assert fell[row["smooth"]].tolist() == [0, 0]
+    assert slid[row["smooth"]].tolist() == [2, 2]
+    assert found.uplift_acceleration.values[row["smooth"]] == pytest.approx(0.1 * g, rel=1e-12)
+    assert found.uplift_acceleration.values[row["rough"]] == pytest.approx(g * 0.1 / 0.4, rel=1e-9)
+    for j, axis in enumerate("xy"):
+        one = rk.simulate_many(STATUE, [{axis: motion} for motion in pairs], friction=0.2)
+        assert (
+            slid[row["statue"], j]
+            == np.isin(one.outcome.values, [Outcome.SLID.code, Outcome.ROCKED_AND_SLID.code]).sum()
+        )
+        assert fell[row["statue"], j] == (one.overturned.values > 0).sum()
+    assert slid[row["held"]].sum() == 0
+    assert found.not_assessed.values.tolist() == ["gone", "both", "negative"]
+    assert ["no such file" in found.reason.values[0], "leave" in found.reason.values[1]] == [True, True]
+
+    clean = "\n".join(line for line in LIST.splitlines() if line.split(",")[0] not in {"gone", "both", "negative"})
+    (folder / "clean.csv").write_text(clean)
+    alone = rk.inventory(folder / "clean.csv", pairs)
+    assert np.array_equal(alone.high_rotation.values, found.high_rotation.values)
+
+    words = ("inventory", folder / "list.csv", "--motion", folder / "x0.csv", "--pga", "7m/s2")
+    told = {one["name"]: one for one in _asked(capsys, *words)["objects"]}
+    assert [one["slid"] for one in told["smooth"]["directions"]] == [1, 1]
+    assert told["plane"]["friction"] is None
+    sliding = {one["name"]: one for one in _asked(capsys, *words, "--friction", "0.1")["objects"]}
+    assert [one["slid"] for one in sliding["plane"]["directions"]] == [1, 1]
+    assert sliding["rough"]["directions"] == told["rough"]["directions"]
+    job = (
+        "[inventory]\nobjects = 'list.csv'\npga = '7m/s2'\n[settings]\nfriction = 0.1\n[motions]\nrecords = 'x0.csv'\n"
+    )
+    (folder / "job.toml").write_text(job)
+    assert {one["name"]: one for one in _asked(capsys, "inventory", folder / "job.toml")["objects"]} == sliding

@@ -44,6 +44,7 @@ def inventory(
         int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.", rich_help_panel=_SHAKING)
     ] = None,
     restitution: options.Restitution = "ked",
+    friction: options.Friction = None,
     units: options.RecordUnits = None,
     sets: options.Set = None,
     out: Annotated[

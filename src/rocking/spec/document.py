@@ -390,9 +390,9 @@ class CampaignDocument(JobTable):
         return self
 
     def _inventory_fits(self) -> None:
-        odd = sorted(self.settings.model_fields_set - {"gravity"})
+        odd = sorted(self.settings.model_fields_set - {"gravity", "friction"})
         if odd:
-            raise refused(f"settings.{odd[0]} does not go with an inventory, which takes gravity only")
+            raise refused(f"settings.{odd[0]} does not go with an inventory, which takes gravity and friction only")
         families = [table for table in self.motions if table.synthetic is not None]
         if any(table.pulse is not None for table in self.motions) or (families and len(self.motions) > 1):
             raise refused("the motions of an inventory are records, or one family of synthetic ones alone")

@@ -172,7 +172,12 @@ def inventory_of(
     except InvalidValueError as error:  # which begins with the key
         raise InvalidValueError(f"inventory.thresholds.{error}") from error
     with located("inventory"):
-        objects = read_inventory(problem.inputs.file(table.objects), table.encoding)
+        folder = Path(table.objects).parent
+        objects = read_inventory(
+            problem.inputs.file(table.objects),
+            table.encoding,
+            lambda name: problem.inputs.file((folder / name).as_posix()),
+        )
         texts = {"PGA": table.pga, "PGV": table.pgv}
         level = next((IntensityLevel.of(kind, text) for kind, text in texts.items() if text is not None), None)
 
@@ -193,11 +198,11 @@ def _inventory(problem: StudyProblem, options: dict[str, Any]) -> Any:
     from rocking.studies.inventory import assess
 
     objects, hazard, limits = inventory_of(problem)
-    gravity, threads = problem.settings.gravity, options["threads"]
-    motions = hazard(options["progress"])
+    settings, motions = problem.settings, hazard(options["progress"])
     return assess(
-        objects, motions, restitution=problem.restitution, thresholds=limits, gravity=gravity, threads=threads
-    )
+        objects, motions, restitution=problem.restitution, thresholds=limits, gravity=settings.gravity,
+        friction=settings.friction, threads=options["threads"],
+    )  # fmt: skip
 
 
 _ANSWERS: dict[str, Callable[[StudyProblem, dict[str, Any]], Any]] = {

@@ -24,6 +24,7 @@ _OF_DIRECTIONS = {
     "count": (np.int64, "motions that were computed"),
     "lifted": (np.int64, "motions that lift it"),
     "overturned": (np.int64, "motions that overturn it"),
+    "slid": (np.int64, "motions that make it slide, of objects in three dimensions"),
     "failed": (np.int64, "motions that could not be computed"),
     "lost_contact": (np.int64, "motions in which the ground would have to pull"),
     "median_rotation": (
@@ -48,6 +49,7 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     seed: int | None = None,
     thresholds: Thresholds | None = None,
     gravity: float = g,
+    friction: float | None = None,
     **options: Any,
 ) -> "xr.Dataset":
     """Return which objects of a list stay standing at a level of shaking, the worst first.
@@ -55,7 +57,8 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     Parameters
     ----------
     objects : str, Path, Inventory or sequence of InventoryObject
-        A CSV file with the columns ``name``, ``width_cm``, ``depth_cm``, ``height_cm`` and more, or the objects.
+        A CSV file with the columns ``name``, ``width_cm``, ``depth_cm``, ``height_cm`` and more, or the objects. Scans
+        and other bodies in space are named in a column ``body_file``, beside the list, with ``units`` of a mesh.
     motions : str, Hazard, GroundMotion or sequence of GroundMotion
         The family of synthetic motions, or records; each acts in either direction by itself.
     restitution : str, RestitutionModel, float or mapping
@@ -69,6 +72,10 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
         What the lights mean.
     gravity : float
         Acceleration of gravity [m/s2].
+    friction : float, optional
+        Coefficient of friction where a row has none of its own: objects slide, rock and fall in three dimensions, each
+        under every motion along its width and along its depth. Without one a box rocks in a plane, and a body of a file
+        does not slide [-].
     **options
         ``threads`` of the fast engine, and ``progress``, told how many histories have been computed since it was last
         called.
@@ -96,7 +103,8 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     """
     everything = read_inventory(objects) if isinstance(objects, (str, Path)) else objects
     hazard = _hazard(motions, pga, pgv, count, seed)
-    assessment = assess(everything, hazard, restitution=restitution, thresholds=thresholds, gravity=gravity, **options)
+    how = {"restitution": restitution, "thresholds": thresholds, "gravity": gravity, "friction": friction}
+    assessment = assess(everything, hazard, **how, **options)
     return dataset_of(assessment)
 
 

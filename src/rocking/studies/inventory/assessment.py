@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.bodies import Block
+from rocking.bodies import Block, Solid
 from rocking.conventions import FloatArray, g
+from rocking.dynamics._simulate import components_of
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome, lost_contact
 from rocking.statistics.counts import share_interval
@@ -43,6 +44,7 @@ class DirectionResult:
     light: Light  # what this direction alone would show
     # motions of the computed ones in which the ground would have to pull: their verdicts assume contact [-]
     lost_contact: int = 0
+    slid: int = 0  # motions that make it slide, of an object in three dimensions [-]
 
     @property
     def overturned_share(self) -> float:
@@ -69,6 +71,7 @@ class Verdict:
     results: tuple[DirectionResult, ...]  # one for each direction, by the model of impact that was asked for
     compared: tuple[DirectionResult, ...]  # the same by the other model
     interval: tuple[float, float]  # interval of the share that overturns in the worse direction [-]
+    friction: float | None = None  # of an object that moves in three dimensions; None for one that rocks in a plane [-]
 
     @property
     def worse(self) -> DirectionResult:
@@ -129,6 +132,7 @@ def assess(
     restitution: Any = "ked",
     thresholds: Thresholds | None = None,
     gravity: float = g,
+    friction: float | None = None,
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Assessment:
@@ -140,7 +144,7 @@ def assess(
         The objects.
     hazard : Hazard
         The motions; each acts in either direction by itself.
-    restitution, thresholds, gravity
+    restitution, thresholds, gravity, friction
         As for `rocking.inventory`.
     threads : int, optional
         Threads of the fast engine.
@@ -165,8 +169,9 @@ def assess(
     >>> assess([vase], hazard).verdicts[0].light.word
     'green'
     """
-    assessor = _Assessor(inventory, hazard, restitution, thresholds, gravity)
-    rulings: list[Verdict | NotAssessed] = []
+    assessor = _Assessor(inventory, hazard, restitution, thresholds, gravity, friction)
+    in_space = filter(assessor.in_space, assessor.inventory.objects)
+    rulings = [assessor.verdict_in_space(item, threads, progress) for item in in_space]
     for objects in assessor.pieces():
         product, items, refused = assessor.product(objects)
         rulings += refused
@@ -182,12 +187,15 @@ def assessment_plan(
     restitution: Any = "ked",
     thresholds: Thresholds | None = None,
     gravity: float = g,
+    friction: float | None = None,
 ) -> tuple[Product, Callable[[Arrays], Assessment], tuple[InventoryObject, ...]]:
     """Return the histories of an assessment, what makes it of their results, and the objects, for campaigns.
 
     The histories are over motion, object and direction, one scale, and the two models of impact.
     """
-    assessor = _Assessor(inventory, hazard, restitution, thresholds, gravity)
+    assessor = _Assessor(inventory, hazard, restitution, thresholds, gravity, friction)
+    if any(map(assessor.in_space, assessor.inventory.objects)):
+        raise InvalidValueError("an inventory with friction or body files is assessed by rocking inventory alone")
     product, items, refused = assessor.product(assessor.inventory.objects)
     if product is None:
         first = min([*assessor.inventory.not_assessed, *refused], key=lambda each: each.row)
@@ -204,8 +212,9 @@ class _Assessor:
 
     def __init__(
         self, inventory: Inventory | Sequence[InventoryObject], hazard: Hazard, restitution: Any,
-        thresholds: Thresholds | None, gravity: float,
+        thresholds: Thresholds | None, gravity: float, friction: float | None = None,
     ) -> None:  # fmt: skip
+        self.friction = friction
         self.inventory = inventory if isinstance(inventory, Inventory) else Inventory(tuple(inventory))
         if not self.inventory.objects and not self.inventory.not_assessed:
             raise InvalidValueError("an inventory must have at least one object, got none")
@@ -225,7 +234,7 @@ class _Assessor:
 
     def pieces(self) -> Iterator[Sequence[InventoryObject]]:
         """Yield objects whose histories fit into a piece: an inventory of any length takes no more memory."""
-        objects = self.inventory.objects
+        objects = [item for item in self.inventory.objects if not self.in_space(item)]
         many = max(1, PIECE // (len(self.hazard.motions) * len(DIRECTIONS) * _MODELS))
         for first in range(0, len(objects), many):
             yield objects[first : first + many]
@@ -264,33 +273,71 @@ class _Assessor:
         ratio = peak / product.sides["alpha_right"].reshape(shape[1:])
         lost = lost_contact(results).reshape(shape)
         for k, item in enumerate(items):
-            if (outcome[:, k] == Outcome.FAILED.code).all(axis=0).any():
-                yield NotAssessed(item.row, item.name, "no motion could be computed in one of its directions")
-                continue
-            of_model, of_other = (
-                tuple(
-                    self._direction(item, way, outcome[:, k, j, model], ratio[:, k, j, model], lost[:, k, j, model])
-                    for j, way in enumerate(DIRECTIONS)
-                )
-                for model in range(_MODELS)
+            lifts = [item.uplift_acceleration(way, self.gravity) for way in DIRECTIONS]
+            yield self._verdict(item, lifts, outcome[:, k], ratio[:, k], lost[:, k])
+
+    def in_space(self, item: InventoryObject) -> bool:
+        """Return whether an object moves in three dimensions."""
+        return item.solid is not None or item.friction is not None or self.friction is not None
+
+    def verdict_in_space(
+        self, item: InventoryObject, threads: int | None, progress: Callable[[int], None] | None
+    ) -> Verdict | NotAssessed:
+        """Return the verdict of an object on the vertices of its hull, shaken along its width and along its depth."""
+        shaking = [components_of(motion) for motion in self.hazard.motions]
+        motions = MotionList([(x, None, up) for x, _, up in shaking] + [(None, x, up) for x, _, up in shaking])
+        stated = self.friction if item.friction is None else item.friction
+        found = []
+        try:
+            body = item.in_space()
+            settings = settings_of(self.gravity, {"friction": stated}, body)
+            assert settings.friction is not None
+            lifts = [min(settings.friction * self.gravity, each) for each in _uplift(body, self.gravity)]
+            for restitution in self.restitutions:
+                word = getattr(restitution, "name", restitution)
+                parameters = RockingParameters.of_body(body, word, self.gravity, friction=settings.friction)
+                sides = {name: values[None] for name, values in sides_of([parameters]).items()}
+                rows = Product(motions, sides, np.ones(1), law=parameters.law, settings=settings)
+                found.append(results_of(rows, threads=threads, progress=progress))
+        except RockingError as error:
+            return NotAssessed(item.row, item.name, str(error))
+        outcome, peak = (
+            np.stack([one[name].reshape(2, -1).T for one in found], axis=-1) for name in ("outcome", "peak_rotation")
+        )
+        ratio = np.abs(peak) / parameters.right.slenderness_angle
+        return self._verdict(item, lifts, outcome, ratio, np.zeros(ratio.shape), settings.friction)
+
+    def _verdict(
+        self, item: InventoryObject, lifts: Sequence[float], outcome: np.ndarray, ratio: FloatArray, lost: FloatArray,
+        friction: float | None = None,
+    ) -> Verdict | NotAssessed:  # fmt: skip
+        if (outcome == Outcome.FAILED.code).all(axis=0).any():
+            return NotAssessed(item.row, item.name, "no motion could be computed in one of its directions")
+        of_model, of_other = (
+            tuple(
+                self._direction(way, lifts[j], outcome[:, j, model], ratio[:, j, model], lost[:, j, model])
+                for j, way in enumerate(DIRECTIONS)
             )
-            worse = max(of_model, key=lambda each: each.severity)
-            interval = share_interval(worse.overturned, worse.count, self.thresholds.level)
-            yield Verdict(item, of_model, of_other, interval)
+            for model in range(_MODELS)
+        )
+        worse = max(of_model, key=lambda each: each.severity)
+        interval = share_interval(worse.overturned, worse.count, self.thresholds.level)
+        return Verdict(item, of_model, of_other, interval, friction)
 
     def _direction(
-        self, item: InventoryObject, way: Direction, outcome: np.ndarray, ratio: FloatArray, lost: FloatArray
+        self, way: Direction, lifts: float, outcome: np.ndarray, ratio: FloatArray, lost: FloatArray
     ) -> DirectionResult:
         good = outcome != Outcome.FAILED.code
         fell = outcome[good] == Outcome.OVERTURNED.code
-        lifted = outcome[good] != Outcome.NO_UPLIFT.code
+        lifted = ~np.isin(outcome[good], [Outcome.NO_UPLIFT.code, Outcome.SLID.code])
+        slid = np.isin(outcome[good], [Outcome.SLID.code, Outcome.ROCKED_AND_SLID.code])
         middle, high = (_quantile(ratio[good], fell, share) for share in (0.5, 0.84))
         counts = {"lifted": int(lifted.sum()), "overturned": int(fell.sum()), "count": int(good.sum())}
         failed = int((~good).sum())
         light = self.thresholds.light(high_rotation=high, failed=failed, **counts)
         return DirectionResult(
-            way, item.uplift_acceleration(way, self.gravity), median_rotation=middle, high_rotation=high, light=light,
-            failed=failed, lost_contact=int(np.nansum(lost)), **counts,
+            way, lifts, median_rotation=middle, high_rotation=high, light=light, failed=failed,
+            lost_contact=int(np.nansum(lost)), slid=int(slid.sum()), **counts,
         )  # fmt: skip
 
     def assessment(self, rulings: Sequence[Verdict | NotAssessed]) -> Assessment:
@@ -303,6 +350,13 @@ class _Assessor:
             tuple(verdicts), tuple(refused), self.hazard, self.thresholds, self.label, self.other_label,
             source=self.inventory.source, ignored=self.inventory.ignored, gravity=self.gravity,
         )  # fmt: skip
+
+
+def _uplift(body: Solid, gravity: float) -> list[float]:
+    """Return which steady acceleration along x, and along y, lifts a body over either side [m/s2]."""
+    pose = body.equilibria().settling([0.0, 0.0, -1.0])
+    lifts = pose.uplift_acceleration(0.5 * np.pi * np.arange(4.0)) * gravity / g
+    return [float(min(lifts[k], lifts[k + 2])) for k in (0, 1)]
 
 
 def _quantile(ratio: FloatArray, fell: np.ndarray, share: float) -> float | None:

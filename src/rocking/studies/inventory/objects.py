@@ -4,8 +4,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 from rocking import checks
-from rocking.bodies import Block, Body
+from rocking.bodies import Block, Body, Solid
+from rocking.bodies.solid import Part, box
 from rocking.conventions import g
+from rocking.dynamics.settings import NEVER_SLIDES
 from rocking.errors import InvalidValueError
 
 Direction = Literal["width", "depth"]
@@ -44,6 +46,11 @@ class InventoryObject:
         How many alike [-].
     note : str
         Anything.
+    friction : float, optional
+        Coefficient of friction between it and the ground, with which it moves in three dimensions [-].
+    solid : Solid, optional
+        The body itself, standing as it does, where more is known than its size, which it then gives: it moves in three
+        dimensions, and without friction it does not slide.
     row : int
         Line of the file that it comes from, 0 for none [-].
 
@@ -70,6 +77,8 @@ class InventoryObject:
     count: int = 1
     note: str = ""
     row: int = 0
+    friction: float | None = None
+    solid: Solid | None = None
 
     def __post_init__(self) -> None:
         word: object = self.name
@@ -90,6 +99,8 @@ class InventoryObject:
             object.__setattr__(self, "centre_of_mass_height", centre)
         if self.mass is not None:
             object.__setattr__(self, "mass", self._checked_mass(self.mass))
+        if self.friction is not None:
+            checks.within("friction", self.friction, 0.0, NEVER_SLIDES)
         count: object = self.count
         if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= 1_000_000:
             raise InvalidValueError(f"count must be a whole number in [1, 1000000], got {count!r:.40}")
@@ -146,6 +157,35 @@ class InventoryObject:
         centre = None if height is None else (0.5 * size, height)
         body = Block(width=size, height=self.height, depth=across, mass=self.mass, centre=centre)
         return body if base == size else body.with_feet(0.5 * (size - base), 0.5 * (size + base))
+
+    def in_space(self) -> Solid:
+        """Return the body in three dimensions, along x its width and along y its depth.
+
+        Returns
+        -------
+        Solid
+            The one given, or a box, of which the mass below and above the centre is spread evenly.
+
+        Raises
+        ------
+        InvalidValueError
+            If its base is smaller than itself: of such a body the shape must be known.
+        """
+        if self.solid is not None:
+            return self.solid
+        if any(self.base(way) < self._size(way) for way in DIRECTIONS):
+            raise InvalidValueError(
+                "with friction it moves in three dimensions, and its shape above a smaller base is not known: leave "
+                "the base out, or name its body file"
+            )
+        height = self.height
+        middle = 0.5 * height if self.centre_of_mass_height is None else self.centre_of_mass_height
+        heights, densities = (middle, height - middle), ((height - middle) ** 2, middle**2)
+        low, high = (
+            Part(box(self.width, self.depth, tall), 1000.0 * each / max(densities))
+            for tall, each in zip(heights, densities, strict=True)
+        )
+        return Solid([low, high.moved(0.0, 0.0, middle)])
 
     def _size(self, direction: Direction) -> float:
         return self.width if direction == "width" else self.depth

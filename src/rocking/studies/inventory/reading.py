@@ -4,13 +4,15 @@ import csv
 import difflib
 import io
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from rocking import checks
+from rocking.bodies import Solid
+from rocking.bodies.formats import read_body
 from rocking.conventions import LENGTH_UNITS
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, RockingError
 from rocking.studies.inventory.objects import InventoryObject, NotAssessed
 
 LENGTHS = ("width", "depth", "height", "base_width", "base_depth", "centre_of_mass_height")
@@ -22,7 +24,7 @@ REQUIRED = ("name", "width", "depth", "height")
 WEIGHTS = {"kg": 1.0, "g": 0.001, "t": 1000.0, "lb": 0.45359237}
 """Units of the column of weights [kg]."""
 
-WORDS = ("name", "count", "note")
+WORDS = ("name", "count", "note", "friction", "body_file", "units")
 """Columns without a unit."""
 
 _MEASURES = (*LENGTHS, "base", "weight")
@@ -152,7 +154,7 @@ MOST_ROWS, MOST_BYTES = 100_000, 64 << 20
 """No inventory is longer, no file larger: it is something else."""
 
 _LONGEST_HEADER = 10_000
-_TEXTS = ("name", "note")
+_TEXTS = ("name", "note", "body_file", "units")
 _DELIMITERS = (",", ";", "\t")
 # the line by which Excel is told, and tells, what separates the fields
 _SEPARATOR = re.compile(r'"?sep=(.)"?[ \t]*(?=\r?\n|$)', re.IGNORECASE)
@@ -180,7 +182,9 @@ class Inventory:
     source: str = "objects"
 
 
-def read_inventory(path: str | Path, encoding: str = "utf-8-sig") -> Inventory:
+def read_inventory(
+    path: str | Path, encoding: str = "utf-8-sig", find: Callable[[str], Path] | None = None
+) -> Inventory:
     """Return the inventory in a CSV file.
 
     Parameters
@@ -189,6 +193,8 @@ def read_inventory(path: str | Path, encoding: str = "utf-8-sig") -> Inventory:
         The file.
     encoding : str
         Encoding of the text, such as ``cp1252`` for older spreadsheets.
+    find : callable, optional
+        Where a body file is that the list names; beside the list if not given.
 
     Returns
     -------
@@ -211,10 +217,10 @@ def read_inventory(path: str | Path, encoding: str = "utf-8-sig") -> Inventory:
         raise InvalidValueError(
             f'{path.name} is not text in {encoding}: save it as "CSV UTF-8", or name its encoding, such as cp1252'
         ) from error
-    return parse_inventory(text, path.name)
+    return parse_inventory(text, path.name, find or (lambda name: path.parent / name))
 
 
-def parse_inventory(text: str, source: str = "objects") -> Inventory:
+def parse_inventory(text: str, source: str = "objects", find: Callable[[str], Path] | None = None) -> Inventory:
     r"""Return the inventory in a text.
 
     Parameters
@@ -224,6 +230,8 @@ def parse_inventory(text: str, source: str = "objects") -> Inventory:
         stand Excel's own, such as ``sep=;``.
     source : str
         What to call it.
+    find : callable, optional
+        Where a body file is that a row names; without it none may be named.
 
     Returns
     -------
@@ -257,8 +265,8 @@ def parse_inventory(text: str, source: str = "objects") -> Inventory:
     objects, refused = [], []
     for line, cells in body:
         try:
-            objects.append(_object(line, cells, columns, mark))
-        except InvalidValueError as error:
+            objects.append(_object(line, cells, columns, mark, find))
+        except RockingError as error:
             refused.append(NotAssessed(line, "".join(cells[name : name + 1]).strip(), str(error)))
     if not objects and not refused:
         raise InvalidValueError(f"{source}: an inventory needs at least one row below its header")
@@ -271,7 +279,7 @@ def _delimiter(text: str, allowed: tuple[str, ...], source: str) -> str:
     for mark in allowed:
         if mark in _DELIMITERS:
             stems = {_split(title)[0] for title in next(csv.reader([first], delimiter=mark))}  # whatever the units
-            fits += [mark] * stems.issuperset(REQUIRED)
+            fits += [mark] * (stems.issuperset(REQUIRED) or stems.issuperset({"name", "body_file"}))
     if len(fits) == 1:
         return fits[0]
     raise InvalidValueError(
@@ -298,7 +306,11 @@ def rows_of(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]
 
 
 def _object(
-    line: int, cells: Sequence[str], columns: Sequence[InventoryColumn | None], mark: DecimalMark
+    line: int,
+    cells: Sequence[str],
+    columns: Sequence[InventoryColumn | None],
+    mark: DecimalMark,
+    find: Callable[[str], Path] | None,
 ) -> InventoryObject:
     if len(cells) != len(columns):
         hint = "a decimal comma between commas?" if len(cells) > len(columns) else "a separator missing?"
@@ -309,10 +321,25 @@ def _object(
             continue
         values |= dict.fromkeys(column.fields, _value(column, cell, mark))
     titles = {field: column.title for column in columns if column for field in column.fields}
+    name, units = values.pop("body_file", None), values.pop("units", None)
+    if name is not None:
+        if stated := sorted({*LENGTHS, "mass"} & set(values)):
+            raise InvalidValueError(f"its body file says what it is: leave {titles[stated[0]]} empty")
+        values |= _body(str(name), units, find)
     for each in REQUIRED:
         if each not in values:
-            raise InvalidValueError(f"{titles[each]} is empty")
+            raise InvalidValueError(f"{titles.get(each, each)} is empty")
     return InventoryObject(**values)  # type: ignore[arg-type]
+
+
+def _body(name: str, units: object, find: Callable[[str], Path] | None) -> dict[str, object]:
+    """Return the body of a file, and its size."""
+    if find is None:
+        raise InvalidValueError(f"names the body file {name!r:.60}, but no file can be named here")
+    body = read_body(find(name), **({} if units is None else {"units": units}))
+    solid = body if isinstance(body, Solid) else Solid.from_section(body)
+    size = solid.box[1] - solid.box[0]
+    return {"solid": solid, **dict(zip(("width", "depth", "height"), size.tolist(), strict=True))}
 
 
 def _value(column: InventoryColumn, cell: str, mark: DecimalMark) -> object:

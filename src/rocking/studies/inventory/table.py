@@ -94,6 +94,7 @@ def _plain(rank: int, verdict: Verdict, assessment: Assessment) -> dict[str, Any
         "worse_direction": verdict.worse.direction,
         "uplift_acceleration_m_s2": verdict.uplift_acceleration,
         "overturned_interval": list(verdict.interval),
+        "friction": verdict.friction,
         "directions": [_direction(each) for each in verdict.results],
         "directions_by_comparison": [_direction(each) for each in verdict.compared],
         "light_by_comparison": verdict.worse_compared.light.word,
@@ -113,7 +114,7 @@ _PLAIN = {
 
 def _direction(result: DirectionResult) -> dict[str, Any]:
     names = (
-        "direction", "light", "uplift_acceleration", "count", "lifted", "overturned", "failed", "lost_contact",
+        "direction", "light", "uplift_acceleration", "count", "lifted", "overturned", "slid", "failed", "lost_contact",
         "overturned_share", "median_rotation", "high_rotation",
     )  # fmt: skip
     plain = {_PLAIN.get(name, name): getattr(result, name) for name in names}
@@ -121,7 +122,7 @@ def _direction(result: DirectionResult) -> dict[str, Any]:
 
 
 SLIDING = (
-    "Sliding is not assessed: an object on a smooth floor or shelf may slide before it rocks, "
+    "Sliding is not assessed without a friction: an object on a smooth floor or shelf may slide before it rocks, "
     "and slide off its support."
 )
 """What no verdict covers."""
@@ -133,7 +134,7 @@ LIMITS = (
     "Each motion acts once along the width and once along the depth; the worse direction counts. Rocking in both "
     "directions at once, twisting and rolling on the rim of a round base are not computed.",
     "Each direction is a rectangle of the outer size, on the base that is given; where no height of the centre of mass "
-    "is given it is half the height.",
+    "is given it is half the height. With a friction or a body file the object moves in three dimensions instead.",
     "Blows from neighbours, shaking loose, and damage without falling are not assessed.",
 )
 """What every report says about the assumptions."""
@@ -150,6 +151,8 @@ def sentence(verdict: Verdict, assessment: Assessment) -> str:
     if worse.failed:
         at += f" ({worse.failed} of {worse.count + worse.failed} motions could not be computed)"
     words = f"{still}; {at} {_fate(worse, hazard.synthetic)}"
+    if worse.slid:
+        words += f"; it slides in {worse.slid}"
     if worse.lost_contact:
         words += f"; in {worse.lost_contact} the ground would have to pull, and the verdict assumes contact"
     return f"{words}."
@@ -159,7 +162,8 @@ def advice(verdict: Verdict, assessment: Assessment) -> str:
     """Return what to do about an object."""
     if verdict.light is Light.GREEN:
         return "Nothing to do for rocking; check that it cannot slide off."
-    how = f"Secure it, lower its centre of mass, or widen its base: {_base(verdict, assessment)}."
+    base = f": {_base(verdict, assessment)}" if verdict.friction is None else ""
+    how = f"Secure it, lower its centre of mass, or widen its base{base}."
     if verdict.light is Light.AMBER:
         return f"{how} Give it room to rock without touching its neighbours."
     return f"{how} Until then keep people and other objects out of its reach."
@@ -206,6 +210,8 @@ def _base(verdict: Verdict, assessment: Assessment) -> str:
 def _fate(result: DirectionResult, synthetic: bool) -> str:
     motions = "simulated earthquakes" if synthetic else "records"
     of = f"{result.count} {motions}" if result.count > 1 else f"the one {motions.removesuffix('s')}"
+    if result.lifted == 0 and result.slid:
+        return f"it does not rock in any of {of}"
     if result.lifted == 0:
         return f"it stood still in all of {result.count} {motions}" if result.count > 1 else f"it stood still in {of}"
     if result.overturned:

@@ -97,8 +97,9 @@ def inventory_study(problem: StudyProblem) -> Study:
     hazard = motions(None)
     with located("inventory"):
         product, finish, items = assessment_plan(
-            objects, hazard, restitution=problem.restitution, thresholds=limits, gravity=problem.settings.gravity
-        )
+            objects, hazard, restitution=problem.restitution, thresholds=limits, gravity=problem.settings.gravity,
+            friction=problem.settings.friction,
+        )  # fmt: skip
     dims = dict(
         zip(("motion", "object", "direction", "restitution"), (len(hazard.motions), len(items), 2, 2), strict=True)
     )
