@@ -7,9 +7,10 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from rocking import checks
-from rocking.bodies import Solid
+from rocking.bodies import MassPoints, Solid
 from rocking.bodies.formats import read_body
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import InvalidValueError, RockingError
@@ -332,11 +333,13 @@ def _object(
     return InventoryObject(**values)  # type: ignore[arg-type]
 
 
-def _body(name: str, units: object, find: Callable[[str], Path] | None) -> dict[str, object]:
+def _body(name: str, units: Any, find: Callable[[str], Path] | None) -> dict[str, object]:
     """Return the body of a file, and its size."""
     if find is None:
         raise InvalidValueError(f"names the body file {name!r:.60}, but no file can be named here")
-    body = read_body(find(name), **({} if units is None else {"units": units}))
+    body = read_body(find(name), units=units)
+    if isinstance(body, MassPoints):
+        raise InvalidValueError(f"{name}: mass points have no shape to stand on in three dimensions")
     solid = body if isinstance(body, Solid) else Solid.from_section(body)
     size = solid.box[1] - solid.box[0]
     return {"solid": solid, **dict(zip(("width", "depth", "height"), size.tolist(), strict=True))}
