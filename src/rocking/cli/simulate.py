@@ -92,8 +92,11 @@ def simulate(
         problem = _problem(arguments)
     if problem.free is not None and isinstance(problem.body, Body):
         _check_share(problem.body, problem.free, "response.free" if file else "--free")
-    if problem.mechanics != "rocking" and "animation" in exports.names:
-        raise InvalidValueError(f"an animation is of pure rocking only, and this is {problem.mechanics}")
+    if problem.mechanics not in {"rocking", "space with friction"} and "animation" in exports.names:
+        raise InvalidValueError(
+            "an animation is of pure rocking in the plane, or of a body in space with friction, and this is "
+            f"{problem.mechanics}"
+        )
     answer = answer_of(problem, length or "m", acceleration or "m/s2", listed=file is not None)
     deliver(answer, exports, as_json=as_json)
 

@@ -369,36 +369,6 @@ class Response(ResponseBase):
             "random_stream": self.stream,
         }
 
-    def animate(self, path: str | Path, **options: Any) -> Path:
-        """Write the response as it moves.
-
-        Parameters
-        ----------
-        path : str or Path
-            A web page of one file (.html), or a film (.gif).
-        **options
-            Of a film, as of `rocking.plots.animate_gif`: fps, speed, progress.
-
-        Returns
-        -------
-        Path
-            The file.
-
-        Raises
-        ------
-        InvalidValueError
-            If the ending of the path is another.
-        MissingExtraError
-            If matplotlib is not installed, which films need.
-        """
-        suffix = Path(path).suffix.lower()
-        if suffix not in {".html", ".gif"}:
-            raise InvalidValueError(f"an animation is .html or .gif, got {Path(path).name!r}")
-        if suffix == ".html" and options:
-            raise InvalidValueError(f"{', '.join(options)}: these are for films (.gif); the page has its own controls")
-        written: Path = presenter(f"animation as {suffix}")(self, path, **options)
-        return written
-
     def report(self, path: str | Path, **options: Any) -> Path:
         """Write a report: the body, what an impact costs it, the ground, the response, with pictures.
 

@@ -233,6 +233,36 @@ class ResponseBase(ABC):
 
         return to_netcdf(self.to_xarray(), target_of(path))
 
+    def animate(self, path: str | Path, **options: Any) -> Path:
+        """Write the response as it moves.
+
+        Parameters
+        ----------
+        path : str or Path
+            A web page of one file (.html), or a film (.gif).
+        **options
+            Of a film, as of `rocking.plots.animate_gif`: fps, speed, progress.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        InvalidValueError
+            If the ending of the path is another, or these mechanics have no animation.
+        MissingExtraError
+            If matplotlib is not installed, which films need.
+        """
+        suffix = Path(path).suffix.lower()
+        if suffix not in {".html", ".gif"}:
+            raise InvalidValueError(f"an animation is .html or .gif, got {Path(path).name!r}")
+        if suffix == ".html" and options:
+            raise InvalidValueError(f"{', '.join(options)}: these are for films (.gif); the page has its own controls")
+        written: Path = presenter(f"animation as {suffix}")(self, path, **options)
+        return written
+
     def _known(self, time: Any, end: float) -> FloatArray:
         """Return times up to an end, to rounding; what lies outside is refused [s]."""
         times = checks.real_array("time", time, "s")

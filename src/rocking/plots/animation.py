@@ -14,10 +14,12 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
+from rocking.dynamics.hull.response import HullResponse
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.motion import GroundMotion
 from rocking.outcome import Outcome
+from rocking.plots.animation_hull import HullScene, HullStage
 from rocking.plots.animation_scene import DrawnShape, Scene, scene_of, scene_until
 from rocking.plots.body import closed
 from rocking.plots.response import motion_curves, over_slenderness
@@ -28,7 +30,9 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
     from matplotlib.transforms import Affine2D
 
+NOT_MOVED = "an animation is of pure rocking in the plane, or of a body in space with friction"
 MOST_FRAMES = 500  # frames of a GIF: more would make a file that no page wants to carry
+
 _LIFTED = "The vertical motion of the ground counts in the forces but is not drawn."
 _FALLS = (
     "The fall is computed by the same equation until a corner meets the ground; there the body is left lying, since a "
@@ -45,7 +49,7 @@ _ROTATION, _IMPACT = "#0072B2", "#D55E00"
 _FLASH = 0.3  # how long an impact is seen, in seconds of playing
 
 
-def animate_html(response: Response, path: str | Path) -> Path:
+def animate_html(response: Response | HullResponse, path: str | Path) -> Path:
     """Write a web page in which the body rocks: play, slow down, step, drag to any instant.
 
     The page is one file: no network, no other script; it declares and keeps a content security policy that allows
@@ -53,8 +57,8 @@ def animate_html(response: Response, path: str | Path) -> Path:
 
     Parameters
     ----------
-    response : Response
-        What `simulate` or `free_rocking` returned.
+    response : Response or HullResponse
+        What `simulate` or `free_rocking` returned of a plane body, or of one in space with friction.
     path : str or Path
         File ending in .html.
 
@@ -69,6 +73,7 @@ def animate_html(response: Response, path: str | Path) -> Path:
         If the name does not end in .html, or the file cannot be written.
     """
     target = target_of(path, ".html")
+    _until(response)
     try:
         target.write_text(page(response), encoding="utf-8")
     except OSError as error:
@@ -76,12 +81,10 @@ def animate_html(response: Response, path: str | Path) -> Path:
     return target
 
 
-def page(response: Response) -> str:
+def page(response: Response | HullResponse) -> str:
     """Return the web page of a response."""
-    style, form = _part("animation_page.css"), _part("animation_page.html")
-    script = _part("animation_page.js") + _part("animation_drawing.js")
-    policy = f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; base-uri 'none'"
-    summary = response.summary[:1].upper() + response.summary[1:]
+    if isinstance(response, HullResponse):
+        return _page_in_space(response)
     motion = response.motion
     about = [
         "free rocking, the ground at rest" if motion is None else motion.name,
@@ -90,21 +93,52 @@ def page(response: Response) -> str:
         f"engine {response.engine}",
     ]
     lifted = isinstance(motion, GroundMotion) and motion.vertical is not None
-    # "<" cannot end the script element early, whatever a motion is called
-    data = json.dumps(page_data(response), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
-    return Template(form).substitute(
-        policy=html.escape(policy, quote=False),
-        title=html.escape(summary),
-        about=html.escape("; ".join(about)),
+    return _assembled(
+        "animation_page.html",
+        _part("animation_page.js") + _part("animation_drawing.js"),
+        response.summary,
+        about,
+        page_data(response),
         picture=html.escape(f"Animation of a {type(response.body).__name__} on moving ground: {response.summary}."),
         count=response.impacts.size,
         note=" ".join(
             [_LIFTED] * lifted + [_FALLS] * (response.outcome is Outcome.OVERTURNED)  # both, one, or nothing to add
         ),
-        style=style,
-        script=script,
-        data=data,
     )
+
+
+def _page_in_space(response: HullResponse) -> str:
+    scene = HullScene.of(response)
+    about = [
+        *(f"{axis}: {name}" for axis, name in zip("xyz", response.names, strict=True) if name != "none"),
+        *([f"{response.scale:g} times"] if response.scale != 1.0 else []),
+        f"restitution {response.restitution}",
+        f"friction {response.settings.friction:g}",
+    ]
+    packed = {name: _packed(getattr(scene, name)) for name in ("quaternion", "centre", "tilt")}
+    data = {
+        **packed,
+        "end": float(scene.time[-1]),
+        "points": _short(scene.points),
+        "normals": _short(scene.normals),
+        "facets": scene.facets,
+        "middle": scene.middle.tolist(),
+        "reach": scene.reach,
+    }
+    picture = html.escape(f"Animation of a body in space on its ground: {response.summary}.")
+    return _assembled("animation_hull.html", _part("animation_hull.js"), response.summary, about, data, picture=picture)
+
+
+def _assembled(form: str, script: str, summary: str, about: list[str], data: dict[str, Any], **texts: Any) -> str:
+    """Return a page of a form, which declares what it may run and show."""
+    style = _part("animation_page.css")
+    policy = f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; base-uri 'none'"
+    # "<" cannot end the script element early, whatever a motion is called
+    text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+    return Template(_part(form)).substitute(
+        policy=html.escape(policy, quote=False), title=html.escape(summary[:1].upper() + summary[1:]),
+        about=html.escape("; ".join(about)), style=style, script=script, data=text, **texts,
+    )  # fmt: skip
 
 
 def page_data(response: Response) -> dict[str, Any]:
@@ -139,7 +173,7 @@ def page_data(response: Response) -> dict[str, Any]:
 
 
 def animate_gif(
-    response: Response,
+    response: Response | HullResponse,
     path: str | Path,
     fps: float = 25.0,
     speed: float = 1.0,
@@ -149,8 +183,8 @@ def animate_gif(
 
     Parameters
     ----------
-    response : Response
-        What `simulate` or `free_rocking` returned.
+    response : Response or HullResponse
+        What `simulate` or `free_rocking` returned of a plane body, or of one in space with friction.
     path : str or Path
         File ending in .gif.
     fps : float
@@ -175,7 +209,7 @@ def animate_gif(
     target = target_of(path, ".gif")
     lasts = round(100.0 / checks.within("fps", fps, 1.0, 50.0)) / 100.0
     speed = checks.within("speed", speed, 0.01, 100.0)
-    end = scene_until(response)
+    end = _until(response)
     count = int(np.ceil(end / (lasts * speed))) + 1
     if count > MOST_FRAMES:
         raise InvalidValueError(
@@ -189,10 +223,19 @@ def animate_gif(
     return target
 
 
-def slowest_speed(response: Response, fps: float = 25.0) -> float:
+def slowest_speed(response: Response | HullResponse, fps: float = 25.0) -> float:
     """Return the slowest speed, to two digits, at which a GIF of a response has few enough frames; at least 1 [-]."""
     lasts = round(100.0 / fps) / 100.0
-    return max(1.0, float(np.ceil(100.0 * scene_until(response) / (lasts * (MOST_FRAMES - 2)))) / 100.0)
+    return max(1.0, float(np.ceil(100.0 * _until(response) / (lasts * (MOST_FRAMES - 2)))) / 100.0)
+
+
+def _until(response: Response | HullResponse) -> float:
+    """Return the time up to which a response is shown [s], refusing those of which nothing moves in pictures yet."""
+    if isinstance(response, HullResponse):
+        return response.end
+    if not isinstance(response, Response):
+        raise InvalidValueError(NOT_MOVED)
+    return scene_until(response)
 
 
 def target_of(path: str | Path, suffix: str) -> Path:
@@ -223,22 +266,27 @@ def _short(points: FloatArray) -> list[list[float]]:
 
 @in_journal_style
 def _film(
-    response: Response, path: Path, lasts: float, step: float, progress: Callable[[int, int], object] | None = None
+    response: Response | HullResponse,
+    path: Path,
+    lasts: float,
+    step: float,
+    progress: Callable[[int, int], object] | None = None,
 ) -> None:
     """Write frames that are shown for whole hundredths of a second [s], a step [s] of the response apart."""
     from matplotlib.animation import PillowWriter
 
-    scene = scene_of(response, step)
-    stage = _Stage(response, scene)
+    stage: Any = (
+        HullStage(response, step) if isinstance(response, HullResponse) else _Stage(response, scene_of(response, step))
+    )
     # the writer cuts 1000 / fps down to whole milliseconds; it takes any number, though it is declared for whole ones
     rate: Any = (1.0 - 1e-9) / lasts
     writer = PillowWriter(fps=rate)
     with writer.saving(stage.figure, str(path), _DOTS):
-        for k in range(scene.time.size):
+        for k in range(stage.time.size):
             stage.show(k, _FLASH * step / lasts)
             writer.grab_frame()
             if progress is not None:
-                progress(k + 1, scene.time.size)
+                progress(k + 1, stage.time.size)
 
 
 class _Stage:
@@ -248,7 +296,7 @@ class _Stage:
         from matplotlib.figure import Figure
         from matplotlib.transforms import Affine2D
 
-        self.response, self.scene = response, scene
+        self.response, self.scene, self.time = response, scene, scene.time
         x0, y0, x1, y1 = scene.window
         tall = min(max(_WIDTH * (y1 - y0) / (x1 - x0), _LEAST), _MOST)
         lines = _title(response)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from rocking import checks
-from rocking.bodies import MassPoints, Solid
+from rocking.bodies import Block, Section, Solid
 from rocking.bodies.formats import read_body
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import InvalidValueError, RockingError
@@ -338,11 +338,12 @@ def _body(name: str, units: Any, find: Callable[[str], Path] | None) -> dict[str
     if find is None:
         raise InvalidValueError(f"names the body file {name!r:.60}, but no file can be named here")
     body = read_body(find(name), units=units)
-    if isinstance(body, MassPoints):
+    if isinstance(body, (Block, Section)):
+        body = Solid.from_section(body)
+    if not isinstance(body, Solid):
         raise InvalidValueError(f"{name}: mass points have no shape to stand on in three dimensions")
-    solid = body if isinstance(body, Solid) else Solid.from_section(body)
-    size = solid.box[1] - solid.box[0]
-    return {"solid": solid, **dict(zip(("width", "depth", "height"), size.tolist(), strict=True))}
+    size = body.box[1] - body.box[0]
+    return {"solid": body, **dict(zip(("width", "depth", "height"), size.tolist(), strict=True))}
 
 
 def _value(column: InventoryColumn, cell: str, mark: DecimalMark) -> object:
