@@ -232,7 +232,7 @@ def test_size_friction_and_restitution_are_axes():
     assert peaks[0] != peaks[1]
 
 
-@pytest.mark.verifies("second engine", "the engine of flat bases, without friction", within="1e-6", control="mu = .3")
+@pytest.mark.verifies("second engine", "the engine of flat bases, without friction", within="1e-6")
 def test_without_friction_nothing_slides():
     """A study that is told no friction has the peaks and falls of `simulate` without friction while contact holds."""
     scales = [1.9, 2.6, 3.0]
@@ -385,7 +385,7 @@ def records(tmp_path):
     return tmp_path, motions
 
 
-@pytest.mark.verifies("behaviour", control="without the motion along y the answer is another")
+@pytest.mark.verifies("behaviour")
 def test_components_of_studies_in_files_and_commands(records, capsys):
     """x, y and z of [[motions]], and of the option --motion, are the components that Python takes."""
     folder, motions = records
@@ -409,7 +409,7 @@ def test_components_of_studies_in_files_and_commands(records, capsys):
     assert _asked(capsys, "map", folder / "job.toml")["peak_ratio"] != told["peak_ratio"]
 
 
-@pytest.mark.verifies("behaviour", control="the same files in another order are other motions")
+@pytest.mark.verifies("behaviour")
 def test_fragilities_of_components_in_files_and_commands(records, capsys):
     """An axis that is named again begins the next motion; a campaign of the job file has the numbers of Python."""
     folder, motions = records

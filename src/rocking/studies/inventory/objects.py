@@ -46,13 +46,13 @@ class InventoryObject:
         How many alike [-].
     note : str
         Anything.
+    row : int
+        Line of the file that it comes from, 0 for none [-].
     friction : float, optional
         Coefficient of friction between it and the ground, with which it moves in three dimensions [-].
     solid : Solid, optional
         The body itself, standing as it does, where more is known than its size, which it then gives: it moves in three
         dimensions, and without friction it does not slide.
-    row : int
-        Line of the file that it comes from, 0 for none [-].
 
     Raises
     ------
