@@ -232,6 +232,21 @@ def test_size_friction_and_restitution_are_axes():
     assert peaks[0] != peaks[1]
 
 
+@pytest.mark.verifies("second engine", "the reference engine under components turned by hand", within="1e-6")
+def test_azimuth_is_an_axis():
+    """A motion turned from x towards y has a part along y; turned the other way it is another motion."""
+    angles, turns = [0.0, 0.7, 3.9], [0.8, 3.4]
+    found = overturning_map(STATUE, PULSE, ("azimuth", angles), ("scale", turns), "housner", friction=0.8)
+    for j, angle in enumerate(angles):
+        parts = {"x": PULSE.scaled(math.cos(angle)), "y": PULSE.scaled(math.sin(angle))}
+        _same(found.isel(azimuth=j, scale=1), rk.simulate(STATUE, parts, "housner", scale=3.4, friction=0.8))
+    wrong = {"x": PULSE.scaled(math.cos(0.7)), "y": PULSE.scaled(-math.sin(0.7))}
+    other = rk.simulate(STATUE, wrong, "housner", scale=3.4, friction=0.8)
+    assert float(found.peak_rotation.isel(azimuth=1, scale=1)) != pytest.approx(other.peak_tilt, rel=1e-3)
+    with pytest.raises(InvalidValueError, match="azimuth varies only for a body in space"):
+        overturning_map(PLANE, PULSE, ("azimuth", angles), ("scale", turns))
+
+
 @pytest.mark.verifies("second engine", "the engine of flat bases, without friction", within="1e-6")
 def test_without_friction_nothing_slides():
     """A study that is told no friction has the peaks and falls of `simulate` without friction while contact holds."""

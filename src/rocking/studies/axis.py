@@ -178,6 +178,11 @@ def _check_friction(_: Axis, question: Question) -> None:
         raise InvalidValueError("friction is an axis of bodies that may slide: their settings need a friction")
 
 
+def _check_in_space(axis: Axis, question: Question) -> None:
+    if isinstance(question.body, Body):
+        raise InvalidValueError(f"{axis.name} varies only for a body in space, got {question.body!r:.60}")
+
+
 def friction_beside(axes: Sequence[Axis], stated: float | None) -> dict[str, float]:
     """Return the friction that settings need beside an axis of friction; stated: what they have of their own [-]."""
     values = next((axis.values for axis in axes if axis.name == "friction"), None)
@@ -246,6 +251,11 @@ _ALL = (
         "friction", "1", "coefficient of friction between body and ground", "friction", RESTITUTION,
         lambda case, values: {"sides": {**case.sides, "friction": values}}, _check_friction, high=1e6,
         low_is_allowed=True,
+    ),
+    Axis(
+        "azimuth", "rad", "angle from x towards y by which the horizontal motion of a body in space is turned",
+        "azimuth", RESTITUTION, lambda case, values: {"sides": {**case.sides, "azimuth": values}}, _check_in_space,
+        high=2.0 * np.pi, low_is_allowed=True,
     ),
 )  # fmt: skip
 

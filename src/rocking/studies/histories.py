@@ -271,8 +271,12 @@ class HistoryTable(Histories):
         return Rows(values, self.motion[first:last], np.arange(first, last, dtype=np.int64))
 
     def content(self) -> dict[str, Any]:
-        """Return the hashes of the arrays, of the friction where it is told."""
-        told = {name: array for name, array in self.values.items() if name != "friction" or not np.isnan(array).all()}
+        """Return the hashes of the arrays, of friction and azimuth where they are told."""
+        told = {
+            name: array
+            for name, array in self.values.items()
+            if name not in {"friction", "azimuth"} or not np.isnan(array).all()
+        }
         return {"motion": hash_of(self.motion)} | {name: hash_of(values) for name, values in told.items()}
 
 

@@ -57,7 +57,10 @@ class RowsOnHull:
         code = {"housner-3d": fast_engine.HOUSNER, "ked-3d": fast_engine.KED}.get(str(law.model), 0)
         numbers = np.zeros((count, 29))
         numbers[:, 0], numbers[:, 1], numbers[:, 3] = np.where(modelled, 0.0, r), scale, friction
+        turned = np.nan_to_num(values["azimuth"])
         numbers[:, 4:13], numbers[:, 13:15] = np.eye(3).ravel(), math.inf
+        numbers[:, 4], numbers[:, 8] = np.cos(turned), np.cos(turned)
+        numbers[:, 5], numbers[:, 7] = -np.sin(turned), np.sin(turned)
         numbers[:, 15:28], numbers[:, 28] = numbers_of(law.on_hull, SpatialStart()), pull
         codes = np.where(modelled, code, fast_engine.COEFFICIENT)
         choices = np.column_stack([np.zeros(count, np.int64), motion, codes]).astype(np.int64)

@@ -22,14 +22,14 @@ PIECE = 1 << 16
 _CHUNK = 64
 ROWS = (
     "alpha_right", "alpha_left", "p_right", "p_left", "r_right", "r_left", "q_right", "q_left",
-    "share_right", "share_left", "scale", "rotation", "velocity", "friction",
+    "share_right", "share_left", "scale", "rotation", "velocity", "friction", "azimuth",
 )  # fmt: skip
 """Numbers that make a history, beside the number of its motion and its stream."""
 
 SIDES_UNTOLD = {"q_right": np.nan, "q_left": np.nan, "share_right": 1.0, "share_left": 1.0}
 """What is taken where a side is not told whole: forces of the ground are not known, draws are from all of a law."""
 
-_UNTOLD = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0, "friction": np.nan}
+_UNTOLD = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0, "friction": np.nan, "azimuth": np.nan}
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,8 @@ class Rows:
     """Histories to compute, one entry each; a piece of a larger whole."""
 
     # the keys of `ROWS` [rad, rad/s, -, -, -, -, rad, rad/s, -]; q is m R^2 / I_o of a side, share the part of a
-    # distribution that its coefficient is drawn from; the friction is that of the settings where it is NaN
+    # distribution that its coefficient is drawn from; the friction is that of the settings where it is NaN, and the
+    # azimuth by which the motion of a body in space is turned [rad] is none
     values: dict[str, FloatArray]
     motion: np.ndarray  # number of the motion
     stream: np.ndarray  # number of the history, for random coefficients
