@@ -272,11 +272,8 @@ class HistoryTable(Histories):
 
     def content(self) -> dict[str, Any]:
         """Return the hashes of the arrays, of friction and azimuth where they are told."""
-        told = {
-            name: array
-            for name, array in self.values.items()
-            if name not in {"friction", "azimuth"} or not np.isnan(array).all()
-        }
+        usual = {name for name in ("friction", "azimuth") if np.isnan(self.values[name]).all()}
+        told = {name: array for name, array in self.values.items() if name not in usual}
         return {"motion": hash_of(self.motion)} | {name: hash_of(values) for name, values in told.items()}
 
 

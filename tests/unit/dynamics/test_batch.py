@@ -105,7 +105,7 @@ def test_engines_agree() -> None:
         np.testing.assert_allclose(fast[key], slow[key], rtol=1e-9)
 
 
-OF_ROCKING = [key for key in ROWS if key != "friction"]
+OF_ROCKING = [key for key in ROWS if key not in {"friction", "azimuth"}]
 BAD = [(key, value) for key in OF_ROCKING if not key.startswith("q_") for value in (math.nan, math.inf, -math.inf)] + [
     ("alpha_right", 0.0), ("alpha_left", 0.5 * math.pi), ("alpha_left", -0.1), ("p_right", 0.0), ("p_left", 1e9),
     ("r_right", -0.1), ("r_left", 101.0), ("scale", 1.1e9), ("rotation", 1.6), ("rotation", -1.6), ("velocity", 1e9),
@@ -119,7 +119,7 @@ def test_bad_rows_spoil_nothing(name: str) -> None:
     good = np.sort(np.random.default_rng(1).choice(count, 9, replace=False))
     bad = np.delete(np.arange(count), good)
     values: dict[str, Any] = {
-        key: np.full(count, GOOD.get(key, float(key == "scale"))) for key in ROWS if key != "friction"
+        key: np.full(count, GOOD.get(key, float(key == "scale"))) for key in ROWS if key not in {"friction", "azimuth"}
     }
     values["scale"][good] = SCALES
     for row, (key, value) in zip(bad, BAD, strict=True):
