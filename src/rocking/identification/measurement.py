@@ -1,0 +1,128 @@
+"""What was measured of a body that rocks freely: when it hit the ground, or how it turned."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+
+_FEWEST, _MOST = 4, 2000
+
+
+@dataclass(frozen=True, eq=False)
+class ImpactTimes:
+    """When a body that rocks freely hit the ground, impacts after each other.
+
+    Parameters
+    ----------
+    times : ndarray
+        At least 4 times that increase; some may be no impacts, and impacts may be missing [s].
+    sigma : float, optional
+        Standard deviation of a time, if it is known; otherwise it is fitted [s].
+    probabilities : ndarray, optional
+        How sure the reader is that each is an impact, above 0 and at most 1 [-].
+    source : str
+        Where they come from.
+    doubts : tuple of str
+        What the reader has to say against them.
+
+    Raises
+    ------
+    InvalidValueError
+        If there are fewer than 4 or more than 2000 times, or they do not increase, or a value is outside its range.
+
+    Examples
+    --------
+    >>> ImpactTimes([0.0, 1.13, 2.09, 2.92], sigma=1e-4).times.size
+    4
+    """
+
+    times: FloatArray
+    sigma: float | None = None
+    probabilities: FloatArray | None = None
+    source: str = ""
+    doubts: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Check the times."""
+        times = _row("times", self.times, "s")
+        if not _FEWEST <= times.size <= _MOST:
+            raise InvalidValueError(f"times of impacts must be {_FEWEST} to {_MOST}, got {times.size}")
+        _increasing("times", times)
+        object.__setattr__(self, "times", times)
+        if self.sigma is not None:
+            object.__setattr__(self, "sigma", checks.positive("sigma", self.sigma, "s"))
+        if self.probabilities is not None:
+            sure = _row("probabilities", self.probabilities, "-", times.size)
+            if sure.min() <= 0.0 or sure.max() > 1.0:
+                raise InvalidValueError(f"probabilities must be in (0, 1], got {sure.min():g} to {sure.max():g}")
+            object.__setattr__(self, "probabilities", sure)
+
+
+@dataclass(frozen=True, eq=False)
+class RotationSeries:
+    """How a body that rocks freely turned: its rotation, its angular velocity, or both, against time.
+
+    Parameters
+    ----------
+    time : ndarray
+        Times that increase [s].
+    rotation : ndarray, optional
+        Positive on the right foot; an offset and a drift are fitted [rad].
+    angular_velocity : ndarray, optional
+        Positive clockwise; an offset and a drift are fitted [rad/s].
+    source : str
+        Where they come from.
+    doubts : tuple of str
+        What the reader has to say against them.
+
+    Raises
+    ------
+    InvalidValueError
+        If neither is given, or a row is not of finite numbers, as many as the times.
+
+    Examples
+    --------
+    >>> RotationSeries([0.0, 0.1, 0.2, 0.3], rotation=[0.02, 0.01, 0.0, -0.01]).time.size
+    4
+    """
+
+    time: FloatArray
+    rotation: FloatArray | None = None
+    angular_velocity: FloatArray | None = None
+    source: str = ""
+    doubts: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Check the rows."""
+        time = _row("time", self.time, "s")
+        if time.size < _FEWEST:
+            raise InvalidValueError(f"a series must have {_FEWEST} samples or more, got {time.size}")
+        _increasing("time", time)
+        object.__setattr__(self, "time", time)
+        if self.rotation is None and self.angular_velocity is None:
+            raise InvalidValueError("a series needs rotation= [rad], angular_velocity= [rad/s], or both")
+        for name, unit in (("rotation", "rad"), ("angular_velocity", "rad/s")):
+            if (values := getattr(self, name)) is not None:
+                object.__setattr__(self, name, _row(name, values, unit, time.size))
+
+
+def _row(name: str, values: object, unit: str, size: int | None = None) -> FloatArray:
+    row = np.array(checks.real_array(name, values, unit))
+    if row.ndim != 1 or (size is not None and row.size != size):
+        raise InvalidValueError(
+            f"{name} must be a row of {'numbers' if size is None else size} [{unit}], got {row.shape}"
+        )
+    if not np.isfinite(row).all():
+        bad = int(np.flatnonzero(~np.isfinite(row))[0])
+        raise InvalidValueError(f"{name} must be finite [{unit}], got {row[bad]} at index {bad}")
+    row.setflags(write=False)
+    return row
+
+
+def _increasing(name: str, times: FloatArray) -> None:
+    if np.any(np.diff(times) <= 0.0):
+        bad = int(np.flatnonzero(np.diff(times) <= 0.0)[0]) + 1
+        raise InvalidValueError(f"{name} must increase [s], got {times[bad]:g} after {times[bad - 1]:g} at index {bad}")
