@@ -1,0 +1,169 @@
+"""The posterior of all unknowns: normal for each scatter and noise, mixed over a grid of both."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from scipy.special import ndtr
+
+from rocking.conventions import FloatArray
+from rocking.identification.state_space import SHARED, Laplace, Model, Observer, laplace
+
+SCATTERS: Final = (1e-5, 0.3)
+"""From least to largest standard deviation of ln r at an impact [-]."""
+
+_SMALL_SCATTER = 1e-3
+_COARSE, _FINE, _NEGLIGIBLE = (9, 7), (11, 9), 1e-4
+
+
+@dataclass(frozen=True)
+class Noise:
+    """What is known of the noise: its median, and the standard deviation of its logarithm, 0 if it is known."""
+
+    median: float
+    dispersion: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Posterior:
+    """Normal distributions of the unknowns with weights, one for each scatter and noise of a grid."""
+
+    model: Model
+    weights: FloatArray  # g
+    scatter: FloatArray  # g
+    noise: FloatArray  # g
+    u: FloatArray  # g, d
+    covariance: FloatArray  # g, d, d
+    residuals: FloatArray  # g, m
+    evidence: float  # ln of the probability density of what was measured
+    converged: bool
+
+    def normal(self, slopes: FloatArray, offset: float = 0.0) -> "Mixture":
+        """Return the distribution of offset + slopes . u; slopes: d or g, d."""
+        slopes = np.broadcast_to(slopes, self.u.shape)
+        spread = np.sqrt(np.einsum("gi,gij,gj->g", slopes, self.covariance, slopes))
+        return Mixture(self.weights, offset + (slopes * self.u).sum(axis=1), spread)
+
+    def shared(self, *terms: tuple[int, float]) -> "Mixture":
+        """Return the distribution of a sum of what all impacts share, each times a factor."""
+        slopes = np.zeros(self.model.size)
+        for which, factor in terms:
+            slopes[which] = factor * self.model.deviation[which]
+        return self.normal(slopes, sum(factor * float(self.model.mean[which]) for which, factor in terms))
+
+    def of_impact(self, number: int) -> "Mixture":
+        """Return the distribution of the draw of an impact, as part of ln r."""
+        slopes = np.zeros_like(self.u)
+        slopes[:, len(SHARED) + number] = self.scatter
+        return self.normal(slopes)
+
+    def average(self, values: FloatArray) -> FloatArray:
+        """Return the mean over the grid."""
+        return np.asarray(np.tensordot(self.weights, values, axes=1))
+
+
+@dataclass(frozen=True, eq=False)
+class Mixture:
+    """A mixture of normal distributions."""
+
+    weights: FloatArray
+    means: FloatArray
+    deviations: FloatArray
+
+    @property
+    def mean(self) -> float:
+        """Its mean."""
+        return float(self.weights @ self.means)
+
+    @property
+    def deviation(self) -> float:
+        """Its standard deviation."""
+        return float(np.sqrt(self.weights @ (self.deviations**2 + (self.means - self.mean) ** 2)))
+
+    def below(self, value: float) -> float:
+        """Return the probability of less."""
+        return float(self.weights @ ndtr((value - self.means) / np.maximum(self.deviations, 1e-300)))
+
+    def quantiles(self, *levels: float) -> tuple[float, ...]:
+        """Return what is not exceeded with probabilities."""
+        low = np.full(len(levels), (self.means - 9.0 * self.deviations).min())
+        high = np.full(len(levels), (self.means + 9.0 * self.deviations).max())
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            each = (middle[:, None] - self.means) / np.maximum(self.deviations, 1e-300)
+            under = ndtr(each) @ self.weights < np.array(levels)
+            low, high = np.where(under, middle, low), np.where(under, high, middle)
+        return tuple((0.5 * (low + high)).tolist())
+
+
+def posterior(
+    model: Model, observer: Observer, scatter: float | None, noise: Noise, start: Callable[[FloatArray], FloatArray]
+) -> Posterior:
+    """Return the posterior; scatter: of ln r if it is known; start: unknowns to begin with, for scatters."""
+    ranges = [np.log(SCATTERS) if scatter is None else None, None]
+    if noise.dispersion > 0.0:
+        ranges[1] = np.log(noise.median) + noise.dispersion * np.array([-3.0, 3.0])
+    known = (scatter or 0.0, noise.median)
+    coarse = _on_grid(model, observer, noise, _grid(ranges, known, _COARSE), start)
+    if ranges == [None, None]:
+        return coarse
+    fine = [_narrowed(r, v, coarse.weights) for r, v in zip(ranges, (coarse.scatter, coarse.noise), strict=True)]
+    best = int(np.argmax(coarse.weights))
+    from_best = coarse.u[best, len(SHARED) :] * coarse.scatter[best]
+
+    def near(scatters: FloatArray) -> FloatArray:
+        u = np.repeat(coarse.u[best : best + 1], scatters.size, axis=0)
+        # the same impacts, in units of another scatter
+        u[:, len(SHARED) :] = from_best / np.maximum(scatters, 1e-300)[:, None]
+        return np.where(np.abs(u) < 5.0, u, 5.0 * np.sign(u))
+
+    return _on_grid(model, observer, noise, _grid(fine, known, _FINE), near)
+
+
+def _grid(
+    ranges: list[FloatArray | None], known: tuple[float, float], sizes: tuple[int, int]
+) -> tuple[FloatArray, FloatArray, float]:
+    """Scatters, noises, and ln of the area of a cell in their logarithms."""
+    axes = [np.array([v]) if r is None else np.exp(np.linspace(*r, n)) for r, v, n in zip(ranges, known, sizes, strict=True)]
+    cell = sum(np.log((r[1] - r[0]) / (n - 1)) for r, n in zip(ranges, sizes, strict=True) if r is not None)
+    first, second = (each.ravel() for each in np.meshgrid(*axes, indexing="ij"))
+    return first, second, float(cell)
+
+
+def _narrowed(ends: FloatArray | None, values: FloatArray, weights: FloatArray) -> FloatArray | None:
+    if ends is None:
+        return None
+    levels = np.unique(values)
+    mass = np.array([weights[values == level].sum() for level in levels])
+    kept = np.flatnonzero(mass > _NEGLIGIBLE * mass.max())
+    step = np.diff(np.log(levels)).mean()
+    low, high = np.log(levels[kept[0]]) - 0.5 * step, np.log(levels[kept[-1]]) + 0.5 * step
+    return np.array([max(low, ends[0]), min(high, ends[1])])
+
+
+def _on_grid(
+    model: Model,
+    observer: Observer,
+    noise: Noise,
+    grid: tuple[FloatArray, FloatArray, float],
+    start: Callable[[FloatArray], FloatArray],
+) -> Posterior:
+    scatters, noises, cell = grid
+    found: Laplace = laplace(model, observer, scatters, noises, start(scatters))
+    ln = np.where(np.isfinite(found.evidence), found.evidence, -np.inf)
+    if noise.dispersion > 0.0:
+        z = np.log(noises / noise.median) / noise.dispersion
+        ln = ln - 0.5 * z * z - np.log(noise.dispersion * np.sqrt(2.0 * np.pi))
+    if np.ptp(scatters) > 0.0:
+        # flat in the scatter where it is small, in its logarithm where it is large
+        density = scatters / (scatters + _SMALL_SCATTER)
+        low, high = (np.log(each + _SMALL_SCATTER) for each in SCATTERS)
+        ln = ln + np.log(density / (high - low))  # Eq. 273
+    top = ln.max()
+    weights = np.exp(ln - top)
+    total = weights.sum()
+    return Posterior(
+        model, weights / total, scatters, noises, found.u, found.covariance, found.residuals,
+        float(top + np.log(total) + cell), bool(found.converged[weights > 1e-3].all()),
+    )  # fmt: skip

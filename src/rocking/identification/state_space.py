@@ -1,0 +1,187 @@
+"""A body that rocks freely as a state-space model: its speed after each impact, and what an observer sees of it.
+
+The unknowns are standard normal a priori: the numbers that all impacts share, and one draw for each impact, which
+scatters the coefficient of restitution about its mean. Many pairs of scatter and noise are computed side by side;
+arrays begin with that axis, called g below. All angles of the left side are mirrored.
+"""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from rocking.conventions import FloatArray, IntArray
+from rocking.identification import half_cycles
+
+SHARED = (START, SPEED, MEAN, HALF, FREQUENCY, TILT, SLENDERNESS, TREND, DAMPING) = tuple(range(9))
+"""When the first impact was [s]; ln of the speed after it, ln of the mean coefficient, half the difference of ln r
+between landing right and left, ln of p and of the slenderness angle over those of the body, tilt of the floor,
+clockwise [rad], slope of ln r over ln of the speed, damping ratio."""
+
+_BELOW_OVERTURNING = 1.0 - 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """Where the unknowns lead: impacts n = 0..N, half cycles k = 0..N-1; slopes are by the unknowns, the last axis."""
+
+    times: FloatArray  # g, n [s]
+    speeds: FloatArray  # g, k: ln of the angular velocity after the impact
+    y: FloatArray  # g, k: over the speed that would overturn it
+    alpha: FloatArray  # g, k [rad]
+    p: FloatArray  # g, k [rad/s]
+    time_slopes: FloatArray  # g, n, d
+    y_slopes: FloatArray  # g, k, d: of ln y
+    alpha_slopes: FloatArray  # g, k, d
+    p_slopes: FloatArray  # d: of ln p
+    feasible: FloatArray  # g: whether it never overturns
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """What is known before a measurement: the body, on which side it stands in each half cycle, priors."""
+
+    sides: IntArray  # k: 0 right, 1 left
+    alpha: tuple[float, float]  # right, left [rad]
+    p: tuple[float, float]  # [rad/s]
+    mean: FloatArray  # of what all impacts share
+    deviation: FloatArray  # zero of what is known
+    middle: float = 0.0  # ln of the speed at which the coefficient has its mean, if there is a trend
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return len(SHARED) + self.sides.size - 1
+
+    def shared(self, u: FloatArray) -> FloatArray:
+        """Return what all impacts share, from the unknowns."""
+        return np.asarray(self.mean + self.deviation * u[..., : len(SHARED)])
+
+    def path(self, u: FloatArray, scatter: FloatArray) -> Path:
+        """Follow the body from impact to impact; u: g, d; scatter: standard deviation of ln r at an impact, g."""
+        count, size = self.sides.size, self.size
+        z = self.shared(u)
+        unit = np.zeros((len(SHARED), size))
+        unit[:, : len(SHARED)] = np.diag(self.deviation)
+        time, speed = z[:, START], z[:, SPEED]
+        dt, dx = np.broadcast_to(unit[START], u.shape), np.broadcast_to(unit[SPEED], u.shape)
+        kept: list[tuple[FloatArray, ...]] = []
+        feasible = np.ones(len(u), dtype=np.bool_)
+        trend, damped = (self.deviation[which] > 0.0 or self.mean[which] != 0.0 for which in (TREND, DAMPING))
+        for k, side in enumerate(self.sides):
+            sign = 1.0 - 2.0 * side  # a floor that falls to the right makes a body on its right foot less slender
+            alone = self.alpha[side] * np.exp(z[:, SLENDERNESS])
+            alpha = np.maximum(alone - sign * z[:, TILT], 1e-3 * alone)
+            da = alone[:, None] * unit[SLENDERNESS] - sign * unit[TILT]
+            p = self.p[side] * np.exp(z[:, FREQUENCY])
+            ln_y = speed - np.log(p * half_cycles.overturning_speed(alpha))
+            dy = dx - unit[FREQUENCY] - (0.5 / np.tan(0.5 * alpha))[:, None] * da
+            feasible &= ln_y < np.log(_BELOW_OVERTURNING)
+            y = np.exp(np.minimum(ln_y, np.log(_BELOW_OVERTURNING)))
+            lost, dl = np.zeros(len(u)), np.zeros(u.shape)
+            if damped:
+                each, slope = half_cycles.viscous_loss(y)
+                dy = (1.0 - 0.5 * z[:, DAMPING] * slope)[:, None] * dy - 0.5 * each[:, None] * unit[DAMPING]
+                y = y * np.exp(-0.5 * z[:, DAMPING] * each)
+                each, slope = half_cycles.viscous_loss(y)
+                lost = z[:, DAMPING] * each
+                dl = each[:, None] * unit[DAMPING] + (z[:, DAMPING] * slope)[:, None] * dy
+            scaled, by_y, by_alpha = half_cycles.duration_and_slopes(y, alpha)
+            kept.append((time, speed, y, alpha, p, dt, dy, da))
+            time = time + scaled / p
+            dt = dt + (by_y[:, None] * dy + by_alpha[:, None] * da) / p[:, None] - (scaled / p)[:, None] * unit[FREQUENCY]
+            if k + 1 == count:
+                break
+            lands = -sign  # onto the other side
+            change = z[:, MEAN] + lands * z[:, HALF] + scatter * u[:, len(SHARED) + k] - lost  # Eq. 269
+            dc = unit[MEAN] + lands * unit[HALF] - dl
+            dc[:, len(SHARED) + k] += scatter
+            if trend:
+                off = speed - self.middle
+                change = change + z[:, TREND] * off
+                dc += off[:, None] * unit[TREND] + z[:, TREND, None] * dx
+            speed, dx = speed + change, dx + dc
+        columns = [np.stack(each, axis=1) for each in zip(*kept, strict=True)]
+        times = np.concatenate([columns[0], time[:, None]], axis=1)
+        slopes = np.concatenate([columns[5], dt[:, None]], axis=1)
+        return Path(times, *columns[1:5], slopes, *columns[6:], unit[FREQUENCY], feasible)
+
+
+class Observer(Protocol):
+    """What is seen of a path."""
+
+    count: int  # independent numbers
+
+    def residuals(self, path: Path) -> tuple[FloatArray, FloatArray]:
+        """Return measured less computed values, g, m, and slopes of the computed ones, g, m, d."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Clicks:
+    """Times of impacts, of which some may be missing."""
+
+    measured: FloatArray
+    impacts: IntArray  # which impact each of them is
+
+    @property
+    def count(self) -> int:
+        """Number of times."""
+        return self.measured.size
+
+    def residuals(self, path: Path) -> tuple[FloatArray, FloatArray]:
+        """Measured less computed times."""
+        return self.measured - path.times[:, self.impacts], path.time_slopes[:, self.impacts]
+
+
+@dataclass(frozen=True, eq=False)
+class Laplace:
+    """The posterior for each pair of scatter and noise, as a normal distribution of the unknowns."""
+
+    u: FloatArray  # g, d: where it is largest
+    covariance: FloatArray  # g, d, d
+    evidence: FloatArray  # g: ln of the probability density of what was measured
+    residuals: FloatArray  # g, m
+    converged: FloatArray  # g
+
+
+def laplace(
+    model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray, steps: int = 40
+) -> Laplace:
+    """Return the posterior about its maximum, found by damped Gauss-Newton steps from u."""
+    best = _objective(model, observer, scatter, noise, u)
+    damping, converged = np.zeros(len(u)), np.zeros(len(u), dtype=np.bool_)
+    eye = np.eye(model.size)
+    for _ in range(steps):
+        value, residual, slopes = best
+        hessian = eye + slopes.transpose(0, 2, 1) @ slopes  # Eq. 271
+        gradient = (slopes.transpose(0, 2, 1) @ residual[..., None])[..., 0] - u
+        damped = hessian + damping[:, None, None] * eye * np.einsum("gii->gi", hessian)[:, None, :]
+        step = np.linalg.solve(damped, gradient[..., None])[..., 0]
+        trial = _objective(model, observer, scatter, noise, u + step)
+        better = trial[0] <= value + 1e-9 * np.abs(value)
+        converged |= better & (value - trial[0] < 1e-6) & (damping < 1e-2)
+        u = np.where(better[:, None], u + step, u)
+        best = tuple(
+            np.where(better.reshape(-1, *[1] * (new.ndim - 1)), new, old) for new, old in zip(trial, best, strict=True)
+        )
+        damping = np.where(better, np.where(damping > 1e-6, 0.1 * damping, 0.0), np.maximum(10.0 * damping, 1e-3))
+        if converged.all():
+            break
+    value, residual, slopes = best
+    hessian = eye + slopes.transpose(0, 2, 1) @ slopes
+    root = np.linalg.cholesky(hessian)
+    logdet = 2.0 * np.log(np.einsum("gii->gi", root)).sum(axis=1)
+    evidence = -0.5 * value - 0.5 * logdet - observer.count * (np.log(noise) + 0.5 * np.log(2.0 * np.pi))  # Eq. 272
+    return Laplace(u, np.linalg.inv(hessian), evidence, residual * noise[:, None], converged)
+
+
+def _objective(
+    model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Minus twice ln of the posterior, residuals and slopes over the noise."""
+    path = model.path(u, scatter)
+    residual, slopes = observer.residuals(path)
+    residual = residual / noise[:, None]
+    value = (u * u).sum(axis=1) + (residual * residual).sum(axis=1)  # Eq. 270
+    return np.where(path.feasible, value, np.inf), residual, slopes / noise[:, None, None]
