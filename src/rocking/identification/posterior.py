@@ -106,7 +106,7 @@ def posterior(
         ranges[1] = np.log(noise.median) + noise.dispersion * np.array([-3.0, 3.0])
     known = (scatter or 0.0, noise.median)
     coarse = _on_grid(model, observer, noise, _grid(ranges, known, _COARSE), start)
-    if ranges == [None, None]:
+    if all(each is None for each in ranges):
         return coarse
     fine = [_narrowed(r, v, coarse.weights) for r, v in zip(ranges, (coarse.scatter, coarse.noise), strict=True)]
     best = int(np.argmax(coarse.weights))
@@ -116,7 +116,7 @@ def posterior(
         u = np.repeat(coarse.u[best : best + 1], scatters.size, axis=0)
         # the same impacts, in units of another scatter
         u[:, len(SHARED) :] = from_best / np.maximum(scatters, 1e-300)[:, None]
-        return np.where(np.abs(u) < 5.0, u, 5.0 * np.sign(u))
+        return u
 
     return _on_grid(model, observer, noise, _grid(fine, known, _FINE), near)
 

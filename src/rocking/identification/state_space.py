@@ -19,6 +19,8 @@ between landing right and left, ln of p and of the slenderness angle over those 
 clockwise [rad], slope of ln r over ln of the speed, damping ratio."""
 
 _BELOW_OVERTURNING = 1.0 - 1e-9
+_STEEPEST = 1.5  # slenderness angle [rad]
+_CLOSE = 1e-3  # change of minus twice the logarithm of the posterior
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +73,7 @@ class Model:
         for k, side in enumerate(self.sides):
             sign = 1.0 - 2.0 * side  # a floor that falls to the right makes a body on its right foot less slender
             alone = self.alpha[side] * np.exp(z[:, SLENDERNESS])
-            alpha = np.maximum(alone - sign * z[:, TILT], 1e-3 * alone)
+            alpha = np.clip(alone - sign * z[:, TILT], 1e-3, _STEEPEST)
             da = alone[:, None] * unit[SLENDERNESS] - sign * unit[TILT]
             p = self.p[side] * np.exp(z[:, FREQUENCY])
             ln_y = speed - np.log(p * half_cycles.overturning_speed(alpha))
@@ -146,33 +148,37 @@ class Laplace:
 
 
 def laplace(
-    model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray, steps: int = 40
+    model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray, steps: int = 30
 ) -> Laplace:
     """Return the posterior about its maximum, found by damped Gauss-Newton steps from u."""
+    u = u.copy()
     best = _objective(model, observer, scatter, noise, u)
-    damping, converged = np.zeros(len(u)), np.zeros(len(u), dtype=np.bool_)
+    damping, active = np.zeros(len(u)), np.arange(len(u))
     eye = np.eye(model.size)
     for _ in range(steps):
-        value, residual, slopes = best
-        hessian = eye + slopes.transpose(0, 2, 1) @ slopes  # Eq. 271
-        gradient = (slopes.transpose(0, 2, 1) @ residual[..., None])[..., 0] - u
-        damped = hessian + damping[:, None, None] * eye * np.einsum("gii->gi", hessian)[:, None, :]
-        step = np.linalg.solve(damped, gradient[..., None])[..., 0]
-        trial = _objective(model, observer, scatter, noise, u + step)
-        better = trial[0] <= value + 1e-9 * np.abs(value)
-        converged |= better & (value - trial[0] < 1e-6) & (damping < 1e-2)
-        u = np.where(better[:, None], u + step, u)
-        best = tuple(
-            np.where(better.reshape(-1, *[1] * (new.ndim - 1)), new, old) for new, old in zip(trial, best, strict=True)
-        )
-        damping = np.where(better, np.where(damping > 1e-6, 0.1 * damping, 0.0), np.maximum(10.0 * damping, 1e-3))
-        if converged.all():
+        value, residual, slopes = (each[active] for each in best)
+        turned = slopes.transpose(0, 2, 1)
+        hessian = eye + turned @ slopes  # Eq. 271
+        gradient = (turned @ residual[..., None])[..., 0] - u[active]
+        damped = hessian + damping[active, None, None] * eye * np.einsum("gii->gi", hessian)[:, None, :]
+        trial = u[active] + np.linalg.solve(damped, gradient[..., None])[..., 0]
+        found = _objective(model, observer, scatter[active], noise[active], trial)
+        better = found[0] <= value
+        for kept, new in zip(best, found, strict=True):
+            kept[active[better]] = new[better]
+        u[active[better]] = trial[better]
+        done = np.abs(value - found[0]) < _CLOSE * (1.0 + _CLOSE * value)
+        eased = np.where(damping[active] > 1e-6, 0.1 * damping[active], 0.0)
+        damping[active] = np.where(better, eased, np.maximum(10.0 * damping[active], 1e-3))
+        active = active[~done]
+        if not active.size:
             break
     value, residual, slopes = best
     hessian = eye + slopes.transpose(0, 2, 1) @ slopes
     root = np.linalg.cholesky(hessian)
     logdet = 2.0 * np.log(np.einsum("gii->gi", root)).sum(axis=1)
     evidence = -0.5 * value - 0.5 * logdet - observer.count * (np.log(noise) + 0.5 * np.log(2.0 * np.pi))  # Eq. 272
+    converged = ~np.isin(np.arange(len(u)), active)
     return Laplace(u, np.linalg.inv(hessian), evidence, residual * noise[:, None], converged)
 
 
@@ -180,8 +186,10 @@ def _objective(
     model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Minus twice ln of the posterior, residuals and slopes over the noise."""
-    path = model.path(u, scatter)
-    residual, slopes = observer.residuals(path)
-    residual = residual / noise[:, None]
-    value = (u * u).sum(axis=1) + (residual * residual).sum(axis=1)  # Eq. 270
-    return np.where(path.feasible, value, np.inf), residual, slopes / noise[:, None, None]
+    with np.errstate(over="ignore", invalid="ignore"):  # far from the maximum; such a step is not taken
+        path = model.path(u, scatter)
+        residual, slopes = observer.residuals(path)
+        residual = residual / noise[:, None]
+        value = (u * u).sum(axis=1) + (residual * residual).sum(axis=1)  # Eq. 270
+        slopes = slopes / noise[:, None, None]
+    return np.where(path.feasible & np.isfinite(value), value, np.inf), residual, slopes
