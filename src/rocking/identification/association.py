@@ -11,8 +11,8 @@ import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
 
-KEPT: Final = 40
-_HEARD, _FALSE_SHARE = 0.93, 0.2  # of the impacts that are heard, of the times that are no impacts
+KEPT: Final = 300
+_HEARD, _FALSE_SHARE = 0.9, 0.2  # of the impacts that are heard, of the times that are no impacts
 _BOUNCE, _BOUNCES = 0.045, 6.0  # seconds after an impact, clicks a second there
 _SHORTEST, _MOST_IMPACTS, _GATE = 0.03, 80, 4.5
 _SCATTER = 0.03

@@ -174,12 +174,13 @@ def laplace(
         if not active.size:
             break
     value, residual, slopes = best
-    hessian = eye + slopes.transpose(0, 2, 1) @ slopes
-    root = np.linalg.cholesky(hessian)
-    logdet = 2.0 * np.log(np.einsum("gii->gi", root)).sum(axis=1)
-    evidence = -0.5 * value - 0.5 * logdet - observer.count * (np.log(noise) + 0.5 * np.log(2.0 * np.pi))  # Eq. 272
+    # of the matrix whose square the Hessian is: what the prior alone determines keeps its digits
+    root = np.linalg.qr(np.concatenate([slopes, np.broadcast_to(eye, (len(u), *eye.shape))], axis=1), mode="r")
+    half = np.log(np.abs(np.einsum("gii->gi", root))).sum(axis=1)
+    evidence = -0.5 * value - half - observer.count * (np.log(noise) + 0.5 * np.log(2.0 * np.pi))  # Eq. 272
+    inverse = np.linalg.inv(root)
     converged = ~np.isin(np.arange(len(u)), active)
-    return Laplace(u, np.linalg.inv(hessian), evidence, residual * noise[:, None], converged)
+    return Laplace(u, inverse @ inverse.transpose(0, 2, 1), evidence, residual * noise[:, None], converged)
 
 
 def _objective(
