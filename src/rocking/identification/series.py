@@ -1,0 +1,206 @@
+"""Rotations and angular velocities against time: what an observer of the whole motion, or of its peaks, sees."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rocking.conventions import FloatArray, IntArray
+from rocking.identification import half_cycles
+from rocking.identification.clicks import speeds_between, start
+from rocking.identification.measurement import RotationSeries
+from rocking.identification.posterior import Noise, Posterior, posterior
+from rocking.identification.prior import Knowledge
+from rocking.identification.state_space import Path
+
+_STEP = 1e-5
+_MOST = 3000
+_FEWEST = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """A measured quantity against time, and its noise beside that of the first."""
+
+    kind: str  # rotation or angular_velocity
+    time: FloatArray
+    values: FloatArray
+    scale: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """Rotations, angular velocities, or both, each with an offset and a drift that nobody knows."""
+
+    rows: tuple[Row, ...]
+    sides: IntArray
+
+    @property
+    def count(self) -> int:
+        """Number of samples, without those that offset and drift take."""
+        return sum(row.values.size - 2 for row in self.rows)
+
+    def residuals(self, path: Path) -> tuple[FloatArray, FloatArray]:
+        """Measured less computed values, of which a straight line in time is taken away."""
+        found = [self._of_row(path, row) for row in self.rows]
+        return np.concatenate([each[0] for each in found], axis=1), np.concatenate([each[1] for each in found], axis=1)
+
+    def _of_row(self, path: Path, row: Row) -> tuple[FloatArray, FloatArray]:
+        inner = path.times[:, 1:-1]
+        k = (row.time[None, :, None] >= inner[:, None, :]).sum(axis=2)
+        g = np.arange(len(k))[:, None]
+        p, y, alpha = path.p[g, k], path.y[g, k], path.alpha[g, k]
+        since = p * (row.time - path.times[g, k])
+        sign = 1.0 - 2.0 * self.sides[k]
+
+        def seen(y: FloatArray, alpha: FloatArray) -> FloatArray:
+            rotation, speed = half_cycles.rotation(since, y, alpha)
+            return rotation if row.kind == "rotation" else p * speed
+
+        rotation, speed = half_cycles.rotation(since, y, alpha)
+        of_rotation = row.kind == "rotation"
+        value = rotation if of_rotation else p * speed
+        by_since = speed if of_rotation else -p * np.sin(alpha - rotation)
+        by_y = (seen(y * (1.0 + _STEP), alpha) - seen(y * (1.0 - _STEP), alpha)) / (2.0 * _STEP)
+        by_alpha = (seen(y, alpha + _STEP) - seen(y, alpha - _STEP)) / (2.0 * _STEP)
+        slopes = (
+            by_since[..., None] * (since[..., None] * path.p_slopes - p[..., None] * path.time_slopes[g, k])
+            + by_y[..., None] * path.y_slopes[g, k]
+            + by_alpha[..., None] * path.alpha_slopes[g, k]
+        )
+        if not of_rotation:
+            slopes = slopes + value[..., None] * path.p_slopes
+        line = np.linalg.qr(np.column_stack([np.ones(row.time.size), row.time - row.time.mean()]))[0]
+        residual = row.values - sign * value
+        residual = residual - (residual @ line) @ line.T
+        slopes = sign[..., None] * slopes
+        slopes = slopes - line @ (line.T @ slopes)  # Eq. 275
+        return residual / row.scale, slopes / row.scale
+
+
+@dataclass(frozen=True, eq=False)
+class Peaks:
+    """The largest rotation of each half cycle, without its sign."""
+
+    measured: FloatArray
+
+    @property
+    def count(self) -> int:
+        """Number of peaks."""
+        return self.measured.size
+
+    def residuals(self, path: Path) -> tuple[FloatArray, FloatArray]:
+        """Measured less computed peaks."""
+        value = half_cycles.peak(path.y, path.alpha)
+        # of cos(alpha - peak) = cos(alpha) + 2 sin(alpha/2)^2 y^2
+        fall = np.sin(path.alpha - value)
+        by_y = 4.0 * np.sin(0.5 * path.alpha) ** 2 * path.y**2 / fall
+        by_alpha = 1.0 - np.sin(path.alpha) * (1.0 - path.y**2) / fall
+        return self.measured - value, by_y[..., None] * path.y_slopes + by_alpha[..., None] * path.alpha_slopes
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What a series says, and how far its noise is correlated."""
+
+    posterior: Posterior
+    rows: tuple[Row, ...]
+    impacts: FloatArray  # [s]
+    independent: float  # samples that count
+
+
+def seen(series: RotationSeries, known: Knowledge, scatter: float | None) -> Seen | None:
+    """Return what a series says, or None if it does not cross its middle often enough."""
+    crossings, first = impacts_of(series)
+    if crossings.size < _FEWEST:
+        return None
+    known = replace(known, first=first)
+    inside = np.flatnonzero((series.time > crossings[0]) & (series.time < crossings[-1]))
+    inside = inside[:: int(np.ceil(inside.size / _MOST))]
+    kinds = ((name, getattr(series, name)) for name in ("rotation", "angular_velocity"))
+    rows = tuple(Row(kind, series.time[inside], each[inside]) for kind, each in kinds if each is not None)
+    frequency = known.frequencies[0]
+    if known.body is None:
+        frequency = min(known.frequencies, key=lambda each: _misfit(each, crossings, known, rows))
+    speeds = speeds_between(crossings, np.arange(crossings.size), known, frequency[0])
+    model = known.model(known.sides(speeds.size), float(crossings[0]), float(speeds[0]), frequency)
+    fixed = scatter if scatter is not None else 0.03
+    spread = np.array([float(np.ptp(row.values)) * 0.02 for row in rows])
+    begin: Callable[[FloatArray], FloatArray] = lambda s: start(model, speeds, s)  # noqa: E731
+    for last in (False, False, True):
+        rows = tuple(replace(row, scale=float(each / spread[0])) for row, each in zip(rows, spread, strict=True))
+        observer = Samples(rows, model.sides)
+        if last:
+            break
+        found = posterior(model, observer, fixed, Noise(float(spread[0])), begin)
+        u, at = found.u[0], fixed
+        begin = lambda s, u=u, at=at: _rescaled(u, at, s, model)  # noqa: E731
+        parts = np.split(found.residuals[0], np.cumsum([row.values.size for row in rows])[:-1])
+        spread = np.array([
+            row.scale * np.sqrt(_correlation(part) * (part @ part) / max(part.size - model.size, 1))
+            for row, part in zip(rows, parts, strict=True)
+        ])
+        independent = sum(part.size / _correlation(part) for part in parts)
+    found = posterior(model, observer, scatter, Noise(float(spread[0])), begin)
+    return Seen(found, rows, crossings, independent)
+
+
+def impacts_of(series: RotationSeries) -> tuple[FloatArray, str]:
+    """Return about when the body hits the ground, and the foot on which it stands after the first impact."""
+    time = series.time
+    if series.rotation is not None:
+        values = series.rotation - _middle(series.rotation)
+    else:
+        speed = series.angular_velocity - np.median(series.angular_velocity)
+        values = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
+        values = values - _middle(values)
+    least = 0.01 * np.ptp(values)
+    sign = np.sign(values)
+    changes = np.flatnonzero(sign[1:] * sign[:-1] < 0.0)
+    crossings = time[changes] - values[changes] * (time[changes + 1] - time[changes]) / (values[changes + 1] - values[changes])
+    # half cycles that noise makes are not rocking any more
+    heights = np.array([np.abs(values[a + 1 : b + 1]).max() for a, b in zip(changes[:-1], changes[1:], strict=True)])
+    small = np.flatnonzero(heights < least)
+    count = int(small[0]) + 1 if small.size else changes.size
+    first = "right" if changes.size and values[changes[0] + 1] > 0.0 else "left"
+    return crossings[:count], first
+
+
+def _middle(values: FloatArray) -> float:
+    """About the rotation at which the body stands on both feet: neighbouring peaks are on either side of it."""
+    centred = values - values.mean()
+    changes = np.flatnonzero(centred[1:] * centred[:-1] < 0.0)
+    if changes.size < 4:
+        return float(values.mean())
+    tops = np.array([values[a + 1 + np.argmax(np.abs(centred[a + 1 : b + 1]))] for a, b in zip(changes[:-1], changes[1:], strict=True)])
+    return float(np.median(0.25 * (tops[:-2] + tops[2:]) + 0.5 * tops[1:-1]))
+
+
+def _misfit(frequency: tuple[float, float], crossings: FloatArray, known: Knowledge, rows: tuple[Row, ...]) -> float:
+    """How far the first half cycle is from what was measured, for a frequency parameter."""
+    speeds = speeds_between(crossings, np.arange(crossings.size), known, frequency[0])
+    model = known.model(known.sides(speeds.size), float(crossings[0]), float(speeds[0]), frequency)
+    path = model.path(start(model, speeds, np.array([0.03])), np.array([0.03]))
+    residual = Samples(rows, model.sides).residuals(path)[0]
+    return float((residual**2).sum())
+
+
+def _rescaled(u: FloatArray, at: float, scatters: FloatArray, model: object) -> FloatArray:
+    found = np.repeat(u[None, :], scatters.size, axis=0)
+    found[:, 9:] *= (at / np.maximum(scatters, 1e-300))[:, None]
+    return found
+
+
+def _correlation(residual: FloatArray) -> float:
+    """Number of samples that count as one, from the correlation of neighbours."""
+    centred = residual - residual.mean()
+    total = float(centred @ centred)
+    if total == 0.0:
+        return 1.0
+    found = 1.0
+    for lag in range(1, min(residual.size // 4, 200)):
+        each = float(centred[lag:] @ centred[:-lag]) / total
+        if each < 0.05:
+            break
+        found += 2.0 * each
+    return found
