@@ -94,9 +94,7 @@ def associate(
     if best is None or (best.of_click >= 0).sum() < 3:
         return None
     clicks = np.flatnonzero(best.of_click[0] >= 0)
-    return Track(
-        clicks, best.of_click[0][clicks], best_score, int(best.bounces[0]), int(clicks[-1] - clicks[0] + 1)
-    )
+    return Track(clicks, best.of_click[0][clicks], best_score, int(best.bounces[0]), int(clicks[-1] - clicks[0] + 1))
 
 
 def _started(times: FloatArray, noise: float, ln_p: tuple[float, float], alternation: float) -> _Beam:

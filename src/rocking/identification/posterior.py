@@ -125,7 +125,9 @@ def _grid(
     ranges: list[FloatArray | None], known: tuple[float, float], sizes: tuple[int, int]
 ) -> tuple[FloatArray, FloatArray, float]:
     """Scatters, noises, and ln of the area of a cell in their logarithms."""
-    axes = [np.array([v]) if r is None else np.exp(np.linspace(*r, n)) for r, v, n in zip(ranges, known, sizes, strict=True)]
+    axes = [
+        np.array([v]) if r is None else np.exp(np.linspace(*r, n)) for r, v, n in zip(ranges, known, sizes, strict=True)
+    ]
     cell = sum(np.log((r[1] - r[0]) / (n - 1)) for r, n in zip(ranges, sizes, strict=True) if r is not None)
     first, second = (each.ravel() for each in np.meshgrid(*axes, indexing="ij"))
     return first, second, float(cell)

@@ -36,10 +36,14 @@ class Knowledge:
     first: Foot  # on which the body stands after the first impact
 
     @classmethod
-    def of(cls, body: Any, size_error: Any, tilt: Any, asymmetry: Any, trend: bool, damping: bool, first: Any) -> "Knowledge":
+    def of(
+        cls, body: Any, size_error: Any, tilt: Any, asymmetry: Any, trend: bool, damping: bool, first: Any
+    ) -> "Knowledge":
         """Return what was said, checked."""
         if body is not None and not isinstance(body, Body):
-            raise InvalidValueError(f"body must be a Block, Section or MassPoints, got {body!r:.60}; in_plane() of a solid")
+            raise InvalidValueError(
+                f"body must be a Block, Section or MassPoints, got {body!r:.60}; in_plane() of a solid"
+            )
         angle, error = (0.0, tilt) if np.ndim(tilt) == 0 else tilt
         return cls(
             body,

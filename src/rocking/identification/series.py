@@ -11,11 +11,12 @@ from rocking.identification.clicks import speeds_between, start
 from rocking.identification.measurement import RotationSeries
 from rocking.identification.posterior import Noise, Posterior, posterior
 from rocking.identification.prior import Knowledge
-from rocking.identification.state_space import Path
+from rocking.identification.state_space import SHARED, Path
 
 _STEP = 1e-5
 _MOST = 3000
-_FEWEST = 3
+_FEWEST, _ROUNDS = 3, 3
+_NOISES = 6.0  # below so many standard deviations of the noise nothing turns any more
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,22 +128,28 @@ def seen(series: RotationSeries, known: Knowledge, scatter: float | None) -> See
     fixed = scatter if scatter is not None else 0.03
     spread = np.array([float(np.ptp(row.values)) * 0.02 for row in rows])
     begin: Callable[[FloatArray], FloatArray] = lambda s: start(model, speeds, s)  # noqa: E731
-    for last in (False, False, True):
-        rows = tuple(replace(row, scale=float(each / spread[0])) for row, each in zip(rows, spread, strict=True))
-        observer = Samples(rows, model.sides)
-        if last:
-            break
-        found = posterior(model, observer, fixed, Noise(float(spread[0])), begin)
+    impacts = crossings
+    for _ in range(_ROUNDS):
+        used = tuple(_away(row, impacts, float(s / spread[0])) for row, s in zip(rows, spread, strict=True))
+        found = posterior(model, Samples(used, model.sides), fixed, Noise(float(spread[0])), begin)
         u, at = found.u[0], fixed
-        begin = lambda s, u=u, at=at: _rescaled(u, at, s, model)  # noqa: E731
-        parts = np.split(found.residuals[0], np.cumsum([row.values.size for row in rows])[:-1])
+        begin = lambda s, u=u, at=at: _rescaled(u, at, s)  # noqa: E731
+        impacts = model.path(found.u, found.scatter).times[0]
+        parts = np.split(found.residuals[0], np.cumsum([row.values.size for row in used])[:-1])
+        each = [_correlation(part) for part in parts]
         spread = np.array([
-            row.scale * np.sqrt(_correlation(part) * (part @ part) / max(part.size - model.size, 1))
-            for row, part in zip(rows, parts, strict=True)
-        ])
-        independent = sum(part.size / _correlation(part) for part in parts)
-    found = posterior(model, observer, scatter, Noise(float(spread[0])), begin)
-    return Seen(found, rows, crossings, independent)
+            row.scale * np.sqrt(one * (part @ part) / max(part.size - model.size, 1))
+            for row, part, one in zip(used, parts, each, strict=True)
+        ])  # fmt: skip
+    used = tuple(_away(row, impacts, float(s / spread[0])) for row, s in zip(rows, spread, strict=True))
+    found = posterior(model, Samples(used, model.sides), scatter, Noise(float(spread[0])), begin)
+    return Seen(found, used, impacts, float(sum(row.values.size / one for row, one in zip(used, each, strict=True))))
+
+
+def _away(row: Row, impacts: FloatArray, scale: float) -> Row:
+    """Without the samples next to impacts, where an angular velocity jumps and a filter has rounded it."""
+    near = np.abs(row.time[:, None] - impacts).min(axis=1) < 1.5 * float(np.median(np.diff(row.time)))
+    return Row(row.kind, row.time[~near], row.values[~near], scale)
 
 
 def impacts_of(series: RotationSeries) -> tuple[FloatArray, str]:
@@ -154,26 +161,36 @@ def impacts_of(series: RotationSeries) -> tuple[FloatArray, str]:
         speed = series.angular_velocity - np.median(series.angular_velocity)
         values = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
         values = values - _middle(values)
-    least = 0.01 * np.ptp(values)
-    sign = np.sign(values)
-    changes = np.flatnonzero(sign[1:] * sign[:-1] < 0.0)
-    crossings = time[changes] - values[changes] * (time[changes + 1] - time[changes]) / (values[changes + 1] - values[changes])
-    # half cycles that noise makes are not rocking any more
-    heights = np.array([np.abs(values[a + 1 : b + 1]).max() for a, b in zip(changes[:-1], changes[1:], strict=True)])
-    small = np.flatnonzero(heights < least)
-    count = int(small[0]) + 1 if small.size else changes.size
-    first = "right" if changes.size and values[changes[0] + 1] > 0.0 else "left"
-    return crossings[:count], first
+    noise = float(np.median(np.abs(np.diff(values, 2)))) / (0.6745 * np.sqrt(6.0))
+    least = max(_NOISES * noise, 0.01 * float(np.ptp(values)))
+    ends = _changes(values, least)
+    if ends.size == 0:
+        return np.zeros(0), "right"
+    crossings = []
+    for low, high in ends:
+        # the straight line through what lies between, where it is zero
+        near = slice(max(low - 1, 0), high + 2)
+        slope, level = np.polyfit(time[near] - time[low], values[near], 1)
+        crossings.append(float(np.clip(time[low] - level / slope, time[low], time[high])))
+    return np.array(crossings), "right" if values[ends[0][1]] > 0.0 else "left"
+
+
+def _changes(values: FloatArray, least: float) -> IntArray:
+    """Where it goes from beyond `least` on one side to beyond it on the other: last and first sample there."""
+    beyond = np.flatnonzero(np.abs(values) > least)
+    turns = np.flatnonzero(values[beyond[1:]] * values[beyond[:-1]] < 0.0)
+    return np.column_stack([beyond[turns], beyond[turns + 1]])
 
 
 def _middle(values: FloatArray) -> float:
     """About the rotation at which the body stands on both feet: neighbouring peaks are on either side of it."""
-    centred = values - values.mean()
-    changes = np.flatnonzero(centred[1:] * centred[:-1] < 0.0)
-    if changes.size < 4:
-        return float(values.mean())
-    tops = np.array([values[a + 1 + np.argmax(np.abs(centred[a + 1 : b + 1]))] for a, b in zip(changes[:-1], changes[1:], strict=True)])
-    return float(np.median(0.25 * (tops[:-2] + tops[2:]) + 0.5 * tops[1:-1]))
+    centred = values - np.median(values)
+    ends = _changes(centred, 0.1 * float(np.abs(centred).max()))
+    if len(ends) < 4:
+        return float(np.median(values))
+    pieces = [centred[a:b] for (_, a), (b, _) in zip(ends[:-1], ends[1:] + 1, strict=True)]
+    tops = np.array([piece[np.argmax(np.abs(piece))] for piece in pieces])
+    return float(np.median(values) + np.median(0.25 * (tops[:-2] + tops[2:]) + 0.5 * tops[1:-1]))
 
 
 def _misfit(frequency: tuple[float, float], crossings: FloatArray, known: Knowledge, rows: tuple[Row, ...]) -> float:
@@ -185,9 +202,10 @@ def _misfit(frequency: tuple[float, float], crossings: FloatArray, known: Knowle
     return float((residual**2).sum())
 
 
-def _rescaled(u: FloatArray, at: float, scatters: FloatArray, model: object) -> FloatArray:
+def _rescaled(u: FloatArray, at: float, scatters: FloatArray) -> FloatArray:
+    """The same impacts, in units of other scatters."""
     found = np.repeat(u[None, :], scatters.size, axis=0)
-    found[:, 9:] *= (at / np.maximum(scatters, 1e-300))[:, None]
+    found[:, len(SHARED) :] *= (at / np.maximum(scatters, 1e-300))[:, None]
     return found
 
 

@@ -91,7 +91,11 @@ class Model:
             scaled, by_y, by_alpha = half_cycles.duration_and_slopes(y, alpha)
             kept.append((time, speed, y, alpha, p, dt, dy, da))
             time = time + scaled / p
-            dt = dt + (by_y[:, None] * dy + by_alpha[:, None] * da) / p[:, None] - (scaled / p)[:, None] * unit[FREQUENCY]
+            dt = (
+                dt
+                + (by_y[:, None] * dy + by_alpha[:, None] * da) / p[:, None]
+                - (scaled / p)[:, None] * unit[FREQUENCY]
+            )
             if k + 1 == count:
                 break
             lands = -sign  # onto the other side
@@ -167,8 +171,9 @@ def laplace(
         for kept, new in zip(best, found, strict=True):
             kept[active[better]] = new[better]
         u[active[better]] = trial[better]
-        done = np.abs(value - found[0]) < _CLOSE * (1.0 + _CLOSE * value)
-        eased = np.where(damping[active] > 1e-6, 0.1 * damping[active], 0.0)
+        # a damped step hardly moves what the prior alone determines
+        done = (np.abs(value - found[0]) < _CLOSE * (1.0 + _CLOSE * value)) & (damping[active] == 0.0)
+        eased = np.where(damping[active] > 1e-3, 0.1 * damping[active], 0.0)
         damping[active] = np.where(better, eased, np.maximum(10.0 * damping[active], 1e-3))
         active = active[~done]
         if not active.size:
