@@ -1,0 +1,247 @@
+"""What a measurement says: coefficients with intervals, what each impact took, what it agrees with, how sure that is."""
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from rocking.bodies import Body
+from rocking.conventions import FEET, FloatArray, Foot
+from rocking.dynamics import RandomRestitution
+from rocking.errors import InvalidValueError, RockingError
+from rocking.identification.design import Design
+from rocking.identification.posterior import Mixture
+from rocking.restitution import implied, models
+from rocking.restitution.recommendation import RestitutionModel
+
+LEVELS = (0.5, 0.025, 0.975)
+"""Of an estimate and its interval."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number with its 95 % interval.
+
+    Parameters
+    ----------
+    value, low, high : float
+        Median, 2.5 and 97.5 % of its posterior, in the unit of the number.
+    """
+
+    value: float
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, mixture: Mixture, factor: float | None = None) -> "Estimate":
+        """Return that of a distribution, or of factor times its exponential."""
+        found = mixture.quantiles(*LEVELS)
+        return cls(*found) if factor is None else cls(*(factor * math.exp(each) for each in found))
+
+    def __str__(self) -> str:
+        """Return value and interval."""
+        return f"{self.value:.4g} ({self.low:.4g} to {self.high:.4g})"
+
+
+@dataclass(frozen=True)
+class Impact:
+    """What one impact took.
+
+    Parameters
+    ----------
+    number : int
+        From zero; nothing is known of what the first one took.
+    time : float
+        When it was, as it is computed [s].
+    onto : {"left", "right"}
+        The foot on which the body lands.
+    speed : float
+        Angular velocity before it, without sign [rad/s].
+    coefficient : Estimate
+        theta_dot_after / theta_dot_before [-].
+    """
+
+    number: int
+    time: float
+    onto: Foot
+    speed: float
+    coefficient: Estimate
+
+
+@dataclass(frozen=True)
+class ModelComparison:
+    """A model of restitution beside what was measured.
+
+    Parameters
+    ----------
+    model : str
+        Its name.
+    coefficient : float
+        What it says, as the geometric mean of both sides [-].
+    within : bool
+        Whether that is within the interval of the measured mean.
+    error : float
+        What it says less what was measured [-].
+    """
+
+    model: str
+    coefficient: float
+    within: bool
+    error: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Identification:
+    """What a measurement of free rocking says about restitution.
+
+    Parameters
+    ----------
+    source : str
+        Where the measurement comes from.
+    refused : tuple of str
+        Why it is no rocking, or none that this model knows; numbers of a measurement that is refused mean nothing.
+    doubts : tuple of str
+        What else there is to say against it.
+    mean : Estimate
+        Coefficient of restitution, the geometric mean of both sides [-].
+    coefficients : dict of str to Estimate
+        Mean coefficient by the foot on which the body lands [-].
+    scatter : Estimate
+        Standard deviation of ln r from impact to impact [-].
+    frequency_parameter : Estimate
+        p, the mean of both sides [rad/s].
+    tilt : Estimate
+        Of the floor, clockwise [rad].
+    trend, damping : Estimate or None
+        Slope of ln r over ln of the speed, and damping ratio, if they were asked for [-].
+    impacts : tuple of Impact
+        What each impact took.
+    residuals : ndarray
+        Measured less computed values [s, rad or rad/s].
+    noise : Estimate
+        Standard deviation of these.
+    independent : float
+        Number of measured values that count.
+    p_value : float
+        Posterior predictive: how often impacts of the model change as steadily with their number as these [-].
+    advantage : float
+        ln of how much likelier the measurement is than as times with a constant mean interval; NaN of a series [-].
+    converged : bool
+        Whether the maximum of the posterior was found.
+    impulse : dict of str to Estimate
+        Position k of the impulse that the mean coefficients imply, by foot, 1 Housner's; empty without a body [-].
+    models : tuple of ModelComparison
+        Every model of restitution beside it, the closest first; empty without a body.
+    designs : tuple of Design
+        Experiments with this body, the most telling first.
+    """
+
+    source: str
+    refused: tuple[str, ...]
+    doubts: tuple[str, ...]
+    mean: Estimate
+    coefficients: dict[Foot, Estimate]
+    scatter: Estimate
+    frequency_parameter: Estimate
+    tilt: Estimate
+    trend: Estimate | None
+    damping: Estimate | None
+    impacts: tuple[Impact, ...]
+    residuals: FloatArray
+    noise: Estimate
+    independent: float
+    p_value: float
+    advantage: float
+    converged: bool
+    impulse: dict[Foot, Estimate]
+    models: tuple[ModelComparison, ...]
+    designs: tuple[Design, ...]
+    _next: dict[Foot, FloatArray]
+
+    @property
+    def verdict(self) -> str:
+        """What was found, in a sentence."""
+        if self.refused:
+            return f"No coefficient of restitution: {'; '.join(self.refused)}."
+        return (
+            f"The coefficient of restitution is {self.mean}, from {len(self.impacts)} impacts; "
+            f"from impact to impact it scatters by {100.0 * self.scatter.value:.2g} %."
+        )
+
+    def __str__(self) -> str:
+        """Return the verdict, both sides and the doubts."""
+        sides = [] if self.refused else [f"Landing {foot}: {self.coefficients[foot]}." for foot in FEET]
+        return "\n".join([self.verdict, *sides, *self.doubts])
+
+    __repr__ = __str__
+
+    def law(self, *, seed: int = 0) -> RandomRestitution:
+        """Return what the next impacts of this body will take, with the scatter and with what is not known.
+
+        Parameters
+        ----------
+        seed : int
+            Seed of the draws.
+
+        Returns
+        -------
+        RandomRestitution
+            A law for `simulate` and every study.
+
+        Raises
+        ------
+        InvalidValueError
+            If the measurement was refused.
+        """
+        if self.refused:
+            raise InvalidValueError(f"there is no law of a measurement that was refused: {self.refused[0]}")
+        return RandomRestitution(self._next, seed)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything as plain values.
+
+        Returns
+        -------
+        dict
+            By the names of the attributes; NaN where something does not exist.
+        """
+        found = {name: value for name, value in vars(self).items() if not name.startswith("_")}
+        found |= {"verdict": self.verdict, "residuals": self.residuals.tolist()}
+        for name in ("mean", "scatter", "frequency_parameter", "tilt", "trend", "damping", "noise"):
+            found[name] = None if found[name] is None else asdict(found[name])
+        for name in ("coefficients", "impulse"):
+            found[name] = {foot: asdict(each) for foot, each in found[name].items()}
+        for name in ("impacts", "models", "designs"):
+            found[name] = [asdict(each) for each in found[name]]
+        return found
+
+
+def impulses(body: Body, coefficients: dict[Foot, Estimate]) -> dict[Foot, Estimate]:
+    """Where the impulse acts that coefficients imply; the larger the coefficient, the smaller k."""
+    found: dict[Foot, Estimate] = {}
+    for foot, each in coefficients.items():
+        value, high, low = (implied(body, r, onto=foot).impulse_ratio for r in (each.value, each.low, each.high))
+        found[foot] = Estimate(value, low, high)
+    return found
+
+
+def compared(body: Body, mean: Estimate) -> tuple[ModelComparison, ...]:
+    """Every model that needs no number beside what was measured, the closest first."""
+    found = []
+    for name, kind in models().items():
+        try:
+            model: RestitutionModel = kind()
+            sides = [model.evaluate(body, onto=foot).coefficient for foot in FEET]
+        except (TypeError, RockingError):  # it takes a number, or does not hold for this body
+            continue
+        value = math.sqrt(sides[0] * sides[1])
+        found.append(ModelComparison(name, value, mean.low <= value <= mean.high, value - mean.value))
+    return tuple(sorted(found, key=lambda each: abs(each.error)))
+
+
+def next_impact(mean: Mixture, scatter: FloatArray) -> FloatArray:
+    """Quantiles of the coefficient of another impact."""
+    spread = Mixture(mean.weights, mean.means, np.hypot(mean.deviations, scatter))
+    levels = (np.arange(257) + 0.5) / 257.0
+    return np.exp(np.minimum(spread.quantiles(*levels), math.log(10.0)))  # Eq. 274
