@@ -5,11 +5,28 @@ from typing import TYPE_CHECKING
 from rocking.lazy import exports
 
 if TYPE_CHECKING:
+    from rocking.identification._identify import identify
+    from rocking.identification.design import Design
     from rocking.identification.measurement import ImpactTimes, RotationSeries
+    from rocking.identification.results import Estimate, Identification, Impact, ModelComparison
 
-__all__ = ["ImpactTimes", "RotationSeries"]
+__all__ = [
+    "Design",
+    "Estimate",
+    "Identification",
+    "Impact",
+    "ImpactTimes",
+    "ModelComparison",
+    "RotationSeries",
+    "identify",
+]
 
-_HOMES = {"measurement": ("ImpactTimes", "RotationSeries")}
+_HOMES = {
+    "_identify": ("identify",),
+    "design": ("Design",),
+    "measurement": ("ImpactTimes", "RotationSeries"),
+    "results": ("Estimate", "Identification", "Impact", "ModelComparison"),
+}
 __getattr__, __dir__ = exports(
     __name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}
 )

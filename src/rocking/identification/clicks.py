@@ -15,6 +15,8 @@ from rocking.identification.state_space import MEAN, SHARED, SPEED, Clicks, Mode
 UNKNOWN_NOISE = Noise(3e-4, 1.2)
 """Of times whose reader does not say how sure they are [s]."""
 
+_USUAL = 0.9
+
 
 @dataclass(frozen=True, eq=False)
 class Heard:
@@ -48,10 +50,13 @@ def heard(measurement: ImpactTimes, known: Knowledge, scatter: float | None) -> 
 def speeds_between(times: FloatArray, impacts: IntArray, known: Knowledge, ln_p: float) -> FloatArray:
     """Return ln of the speed after every impact but the last, roughly; p is the same over both feet."""
     alpha, p = np.array(known.slenderness_angles), np.exp(ln_p)
+    y = np.tanh(np.geomspace(1e-3, 5.0, 400))
     found: list[FloatArray] = []
     for time, gap in zip(np.diff(times), np.diff(impacts), strict=True):
-        share = 0.9 ** np.arange(gap)
-        found.append(time * share / share.sum())
+        # impacts between them were missed, each of which took about as much
+        each = half_cycles.duration(y * _USUAL ** np.arange(gap)[:, None], np.float64(alpha.mean())) / p
+        shares = np.array([np.interp(time, each.sum(axis=0), one) for one in each])
+        found.append(time * shares / shares.sum())
     intervals = np.concatenate(found)
     alphas = alpha[known.sides(intervals.size)]
     y = np.minimum(half_cycles.speed(p * intervals, alphas), 0.999)

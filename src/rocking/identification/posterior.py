@@ -167,5 +167,5 @@ def _on_grid(
     total = weights.sum()
     return Posterior(
         model, weights / total, scatters, noises, found.u, found.covariance, found.residuals,
-        float(top + np.log(total) + cell), bool(found.converged[weights > 1e-3].all()),
+        float(top + np.log(total) + cell), bool(found.converged[weights > 0.05].all()),
     )  # fmt: skip

@@ -12,8 +12,7 @@ from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError, RockingError
 from rocking.identification.design import Design
 from rocking.identification.posterior import Mixture
-from rocking.restitution import implied, models
-from rocking.restitution.recommendation import RestitutionModel
+from rocking.restitution import RestitutionModel, implied, models
 
 LEVELS = (0.5, 0.025, 0.975)
 """Of an estimate and its interval."""

@@ -19,6 +19,7 @@ between landing right and left, ln of p and of the slenderness angle over those 
 clockwise [rad], slope of ln r over ln of the speed, damping ratio."""
 
 _BELOW_OVERTURNING = 1.0 - 1e-9
+_ROUNDING = 1e-14
 _STEEPEST = 1.5  # slenderness angle [rad]
 _CLOSE = 1e-3  # change of minus twice the logarithm of the posterior
 
@@ -152,7 +153,7 @@ class Laplace:
 
 
 def laplace(
-    model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray, steps: int = 30
+    model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray, steps: int = 60
 ) -> Laplace:
     """Return the posterior about its maximum, found by damped Gauss-Newton steps from u."""
     u = u.copy()
@@ -164,7 +165,7 @@ def laplace(
         turned = slopes.transpose(0, 2, 1)
         hessian = eye + turned @ slopes  # Eq. 271
         gradient = (turned @ residual[..., None])[..., 0] - u[active]
-        damped = hessian + damping[active, None, None] * eye * np.einsum("gii->gi", hessian)[:, None, :]
+        damped = hessian + (damping[active, None, None] + _ROUNDING) * eye * np.einsum("gii->gi", hessian)[:, None, :]
         trial = u[active] + np.linalg.solve(damped, gradient[..., None])[..., 0]
         found = _objective(model, observer, scatter[active], noise[active], trial)
         better = found[0] <= value
@@ -192,10 +193,13 @@ def _objective(
     model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Minus twice ln of the posterior, residuals and slopes over the noise."""
-    with np.errstate(over="ignore", invalid="ignore"):  # far from the maximum; such a step is not taken
+    with np.errstate(
+        over="ignore", invalid="ignore", divide="ignore"
+    ):  # far from the maximum; such a step is not taken
         path = model.path(u, scatter)
         residual, slopes = observer.residuals(path)
         residual = residual / noise[:, None]
         value = (u * u).sum(axis=1) + (residual * residual).sum(axis=1)  # Eq. 270
         slopes = slopes / noise[:, None, None]
-    return np.where(path.feasible & np.isfinite(value), value, np.inf), residual, slopes
+    feasible = path.feasible & np.isfinite(value)
+    return np.where(feasible, value, np.inf), np.where(feasible[:, None], residual, 0.0), np.nan_to_num(slopes)

@@ -1,0 +1,235 @@
+"""The front door: a measurement in, coefficients with intervals out."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from scipy.special import logsumexp, stdtr
+
+from rocking import checks
+from rocking.conventions import FEET, FloatArray, Foot, opposite
+from rocking.errors import InvalidValueError
+from rocking.identification.clicks import heard
+from rocking.identification.design import Design, designs
+from rocking.identification.measurement import ImpactTimes, RotationSeries
+from rocking.identification.posterior import Posterior
+from rocking.identification.prior import LEVEL, Knowledge
+from rocking.identification.results import Estimate, Identification, Impact, compared, impulses, next_impact
+from rocking.identification.series import seen
+from rocking.identification.state_space import DAMPING, FREQUENCY, HALF, MEAN, SHARED, TILT, TREND
+
+_SHARE, _OF_ALL, _AFTER = 0.66, 0.5, 1.0  # of times; seconds, after which nobody hears the last impacts any more
+_ADVANTAGE, _MOST_SCATTER, _UNLIKELY, _EXPLAINED = 5.0, 0.12, 1e-4, 0.9
+
+
+def identify(
+    measurement: ImpactTimes | RotationSeries,
+    body: Any = None,
+    *,
+    size_error: float = 0.01,
+    tilt: float | Sequence[float] = LEVEL,
+    asymmetry: float = 0.06,
+    scatter: float | None = None,
+    trend: bool = False,
+    damping: bool = False,
+    first: Foot = "right",
+) -> Identification:
+    """Return what a measurement of free rocking says about restitution.
+
+    Parameters
+    ----------
+    measurement : ImpactTimes or RotationSeries
+        Times of impacts, of which some may be missing and some none; or rotations or angular velocities.
+    body : Block, Section or MassPoints, optional
+        The body. Without it the frequency parameter is fitted too, and intervals are wider.
+    size_error : float
+        Standard deviation of a length of the body, relative [-].
+    tilt : float or (float, float)
+        Standard deviation of the tilt of the floor, or tilt and standard deviation, clockwise; 0 of a level floor.
+        It is the floor that makes times alone tell little about each side [rad].
+    asymmetry : float
+        Standard deviation of ln r landing right less ln r landing left; 0 if both are the same [-].
+    scatter : float, optional
+        Standard deviation of ln r from impact to impact; fitted if not given [-].
+    trend, damping : bool
+        Whether r may change with the speed, and whether damping between impacts is fitted.
+    first : {"left", "right"}
+        Foot on which the body stands after the first impact, of times, which do not tell.
+
+    Returns
+    -------
+    Identification
+        Coefficients, scatter, impacts, what they agree with; why it is refused, if it is no rocking.
+
+    Raises
+    ------
+    InvalidValueError
+        If the measurement or the body is none, or a value is outside its range.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> times = [0.0, 1.2158, 2.2432, 3.1403, 3.9387, 4.6583, 5.3126, 5.9119, 6.4634]
+    >>> found = identify(ImpactTimes(times, sigma=1e-3), rk.Block(width=1.0, height=4.0), tilt=0.0)
+    >>> found.refused, 0.90 < found.mean.low < found.mean.high < 0.94
+    ((), True)
+    """
+    known = Knowledge.of(body, size_error, tilt, asymmetry, bool(trend), bool(damping), first)
+    if scatter is not None:
+        scatter = checks.within("scatter", scatter, 0.0, 0.3)
+    if isinstance(measurement, ImpactTimes):
+        return _of_times(measurement, known, scatter)
+    if isinstance(measurement, RotationSeries):
+        return _of_series(measurement, known, scatter)
+    raise InvalidValueError(f"measurement must be ImpactTimes or a RotationSeries, got {measurement!r:.60}")
+
+
+def _of_times(measurement: ImpactTimes, known: Knowledge, scatter: float | None) -> Identification:
+    found = heard(measurement, known, scatter)
+    if found is None or found.track.clicks.size < 4:
+        return _nothing(measurement, "fewer than four times belong together as impacts")
+    track, refused, doubts = found.track, [], list(measurement.doubts)
+    times = measurement.times[track.clicks]
+    advantage = found.posterior.evidence - _steady(np.diff(times) / np.diff(track.impacts))
+    missed, extra = int(np.ptp(track.impacts)) + 1 - track.impacts.size, track.within - track.clicks.size
+    bounces = min(track.bounces, extra)
+    outside = int(np.sum((measurement.times < times[0]) | (measurement.times > times[-1] + _AFTER)))
+    share = times.size / (times.size + extra - bounces + missed)
+    if share < _SHARE or times.size + bounces < _OF_ALL * (track.within + outside):
+        refused.append(
+            f"{times.size} of {measurement.times.size} times belong together, {missed} between them are missing"
+        )
+    if advantage < _ADVANTAGE:
+        refused.append("intervals do not shrink from impact to impact as those of a rocking body do")
+    if missed:
+        doubts.append(f"{missed} impacts were missed between the others.")
+    if extra:
+        doubts.append(f"{extra} times between the impacts are none, {bounces} of them bounces or echoes.")
+    if known.asymmetry and known.tilt_error:
+        doubts.append("Times alone do not tell a tilted floor from sides that differ: intervals by side include both.")
+    return _result(measurement, known, found.posterior, known.first, refused, doubts, float(times.size), advantage)
+
+
+def _of_series(measurement: RotationSeries, known: Knowledge, scatter: float | None) -> Identification:
+    found = seen(measurement, known, scatter)
+    if found is None:
+        return _nothing(measurement, "the rotation does not pass through its middle often enough")
+    residuals = found.posterior.average(found.posterior.residuals)
+    total, at, refused = 0.0, 0, []
+    for row in found.rows:
+        part = residuals[at : at + row.values.size] * row.scale
+        total, at = (
+            max(total, float(part @ part) / float(((row.values - row.values.mean()) ** 2).sum())),
+            at + part.size,
+        )
+    if total > 1.0 - _EXPLAINED:
+        refused.append(f"rocking explains {100.0 * (1.0 - total):.0f} % of the motion only")
+    first: Foot = "right" if found.posterior.model.sides[0] == 0 else "left"
+    doubts = list(measurement.doubts)
+    return _result(measurement, known, found.posterior, first, refused, doubts, found.independent, math.nan)
+
+
+def _nothing(measurement: ImpactTimes | RotationSeries, why: str) -> Identification:
+    none = Estimate(math.nan, math.nan, math.nan)
+    sides: dict[Foot, Estimate] = dict.fromkeys(FEET, none)
+    return Identification(
+        measurement.source, (why,), measurement.doubts, none, sides, none, none, none, None, None, (), np.zeros(0), none,
+        0.0, math.nan, math.nan, False, {}, (), (), {},
+    )  # fmt: skip
+
+
+def _result(
+    measurement: ImpactTimes | RotationSeries,
+    known: Knowledge,
+    found: Posterior,
+    first: Foot,
+    refused: list[str],
+    doubts: list[str],
+    independent: float,
+    advantage: float,
+) -> Identification:
+    mean = found.shared((MEAN, 1.0))
+    by_side = {foot: found.shared((MEAN, 1.0), (HALF, 1.0 if foot == "right" else -1.0)) for foot in FEET}
+    coefficients = {foot: Estimate.of(each, 1.0) for foot, each in by_side.items()}
+    r, scattered = Estimate.of(mean, 1.0), _of_grid(found, found.scatter)
+    p_value = _steadiness(found)
+    if mean.below(0.0) < 0.975:
+        refused.append(f"impacts take no energy: r is {r}")
+    if scattered.value > _MOST_SCATTER:
+        refused.append(f"what impacts take scatters by {100.0 * scattered.value:.0f} %")
+    if p_value < _UNLIKELY and not known.trend:
+        refused.append(f"what impacts take changes steadily with their number (p = {p_value:.1g}); try trend=True")
+    elif p_value < 0.01:
+        doubts.append(f"What impacts take changes with their number, p = {p_value:.2g}: try trend=True.")
+    if not found.converged:
+        doubts.append("The maximum of the posterior was not found everywhere: intervals may be wrong.")
+    frequency = math.sqrt(found.model.p[0] * found.model.p[1])
+    body, alpha = known.body, found.model.alpha
+    experiments: tuple[Design, ...] = ()
+    if math.isfinite(r.value):
+        p_error = float(found.model.deviation[FREQUENCY])
+        noise = float(found.average(found.noise)) if isinstance(measurement, ImpactTimes) else 1e-3
+        experiments = designs(
+            math.sqrt(alpha[0] * alpha[1]), frequency, p_error, min(r.value, 0.999), scattered.value, noise
+        )
+    return Identification(
+        source=measurement.source, refused=tuple(refused), doubts=tuple(doubts), mean=r, coefficients=coefficients,
+        scatter=scattered, frequency_parameter=Estimate.of(found.shared((FREQUENCY, 1.0)), frequency),
+        tilt=Estimate.of(found.shared((TILT, 1.0))),
+        trend=Estimate.of(found.shared((TREND, 1.0))) if known.trend else None,
+        damping=Estimate.of(found.shared((DAMPING, 1.0))) if known.damping else None,
+        impacts=_impacts(found, first), residuals=found.average(found.residuals),
+        noise=_of_grid(found, found.noise), independent=independent, p_value=p_value, advantage=advantage,
+        converged=found.converged, impulse=impulses(body, coefficients) if body is not None and not refused else {},
+        models=compared(body, r) if body is not None and not refused else (), designs=experiments,
+        _next={foot: next_impact(each, found.scatter) for foot, each in by_side.items()},
+    )  # fmt: skip
+
+
+def _impacts(found: Posterior, first: Foot) -> tuple[Impact, ...]:
+    """What every impact took of whose speeds before and after something is known."""
+    best = int(np.argmax(found.weights))
+    path = found.model.path(found.u[best : best + 1], found.scatter[best : best + 1])
+    made, foot = [], first
+    for number in range(1, found.model.sides.size):
+        foot = opposite(foot)
+        slopes = np.zeros_like(found.u)
+        slopes[:, MEAN] = found.model.deviation[MEAN]
+        slopes[:, HALF] = found.model.deviation[HALF] * (1.0 if foot == "right" else -1.0)
+        slopes[:, TREND] = found.model.deviation[TREND] * (path.speeds[0, number - 1] - found.model.middle)
+        slopes[:, len(SHARED) + number - 1] = found.scatter
+        each = Estimate.of(found.normal(slopes, float(found.model.mean[MEAN])), 1.0)
+        speed = float(np.exp(path.speeds[0, number - 1]))
+        made.append(Impact(number, float(path.times[0, number]), foot, speed, each))
+    return tuple(made)
+
+
+def _of_grid(found: Posterior, values: FloatArray) -> Estimate:
+    """Estimate of the scatter or the noise, which the grid holds."""
+    levels = np.unique(values)
+    mass = np.array([found.weights[values == level].sum() for level in levels])
+    if levels.size == 1:
+        return Estimate(*[float(levels[0])] * 3)
+    middle = np.cumsum(mass) - 0.5 * mass
+    return Estimate(*(float(np.exp(np.interp(level, middle, np.log(levels)))) for level in (0.5, 0.025, 0.975)))
+
+
+def _steadiness(found: Posterior) -> float:
+    """Probability that draws change as steadily with their number as these, by Student's t."""
+    draws = found.average(found.u[:, len(SHARED) :] * found.scatter[:, None])
+    degrees = draws.size - 3
+    if degrees < 2 or not np.ptp(draws) > 0.0:
+        return 1.0
+    r = float(np.corrcoef(draws, np.arange(draws.size))[0, 1])
+    t = abs(r) * math.sqrt(degrees / max(1.0 - r * r, 1e-12))
+    return float(2.0 * stdtr(degrees, -t))
+
+
+def _steady(intervals: FloatArray) -> float:
+    """ln of the probability density of intervals whose logarithms are normal about one mean."""
+    ln, n = np.log(intervals), intervals.size
+    tau = np.geomspace(1e-3, 1.0, 60)
+    about = float(((ln - ln.mean()) ** 2).sum())
+    each = -0.5 * about / tau**2 - (n - 1) * np.log(tau * np.sqrt(2.0 * np.pi)) - 0.5 * np.log(n)
+    return float(logsumexp(each) - np.log(tau.size) - np.log(np.log(20.0 / 0.02)) - ln.sum())  # Eq. 279
