@@ -18,6 +18,7 @@ _SHORTEST, _MOST_IMPACTS, _GATE = 0.03, 80, 4.5
 _SCATTER = 0.03
 _WORTH = 4.0  # of a time, as the logarithm of a likelihood ratio
 _FIRST, _SECOND = 6, 5
+_LONGEST = 3.5  # p T / 2: a body that just does not overturn
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +74,9 @@ def associate(
             break
         spread = np.sqrt(taken.covariance[:, 0, 0] + noise**2)
         off = times - taken.mean[:, :1]
-        later = np.arange(times.size) > taken.last[:, None]
+        since = times[taken.last][:, None]
+        # a long half cycle is hard to foretell, but it does not come out short
+        later = times - since > np.maximum(_SHORTEST, 0.5 * (taken.mean[:, :1] - since))
         which, click = np.nonzero((np.abs(off) < _GATE * spread[:, None]) & later)
         heard = _updated(taken.taken(which), times[click], noise)
         innovation = off[which, click] / spread[which]
@@ -119,7 +122,8 @@ def _started(times: FloatArray, noise: float, ln_p: tuple[float, float], alterna
     of_click = np.full((count, times.size), -1)
     of_click[np.arange(count), first], of_click[np.arange(count), second] = 0, 1 + silent
     zero, score = np.zeros(count, dtype=np.int64), np.log(1.0 - _HEARD) * silent
-    return _Beam(mean, covariance, zero + 1 + silent, second, zero, score, of_click, zero)
+    begun = _Beam(mean, covariance, zero + 1 + silent, second, zero, score, of_click, zero)
+    return begun.taken(np.flatnonzero((half < _LONGEST) & (times[second] - times[first] > _SHORTEST)))
 
 
 def _advanced(beam: _Beam) -> _Beam:
