@@ -63,12 +63,15 @@ def scored(rows: list[dict[str, float]]) -> dict[str, Forecasts]:
 
 
 def resumed(
-    path: Path, cases: int, made: Callable[..., dict[str, Any]], source: str, **settings: int
+    path: Path,
+    cases: int,
+    made: Callable[..., dict[str, Any]],
+    source: str,
+    rooms: tuple[str, ...] = ("prediction", "dynamics/contact", "dynamics/hull", "evidence"),
+    **settings: int,
 ) -> Iterator[dict[str, Any]]:
     """Give every case that is made, those of an earlier run from its file unless what computes them has changed."""
-    folders = [
-        ROOT / "src" / "rocking" / each for each in ("prediction", "dynamics/contact", "dynamics/hull", "evidence")
-    ]
+    folders = [ROOT / "src" / "rocking" / each for each in rooms]
     sources = sorted([Path(source), *(file for folder in folders for file in folder.rglob("*.py"))])
     digest = hashlib.sha256(b"".join(file.read_bytes() for file in sources)).hexdigest()
     head = json.dumps({"sources": digest, **settings})

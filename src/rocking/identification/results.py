@@ -242,5 +242,5 @@ def compared(body: Body, mean: Estimate) -> tuple[ModelComparison, ...]:
 def next_impact(mean: Mixture, scatter: FloatArray) -> FloatArray:
     """Quantiles of the coefficient of another impact."""
     spread = Mixture(mean.weights, mean.means, np.hypot(mean.deviations, scatter))
-    levels = (np.arange(257) + 0.5) / 257.0
+    levels = (np.arange(65) + 0.5) / 65.0
     return np.exp(np.minimum(spread.quantiles(*levels), math.log(10.0)))  # Eq. 274

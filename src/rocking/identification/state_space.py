@@ -153,7 +153,7 @@ class Laplace:
 
 
 def laplace(
-    model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray, steps: int = 60
+    model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray, steps: int = 40
 ) -> Laplace:
     """Return the posterior about its maximum, found by damped Gauss-Newton steps from u."""
     u = u.copy()
