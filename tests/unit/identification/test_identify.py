@@ -1,0 +1,117 @@
+"""What identify() says of a measurement, and what it refuses."""
+
+import json
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.errors import InvalidValueError
+from rocking.identification import ImpactTimes, RotationSeries, identify
+from rocking.identification.half_cycles import rotation
+from rocking.identification.state_space import MEAN, SHARED, SPEED, Model
+
+BLOCK = rk.Block(width=0.1, height=0.4)
+
+
+def _path(count=11, r=0.9, scatter=0.01, seed=3):
+    """A body that rocks, on its left foot first."""
+    mean = np.zeros(len(SHARED))
+    mean[SPEED], mean[MEAN] = 0.05, np.log(r)
+    side = BLOCK.side("left")
+    model = Model(
+        np.arange(1, count) % 2, (side.slenderness_angle,) * 2, (side.frequency_parameter,) * 2, mean, 0.0 * mean
+    )
+    u = np.zeros((1, model.size))
+    u[0, len(SHARED) :] = np.random.default_rng(seed).normal(size=count - 2)
+    return model, model.path(u, np.array([scatter])), np.log(r) + scatter * u[0, len(SHARED) :]
+
+
+@pytest.fixture(scope="module")
+def found():
+    """The answer from times of impacts, and what each impact took."""
+    _, path, took = _path()
+    return identify(ImpactTimes(path.times[0], sigma=1e-5, source="made up"), BLOCK, tilt=0.0, first="left"), took
+
+
+def test_what_each_impact_took(found):
+    """Exact times tell r at each impact, with what is not known of the body beside it."""
+    answer, took = found
+    assert not answer.refused
+    assert [each.onto for each in answer.impacts[:3]] == ["right", "left", "right"]
+    for each, true in zip(answer.impacts, np.exp(took), strict=True):
+        assert each.coefficient.low < true < each.coefficient.high
+        assert each.coefficient.high - each.coefficient.low < 0.02
+    assert answer.mean.low < 0.9 < answer.mean.high
+    assert answer.scatter.low < 0.01 < answer.scatter.high
+
+
+def test_the_law_draws_what_was_measured(found):
+    """A response takes it; its median is that of the side."""
+    law = found[0].law(seed=1)
+    assert law.quantile(0.5, "right") == pytest.approx(found[0].coefficients["right"].value, rel=1e-4)
+    assert rk.free_rocking(BLOCK, rotation=0.1, restitution=law).impacts.size > 3
+
+
+def test_models_impulse_and_designs_stand_beside_it(found):
+    answer = found[0]
+    assert {"housner", "ked"} <= {each.model for each in answer.models}
+    assert answer.impulse["left"].low < answer.impulse["left"].value < answer.impulse["left"].high
+    assert answer.designs[0].deviation <= answer.designs[-1].deviation
+    again = json.loads(json.dumps(answer.to_dict()))
+    assert again["mean"]["value"] == answer.mean.value
+    assert "0.9" in again["verdict"]
+
+
+def test_a_body_that_nobody_knows_has_its_frequency_fitted(found):
+    _, path, _ = _path(15, scatter=0.005)
+    answer = identify(ImpactTimes(path.times[0], sigma=1e-4), tilt=0.0)
+    assert not answer.refused
+    assert answer.frequency_parameter.low < BLOCK.frequency_parameter < answer.frequency_parameter.high
+    assert answer.models == ()
+
+
+@pytest.mark.parametrize("kind", ["rotation", "angular_velocity"])
+def test_a_series_with_offset_and_drift(kind):
+    """The side is read from the sign."""
+    model, path, _ = _path(9)
+    time = np.arange(0.0, path.times[0, -1] - 0.01, 0.005)
+    k = np.searchsorted(path.times[0], time, side="right") - 1
+    theta, turning = rotation(path.p[0, k] * (time - path.times[0, k]), path.y[0, k], path.alpha[0, k])
+    true = (1.0 - 2.0 * model.sides[k]) * (theta if kind == "rotation" else path.p[0, k] * turning)
+    size = np.ptp(true)
+    noise = 0.003 * size * np.random.default_rng(1).normal(size=time.size)
+    before = np.arange(-20, 0) * 0.005
+    values = np.concatenate([np.zeros(20), true + noise]) + 0.01 * size
+    answer = identify(RotationSeries(np.concatenate([before, time]), **{kind: values}), BLOCK, tilt=0.0)
+    assert not answer.refused
+    assert answer.mean.low < 0.9 < answer.mean.high
+
+
+def test_noise_is_no_rocking():
+    """Negative control: a series that crosses its middle for no reason."""
+    time = np.arange(0.0, 5.0, 0.01)
+    noise = np.convolve(np.random.default_rng(2).normal(size=time.size + 20), np.ones(21) / 21.0, "valid")
+    assert identify(RotationSeries(time, rotation=0.1 * noise), BLOCK).refused
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"body": 3}, "body must be"),
+        ({"size_error": 0.5}, "size_error must be in"),
+        ({"tilt": 1.0}, "tilt must be in"),
+        ({"first": "front"}, "first must be"),
+        ({"scatter": -1.0}, "scatter must be in"),
+    ],
+)
+def test_what_is_refused(given, words):
+    with pytest.raises(InvalidValueError, match=words):
+        identify(ImpactTimes([0.0, 1.0, 1.9, 2.7]), **given)
+    with pytest.raises(InvalidValueError, match="measurement must be"):
+        identify([0.0, 1.0, 1.9, 2.7])
+
+
+def test_there_is_no_law_of_what_was_refused():
+    with pytest.raises(InvalidValueError, match="refused"):
+        identify(ImpactTimes(np.arange(12.0)), BLOCK).law()
