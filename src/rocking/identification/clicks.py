@@ -54,7 +54,7 @@ def speeds_between(times: FloatArray, impacts: IntArray, known: Knowledge, ln_p:
     found: list[FloatArray] = []
     for time, gap in zip(np.diff(times), np.diff(impacts), strict=True):
         # impacts between them were missed, each of which took about as much
-        each = half_cycles.duration(y * _USUAL ** np.arange(gap)[:, None], np.float64(alpha.mean())) / p
+        each = half_cycles.duration(y * _USUAL ** np.arange(gap)[:, None], np.array(alpha.mean())) / p
         shares = np.array([np.interp(time, each.sum(axis=0), one) for one in each])
         found.append(time * shares / shares.sum())
     intervals = np.concatenate(found)

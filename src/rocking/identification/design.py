@@ -32,7 +32,7 @@ def one_impact_bound(frequency_parameter: float, before: float, after: float, no
 def peaks_bound(before: float, after: float, noise: float) -> float:
     """Return the least standard deviation of ln r from the peaks before and after it, over alpha, and their noise."""
     parts = [(1.0 - f) / (1.0 - (1.0 - f) ** 2) for f in (before, after)]
-    return float(noise * np.hypot(*parts))  # Eq. 278
+    return float(noise * np.hypot(parts[0], parts[1]))  # Eq. 278
 
 
 @dataclass(frozen=True)

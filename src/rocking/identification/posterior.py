@@ -101,7 +101,7 @@ def posterior(
     model: Model, observer: Observer, scatter: float | None, noise: Noise, start: Callable[[FloatArray], FloatArray]
 ) -> Posterior:
     """Return the posterior; scatter: of ln r if it is known; start: unknowns to begin with, for scatters."""
-    ranges = [np.log(SCATTERS) if scatter is None else None, None]
+    ranges: list[FloatArray | None] = [np.log(SCATTERS) if scatter is None else None, None]
     if noise.dispersion > 0.0:
         ranges[1] = np.log(noise.median) + noise.dispersion * np.array([-3.0, 3.0])
     known = (scatter or 0.0, noise.median)
@@ -126,7 +126,8 @@ def _grid(
 ) -> tuple[FloatArray, FloatArray, float]:
     """Scatters, noises, and ln of the area of a cell in their logarithms."""
     axes = [
-        np.array([v]) if r is None else np.exp(np.linspace(*r, n)) for r, v, n in zip(ranges, known, sizes, strict=True)
+        np.array([v]) if r is None else np.exp(np.linspace(r[0], r[1], n))
+        for r, v, n in zip(ranges, known, sizes, strict=True)
     ]
     cell = sum(np.log((r[1] - r[0]) / (n - 1)) for r, n in zip(ranges, sizes, strict=True) if r is not None)
     first, second = (each.ravel() for each in np.meshgrid(*axes, indexing="ij"))

@@ -2,10 +2,11 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from rocking.conventions import FloatArray, IntArray
+from rocking.conventions import FloatArray, Foot, IntArray
 from rocking.identification import half_cycles
 from rocking.identification.clicks import speeds_between, start
 from rocking.identification.measurement import RotationSeries
@@ -133,7 +134,7 @@ def seen(series: RotationSeries, known: Knowledge, scatter: float | None) -> See
         used = tuple(_away(row, impacts, float(s / spread[0])) for row, s in zip(rows, spread, strict=True))
         found = posterior(model, Samples(used, model.sides), fixed, Noise(float(spread[0])), begin)
         u, at = found.u[0], fixed
-        begin = lambda s, u=u, at=at: _rescaled(u, at, s)  # noqa: E731
+        begin = partial(_rescaled, u, at)
         impacts = model.path(found.u, found.scatter).times[0]
         parts = np.split(found.residuals[0], np.cumsum([row.values.size for row in used])[:-1])
         each = [_correlation(part) for part in parts]
@@ -152,13 +153,14 @@ def _away(row: Row, impacts: FloatArray, scale: float) -> Row:
     return Row(row.kind, row.time[~near], row.values[~near], scale)
 
 
-def impacts_of(series: RotationSeries) -> tuple[FloatArray, str]:
+def impacts_of(series: RotationSeries) -> tuple[FloatArray, Foot]:
     """Return about when the body hits the ground, and the foot on which it stands after the first impact."""
     time = series.time
     if series.rotation is not None:
         values = series.rotation - _middle(series.rotation)
     else:
-        speed = series.angular_velocity - np.median(series.angular_velocity)
+        turning = np.asarray(series.angular_velocity)
+        speed = turning - np.median(turning)
         values = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
         values = values - _middle(values)
     noise = float(np.median(np.abs(np.diff(values, 2)))) / (0.6745 * np.sqrt(6.0))

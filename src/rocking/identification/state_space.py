@@ -6,11 +6,11 @@ arrays begin with that axis, called g below. All angles of the left side are mir
 """
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
-from rocking.conventions import FloatArray, IntArray
+from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.identification import half_cycles
 
 SHARED = (START, SPEED, MEAN, HALF, FREQUENCY, TILT, SLENDERNESS, TREND, DAMPING) = tuple(range(9))
@@ -37,7 +37,7 @@ class Path:
     y_slopes: FloatArray  # g, k, d: of ln y
     alpha_slopes: FloatArray  # g, k, d
     p_slopes: FloatArray  # d: of ln p
-    feasible: FloatArray  # g: whether it never overturns
+    feasible: BoolArray  # g: whether it never overturns
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ class Model:
         unit[:, : len(SHARED)] = np.diag(self.deviation)
         time, speed = z[:, START], z[:, SPEED]
         dt, dx = np.broadcast_to(unit[START], u.shape), np.broadcast_to(unit[SPEED], u.shape)
-        kept: list[tuple[FloatArray, ...]] = []
+        kept: list[tuple[Any, ...]] = []
         feasible = np.ones(len(u), dtype=np.bool_)
         trend, damped = (self.deviation[which] > 0.0 or self.mean[which] != 0.0 for which in (TREND, DAMPING))
         for k, side in enumerate(self.sides):
@@ -108,7 +108,7 @@ class Model:
                 change = change + z[:, TREND] * off
                 dc += off[:, None] * unit[TREND] + z[:, TREND, None] * dx
             speed, dx = speed + change, dx + dc
-        columns = [np.stack(each, axis=1) for each in zip(*kept, strict=True)]
+        columns: list[Any] = [np.stack(each, axis=1) for each in zip(*kept, strict=True)]
         times = np.concatenate([columns[0], time[:, None]], axis=1)
         slopes = np.concatenate([columns[5], dt[:, None]], axis=1)
         return Path(times, *columns[1:5], slopes, *columns[6:], unit[FREQUENCY], feasible)
@@ -117,7 +117,10 @@ class Model:
 class Observer(Protocol):
     """What is seen of a path."""
 
-    count: int  # independent numbers
+    @property
+    def count(self) -> int:
+        """Independent numbers."""
+        ...
 
     def residuals(self, path: Path) -> tuple[FloatArray, FloatArray]:
         """Return measured less computed values, g, m, and slopes of the computed ones, g, m, d."""
@@ -149,7 +152,7 @@ class Laplace:
     covariance: FloatArray  # g, d, d
     evidence: FloatArray  # g: ln of the probability density of what was measured
     residuals: FloatArray  # g, m
-    converged: FloatArray  # g
+    converged: BoolArray  # g
 
 
 def laplace(
