@@ -227,7 +227,7 @@ def _steadiness(found: Posterior) -> float:
 
 
 def _steady(intervals: FloatArray) -> float:
-    """ln of the probability density of intervals whose logarithms are normal about one mean."""
+    """Ln of the probability density of intervals whose logarithms are normal about one mean."""
     ln, n = np.log(intervals), intervals.size
     tau = np.geomspace(1e-3, 1.0, 60)
     about = float(((ln - ln.mean()) ** 2).sum())

@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import Foot, IntArray, g, opposite
+from rocking.conventions import Foot, IntArray, opposite
 from rocking.errors import InvalidValueError
 from rocking.identification import state_space
 from rocking.identification.state_space import SHARED, Model

@@ -111,7 +111,8 @@ class Model:
         columns: list[Any] = [np.stack(each, axis=1) for each in zip(*kept, strict=True)]
         times = np.concatenate([columns[0], time[:, None]], axis=1)
         slopes = np.concatenate([columns[5], dt[:, None]], axis=1)
-        return Path(times, *columns[1:5], slopes, *columns[6:], unit[FREQUENCY], feasible)
+        speeds, y, alphas, frequencies = columns[1:5]
+        return Path(times, speeds, y, alphas, frequencies, slopes, columns[6], columns[7], unit[FREQUENCY], feasible)
 
 
 class Observer(Protocol):
