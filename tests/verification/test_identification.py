@@ -60,8 +60,8 @@ def test_bounds_are_those_of_the_closed_forms():
 @pytest.mark.verifies("computed anew", "bounds with p known and unknown, by other code", within="0.01", room="evidence")
 def test_the_bound_of_a_whole_experiment():
     """Ten intervals from half of the slenderness angle, 1 ms; the reference is of the slender formula."""
-    assert bound(ALPHA, P, 0.0, R, 0.0, 0.5, 11, 1e-3) == pytest.approx(6.9e-5, rel=0.01)
-    assert bound(ALPHA, P, 10.0, R, 0.0, 0.5, 11, 1e-3) == pytest.approx(3.85e-4, rel=0.01)
+    assert bound(ALPHA, P, 0.0, R, 0.0, peak=0.5, impacts=11, noise=1e-3) == pytest.approx(6.9e-5, rel=0.01)
+    assert bound(ALPHA, P, 10.0, R, 0.0, peak=0.5, impacts=11, noise=1e-3) == pytest.approx(3.85e-4, rel=0.01)
 
 
 def _estimates(count, y, r, noise, repeats, *, peaks=False, unknown_p=False):
@@ -115,7 +115,7 @@ def test_the_estimator_reaches_the_bound(case):
 def test_a_worse_estimator_does_not_reach_the_bound():
     """From the first two intervals alone, with all the others thrown away."""
     found, _ = _estimates(3, 0.8, R, 1e-3, 200)
-    assert bound(ALPHA, P, 0.0, R, 0.0, 0.5, 11, 1e-3) ** 2 / np.var(found) < 0.1
+    assert bound(ALPHA, P, 0.0, R, 0.0, peak=0.5, impacts=11, noise=1e-3) ** 2 / np.var(found) < 0.1
 
 
 @pytest.mark.verifies(

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from scipy.special import logsumexp, stdtr
 
-from rocking import checks
 from rocking.conventions import FEET, FloatArray, Foot, opposite
 from rocking.errors import InvalidValueError
 from rocking.identification.clicks import heard
@@ -30,7 +29,6 @@ def identify(
     size_error: float = 0.01,
     tilt: float | Sequence[float] = LEVEL,
     asymmetry: float = 0.06,
-    scatter: float | None = None,
     trend: bool = False,
     damping: bool = False,
     first: Foot = "right",
@@ -50,8 +48,6 @@ def identify(
         It is the floor that makes times alone tell little about each side [rad].
     asymmetry : float
         Standard deviation of ln r landing right less ln r landing left; 0 if both are the same [-].
-    scatter : float, optional
-        Standard deviation of ln r from impact to impact; fitted if not given [-].
     trend, damping : bool
         Whether r may change with the speed, and whether damping between impacts is fitted.
     first : {"left", "right"}
@@ -75,18 +71,16 @@ def identify(
     >>> found.refused, 0.90 < found.mean.low < found.mean.high < 0.94
     ((), True)
     """
-    known = Knowledge.of(body, size_error, tilt, asymmetry, bool(trend), bool(damping), first)
-    if scatter is not None:
-        scatter = checks.within("scatter", scatter, 0.0, 0.3)
+    known = Knowledge.of(body, size_error, tilt, asymmetry, trend=bool(trend), damping=bool(damping), first=first)
     if isinstance(measurement, ImpactTimes):
-        return _of_times(measurement, known, scatter)
+        return _of_times(measurement, known)
     if isinstance(measurement, RotationSeries):
-        return _of_series(measurement, known, scatter)
+        return _of_series(measurement, known)
     raise InvalidValueError(f"measurement must be ImpactTimes or a RotationSeries, got {measurement!r:.60}")
 
 
-def _of_times(measurement: ImpactTimes, known: Knowledge, scatter: float | None) -> Identification:
-    found = heard(measurement, known, scatter)
+def _of_times(measurement: ImpactTimes, known: Knowledge) -> Identification:
+    found = heard(measurement, known, None)
     if found is None or found.track.clicks.size < 4:
         return _nothing(measurement, "fewer than four times belong together as impacts")
     track, refused, doubts = found.track, [], list(measurement.doubts)
@@ -108,11 +102,20 @@ def _of_times(measurement: ImpactTimes, known: Knowledge, scatter: float | None)
         doubts.append(f"{extra} times between the impacts are none, {bounces} of them bounces or echoes.")
     if known.asymmetry and known.tilt_error:
         doubts.append("Times alone do not tell a tilted floor from sides that differ: intervals by side include both.")
-    return _result(measurement, known, found.posterior, known.first, refused, doubts, float(times.size), advantage)
+    return _result(
+        measurement,
+        known,
+        found.posterior,
+        known.first,
+        refused,
+        doubts,
+        independent=float(times.size),
+        advantage=advantage,
+    )
 
 
-def _of_series(measurement: RotationSeries, known: Knowledge, scatter: float | None) -> Identification:
-    found = seen(measurement, known, scatter)
+def _of_series(measurement: RotationSeries, known: Knowledge) -> Identification:
+    found = seen(measurement, known, None)
     if found is None:
         return _nothing(measurement, "the rotation does not pass through its middle often enough")
     residuals = found.posterior.average(found.posterior.residuals)
@@ -127,15 +130,17 @@ def _of_series(measurement: RotationSeries, known: Knowledge, scatter: float | N
         refused.append(f"rocking explains {100.0 * (1.0 - total):.0f} % of the motion only")
     first: Foot = "right" if found.posterior.model.sides[0] == 0 else "left"
     doubts = list(measurement.doubts)
-    return _result(measurement, known, found.posterior, first, refused, doubts, found.independent, math.nan)
+    return _result(
+        measurement, known, found.posterior, first, refused, doubts, independent=found.independent, advantage=math.nan
+    )
 
 
 def _nothing(measurement: ImpactTimes | RotationSeries, why: str) -> Identification:
     none = Estimate(math.nan, math.nan, math.nan)
     sides: dict[Foot, Estimate] = dict.fromkeys(FEET, none)
     return Identification(
-        measurement.source, (why,), measurement.doubts, none, sides, none, none, none, None, None, (), np.zeros(0), none,
-        0.0, math.nan, math.nan, False, {}, (), (), {},
+        measurement.source, (why,), measurement.doubts, none, sides, none, none, none, None, None, (), np.zeros(0),
+        none, 0.0, math.nan, math.nan, False, {}, (), (), {},
     )  # fmt: skip
 
 
@@ -146,6 +151,7 @@ def _result(
     first: Foot,
     refused: list[str],
     doubts: list[str],
+    *,
     independent: float,
     advantage: float,
 ) -> Identification:
@@ -188,7 +194,7 @@ def _result(
 
 
 def _impacts(found: Posterior, first: Foot) -> tuple[Impact, ...]:
-    """What every impact took of whose speeds before and after something is known."""
+    """Return what every impact took of whose speeds before and after something is known."""
     best = int(np.argmax(found.weights))
     path = found.model.path(found.u[best : best + 1], found.scatter[best : best + 1])
     made, foot = [], first

@@ -63,12 +63,15 @@ def designs(
     """Return experiments with one body, from what is usual to what would tell more: height, impacts, noise."""
     found = [(peak, impacts, noise) for peak in (0.3, 0.5, 0.7, 0.9) for impacts in (6, 12, 20)]
     found += [(0.7, 12, 0.1 * noise), (0.7, 12, 10.0 * noise)]
-    made = [Design(*each, bound(alpha, p, p_error, coefficient, scatter, *each)) for each in found]
+    made = [
+        Design(*each, bound(alpha, p, p_error, coefficient, scatter, peak=each[0], impacts=each[1], noise=each[2]))
+        for each in found
+    ]
     return tuple(sorted(made, key=lambda each: each.deviation))
 
 
 def bound(
-    alpha: Any, p: float, p_error: float, coefficient: float, scatter: float, peak: float, impacts: int, noise: float
+    alpha: Any, p: float, p_error: float, coefficient: float, scatter: float, *, peak: float, impacts: int, noise: float
 ) -> float:
     """Return the least standard deviation of the mean r from times of impacts, of a body let go from a peak."""
     alpha = checks.within("alpha", alpha, 0.0, 1.5, unit="rad", open_low=True)

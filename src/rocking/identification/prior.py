@@ -37,7 +37,7 @@ class Knowledge:
 
     @classmethod
     def of(
-        cls, body: Any, size_error: Any, tilt: Any, asymmetry: Any, trend: bool, damping: bool, first: Any
+        cls, body: Any, size_error: Any, tilt: Any, asymmetry: Any, *, trend: bool, damping: bool, first: Any
     ) -> "Knowledge":
         """Return what was said, checked."""
         if body is not None and not isinstance(body, Body):

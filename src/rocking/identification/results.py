@@ -1,4 +1,4 @@
-"""What a measurement says: coefficients with intervals, what each impact took, what it agrees with, how sure that is."""
+"""What a measurement says: coefficients with intervals, what each impact took, what it agrees with, how sure it is."""
 
 import math
 from dataclasses import asdict, dataclass

@@ -205,14 +205,14 @@ def _misfit(frequency: tuple[float, float], crossings: FloatArray, known: Knowle
 
 
 def _rescaled(u: FloatArray, at: float, scatters: FloatArray) -> FloatArray:
-    """The same impacts, in units of other scatters."""
+    """Return the same impacts, in units of other scatters."""
     found = np.repeat(u[None, :], scatters.size, axis=0)
     found[:, len(SHARED) :] *= (at / np.maximum(scatters, 1e-300))[:, None]
     return found
 
 
 def _correlation(residual: FloatArray) -> float:
-    """Number of samples that count as one, from the correlation of neighbours."""
+    """Return the number of samples that count as one, from the correlation of neighbours."""
     centred = residual - residual.mean()
     total = float(centred @ centred)
     if total == 0.0:

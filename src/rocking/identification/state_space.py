@@ -74,21 +74,15 @@ class Model:
         for k, side in enumerate(self.sides):
             sign = 1.0 - 2.0 * side  # a floor that falls to the right makes a body on its right foot less slender
             alone = self.alpha[side] * np.exp(z[:, SLENDERNESS])
-            alpha = np.clip(alone - sign * z[:, TILT], 1e-3, _STEEPEST)
+            alpha, p = np.clip(alone - sign * z[:, TILT], 1e-3, _STEEPEST), self.p[side] * np.exp(z[:, FREQUENCY])
             da = alone[:, None] * unit[SLENDERNESS] - sign * unit[TILT]
-            p = self.p[side] * np.exp(z[:, FREQUENCY])
             ln_y = speed - np.log(p * half_cycles.overturning_speed(alpha))
             dy = dx - unit[FREQUENCY] - (0.5 / np.tan(0.5 * alpha))[:, None] * da
             feasible &= ln_y < np.log(_BELOW_OVERTURNING)
             y = np.exp(np.minimum(ln_y, np.log(_BELOW_OVERTURNING)))
             lost, dl = np.zeros(len(u)), np.zeros(u.shape)
             if damped:
-                each, slope = half_cycles.viscous_loss(y)
-                dy = (1.0 - 0.5 * z[:, DAMPING] * slope)[:, None] * dy - 0.5 * each[:, None] * unit[DAMPING]
-                y = y * np.exp(-0.5 * z[:, DAMPING] * each)
-                each, slope = half_cycles.viscous_loss(y)
-                lost = z[:, DAMPING] * each
-                dl = each[:, None] * unit[DAMPING] + (z[:, DAMPING] * slope)[:, None] * dy
+                y, dy, lost, dl = _damped(y, dy, z[:, DAMPING], unit[DAMPING])
             scaled, by_y, by_alpha = half_cycles.duration_and_slopes(y, alpha)
             kept.append((time, speed, y, alpha, p, dt, dy, da))
             time = time + scaled / p
@@ -111,8 +105,21 @@ class Model:
         columns: list[Any] = [np.stack(each, axis=1) for each in zip(*kept, strict=True)]
         times = np.concatenate([columns[0], time[:, None]], axis=1)
         slopes = np.concatenate([columns[5], dt[:, None]], axis=1)
-        speeds, y, alphas, frequencies = columns[1:5]
-        return Path(times, speeds, y, alphas, frequencies, slopes, columns[6], columns[7], unit[FREQUENCY], feasible)
+        kept_of = dict(
+            zip(("speeds", "y", "alpha", "p", "y_slopes", "alpha_slopes"), columns[1:5] + columns[6:], strict=True)
+        )
+        return Path(times=times, time_slopes=slopes, p_slopes=unit[FREQUENCY], feasible=feasible, **kept_of)
+
+
+def _damped(
+    y: FloatArray, dy: FloatArray, ratio: FloatArray, unit: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Take y from the beginning to the mean of a half cycle, with the slopes of ln y; and the loss, with its slopes."""
+    each, slope = half_cycles.viscous_loss(y)
+    dy = (1.0 - 0.5 * ratio * slope)[:, None] * dy - 0.5 * each[:, None] * unit
+    y = y * np.exp(-0.5 * ratio * each)
+    each, slope = half_cycles.viscous_loss(y)
+    return y, dy, ratio * each, each[:, None] * unit + (ratio * slope)[:, None] * dy
 
 
 class Observer(Protocol):

@@ -1,5 +1,7 @@
 """Free rocking between two impacts against quadrature of many digits, and against computed slopes."""
 
+from functools import partial
+
 import mpmath
 import numpy as np
 import pytest
@@ -19,15 +21,14 @@ def test_duration_is_the_quadrature_of_the_energy():
         assert float(half_cycles.duration(np.array(y), np.array(0.25))) == pytest.approx(float(exact), rel=1e-13)
         top = float(half_cycles.peak(np.array(y), np.array(0.25)))
         if y > 0.1:
-            until = mpmath.quad(
-                lambda z, y=y, top=top: 4 * z / _speed(alpha, y * s, top - z * z), [0, mpmath.sqrt(top)]
-            )
+            until = mpmath.quad(partial(_integrand, alpha, y * s, top), [0, mpmath.sqrt(top)])
             assert float(exact) == pytest.approx(float(until.real), rel=1e-6)
 
 
-def _speed(alpha, turning, rotation):
-    """Angular velocity over p at a rotation, from the energy; turning: half of that after the impact."""
-    return mpmath.sqrt(4 * turning**2 - 2 * (mpmath.cos(alpha - rotation) - mpmath.cos(alpha)))
+def _integrand(alpha, turning, top, z):
+    """Of p T over the root of what is missing to the top, from the energy; turning: half of the speed over p."""
+    rotation = top - z * z
+    return 4 * z / mpmath.sqrt(4 * turning**2 - 2 * (mpmath.cos(alpha - rotation) - mpmath.cos(alpha)))
 
 
 def test_slopes_are_those_of_the_duration():

@@ -102,7 +102,6 @@ def test_noise_is_no_rocking():
         ({"size_error": 0.5}, "size_error must be in"),
         ({"tilt": 1.0}, "tilt must be in"),
         ({"first": "front"}, "first must be"),
-        ({"scatter": -1.0}, "scatter must be in"),
     ],
 )
 def test_what_is_refused(given, words):
