@@ -24,7 +24,7 @@ FLOORS = (
     ("bodies", "motions"),
     ("restitution", "examples"),
     ("dynamics",),
-    ("studies",),
+    ("studies", "identification"),
     ("evidence",),
     ("prediction",),
     ("spec",),

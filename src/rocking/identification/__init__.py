@@ -8,14 +8,14 @@ if TYPE_CHECKING:
     from rocking.identification._identify import identify
     from rocking.identification.design import Design
     from rocking.identification.measurement import ImpactTimes, RotationSeries
-    from rocking.identification.results import Estimate, Identification, Impact, ModelComparison
+    from rocking.identification.results import Identification, Impact, IntervalEstimate, ModelComparison
 
 __all__ = [
     "Design",
-    "Estimate",
     "Identification",
     "Impact",
     "ImpactTimes",
+    "IntervalEstimate",
     "ModelComparison",
     "RotationSeries",
     "identify",
@@ -25,7 +25,7 @@ _HOMES = {
     "_identify": ("identify",),
     "design": ("Design",),
     "measurement": ("ImpactTimes", "RotationSeries"),
-    "results": ("Estimate", "Identification", "Impact", "ModelComparison"),
+    "results": ("IntervalEstimate", "Identification", "Impact", "ModelComparison"),
 }
 __getattr__, __dir__ = exports(
     __name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}

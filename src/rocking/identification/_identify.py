@@ -14,7 +14,15 @@ from rocking.identification.design import Design, designs
 from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.posterior import Posterior
 from rocking.identification.prior import LEVEL, Knowledge
-from rocking.identification.results import Estimate, Identification, Impact, compared, impulses, next_impact
+from rocking.identification.results import (
+    Identification,
+    Impact,
+    IntervalEstimate,
+    compared,
+    estimated,
+    impulses,
+    next_impact,
+)
 from rocking.identification.series import seen
 from rocking.identification.state_space import DAMPING, FREQUENCY, HALF, MEAN, SHARED, TILT, TREND
 
@@ -136,8 +144,8 @@ def _of_series(measurement: RotationSeries, known: Knowledge) -> Identification:
 
 
 def _nothing(measurement: ImpactTimes | RotationSeries, why: str) -> Identification:
-    none = Estimate(math.nan, math.nan, math.nan)
-    sides: dict[Foot, Estimate] = dict.fromkeys(FEET, none)
+    none = IntervalEstimate(math.nan, math.nan, math.nan)
+    sides: dict[Foot, IntervalEstimate] = dict.fromkeys(FEET, none)
     return Identification(
         measurement.source, (why,), measurement.doubts, none, sides, none, none, none, None, None, (), np.zeros(0),
         none, 0.0, math.nan, math.nan, False, {}, (), (), {},
@@ -157,8 +165,8 @@ def _result(
 ) -> Identification:
     mean = found.shared((MEAN, 1.0))
     by_side = {foot: found.shared((MEAN, 1.0), (HALF, 1.0 if foot == "right" else -1.0)) for foot in FEET}
-    coefficients = {foot: Estimate.of(each, 1.0) for foot, each in by_side.items()}
-    r, scattered = Estimate.of(mean, 1.0), _of_grid(found, found.scatter)
+    coefficients = {foot: estimated(each, 1.0) for foot, each in by_side.items()}
+    r, scattered = estimated(mean, 1.0), _of_grid(found, found.scatter)
     p_value = _steadiness(found)
     if mean.below(0.0) < 0.975:
         refused.append(f"impacts take no energy: r is {r}")
@@ -181,10 +189,10 @@ def _result(
         )
     return Identification(
         source=measurement.source, refused=tuple(refused), doubts=tuple(doubts), mean=r, coefficients=coefficients,
-        scatter=scattered, frequency_parameter=Estimate.of(found.shared((FREQUENCY, 1.0)), frequency),
-        tilt=Estimate.of(found.shared((TILT, 1.0))),
-        trend=Estimate.of(found.shared((TREND, 1.0))) if known.trend else None,
-        damping=Estimate.of(found.shared((DAMPING, 1.0))) if known.damping else None,
+        scatter=scattered, frequency_parameter=estimated(found.shared((FREQUENCY, 1.0)), frequency),
+        tilt=estimated(found.shared((TILT, 1.0))),
+        trend=estimated(found.shared((TREND, 1.0))) if known.trend else None,
+        damping=estimated(found.shared((DAMPING, 1.0))) if known.damping else None,
         impacts=_impacts(found, first), residuals=found.average(found.residuals),
         noise=_of_grid(found, found.noise), independent=independent, p_value=p_value, advantage=advantage,
         converged=found.converged, impulse=impulses(body, coefficients) if body is not None and not refused else {},
@@ -205,20 +213,20 @@ def _impacts(found: Posterior, first: Foot) -> tuple[Impact, ...]:
         slopes[:, HALF] = found.model.deviation[HALF] * (1.0 if foot == "right" else -1.0)
         slopes[:, TREND] = found.model.deviation[TREND] * (path.speeds[0, number - 1] - found.model.middle)
         slopes[:, len(SHARED) + number - 1] = found.scatter
-        each = Estimate.of(found.normal(slopes, float(found.model.mean[MEAN])), 1.0)
+        each = estimated(found.normal(slopes, float(found.model.mean[MEAN])), 1.0)
         speed = float(np.exp(path.speeds[0, number - 1]))
         made.append(Impact(number, float(path.times[0, number]), foot, speed, each))
     return tuple(made)
 
 
-def _of_grid(found: Posterior, values: FloatArray) -> Estimate:
-    """Estimate of the scatter or the noise, which the grid holds."""
+def _of_grid(found: Posterior, values: FloatArray) -> IntervalEstimate:
+    """IntervalEstimate of the scatter or the noise, which the grid holds."""
     levels = np.unique(values)
     mass = np.array([found.weights[values == level].sum() for level in levels])
     if levels.size == 1:
-        return Estimate(*[float(levels[0])] * 3)
+        return IntervalEstimate(*[float(levels[0])] * 3)
     middle = np.cumsum(mass) - 0.5 * mass
-    return Estimate(*(float(np.exp(np.interp(level, middle, np.log(levels)))) for level in (0.5, 0.025, 0.975)))
+    return IntervalEstimate(*(float(np.exp(np.interp(level, middle, np.log(levels)))) for level in (0.5, 0.025, 0.975)))
 
 
 def _steadiness(found: Posterior) -> float:

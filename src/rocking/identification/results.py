@@ -19,7 +19,7 @@ LEVELS = (0.5, 0.025, 0.975)
 
 
 @dataclass(frozen=True)
-class Estimate:
+class IntervalEstimate:
     """A number with its 95 % interval.
 
     Parameters
@@ -32,15 +32,15 @@ class Estimate:
     low: float
     high: float
 
-    @classmethod
-    def of(cls, mixture: Mixture, factor: float | None = None) -> "Estimate":
-        """Return that of a distribution, or of factor times its exponential."""
-        found = mixture.quantiles(*LEVELS)
-        return cls(*found) if factor is None else cls(*(factor * math.exp(each) for each in found))
-
     def __str__(self) -> str:
         """Return value and interval."""
         return f"{self.value:.4g} ({self.low:.4g} to {self.high:.4g})"
+
+
+def estimated(mixture: Mixture, factor: float | None = None) -> IntervalEstimate:
+    """Return the estimate of a distribution, or of factor times its exponential."""
+    found = mixture.quantiles(*LEVELS)
+    return IntervalEstimate(*(found if factor is None else (factor * math.exp(each) for each in found)))
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class Impact:
         The foot on which the body lands.
     speed : float
         Angular velocity before it, without sign [rad/s].
-    coefficient : Estimate
+    coefficient : IntervalEstimate
         theta_dot_after / theta_dot_before [-].
     """
 
@@ -65,7 +65,7 @@ class Impact:
     time: float
     onto: Foot
     speed: float
-    coefficient: Estimate
+    coefficient: IntervalEstimate
 
 
 @dataclass(frozen=True)
@@ -102,23 +102,23 @@ class Identification:
         Why it is no rocking, or none that this model knows; numbers of a measurement that is refused mean nothing.
     doubts : tuple of str
         What else there is to say against it.
-    mean : Estimate
+    mean : IntervalEstimate
         Coefficient of restitution, the geometric mean of both sides [-].
-    coefficients : dict of str to Estimate
+    coefficients : dict of str to IntervalEstimate
         Mean coefficient by the foot on which the body lands [-].
-    scatter : Estimate
+    scatter : IntervalEstimate
         Standard deviation of ln r from impact to impact [-].
-    frequency_parameter : Estimate
+    frequency_parameter : IntervalEstimate
         p, the mean of both sides [rad/s].
-    tilt : Estimate
+    tilt : IntervalEstimate
         Of the floor, clockwise [rad].
-    trend, damping : Estimate or None
+    trend, damping : IntervalEstimate or None
         Slope of ln r over ln of the speed, and damping ratio, if they were asked for [-].
     impacts : tuple of Impact
         What each impact took.
     residuals : ndarray
         Measured less computed values [s, rad or rad/s].
-    noise : Estimate
+    noise : IntervalEstimate
         Standard deviation of these.
     independent : float
         Number of measured values that count.
@@ -128,7 +128,7 @@ class Identification:
         ln of how much likelier the measurement is than as times with a constant mean interval; NaN of a series [-].
     converged : bool
         Whether the maximum of the posterior was found.
-    impulse : dict of str to Estimate
+    impulse : dict of str to IntervalEstimate
         Position k of the impulse that the mean coefficients imply, by foot, 1 Housner's; empty without a body [-].
     models : tuple of ModelComparison
         Every model of restitution beside it, the closest first; empty without a body.
@@ -139,21 +139,21 @@ class Identification:
     source: str
     refused: tuple[str, ...]
     doubts: tuple[str, ...]
-    mean: Estimate
-    coefficients: dict[Foot, Estimate]
-    scatter: Estimate
-    frequency_parameter: Estimate
-    tilt: Estimate
-    trend: Estimate | None
-    damping: Estimate | None
+    mean: IntervalEstimate
+    coefficients: dict[Foot, IntervalEstimate]
+    scatter: IntervalEstimate
+    frequency_parameter: IntervalEstimate
+    tilt: IntervalEstimate
+    trend: IntervalEstimate | None
+    damping: IntervalEstimate | None
     impacts: tuple[Impact, ...]
     residuals: FloatArray
-    noise: Estimate
+    noise: IntervalEstimate
     independent: float
     p_value: float
     advantage: float
     converged: bool
-    impulse: dict[Foot, Estimate]
+    impulse: dict[Foot, IntervalEstimate]
     models: tuple[ModelComparison, ...]
     designs: tuple[Design, ...]
     _next: dict[Foot, FloatArray]
@@ -216,16 +216,16 @@ class Identification:
         return found
 
 
-def impulses(body: Body, coefficients: dict[Foot, Estimate]) -> dict[Foot, Estimate]:
+def impulses(body: Body, coefficients: dict[Foot, IntervalEstimate]) -> dict[Foot, IntervalEstimate]:
     """Where the impulse acts that coefficients imply; the larger the coefficient, the smaller k."""
-    found: dict[Foot, Estimate] = {}
+    found: dict[Foot, IntervalEstimate] = {}
     for foot, each in coefficients.items():
         value, high, low = (implied(body, r, onto=foot).impulse_ratio for r in (each.value, each.low, each.high))
-        found[foot] = Estimate(value, low, high)
+        found[foot] = IntervalEstimate(value, low, high)
     return found
 
 
-def compared(body: Body, mean: Estimate) -> tuple[ModelComparison, ...]:
+def compared(body: Body, mean: IntervalEstimate) -> tuple[ModelComparison, ...]:
     """Every model that needs no number beside what was measured, the closest first."""
     found = []
     for name, kind in models().items():

@@ -31,7 +31,7 @@ class Row:
 
 
 @dataclass(frozen=True, eq=False)
-class Samples:
+class SampledSeries:
     """Rotations, angular velocities, or both, each with an offset and a drift that nobody knows."""
 
     rows: tuple[Row, ...]
@@ -132,7 +132,7 @@ def seen(series: RotationSeries, known: Knowledge, scatter: float | None) -> See
     impacts = crossings
     for _ in range(_ROUNDS):
         used = tuple(_away(row, impacts, float(s / spread[0])) for row, s in zip(rows, spread, strict=True))
-        found = posterior(model, Samples(used, model.sides), fixed, Noise(float(spread[0])), begin)
+        found = posterior(model, SampledSeries(used, model.sides), fixed, Noise(float(spread[0])), begin)
         u, at = found.u[0], fixed
         begin = partial(_rescaled, u, at)
         impacts = model.path(found.u, found.scatter).times[0]
@@ -143,7 +143,7 @@ def seen(series: RotationSeries, known: Knowledge, scatter: float | None) -> See
             for row, part, one in zip(used, parts, each, strict=True)
         ])  # fmt: skip
     used = tuple(_away(row, impacts, float(s / spread[0])) for row, s in zip(rows, spread, strict=True))
-    found = posterior(model, Samples(used, model.sides), scatter, Noise(float(spread[0])), begin)
+    found = posterior(model, SampledSeries(used, model.sides), scatter, Noise(float(spread[0])), begin)
     return Seen(found, used, impacts, float(sum(row.values.size / one for row, one in zip(used, each, strict=True))))
 
 
@@ -200,7 +200,7 @@ def _misfit(frequency: tuple[float, float], crossings: FloatArray, known: Knowle
     speeds = speeds_between(crossings, np.arange(crossings.size), known, frequency[0])
     model = known.model(known.sides(speeds.size), float(crossings[0]), float(speeds[0]), frequency)
     path = model.path(start(model, speeds, np.array([0.03])), np.array([0.03]))
-    residual = Samples(rows, model.sides).residuals(path)[0]
+    residual = SampledSeries(rows, model.sides).residuals(path)[0]
     return float((residual**2).sum())
 
 
