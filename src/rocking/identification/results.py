@@ -134,6 +134,8 @@ class Identification:
         Every model of restitution beside it, the closest first; empty without a body.
     designs : tuple of Design
         Experiments with this body, the most telling first.
+    _next : dict of str to ndarray
+        Quantiles of what the next impact takes, by foot, for `law` [-].
     """
 
     source: str
