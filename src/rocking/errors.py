@@ -12,6 +12,8 @@ _EXTRAS = {
     "h5netcdf": "netcdf",
     "h5py": "netcdf",
     "obspy": "obspy",
+    "soundfile": "sound",
+    "cv2": "video",
     "openpyxl": "excel",
     "pyarrow": "parquet",
     "distributed": "dask",
@@ -45,6 +47,10 @@ class BodyFileError(RockingError):
 
 class RecordError(RockingError):
     """A ground-motion file cannot be read: not recognised, ambiguous, damaged, or at odds with its own header."""
+
+
+class MeasurementError(RockingError):
+    """A file of a measurement cannot be read, is damaged, or what it holds is no free rocking."""
 
 
 class MissingExtraError(RockingError, ImportError):
