@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from scipy.fft import irfft, next_fast_len, rfft
+from scipy.fft import irfft, rfft
+from scipy.signal import oaconvolve
 
 from rocking.conventions import FloatArray, IntArray
 from rocking.identification.readers.hum import without_hum
@@ -56,12 +57,24 @@ def emphasised(sound: FloatArray, rate: float) -> FloatArray:
     noise = np.quantile(power, 0.25, axis=0) / 0.288
     noise = _smooth(np.maximum(noise, 1e-9 * noise.max() + np.finfo(float).tiny), 3)
     beyond = _smooth(np.maximum(power.mean(axis=0) - noise, 0.0), 9)
-    padded = next_fast_len(sound.size, real=True)
-    frequency = np.fft.rfftfreq(padded, 1.0 / rate)
-    gain = np.interp(frequency, np.fft.rfftfreq(size, 1.0 / rate), np.sqrt(beyond) / noise)
-    gain /= gain.max() + np.finfo(float).tiny
+    gain = np.sqrt(beyond) / noise
+    frequency = np.arange(gain.size) * rate / size
     gain /= 1.0 + (_LOWEST / np.maximum(frequency, 1e-9)) ** 8
-    return np.asarray(irfft(rfft(sound, padded) * gain, padded)[: sound.size])
+    return np.asarray(oaconvolve(sound, _causal(gain))[: sound.size])
+
+
+def _causal(gain: FloatArray) -> FloatArray:
+    """Return the impulse response of a gain that begins at once: of minimum phase, by the cepstrum.
+
+    Nothing comes before its cause then, and onsets stay sharp. Oppenheim & Schafer, Discrete-Time Signal Processing.
+    """
+    size = 8 * (gain.size - 1)
+    fine = np.interp(np.linspace(0.0, gain.size - 1.0, size // 2 + 1), np.arange(gain.size), gain)
+    cepstrum = irfft(np.log(np.maximum(fine, 1e-6 * fine.max() + np.finfo(float).tiny)), size)
+    cepstrum[1 : size // 2] *= 2.0
+    cepstrum[size // 2 + 1 :] = 0.0
+    response = irfft(np.exp(rfft(cepstrum)), size)[: size // 4]
+    return np.asarray(response / np.abs(response).max())
 
 
 def _means(values: FloatArray, first: int, last: int) -> FloatArray:

@@ -1,0 +1,166 @@
+"""Which of many clicks are the impacts of one rocking body: the physics of their times, and the search for them.
+
+Of a slender body the time between impacts is T_n = (2/p) atanh y_n, and y_n falls by the coefficient of restitution at
+each: y_(n+1) = r y_n (Housner 1963). Two sides that differ and a tilted floor make y_n alternate, but not its ratio to
+the last interval on the same side: y_(n+2) = r_left r_right y_n.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from rocking.conventions import BoolArray, FloatArray, IntArray
+
+_FIRST_FALLS = (0.2, 0.45, 0.65, 0.8, 0.9, 0.96)
+"""Values of y of the first interval that are tried: .2 is the limit of small rotations."""
+
+_FALL, _FALL_SPREAD = -0.22, 0.12
+"""Mean and standard deviation of ln(r_left r_right) before anything is known: r from .8 to .99."""
+
+_SCATTER = 0.035
+"""Standard deviation of ln(y_(n+2) / y_n) about its mean: each impact takes its own share, 1 to 3 %."""
+
+_FADING_SCATTER = 1.0
+"""Standard deviation of the logarithm of the power of a click about that of the last one on the same side, faded."""
+
+_INTERVALS = (0.02, 3.0)
+_RATIOS = (0.5, 1.25)
+_SEEDS, _CLICKS, _MOST = 24, 80, 60
+_MISSED = -3.0
+
+
+@dataclass(frozen=True, eq=False)
+class RockingSequence:
+    """Impacts among clicks."""
+
+    members: IntArray  # which of the clicks
+    orders: IntArray  # the number of each in the sequence; a number that is left out was missed
+    score: float  # natural logarithm of how much likelier than chance
+
+
+def half_cycle_fall(intervals: FloatArray, half_p: FloatArray) -> FloatArray:
+    """Return ln y of intervals between impacts: y = tanh(p T / 2)."""
+    return np.asarray(np.log(np.tanh(half_p * intervals)))
+
+
+def half_cycle(fall: FloatArray, half_p: FloatArray) -> FloatArray:
+    """Return the interval between impacts at ln y, the inverse of `half_cycle_fall`."""
+    return np.asarray(np.arctanh(np.minimum(np.exp(fall), 1.0 - 1e-9)) / half_p)
+
+
+def find_sequence(
+    times: FloatArray, evidence: FloatArray, strengths: FloatArray, length: float
+) -> RockingSequence | None:
+    """Return the likeliest sequence of impacts among clicks; None if there are no three that could begin one.
+
+    `evidence` is the logarithm of how much likelier each is as an impact than as noise, times aside; `strengths` are
+    their powers, which fade as the square of y.
+    """
+    kept = np.sort(np.argsort(-evidence)[:_CLICKS])
+    strongest = np.sort(np.argsort(-evidence[kept])[:_SEEDS])
+    begun = _Beams.of(times[kept], evidence[kept], np.log(strengths[kept]), strongest, kept.size / length)
+    if begun is None:
+        return None
+    for order in range(3, _MOST):
+        if not begun.step(order):
+            break
+    row = int(begun.best.argmax())
+    chain = begun.chains[row, : begun.best_order[row] + 1]
+    orders = np.flatnonzero(chain >= 0)
+    return RockingSequence(kept[chain[orders]], orders, float(begun.best[row]))
+
+
+@dataclass(eq=False)
+class _Beams:
+    """Sequences under way, a row each: every three of the strongest clicks, with several y of the first interval."""
+
+    times: FloatArray
+    evidence: FloatArray
+    powers: FloatArray  # their logarithms
+    rate: float
+    half_p: FloatArray
+    last: FloatArray  # time of the last impact
+    falls: FloatArray  # ln y of the last two intervals
+    faded: FloatArray  # logarithm of the power of the last two impacts
+    mean: FloatArray  # of ln(r_left r_right), and its variance
+    variance: FloatArray
+    score: FloatArray
+    chains: IntArray
+    best: FloatArray = field(init=False)
+    best_order: IntArray = field(init=False)
+    missed: IntArray = field(init=False)
+
+    @classmethod
+    def of(cls, times: FloatArray, evidence: FloatArray, powers: FloatArray, strongest: IntArray, rate: float) -> "_Beams | None":
+        """Begin with every three clicks whose intervals could follow each other."""
+        first, second, third = (
+            strongest[places] for places in np.array(np.meshgrid(*3 * [np.arange(strongest.size)])).reshape(3, -1)
+        )
+        early, late = times[second] - times[first], times[third] - times[second]
+        ratio = np.divide(late, early, out=np.zeros_like(late), where=early > 0.0)
+        could = (early > _INTERVALS[0]) & (early < _INTERVALS[1]) & (ratio > _RATIOS[0]) & (ratio < _RATIOS[1])
+        if not could.any():
+            return None
+        first, second, third, early, late = (
+            np.repeat(row[could], len(_FIRST_FALLS)) for row in (first, second, third, early, late)
+        )
+        half_p = np.tile(np.arctanh(_FIRST_FALLS), could.sum()) / early
+        falls = np.column_stack([half_cycle_fall(early, half_p), half_cycle_fall(late, half_p)])
+        chains = np.full((first.size, _MOST), -1, dtype=np.int64)
+        chains[:, :3] = np.column_stack([first, second, third])
+        score = evidence[first] + evidence[second] + evidence[third]
+        score -= 0.5 * ((falls[:, 1] - falls[:, 0] - 0.5 * _FALL) / 0.12) ** 2
+        fading = (powers[third] - powers[first] - 2.0 * _FALL) / _FADING_SCATTER
+        score -= 0.5 * np.clip(fading, -4.0, 4.0) ** 2
+        size = first.size
+        faded = np.column_stack([powers[second], powers[third]])
+        return cls(
+            times, evidence, powers, rate, half_p, times[third], falls, faded, np.full(size, _FALL), np.full(size, _FALL_SPREAD**2),
+            score, chains,
+        )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        """The best so far is what is there."""
+        self.best, self.best_order = self.score.copy(), np.full(self.score.size, 2)
+        self.missed = np.zeros(self.score.size, dtype=np.int64)
+
+    def step(self, order: int) -> bool:
+        """Look for the next impact of every sequence; return whether any goes on."""
+        going = self.missed < 2
+        if not going.any():
+            return False
+        expected = self.falls[:, 0] + self.mean
+        variance = self.variance + _SCATTER**2 * (1.0 + 3.0 * self.missed)
+        interval = self.times[None, :] - self.last[:, None]
+        later = interval > 0.3 * half_cycle(expected, self.half_p)[:, None]
+        safe = np.where(later, interval, 1.0)
+        fall = half_cycle_fall(safe, self.half_p[:, None])
+        # density of the times at which the next impact is expected, over that of clicks by chance
+        slope = 2.0 * self.half_p[:, None] / np.sinh(np.minimum(2.0 * self.half_p[:, None] * safe, 50.0))
+        surprise = (fall - expected[:, None]) ** 2 / variance[:, None]
+        fading = (self.powers - self.faded[:, :1] - 2.0 * self.mean[:, None]) / _FADING_SCATTER
+        gain = self.evidence - 0.5 * surprise - 0.5 * np.clip(fading, -4.0, 4.0) ** 2
+        gain += np.log(slope / (self.rate * np.sqrt(2.0 * np.pi * variance[:, None])))
+        gain[~later | (surprise > 16.0)] = -np.inf
+        pick = gain.argmax(axis=1)
+        rows = np.arange(pick.size)
+        self._advance(order, going, pick, gain[rows, pick], fall[rows, pick], expected, variance)
+        return True
+
+    def _advance(
+        self, order: int, going: BoolArray, pick: IntArray, gain: FloatArray, fall: FloatArray, expected: FloatArray,
+        variance: FloatArray,
+    ) -> None:  # fmt: skip
+        hit = going & (gain > _MISSED)
+        weight = np.where(hit & (self.missed == 0), self.variance / variance, 0.0)
+        self.mean += weight * (np.where(hit, fall, expected) - expected)
+        self.variance *= 1.0 - weight
+        self.last = np.where(hit, self.times[pick], self.last + half_cycle(expected, self.half_p))
+        self.falls = np.column_stack([self.falls[:, 1], np.where(hit, fall, expected)])
+        self.missed = np.where(hit, 0, self.missed + 1)
+        power = np.where(hit, self.powers[pick], self.faded[:, 0] + 2.0 * self.mean)
+        self.faded = np.column_stack([self.faded[:, 1], power])
+        self.score += np.where(hit, gain, _MISSED)
+        self.chains[hit, order] = pick[hit]
+        better = hit & (self.score > self.best)
+        self.best[better], self.best_order[better] = self.score[better], order
