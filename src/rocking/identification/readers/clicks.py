@@ -25,15 +25,16 @@ _LOWEST = 150.0
 class Clicks:
     """Clicks of a sound, in their order."""
 
-    times: FloatArray  # roughly, to a millisecond [s]
+    times: FloatArray  # roughly, to some milliseconds [s]
     contrasts: FloatArray  # power behind over power before
     strengths: FloatArray  # power behind less power before, over that of the noise
-    filtered: FloatArray  # the sound in which they stand out
+    sound: FloatArray  # less its hum
 
 
 def find_clicks(sound: FloatArray, rate: float) -> Clicks:
     """Return the clicks of a sound, faint ones too."""
-    filtered = emphasised(without_hum(sound, rate), rate)
+    sound = without_hum(sound, rate)
+    filtered = emphasised(sound, rate)
     hop = max(1, int(round(rate * STEP)))
     power = (filtered[: filtered.size // hop * hop].reshape(-1, hop) ** 2).mean(axis=1)
     floor = np.median(power) + np.finfo(float).tiny
@@ -42,7 +43,7 @@ def find_clicks(sound: FloatArray, rate: float) -> Clicks:
     before = np.maximum(_means(power, -_BEFORE[0], -_GAP), _means(power, -_BEFORE[1], -_GAP))
     contrast = behind / np.maximum(before, floor)
     at = _peaks(contrast, int(_DEAD / STEP))
-    return Clicks(at * hop / rate, contrast[at], np.maximum(behind - before, 0.0)[at] / floor, filtered)
+    return Clicks(at * hop / rate, contrast[at], np.maximum(behind - before, 0.0)[at] / floor, sound)
 
 
 def emphasised(sound: FloatArray, rate: float) -> FloatArray:
@@ -51,29 +52,33 @@ def emphasised(sound: FloatArray, rate: float) -> FloatArray:
     Its gain is sqrt(S) / N by frequency, N the power of the noise, S what is there beyond it. The noise is that of the
     quietest quarter of the moments: a variable of two degrees of freedom lies below .288 of its mean for so long.
     """
+    size, noise, power = spectra(sound, rate)
+    beyond = smooth(np.maximum(power.mean(axis=0) - noise, 0.0), 9)
+    return np.asarray(oaconvolve(sound, causal(np.sqrt(beyond) / noise, rate, size))[: sound.size])
+
+
+def spectra(sound: FloatArray, rate: float) -> tuple[int, FloatArray, FloatArray]:
+    """Return the size of windows, the power of the noise by frequency, and that of all windows, half over each other."""
     size = max(64, int(round(_SPECTRUM * rate)))
     windows = sliding_window_view(sound, size)[:: size // 2]
     power = np.abs(rfft(windows * np.hanning(size))) ** 2
     noise = np.quantile(power, 0.25, axis=0) / 0.288
-    noise = _smooth(np.maximum(noise, 1e-9 * noise.max() + np.finfo(float).tiny), 3)
-    beyond = _smooth(np.maximum(power.mean(axis=0) - noise, 0.0), 9)
-    gain = np.sqrt(beyond) / noise
-    frequency = np.arange(gain.size) * rate / size
-    gain /= 1.0 + (_LOWEST / np.maximum(frequency, 1e-9)) ** 8
-    return np.asarray(oaconvolve(sound, _causal(gain))[: sound.size])
+    return size, smooth(np.maximum(noise, 1e-9 * noise.max() + np.finfo(float).tiny), 3), power
 
 
-def _causal(gain: FloatArray) -> FloatArray:
-    """Return the impulse response of a gain that begins at once: of minimum phase, by the cepstrum.
+def causal(gain: FloatArray, rate: float, size: int) -> FloatArray:
+    """Return the impulse response of a gain that begins at once: of minimum phase, by the cepstrum; rumble is left out.
 
     Nothing comes before its cause then, and onsets stay sharp. Oppenheim & Schafer, Discrete-Time Signal Processing.
     """
-    size = 8 * (gain.size - 1)
-    fine = np.interp(np.linspace(0.0, gain.size - 1.0, size // 2 + 1), np.arange(gain.size), gain)
-    cepstrum = irfft(np.log(np.maximum(fine, 1e-6 * fine.max() + np.finfo(float).tiny)), size)
-    cepstrum[1 : size // 2] *= 2.0
-    cepstrum[size // 2 + 1 :] = 0.0
-    response = irfft(np.exp(rfft(cepstrum)), size)[: size // 4]
+    frequency = np.arange(gain.size) * rate / size
+    gain = gain / (1.0 + (_LOWEST / np.maximum(frequency, 1e-9)) ** 8)
+    count = 8 * (gain.size - 1)
+    fine = np.interp(np.linspace(0.0, gain.size - 1.0, count // 2 + 1), np.arange(gain.size), gain)
+    cepstrum = irfft(np.log(np.maximum(fine, 1e-6 * fine.max() + np.finfo(float).tiny)), count)
+    cepstrum[1 : count // 2] *= 2.0
+    cepstrum[count // 2 + 1 :] = 0.0
+    response = irfft(np.exp(rfft(cepstrum)), count)[: count // 4]
     return np.asarray(response / np.abs(response).max())
 
 
@@ -85,7 +90,8 @@ def _means(values: FloatArray, first: int, last: int) -> FloatArray:
     return np.asarray((total[high] - total[low]) / np.maximum(high - low, 1))
 
 
-def _smooth(values: FloatArray, width: int) -> FloatArray:
+def smooth(values: FloatArray, width: int) -> FloatArray:
+    """Return running weighted means."""
     weights = np.hanning(width + 2)[1:-1]
     return np.convolve(np.pad(values, width // 2, mode="edge"), weights / weights.sum(), "valid")
 

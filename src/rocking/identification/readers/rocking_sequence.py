@@ -27,6 +27,8 @@ _INTERVALS = (0.02, 3.0)
 _RATIOS = (0.5, 1.25)
 _SEEDS, _CLICKS, _MOST = 24, 80, 60
 _MISSED = -3.0
+_FEWEST, _SHRUNK, _SHARE = 7, 0.9, 0.7
+_LARGEST_SCATTER, _LARGEST_ALTERNATION, _SLOWEST_FALL = 0.05, 0.25, 0.985
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,3 +166,49 @@ class _Beams:
         self.chains[hit, order] = pick[hit]
         better = hit & (self.score > self.best)
         self.best[better], self.best_order[better] = self.score[better], order
+
+
+@dataclass(frozen=True)
+class Regularity:
+    """How lawful the intervals of a sequence are."""
+
+    fall: float  # coefficient of restitution of both sides together, by the law [-]
+    scatter: float  # of ln y about the law [-]
+    alternation: float  # by how much ln y of the sides differs from their mean [-]
+
+
+def regularity(times: FloatArray, orders: IntArray) -> Regularity:
+    """Return the law that fits intervals best: p and the fall are free, and so are two sides."""
+    whole = np.flatnonzero(np.diff(orders) == 1)
+    intervals, at = np.diff(times)[whole], orders[:-1][whole]
+    design = np.column_stack([np.ones(at.size), at, 1.0 - 2.0 * (at % 2)])
+    best = Regularity(1.0, np.inf, 0.0)
+    for y in np.linspace(0.1, 0.98, 45):
+        fall = half_cycle_fall(intervals, np.arctanh(y) / intervals.max())
+        terms, *_ = np.linalg.lstsq(design, fall, rcond=None)
+        rest = fall - design @ terms
+        scatter = float(np.sqrt((rest**2).sum() / max(1, at.size - 4)))
+        if scatter < best.scatter:
+            best = Regularity(float(np.exp(terms[1])), scatter, float(abs(terms[2])))
+    return best
+
+
+def why_no_rocking(
+    times: FloatArray, found: RockingSequence, contrasts: FloatArray, strengths: FloatArray
+) -> str | None:
+    """Return why a sequence of clicks among others is not that of a rocking body; None if it may be one."""
+    if times.size < _FEWEST:
+        return f"the longest lawful sequence of clicks has {times.size}, at least {_FEWEST} are needed"
+    lawful = regularity(times, found.orders)
+    if lawful.scatter > _LARGEST_SCATTER:
+        return f"its intervals scatter by {lawful.scatter:.3f} about the law of rocking, more than {_LARGEST_SCATTER}"
+    if lawful.alternation > _LARGEST_ALTERNATION:
+        return f"its intervals alternate by {lawful.alternation:.2f}, more than {_LARGEST_ALTERNATION} that tilts explain"
+    if lawful.fall > _SLOWEST_FALL or times[-1] - times[-2] > _SHRUNK * (times[1] - times[0]):
+        return f"its intervals do not shrink (by {lawful.fall:.3f} from one to the next)"
+    mine = strengths[found.members]
+    as_loud = (strengths >= np.quantile(mine, 0.25)) & (contrasts >= np.quantile(contrasts[found.members], 0.1))
+    share = as_loud[found.members].sum() / as_loud.sum()
+    if share < _SHARE:
+        return f"of {as_loud.sum()} clicks as loud as its own a lawful sequence holds {as_loud[found.members].sum()}"
+    return None

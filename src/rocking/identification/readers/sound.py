@@ -1,0 +1,57 @@
+"""The times of impacts from their sound."""
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.errors import MeasurementError
+from rocking.identification.measurement import ImpactTimes
+from rocking.identification.readers.clicks import Clicks, find_clicks
+from rocking.identification.readers.onsets import onsets
+from rocking.identification.readers.recording import Recording
+from rocking.identification.readers.rocking_sequence import RockingSequence, find_sequence, why_no_rocking
+
+
+def impacts_heard(recording: Recording) -> ImpactTimes:
+    """Return when a rocking body struck, or refuse a sound that is no rocking."""
+    clicks = find_clicks(recording.channel, recording.rate)
+    length = recording.samples.shape[0] / recording.rate
+    found = find_sequence(clicks.times, _evidence(clicks.contrasts), np.maximum(clicks.strengths, 0.3), length)
+    if found is None:
+        raise recording.error("fewer than three clicks stand out of its noise; nearer to the body, or a quieter room?")
+    times = onsets(clicks.sound, recording.rate, clicks.times[found.members], found.orders % 2)
+    if np.any(np.diff(times) <= 0.0):
+        times = clicks.times[found.members]
+    why = why_no_rocking(times, found, clicks.contrasts, clicks.strengths)
+    if why:
+        raise recording.error(f"this is no sound of a rocking body: {why}")
+    sure = 1.0 / (1.0 + np.exp(-_evidence(clicks.contrasts)[found.members] - 2.0))
+    return ImpactTimes(times, None, np.clip(sure, 0.01, 1.0), recording.name, _doubts(recording, clicks, found, times))
+
+
+def _evidence(contrasts: FloatArray) -> FloatArray:
+    """Return the logarithm of how much likelier an impact has such a contrast than noise and echoes have.
+
+    Contrasts of those fall off as the power -5; a click that is louder than what went before by 3.2 may be either.
+    """
+    return np.clip(5.0 * np.log(contrasts / 3.2), -4.0, 4.0)
+
+
+def _doubts(recording: Recording, clicks: Clicks, found: RockingSequence, times: FloatArray) -> tuple[str, ...]:
+    doubts = []
+    for order in np.setdiff1d(np.arange(found.orders[-1]), found.orders):
+        before = int(np.flatnonzero(found.orders < order)[-1])
+        doubts.append(f"an impact seems to be missing between {times[before]:.3f} and {times[before + 1]:.3f} s")
+    if recording.clipped:
+        doubts.append(f"the sound is clipped {recording.clipped} times: record it at a lower level")
+    faint = clicks.contrasts[found.members] < 3.2
+    if faint.any():
+        doubts.append(f"{int(faint.sum())} of {faint.size} impacts hardly stand out of noise and echoes")
+    return tuple(doubts)
+
+
+def refuse_sound(name: str, suffix: str) -> MeasurementError:
+    """Return the refusal of a sound that nobody here can decode, to be raised."""
+    return MeasurementError(
+        f"{name}: {suffix} sounds are not read: save it as WAV or FLAC, with the recorder's own export or"
+        " an audio editor"
+    )
