@@ -1,0 +1,209 @@
+"""Tables of measurements: columns by name, with a unit that stands in brackets or is given."""
+
+import io
+import math
+import re
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, FloatArray
+from rocking.errors import MeasurementError, extra
+from rocking.identification.measurement import ImpactTimes, RotationSeries
+from rocking.identification.readers.sensors import rotation_of_acceleration, rotation_of_displacement
+from rocking.motions.formats.column_text import ColumnText
+from rocking.motions.formats.numbers import number
+from rocking.motions.formats.record import Source
+
+_ANGLES = {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0, "\N{DEGREE SIGN}": math.pi / 180.0}
+UNITS = {
+    "rotation": _ANGLES,
+    "angular velocity": {f"{unit}/s": factor for unit, factor in _ANGLES.items()} | {"dps": math.pi / 180.0},
+    "displacement": LENGTH_UNITS,
+    "acceleration": ACCELERATION_UNITS,
+}
+"""Units by kind of sensor; no unit stands twice, so that it says which kind it is."""
+
+TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
+
+_NEEDS_HEIGHT = ("displacement", "acceleration")
+_NAMED_TIME = re.compile(r"time|t|zeit|temps|tiempo|tempo|timestamp", re.IGNORECASE)
+_BRACKETS = re.compile(r"(.*?)\s*[\[(]\s*([^\[\]()]*?)\s*[\])]")
+_JITTER, _DROPPED = 0.02, 1.5
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What was asked for beside a file."""
+
+    kind: str | None = None
+    column: str | None = None
+    unit: str | None = None
+    time_column: str | None = None
+    time_unit: str | None = None
+    height: float | None = None
+
+    def names(self) -> str:
+        """Return which were given, the kind apart, in words."""
+        return ", ".join(one.name for one in fields(self) if one.name != "kind" and getattr(self, one.name) is not None)
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Columns by name."""
+
+    source: Source
+    names: tuple[str, ...]  # without units
+    units: tuple[str | None, ...]  # as they stand in brackets
+    values: FloatArray
+
+    @classmethod
+    def of(cls, source: Source) -> "Table":
+        """Read a table, text or a sheet of a workbook."""
+        sheet = source.name.lower().endswith(".xlsx")
+        texts, values = _sheet(source) if sheet else _text(source)
+        if values.shape[0] < 2:
+            raise source.error(None, f"at least 2 rows of numbers are needed, found {values.shape[0]}")
+        found = [_BRACKETS.fullmatch(text) for text in texts]
+        names = tuple(one[1] if one else text for one, text in zip(found, texts, strict=True))
+        return cls(source, names, tuple(one[2] or None if one else None for one in found), values)
+
+    def place(self, what: str, name: str) -> int:
+        """Return where a named column is."""
+        called = [place for place, own in enumerate(self.names) if own.casefold() == name.strip().casefold()]
+        if len(called) != 1:
+            raise self.source.error(None, f"{what}={name!r:.60} names {len(called)} of {self.listed()}")
+        return called[0]
+
+    def times(self, asked: Asked) -> int | None:
+        """Return where the times are, by their name."""
+        if asked.time_column is not None:
+            return self.place("time_column", asked.time_column)
+        called = [place for place, name in enumerate(self.names) if _NAMED_TIME.fullmatch(name.strip())]
+        if len(called) > 1:
+            raise self.source.error(None, f"several columns are called a time; say time_column= one of {self.listed()}")
+        return called[0] if called else None
+
+    def unit(self, place: int, given: str | None, argument: str) -> str:
+        """Return the unit of a column, from the table or as given; the two must not contradict each other."""
+        stated = self.units[place]
+        if stated is None and given is None:
+            name = self.names[place]
+            raise self.source.error(None, f"column {name!r} states no unit: write {name} [unit], or give {argument}=")
+        if None not in (stated, given) and stated != given:
+            raise self.source.error(None, f"column {self.names[place]!r} is in {stated}, {argument}={given!r} was given")
+        return str(stated if given is None else given)
+
+    def listed(self) -> str:
+        """Return the names of all columns."""
+        return ", ".join(map(repr, self.names))
+
+
+def impact_list(source: Source, asked: Asked) -> ImpactTimes:
+    """Return the times of impacts that a column lists."""
+    if asked.height is not None:
+        raise source.error(None, "a list of times takes no height=")
+    table = Table.of(source)
+    name = asked.column if asked.column is not None else asked.time_column
+    place = table.place("column", name) if name is not None else table.times(asked)
+    if place is None:
+        if len(table.names) > 1:
+            raise source.error(None, f"which column has the times of impacts? Say column= one of {table.listed()}")
+        place = 0
+    unit = table.unit(place, asked.unit if asked.unit is not None else asked.time_unit, "unit")
+    factor = TIME_UNITS[checks.one_of("unit of the times", unit, TIME_UNITS)]
+    return ImpactTimes(_increasing(table, place, factor), source=source.name)
+
+
+def motion_series(source: Source, asked: Asked) -> RotationSeries:
+    """Return how a body turned, by one column against the times."""
+    table = Table.of(source)
+    at = table.times(asked)
+    if at is None:
+        raise source.error(None, f"which column is the time? Call it time [s], or say time_column= of {table.listed()}")
+    factor = TIME_UNITS[checks.one_of("unit of the times", table.unit(at, asked.time_unit, "time_unit"), TIME_UNITS)]
+    others = [place for place in range(len(table.names)) if place != at]
+    if asked.column is None and len(others) != 1:
+        raise source.error(None, f"which column was measured? Say column= one of {table.listed()}")
+    place = others[0] if asked.column is None else table.place("column", asked.column)
+    unit = table.unit(place, asked.unit, "unit")
+    kind = _kind(table, unit, asked.kind)
+    if (kind in _NEEDS_HEIGHT) != (asked.height is not None):
+        raise source.error(None, f"{kind}: {'give' if asked.height is None else 'takes no'} height= of the sensor [m]")
+    time = _increasing(table, at, factor)
+    values = table.values[:, place] * UNITS[kind][unit]
+    doubts = clock_doubts(time)
+    if kind == "angular velocity":
+        return RotationSeries(time, angular_velocity=values, source=source.name, doubts=doubts)
+    if kind == "displacement":
+        values = rotation_of_displacement(values, checks.length("height", asked.height))
+    elif kind == "acceleration":
+        values, said = rotation_of_acceleration(time, values, checks.length("height", asked.height))
+        doubts += said
+    return RotationSeries(time, rotation=values, source=source.name, doubts=doubts)
+
+
+def clock_doubts(time: FloatArray) -> tuple[str, ...]:
+    """Return what the times say against their clock: how far they scatter, and where samples are missing."""
+    steps = np.diff(time)
+    step = float(np.median(steps))
+    doubts = []
+    gaps = np.flatnonzero(steps > _DROPPED * step)
+    if gaps.size:
+        lost = int(np.rint(steps[gaps] / step - 1.0).sum())
+        doubts.append(f"about {lost} samples are missing in {gaps.size} gaps, the first after {time[gaps[0]]:.4g} s")
+    kept = steps[steps <= _DROPPED * step]
+    jitter = float(kept.std())
+    if jitter > _JITTER * step:
+        doubts.append(f"time stamps scatter by {1e3 * jitter:.3g} ms about steps of {1e3 * step:.3g} ms")
+    return tuple(doubts)
+
+
+def _kind(table: Table, unit: str, asked: str | None) -> str:
+    kinds = [kind for kind, units in UNITS.items() if unit in units]
+    if not kinds:
+        known = ", ".join(unit for units in UNITS.values() for unit in units)
+        raise table.source.error(None, f"unit {unit!r} is none of {known}")
+    if asked not in (None, kinds[0]):
+        raise table.source.error(None, f"{unit} is a unit of {kinds[0]}, kind={asked!r} was asked for")
+    return kinds[0]
+
+
+def _increasing(table: Table, place: int, factor: float) -> FloatArray:
+    times = table.values[:, place] * factor
+    wrong = np.flatnonzero(np.diff(times) <= 0.0)
+    if wrong.size:
+        row = int(wrong[0]) + 1
+        raise table.source.error(
+            None, f"times must increase [s], got {times[row]:g} after {times[row - 1]:g} in row {row + 1} of numbers"
+        )
+    return np.asarray(times)
+
+
+def _text(source: Source) -> tuple[tuple[str, ...], FloatArray]:
+    if not source.is_text:
+        raise source.error(None, "not a text file")
+    text = ColumnText.of(source)
+    if text.names is None:
+        raise source.error(0, "names of the columns expected, with their units, such as: time [s], rotation [rad]")
+    values = np.empty((len(text.rows), len(text.names)))
+    for row, (line, cells) in enumerate(text.rows):
+        if len(cells) != len(text.names):
+            raise source.error(line, f"{len(text.names)} numbers expected, as many as names, found {len(cells)}")
+        values[row] = [number(source, line, cell.replace(",", ".")) for cell in cells]
+    return text.names, values
+
+
+def _sheet(source: Source) -> tuple[tuple[str, ...], FloatArray]:
+    book = extra("openpyxl", "reading a workbook").load_workbook(io.BytesIO(source.content), read_only=True, data_only=True)
+    rows = [row for row in book.worksheets[0].iter_rows(values_only=True) if any(cell is not None for cell in row)]
+    if not rows or not all(isinstance(cell, str) for cell in rows[0]):
+        raise source.error(0, "the first row of the first sheet must hold the names of the columns, with their units")
+    values = np.empty((len(rows) - 1, len(rows[0])))
+    for line, row in enumerate(rows[1:], 1):
+        for place, cell in enumerate(row):
+            if isinstance(cell, bool) or not isinstance(cell, int | float) or not math.isfinite(cell):
+                raise MeasurementError(f"{source.name}, row {line + 1}: number expected, found {cell!r:.40}")
+            values[line - 1, place] = cell
+    return tuple(str(cell).strip() for cell in rows[0]), values

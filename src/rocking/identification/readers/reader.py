@@ -1,0 +1,111 @@
+"""Read a measurement from a file: the suffix says what it is, and columns and units are never guessed."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from rocking import checks
+from rocking.errors import MeasurementError, RecordError, RockingError
+from rocking.identification.measurement import ImpactTimes, RotationSeries
+from rocking.identification.readers.columns import Asked, impact_list, motion_series
+from rocking.identification.readers.compressed import COMPRESSED, read_compressed
+from rocking.identification.readers.sound import impacts_heard, refuse_sound
+from rocking.identification.readers.wav import read_wav
+from rocking.motions.formats.record import Source
+
+Measurement = ImpactTimes | RotationSeries
+
+_NOT_DECODED = (".m4a", ".mp4", ".aac", ".3gp", ".amr", ".wma")
+
+_TABLES = (".csv", ".tsv", ".txt", ".dat", ".xlsx")
+
+KINDS = ("sound", "times", "rotation", "displacement", "angular velocity", "acceleration")
+"""What a file may hold."""
+
+
+def read_measurement(
+    path: str | Path,
+    *,
+    kind: str | None = None,
+    column: str | None = None,
+    unit: str | None = None,
+    time_column: str | None = None,
+    time_unit: str | None = None,
+    height: float | None = None,
+) -> Measurement:
+    r"""Return what was measured of a body that rocks freely: the times of its impacts, or how it turned.
+
+    Parameters
+    ----------
+    path : str or Path
+        A sound (.wav; .flac, .ogg, .mp3 with soundfile), or a table with a line of names (.csv, .tsv, .txt, .xlsx).
+    kind : str, optional
+        One of `KINDS`: what the file holds. A sound needs none, nor does a table whose column says so by its unit:
+        rad and deg are a rotation, rad/s and deg/s an angular velocity, lengths a displacement, g and m/s2 an
+        acceleration; the times of impacts are asked for by "times".
+    column, unit : str, optional
+        Name of the column and its unit, where the table has several beside the time or states no unit in brackets.
+    time_column, time_unit : str, optional
+        The same for the times, "s" or "ms"; if not given, the column that is called time, with its unit.
+    height : float, optional
+        Height of the sensor above the base, for a displacement or an acceleration, both positive to the right [m].
+
+    Returns
+    -------
+    ImpactTimes or RotationSeries
+        With its source, and a sentence for each doubt.
+
+    Raises
+    ------
+    MeasurementError
+        If the file is missing, damaged or of another kind, a column or unit must be named, or what it holds is no
+        rocking.
+    InvalidValueError
+        If there is no kind or unit of that name, or a value is outside its range.
+    MissingExtraError
+        If soundfile or openpyxl is needed and not installed.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "laser.csv"
+    ...     _ = path.write_text("time [s],top [mm]\n0.00,20\n0.01,19\n0.02,17\n0.03,14\n")
+    ...     series = read_measurement(path, height=0.5)
+    >>> float(series.rotation[0])
+    0.04
+    """
+    kind = None if kind is None else checks.one_of("kind", kind, KINDS)
+    path = Path(path)
+    asked = Asked(kind, column, unit, time_column, time_unit, height)
+    try:
+        source = Source.of_path(path)
+        return _reader(path, kind)(source, asked)
+    except RecordError as error:  # from what reads the columns of ground motions too
+        raise MeasurementError(str(error)) from error
+    except RockingError:
+        raise
+    except Exception as error:  # whatever a file provokes in a reader is a refusal; where it came from stays chained
+        what = f"{path.name}: cannot be read ({type(error).__name__}: {str(error)[:120]}); damaged?"
+        raise MeasurementError(what) from error
+
+
+def _reader(path: Path, kind: str | None) -> Callable[[Source, Asked], Measurement]:
+    suffix = path.suffix.lower()
+    if suffix in _NOT_DECODED:
+        raise refuse_sound(path.name, suffix)
+    sound = suffix == ".wav" or suffix in COMPRESSED
+    if sound != (kind == "sound") and kind is not None:
+        what = "is a sound" if sound else "is no sound"
+        raise MeasurementError(f"{path.name}: {what} by its ending, kind={kind!r} was asked for")
+    if sound:
+        return _heard
+    if suffix not in _TABLES:
+        raise MeasurementError(f"{path.name}: the name must end in .wav, {', '.join((*COMPRESSED, *_TABLES))}")
+    return impact_list if kind == "times" else motion_series
+
+
+def _heard(source: Source, asked: Asked) -> ImpactTimes:
+    if given := asked.names():
+        raise MeasurementError(f"{source.name}: a sound takes no {given}: these are for tables")
+    wav = source.name.lower().endswith(".wav")
+    return impacts_heard((read_wav if wav else read_compressed)(source.content, source.name))
