@@ -193,7 +193,9 @@ def wav(samples, rate=RATE, bits=16):
     else:
         whole = np.round(samples * (2.0 ** (bits - 1) - 1.0)).astype("<i8")
         data = whole.reshape(-1, 1).view(np.uint8)[:, :width].tobytes()
-    form = struct.pack("<HHIIHH", 3 if bits < 0 else 1, channels, rate, rate * channels * width, channels * width, abs(bits))
+    form = struct.pack(
+        "<HHIIHH", 3 if bits < 0 else 1, channels, rate, rate * channels * width, channels * width, abs(bits)
+    )
     padded = data + b"\0" * (len(data) % 2)
     made = io.BytesIO()
     made.write(b"RIFF" + struct.pack("<I", 4 + 24 + 8 + len(padded)) + b"WAVEfmt " + struct.pack("<I", 16) + form)

@@ -35,7 +35,7 @@ def find_clicks(sound: FloatArray, rate: float) -> Clicks:
     """Return the clicks of a sound, faint ones too."""
     sound = without_hum(sound, rate)
     filtered = emphasised(sound, rate)
-    hop = max(1, int(round(rate * STEP)))
+    hop = max(1, round(rate * STEP))
     power = (filtered[: filtered.size // hop * hop].reshape(-1, hop) ** 2).mean(axis=1)
     floor = np.median(power) + np.finfo(float).tiny
     behind = _means(power, 0, _AFTER)
@@ -58,8 +58,8 @@ def emphasised(sound: FloatArray, rate: float) -> FloatArray:
 
 
 def spectra(sound: FloatArray, rate: float) -> tuple[int, FloatArray, FloatArray]:
-    """Return the size of windows, the power of the noise by frequency, and that of all windows, half over each other."""
-    size = max(64, int(round(_SPECTRUM * rate)))
+    """Return the size of windows, the power of noise by frequency, and that of all windows, half over each other."""
+    size = max(64, round(_SPECTRUM * rate))
     windows = sliding_window_view(sound, size)[:: size // 2]
     power = np.abs(rfft(windows * np.hanning(size))) ** 2
     noise = np.quantile(power, 0.25, axis=0) / 0.288

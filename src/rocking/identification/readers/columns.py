@@ -92,7 +92,9 @@ class Table:
             name = self.names[place]
             raise self.source.error(None, f"column {name!r} states no unit: write {name} [unit], or give {argument}=")
         if None not in (stated, given) and stated != given:
-            raise self.source.error(None, f"column {self.names[place]!r} is in {stated}, {argument}={given!r} was given")
+            raise self.source.error(
+                None, f"column {self.names[place]!r} is in {stated}, {argument}={given!r} was given"
+            )
         return str(stated if given is None else given)
 
     def listed(self) -> str:
@@ -196,7 +198,9 @@ def _text(source: Source) -> tuple[tuple[str, ...], FloatArray]:
 
 
 def _sheet(source: Source) -> tuple[tuple[str, ...], FloatArray]:
-    book = extra("openpyxl", "reading a workbook").load_workbook(io.BytesIO(source.content), read_only=True, data_only=True)
+    book = extra("openpyxl", "reading a workbook").load_workbook(
+        io.BytesIO(source.content), read_only=True, data_only=True
+    )
     rows = [row for row in book.worksheets[0].iter_rows(values_only=True) if any(cell is not None for cell in row)]
     if not rows or not all(isinstance(cell, str) for cell in rows[0]):
         raise source.error(0, "the first row of the first sheet must hold the names of the columns, with their units")

@@ -17,7 +17,9 @@ def read_compressed(content: bytes, name: str) -> Recording:
     try:
         with soundfile.SoundFile(io.BytesIO(content)) as file:
             if file.frames > MOST_SAMPLES:
-                raise MeasurementError(f"{name}: it has {file.frames} samples, more than the {MOST_SAMPLES} that are read")
+                raise MeasurementError(
+                    f"{name}: it has {file.frames} samples, more than the {MOST_SAMPLES} that are read"
+                )
             samples, rate, stated = file.read(dtype="float64", always_2d=True), file.samplerate, file.frames
     except soundfile.LibsndfileError as error:
         raise MeasurementError(f"{name}: cannot be read as sound ({error}); damaged?") from error

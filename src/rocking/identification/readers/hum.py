@@ -13,12 +13,12 @@ _BLOCK = 2.0
 def without_hum(sound: FloatArray, rate: float) -> FloatArray:
     """Return a sound less the multiples of 50 or 60 Hz that fit it best, block by block.
 
-    A comb filter would repeat every click, and narrow filters would ring for a second; a least-squares fit of some fifty
-    sines to two seconds takes less than one part in a hundred of a click.
+    A comb filter would repeat every click, and narrow filters would ring for a second; a least-squares fit of some
+    fifty sines to two seconds takes less than one part in a hundred of a click.
     """
     size = next_fast_len(sound.size, real=True)
     spectrum = rfft(sound, size)
-    count = int(round(size * _LOW_RATE / rate))
+    count = round(size * _LOW_RATE / rate)
     low_rate, bins = count * rate / size, count // 2 + 1
     if bins > spectrum.size:
         return sound

@@ -71,7 +71,7 @@ def read_measurement(
     ...     path = Path(folder) / "laser.csv"
     ...     _ = path.write_text("time [s],top [mm]\n0.00,20\n0.01,19\n0.02,17\n0.03,14\n")
     ...     series = read_measurement(path, height=0.5)
-    >>> float(series.rotation[0])
+    >>> round(float(series.rotation[0]), 4)
     0.04
     """
     kind = None if kind is None else checks.one_of("kind", kind, KINDS)

@@ -93,7 +93,9 @@ class _Beams:
     missed: IntArray = field(init=False)
 
     @classmethod
-    def of(cls, times: FloatArray, evidence: FloatArray, powers: FloatArray, strongest: IntArray, rate: float) -> "_Beams | None":
+    def of(
+        cls, times: FloatArray, evidence: FloatArray, powers: FloatArray, strongest: IntArray, rate: float
+    ) -> "_Beams | None":
         """Begin with every three clicks whose intervals could follow each other."""
         first, second, third = (
             strongest[places] for places in np.array(np.meshgrid(*3 * [np.arange(strongest.size)])).reshape(3, -1)
@@ -103,9 +105,9 @@ class _Beams:
         could = (early > _INTERVALS[0]) & (early < _INTERVALS[1]) & (ratio > _RATIOS[0]) & (ratio < _RATIOS[1])
         if not could.any():
             return None
-        first, second, third, early, late = (
-            np.repeat(row[could], len(_FIRST_FALLS)) for row in (first, second, third, early, late)
-        )
+        tries = len(_FIRST_FALLS)
+        first, second, third = (np.repeat(row[could], tries) for row in (first, second, third))
+        early, late = np.repeat(early[could], tries), np.repeat(late[could], tries)
         half_p = np.tile(np.arctanh(_FIRST_FALLS), could.sum()) / early
         falls = np.column_stack([half_cycle_fall(early, half_p), half_cycle_fall(late, half_p)])
         chains = np.full((first.size, _MOST), -1, dtype=np.int64)
@@ -117,12 +119,12 @@ class _Beams:
         size = first.size
         faded = np.column_stack([powers[second], powers[third]])
         return cls(
-            times, evidence, powers, rate, half_p, times[third], falls, faded, np.full(size, _FALL), np.full(size, _FALL_SPREAD**2),
-            score, chains,
+            times, evidence, powers, rate, half_p, times[third], falls, faded, np.full(size, _FALL),
+            np.full(size, _FALL_SPREAD**2), score, chains,
         )  # fmt: skip
 
     def __post_init__(self) -> None:
-        """The best so far is what is there."""
+        """Take what is there for the best so far."""
         self.best, self.best_order = self.score.copy(), np.full(self.score.size, 2)
         self.missed = np.zeros(self.score.size, dtype=np.int64)
 
@@ -146,23 +148,22 @@ class _Beams:
         gain[~later | (surprise > 16.0)] = -np.inf
         pick = gain.argmax(axis=1)
         rows = np.arange(pick.size)
-        self._advance(order, going, pick, gain[rows, pick], fall[rows, pick], expected, variance)
+        hit = going & (gain[rows, pick] > _MISSED)
+        self.score += np.where(hit, gain[rows, pick], _MISSED)
+        self._advance(order, hit, pick, np.where(hit, fall[rows, pick], expected), expected, variance)
         return True
 
     def _advance(
-        self, order: int, going: BoolArray, pick: IntArray, gain: FloatArray, fall: FloatArray, expected: FloatArray,
-        variance: FloatArray,
-    ) -> None:  # fmt: skip
-        hit = going & (gain > _MISSED)
+        self, order: int, hit: BoolArray, pick: IntArray, fall: FloatArray, expected: FloatArray, variance: FloatArray
+    ) -> None:
         weight = np.where(hit & (self.missed == 0), self.variance / variance, 0.0)
-        self.mean += weight * (np.where(hit, fall, expected) - expected)
+        self.mean += weight * (fall - expected)
         self.variance *= 1.0 - weight
         self.last = np.where(hit, self.times[pick], self.last + half_cycle(expected, self.half_p))
-        self.falls = np.column_stack([self.falls[:, 1], np.where(hit, fall, expected)])
+        self.falls = np.column_stack([self.falls[:, 1], fall])
         self.missed = np.where(hit, 0, self.missed + 1)
         power = np.where(hit, self.powers[pick], self.faded[:, 0] + 2.0 * self.mean)
         self.faded = np.column_stack([self.faded[:, 1], power])
-        self.score += np.where(hit, gain, _MISSED)
         self.chains[hit, order] = pick[hit]
         better = hit & (self.score > self.best)
         self.best[better], self.best_order[better] = self.score[better], order
@@ -203,7 +204,9 @@ def why_no_rocking(
     if lawful.scatter > _LARGEST_SCATTER:
         return f"its intervals scatter by {lawful.scatter:.3f} about the law of rocking, more than {_LARGEST_SCATTER}"
     if lawful.alternation > _LARGEST_ALTERNATION:
-        return f"its intervals alternate by {lawful.alternation:.2f}, more than {_LARGEST_ALTERNATION} that tilts explain"
+        return (
+            f"its intervals alternate by {lawful.alternation:.2f}, more than {_LARGEST_ALTERNATION} that tilts explain"
+        )
     if lawful.fall > _SLOWEST_FALL or times[-1] - times[-2] > _SHRUNK * (times[1] - times[0]):
         return f"its intervals do not shrink (by {lawful.fall:.3f} from one to the next)"
     mine = strengths[found.members]

@@ -41,7 +41,9 @@ def rotation_of_acceleration(
     padded = np.concatenate((np.full(held, felt[0]), felt, np.full(size - rest - held, felt[-1])))
     omega = 2.0 * np.pi * rfftfreq(size, step)
     rotation = -irfft(rfft(padded) / (height * omega**2 + g), size)[held : held + rest]
-    doubts = ["a rotation from an acceleration leaves out the centripetal part, of the half width times its speed squared"]
+    doubts = [
+        "a rotation from an acceleration leaves out the centripetal part, of the half width times its speed squared"
+    ]
     if np.abs(steps - step).max() > _EVEN * step:
         doubts.append("its time stamps are uneven: the acceleration was interpolated")
     return np.interp(time, even, rotation), tuple(doubts)

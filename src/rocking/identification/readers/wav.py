@@ -62,9 +62,7 @@ def _form(chunk: bytes, name: str) -> tuple[int, int, int, int]:
             raise MeasurementError(f"{name}: its extended format cannot be understood; save it as plain PCM")
         (code,) = struct.unpack_from("<H", chunk, 24)
     if (code, bits) not in {(_PCM, 8), (_PCM, 16), (_PCM, 24), (_PCM, 32), (_FLOAT, 32), (_FLOAT, 64)}:
-        raise MeasurementError(
-            f"{name}: encoding {code} of {bits} bits is not read; save it as PCM of 16 or 24 bits"
-        )
+        raise MeasurementError(f"{name}: encoding {code} of {bits} bits is not read; save it as PCM of 16 or 24 bits")
     if not 1 <= channels <= _MOST_CHANNELS:
         raise MeasurementError(f"{name}: channels must be in [1, {_MOST_CHANNELS}], got {channels}; damaged?")
     if per_frame != channels * bits // 8 or per_second != rate * per_frame:
@@ -81,13 +79,15 @@ def _samples(chunk: bytes, form: tuple[int, int, int, int], name: str) -> FloatA
         what = "no samples" if not chunk else f"{len(chunk)} bytes of samples, no whole number of frames"
         raise MeasurementError(f"{name}: it has {what}; cut off, or never finished")
     if code == _FLOAT:
-        values = np.frombuffer(chunk, f"<f{bits // 8}").astype(np.float64)
+        values: FloatArray = np.frombuffer(chunk, f"<f{bits // 8}").astype(np.float64)
     elif bits == 8:
-        values = (np.frombuffer(chunk, np.uint8) - 128.0) / 128.0
+        values = np.asarray((np.frombuffer(chunk, np.uint8) - 128.0) / 128.0, dtype=np.float64)
     elif bits == 24:
         wide = np.zeros((len(chunk) // 3, 4), np.uint8)
         wide[:, 1:] = np.frombuffer(chunk, np.uint8).reshape(-1, 3)
-        values = wide.view("<i4")[:, 0] / 2.0**31
+        values = np.asarray(wide.view("<i4")[:, 0] / 2.0**31, dtype=np.float64)
     else:
-        values = np.frombuffer(chunk, f"<i{bits // 8}") / 2.0 ** (bits - 1)
+        values = np.asarray(
+            np.frombuffer(chunk, f"<i{bits // 8}").astype(np.float64) / 2.0 ** (bits - 1), dtype=np.float64
+        )
     return np.asarray(values.reshape(-1, channels))
