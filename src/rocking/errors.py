@@ -13,7 +13,6 @@ _EXTRAS = {
     "h5py": "netcdf",
     "obspy": "obspy",
     "soundfile": "sound",
-    "cv2": "video",
     "openpyxl": "excel",
     "pyarrow": "parquet",
     "distributed": "dask",

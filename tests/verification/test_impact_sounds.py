@@ -48,18 +48,18 @@ def errors_of(runs, decibels):
 @pytest.mark.verifies(
     "computed anew",
     "impacts of random bodies in random rooms, 11 each, at 25, 15 and 8 dB above the noise",
-    within="9 of 10 rooms complete at 25 and 15 dB, 7 of 10 at 8 dB; median error .1, .1 and .3 ms",
+    within="0.9 of the rooms complete, 0.7 at 8 dB; onsets to 1e-4 s, 3e-4 s at 8 dB",
     control="test_a_plain_threshold_does_not_do",
 )
-@pytest.mark.parametrize(("decibels", "share", "median"), [(25.0, 9, 0.1e-3), (15.0, 9, 0.1e-3), (8.0, 7, 0.3e-3)])
+@pytest.mark.parametrize(("decibels", "share", "median"), [(25.0, 0.9, 1e-4), (15.0, 0.9, 1e-4), (8.0, 0.7, 3e-4)])
 def test_impacts_are_found(decibels, share, median):
-    """Reverberation, hum and clipping: all impacts are found, none is added, and half the onsets hold to .1 ms, or .3 ms at 8 dB.
+    """Reverberation, hum and clipping: all impacts are found, none is added, and half of the onsets are close.
 
     Of a few rooms one more may fail, since a share of six says little. The aim is more,
     59, 58 and 50 of 60 rooms and .15 ms root mean square: cycles of slow modes are mistaken for each other.
     """
     errors = errors_of(ROOMS, decibels)
-    assert errors.shape[0] >= share / 10 * ROOMS - (0 if CAMPAIGN else 1)
+    assert errors.shape[0] >= share * ROOMS - (0 if CAMPAIGN else 1)
     assert np.median(np.abs(errors)) < median
 
 
@@ -86,6 +86,7 @@ def test_what_is_no_rocking_is_refused(kind):
             heard(no_rocking(kind, seed))
 
 
+@pytest.mark.timed
 @pytest.mark.verifies("behaviour", "a minute of sound at 44.1 kHz", within="2 s of CPU")
 def test_a_minute_takes_seconds(tmp_path):
     """From file to times, with a rocking body in its middle."""

@@ -22,7 +22,7 @@ _LOWEST = 150.0
 
 
 @dataclass(frozen=True, eq=False)
-class Clicks:
+class HeardClicks:
     """Clicks of a sound, in their order."""
 
     times: FloatArray  # roughly, to some milliseconds [s]
@@ -31,7 +31,7 @@ class Clicks:
     sound: FloatArray  # less its hum
 
 
-def find_clicks(sound: FloatArray, rate: float) -> Clicks:
+def find_clicks(sound: FloatArray, rate: float) -> HeardClicks:
     """Return the clicks of a sound, faint ones too."""
     sound = without_hum(sound, rate)
     filtered = emphasised(sound, rate)
@@ -43,7 +43,7 @@ def find_clicks(sound: FloatArray, rate: float) -> Clicks:
     before = np.maximum(_means(power, -_BEFORE[0], -_GAP), _means(power, -_BEFORE[1], -_GAP))
     contrast = behind / np.maximum(before, floor)
     at = _peaks(contrast, int(_DEAD / STEP))
-    return Clicks(at * hop / rate, contrast[at], np.maximum(behind - before, 0.0)[at] / floor, sound)
+    return HeardClicks(at * hop / rate, contrast[at], np.maximum(behind - before, 0.0)[at] / floor, sound)
 
 
 def emphasised(sound: FloatArray, rate: float) -> FloatArray:

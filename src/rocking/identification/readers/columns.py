@@ -50,7 +50,7 @@ class Asked:
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class MeasuredTable:
     """Columns by name."""
 
     source: Source
@@ -59,7 +59,7 @@ class Table:
     values: FloatArray
 
     @classmethod
-    def of(cls, source: Source) -> "Table":
+    def of(cls, source: Source) -> "MeasuredTable":
         """Read a table, text or a sheet of a workbook."""
         sheet = source.name.lower().endswith(".xlsx")
         texts, values = _sheet(source) if sheet else _text(source)
@@ -106,7 +106,7 @@ def impact_list(source: Source, asked: Asked) -> ImpactTimes:
     """Return the times of impacts that a column lists."""
     if asked.height is not None:
         raise source.error(None, "a list of times takes no height=")
-    table = Table.of(source)
+    table = MeasuredTable.of(source)
     name = asked.column if asked.column is not None else asked.time_column
     place = table.place("column", name) if name is not None else table.times(asked)
     if place is None:
@@ -120,7 +120,7 @@ def impact_list(source: Source, asked: Asked) -> ImpactTimes:
 
 def motion_series(source: Source, asked: Asked) -> RotationSeries:
     """Return how a body turned, by one column against the times."""
-    table = Table.of(source)
+    table = MeasuredTable.of(source)
     at = table.times(asked)
     if at is None:
         raise source.error(None, f"which column is the time? Call it time [s], or say time_column= of {table.listed()}")
@@ -162,7 +162,7 @@ def clock_doubts(time: FloatArray) -> tuple[str, ...]:
     return tuple(doubts)
 
 
-def _kind(table: Table, unit: str, asked: str | None) -> str:
+def _kind(table: MeasuredTable, unit: str, asked: str | None) -> str:
     kinds = [kind for kind, units in UNITS.items() if unit in units]
     if not kinds:
         known = ", ".join(unit for units in UNITS.values() for unit in units)
@@ -172,7 +172,7 @@ def _kind(table: Table, unit: str, asked: str | None) -> str:
     return kinds[0]
 
 
-def _increasing(table: Table, place: int, factor: float) -> FloatArray:
+def _increasing(table: MeasuredTable, place: int, factor: float) -> FloatArray:
     times = table.values[:, place] * factor
     wrong = np.flatnonzero(np.diff(times) <= 0.0)
     if wrong.size:

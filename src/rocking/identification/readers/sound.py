@@ -5,7 +5,7 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.errors import MeasurementError
 from rocking.identification.measurement import ImpactTimes
-from rocking.identification.readers.clicks import Clicks, find_clicks
+from rocking.identification.readers.clicks import HeardClicks, find_clicks
 from rocking.identification.readers.onsets import onsets
 from rocking.identification.readers.recording import Recording
 from rocking.identification.readers.rocking_sequence import RockingSequence, find_sequence, why_no_rocking
@@ -36,7 +36,7 @@ def _evidence(contrasts: FloatArray) -> FloatArray:
     return np.clip(5.0 * np.log(contrasts / 3.2), -4.0, 4.0)
 
 
-def _doubts(recording: Recording, clicks: Clicks, found: RockingSequence, times: FloatArray) -> tuple[str, ...]:
+def _doubts(recording: Recording, clicks: HeardClicks, found: RockingSequence, times: FloatArray) -> tuple[str, ...]:
     doubts = []
     for order in np.setdiff1d(np.arange(found.orders[-1]), found.orders):
         before = int(np.flatnonzero(found.orders < order)[-1])
