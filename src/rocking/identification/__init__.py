@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from rocking.identification._identify import identify
     from rocking.identification.design import Design
     from rocking.identification.measurement import ImpactTimes, RotationSeries
+    from rocking.identification.readers.reader import read_measurement
     from rocking.identification.results import Identification, Impact, IntervalEstimate, ModelComparison
 
 __all__ = [
@@ -19,12 +20,14 @@ __all__ = [
     "ModelComparison",
     "RotationSeries",
     "identify",
+    "read_measurement",
 ]
 
 _HOMES = {
     "_identify": ("identify",),
     "design": ("Design",),
     "measurement": ("ImpactTimes", "RotationSeries"),
+    "readers.reader": ("read_measurement",),
     "results": ("IntervalEstimate", "Identification", "Impact", "ModelComparison"),
 }
 __getattr__, __dir__ = exports(
