@@ -770,8 +770,11 @@ class Run {
             last = attempt;
             Problem& now = both[attempt];
             if (attempt == 0 && !old.empty())
-                for (int i : touching)
-                    if (!has(old, i)) now.places.push_back({i, law_.place(b_, nearest(b_, old, b_.points[i]), b_.points[i])});
+                for (int i : touching) {
+                    if (has(old, i)) continue;
+                    const Vec at = law_.place(b_, nearest(b_, old, b_.points[i]), b_.points[i]), off = at - b_.points[i];
+                    if (dot(off, off) > 0.0) now.places.push_back({i, at});
+                }
             tried.emplace_back(now, touching, none, 0.0);
             Candidates& all = tried.back();
             for (int l = 0; l < 3 && !found; ++l)
@@ -784,7 +787,7 @@ class Run {
                 found = nullptr, piled = true;
                 break;
             }
-            if (found || old.empty()) break;
+            if (found || now.places.empty()) break;
             ++r_.replaced;
         }
         if (!found) {

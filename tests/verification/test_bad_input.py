@@ -85,8 +85,8 @@ def false_success(found: dict[str, Any], *, linear: bool = False) -> Any:
     return ~(known & (good != failed) & np.where(good, finite & fits, none))
 
 
-_USED = [name for name in ROWS if name != "friction"]
-"""What the engines of pure rocking are told: they know no friction."""
+_USED = [name for name in ROWS if name not in ("azimuth", "friction")]
+"""What the engines of pure rocking are told: they know neither."""
 
 # ---- poison ---------------------------------------------------------------------------------------------------------
 

@@ -271,7 +271,7 @@ def axes() -> dict[str, Axis]:
     Examples
     --------
     >>> sorted(axes())[:3]
-    ['amplitude_ratio', 'duration', 'frequency_ratio']
+    ['amplitude_ratio', 'azimuth', 'duration']
     """
     return {axis.name: axis for axis in _ALL}
 

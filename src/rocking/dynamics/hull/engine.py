@@ -728,7 +728,7 @@ class HullEngine:
             if self.at_once > _PILED:
                 found, self.struck = None, []
                 break
-            if found is not None or not old:
+            if found is not None or not problem.places:
                 break
             self.history.replaced += 1
         if found is None:
@@ -750,7 +750,8 @@ class HullEngine:
         points = self.body.points
         stood = [points[i] for i in old]
         landing = [i for i in touching if i not in old]
-        return {i: place_of(self.law, nearest(stood, points[i]), points[i]) for i in landing}
+        places = {i: place_of(self.law, nearest(stood, points[i]), points[i]) for i in landing}
+        return {i: place for i, place in places.items() if place != points[i]}
 
     def _struck(self, problem: Problem, touching: tuple[int, ...], before: float) -> Solution | None:
         """Return the first candidate whose impulses obey every law; None where there is none."""
