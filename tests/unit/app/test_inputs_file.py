@@ -60,7 +60,9 @@ RECORD = st.fixed_dictionaries(
     {"record": st.just(HASH)},
     optional={
         # requests and files that hold a NUL are refused as a whole
-        "file_name": st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), min_size=1, max_size=60),
+        "file_name": st.text(
+            st.characters(exclude_categories=["Cs"], exclude_characters="\0"), min_size=1, max_size=60
+        ),
         "time_step": POSITIVE,
         "units": st.sampled_from(["g", "m/s2"]),
         "scale": POSITIVE,
