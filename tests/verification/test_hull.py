@@ -16,7 +16,7 @@ from rocking.bodies.solid import Solid, box
 from rocking.dynamics import SpatialStart
 from rocking.dynamics.hull import HullBody, HullEngine, HullGround, HullSettings, fast_engine, hull_histories, standing
 from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear
-from rocking.dynamics.hull.engine import HullEventKind
+from rocking.dynamics.hull.history import HullEventKind
 from rocking.dynamics.hull.motion import HullMode, State, energies, step
 from rocking.dynamics.hull.restitution import place_of
 from rocking.dynamics.hull.vectors import ZERO, applied, back, cross, dot, frame, scaled

@@ -2,29 +2,30 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
-from enum import Enum
+from dataclasses import replace
 from itertools import product as product_of
 from typing import Any, NamedTuple
 
 from rocking.dynamics.hull import contact_problem as contacts
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.contact_problem import FLIGHT, HullContact, Problem, Solution
+from rocking.dynamics.hull.event_functions import CLOSED, HALVINGS, SLIP, STILL, EventFunctions
 from rocking.dynamics.hull.ground import HullGround
+from rocking.dynamics.hull.history import HullEvent, HullEventKind, HullHistory, HullSettings
 from rocking.dynamics.hull.motion import (
     HullMode,
-    Rates,
     State,
     StepResult,
     energies,
-    gap,
+    levelled,
     point_velocity,
     problem_of,
-    slip_direction,
+    slip_speed,
     step,
     valued,
 )
 from rocking.dynamics.hull.restitution import law_of, nearest, place_of
+from rocking.dynamics.hull.sliding import sliding
 from rocking.dynamics.hull.vectors import (
     ZERO,
     Vector,
@@ -36,17 +37,12 @@ from rocking.dynamics.hull.vectors import (
     frame,
     length,
     minus,
-    normalised,
-    product,
     scaled,
     unit,
 )
 from rocking.outcome import Outcome, Status
 
-_CLOSED, _GRAZED = 1e-11, 1e-14  # gaps over the size: of vertices that land together, and at which one lands
-_FORCE = 1e-11  # acceleration over gravity below which a force counts as zero
-# speeds over sqrt(g size): at which sliding stops, below which a vertex may stick, or still slides as it started
-_SLIP, _STILL, _SLIDES = 5e-6, 5e-6, 1e-4
+_SLIDES = 1e-4  # speed over sqrt(g size) below which a vertex still slides as it started
 _LADDER = (1e-11, 1e-9, 1e-7, 1e-5)
 _AHEAD = 1e-6  # how much later, over sqrt(size / g), the ground decides which mode starts
 _PILED, _STUCK = 30, 200
@@ -55,26 +51,6 @@ _CROWD, _CROWDED = 12, 1e-2  # changes of contact, and the time over sqrt(size /
 _GATHERED, _GATHERING = 1e-7, 1e-4
 _PATIENCE = 100.0
 _PATH = (1.0 / 12.0, 10.0 / 21.0, 5.0 / 12.0, 1.0 / 42.0)
-_HALVINGS = 80
-
-
-class HullEventKind(Enum):
-    """What happens at an event."""
-
-    IMPACT = "vertices strike the ground"
-    CHANGE = "vertices leave, stick or start to slide"
-    REST = "comes to rest"
-    UPLIFT = "leaves its rest"
-
-
-class HullEvent(NamedTuple):
-    """Something that happened."""
-
-    time: float
-    kind: HullEventKind
-    contact: HullContact  # after it
-    before: float  # kinetic energy before [J]
-    after: float  # kinetic energy after [J]
 
 
 class _Watched(NamedTuple):
@@ -84,62 +60,6 @@ class _Watched(NamedTuple):
     up: Vector  # in axes of the body
     tilt: float  # cosine of the angle from the pose at the beginning
     rate: float  # of that [1/s]
-
-
-@dataclass
-class HullHistory:
-    """A history at the ends of its steps."""
-
-    time: list[float] = field(default_factory=list)
-    states: list[State] = field(default_factory=list)
-    contacts: list[HullContact] = field(default_factory=list)
-    events: list[HullEvent] = field(default_factory=list)
-    status: Status = Status.GOOD
-    outcome: Outcome = Outcome.NO_UPLIFT
-    still_rocking: bool = False
-    lost: float = 0.0  # energy lost in impacts and by coming to rest; friction's work is not in it [J]
-    replaced: int = 0  # impacts whose impulse had to act at the vertices that land
-    held: int = 0  # impacts and changes without a solution, where the largest face was made to stick
-    flew: bool = False
-    slid: bool = False
-    rocked: bool = False
-    fell: bool = False  # off the shelf
-    pose: int = -1  # the stable pose in which it ends, or to which it is on its way
-    overturning_time: float = math.nan  # when its centre left the first pose for the last time [s]
-    direction: float = math.nan  # in which it leant then, from x towards y [rad]
-    least_cosine: float = 1.0  # of the angle from the pose at the beginning
-    peak_time: float = 0.0  # of that [s]
-    peak_spin: float = 0.0  # largest angular velocity [rad/s]
-    sliding_distance: float = 0.0  # path of the vertex that slides most [m]
-    first_uplift: float = math.nan  # [s]
-    uplifts: int = 0
-    steps: int = 0
-
-    @property
-    def peak_tilt(self) -> float:
-        """Largest angle from the pose at the beginning [rad]."""
-        least = self.least_cosine
-        return math.atan2(math.sqrt(max((1.0 - least) * (1.0 + least), 0.0)), least)
-
-
-@dataclass(frozen=True)
-class HullSettings:
-    """How to integrate.
-
-    Parameters
-    ----------
-    tolerance : float
-        Bound on the local error of a step, over size, radian and their rates [-].
-    rest_speed : float
-        Speed over sqrt(g size) below which a vertex that leaves would fall back at once, and whose square is the
-        energy over m g size at which a body on nearly a whole facet comes to rest [-].
-    most_events : int
-        A history with more is stopped with a status.
-    """
-
-    tolerance: float = 1e-12
-    rest_speed: float = 1e-5
-    most_events: int = 100_000
 
 
 class HullEngine:
@@ -181,9 +101,8 @@ class HullEngine:
         self.speed = ground.gravity / self.pace  # sqrt(g size)
         self.slow = self.settings.rest_speed * self.speed
         self.weak = self.settings.rest_speed**2 * body.mass * ground.gravity * body.size
-        self.slack = _FORCE * ground.gravity
         self.time, self.stretch = 0.0, 0
-        self.length = self.span = 0.1 / self.pace  # of the next step, and of the present one
+        self.length = 0.1 / self.pace  # of the next step
         self.mode = self._mode(FLIGHT, {})
         self.anchors: dict[int, Vector] = {}
         self.at_once, self.moment = 0, -1.0
@@ -216,7 +135,7 @@ class HullEngine:
         self.upright = scaled(-1.0, unit(self.body.facets[self.stood]))
         self.watched: _Watched | None = None
         self.law = law_of(self.restitution, self.body, self.stood)
-        if any(point_velocity(self.body, state, i)[2] < -_SLIP * 1e-4 * self.speed for i in self._touching()):
+        if any(point_velocity(self.body, state, i)[2] < -SLIP * 1e-4 * self.speed for i in self._touching()):
             self._impact()
         else:
             self._choose(self._touching())
@@ -320,7 +239,7 @@ class HullEngine:
         for mark in marks:
             if self._stands(valued(coefficients, mark)) < 0.0:
                 low, high = before, mark
-                for _ in range(_HALVINGS):
+                for _ in range(HALVINGS):
                     middle = 0.5 * (low + high)
                     low, high = (low, middle) if self._stands(valued(coefficients, middle)) < 0.0 else (middle, high)
                 self._hold(self.time + high * span)
@@ -370,7 +289,6 @@ class HullEngine:
         def to(part: float) -> StepResult:
             return step(body, start, self.mode, coefficients, (whole, part), self.pace)
 
-        self.span = whole
         result = to(1.0)
         if not math.isfinite(result.error):
             self.ended = Status.NOT_FINITE
@@ -391,7 +309,7 @@ class HullEngine:
             self.length = whole * max(0.1, growth)
             return
         self._pace_on(whole, growth, cut=whole == left)
-        part, kind = self._first_event(result, to)
+        part, kind = EventFunctions(body, self.ground, self.mode, start, whole).first(result, to)
         if kind:
             result = to(part)
         self._slide(result, part * whole)
@@ -424,120 +342,9 @@ class HullEngine:
         elif self.mode.pulled:
             self._choose(self._touching())
 
-    def _first_event(self, result: StepResult, to: Any) -> tuple[float, str]:
-        """Return when the first margin falls below zero: part of the step, kind of the margin."""
-        part, first = 1.0, ""
-        for _, low, high, kind, i in sorted(self._fallen(result, to)):
-            # stages lie beside the motion: what is below zero there may fall a little later
-            for end in (min(high, part), part):
-                if self._at(kind, i, to(end)) < 0.0:
-                    part, first = self._located(kind, i, (min(low, end), end), to), kind
-                    break
-        return part, first
-
-    def _fallen(self, result: StepResult, to: Any) -> Iterator[tuple[float, float, float, str, int]]:
-        """Yield margins that fall below zero between samples: about where, the bracket, kind and vertex."""
-        nodes = [node for node, _, _ in result.samples]
-        for kind, i in self._watched(result):
-            values = [self._margin(kind, i, state, rates) for _, state, rates in result.samples]
-            if values[0] < 0.0:
-                # a vertex that has just left is on the ground but for rounding
-                rises = point_velocity(self.body, self.state, i)[2] >= -1e-12 * self.speed
-                if kind != "gap" or not rises:
-                    yield 0.0, 0.0, 0.0, kind, i
-                    continue
-                values[0] = 0.0
-            below = next((k for k, value in enumerate(values) if value < 0.0), 0)
-            dip = self._dip(i, result, values) if kind == "gap" and not below else None
-            if below:
-                a, b, low, high = values[below - 1], values[below], nodes[below - 1], nodes[below]
-                yield low + (high - low) * a / (a - b), low, high, kind, i
-            elif dip is not None and self._at("gap", i, to(dip)) < 0.0:
-                yield 0.9 * dip, 0.0, dip, kind, i
-
-    def _located(self, kind: str, i: int, bracket: tuple[float, float], to: Any) -> float:
-        """Return the zero of a margin that is below zero at the end of a bracket, by regula falsi (Illinois)."""
-        low, high = bracket
-        sizes = {"gap": 0.5 * _GRAZED * self.body.size, "shelf": _CLOSED * self.body.size}
-        close = sizes.get(kind, 1e-3 * _SLIP * self.speed if kind == "slip" else self.slack)
-        at_low, at_high = self._at(kind, i, to(low)), self._at(kind, i, to(high))
-        if at_low < 0.0 < low:
-            low, high, at_high = 0.0, low, at_low
-            at_low = self._at(kind, i, to(low))
-        if at_low <= 0.0:
-            # it has just left: where is it above the ground?
-            for k in range(1, 20):
-                value = self._at(kind, i, to(bracket[1] * 0.5**k))
-                if value > 0.0:
-                    low, at_low = bracket[1] * 0.5**k, value
-                    break
-                high, at_high = bracket[1] * 0.5**k, value
-        at_low = max(at_low, 0.0)
-        side = 0
-        for _ in range(_HALVINGS):
-            if at_high >= -close or high - low <= 1e-15:
-                break
-            # aims a little below zero
-            middle = low + (high - low) * (at_low + 0.5 * close) / (at_low - at_high)
-            middle = middle if low < middle < high else 0.5 * (low + high)
-            value = self._at(kind, i, to(middle))
-            if value < 0.0:
-                high, at_high, at_low = middle, value, at_low * (0.5 if side < 0 else 1.0)
-                side = -1
-            else:
-                low, at_low, at_high = middle, value, at_high * (0.5 if side > 0 else 1.0)
-                side = 1
-        return high
-
-    def _watched(self, result: StepResult) -> list[tuple[str, int]]:
-        contact, body = self.mode.contact, self.body
-        watched = [("normal", i) for i in contact.members if not self.mode.pulled]
-        if not math.isinf(self.friction) and not self.mode.pulled:
-            watched += [("stick", i) for i in contact.stuck]
-        loose = [i for i in contact.members if i not in contact.stuck]
-        watched += [("slip", i) for i in loose]
-        watched += [("shelf", i) for i in loose if self.ground.shelf is not None]
-        one, two = result.samples[0][1], result.state
-        fastest = max(length(s.velocity) + body.size * length(s.spin) for s in (one, two))
-        reach = fastest * self.span
-        up, high = frame(one.attitude)[2], one.place[2]
-        after, later = frame(two.attitude)[2], two.place[2]
-        for i, p in enumerate(body.points):
-            if i not in contact.members and min(high + dot(up, p), later + dot(after, p)) < reach:
-                watched.append(("gap", i))
-        return watched
-
-    def _margin(self, kind: str, i: int, state: State, rates: Rates) -> float:
-        """Return what must not fall below zero: a height, an acceleration or a speed."""
-        slack = self.slack
-        if kind == "gap":
-            height = gap(self.body, state, i) + _GRAZED * self.body.size
-            place = added(state.place, 1.0, applied(frame(state.attitude), self.body.points[i]))
-            return height if self.ground.under(place) or height > 0.0 else math.inf
-        if kind == "shelf":
-            return self.ground.inside(added(state.place, 1.0, applied(frame(state.attitude), self.body.points[i])))
-        if rates.found is None:
-            return -1.0
-        if kind == "normal":
-            return rates.found.normals[i] / self.body.mass + slack
-        if kind == "stick":
-            free = self.friction * rates.found.normals[i] - length(rates.found.pulls[i])
-            return free / self.body.mass + slack * (1.0 + self.friction)
-        speed = dot(slip_direction(self.body, self.state, self.mode, i), point_velocity(self.body, state, i))
-        return speed + (2.0 * _STILL if i in self.mode.starts else -_SLIP) * self.speed
-
-    def _at(self, kind: str, i: int, result: StepResult) -> float:
-        return self._margin(kind, i, result.state, result.samples[-1][2])
-
-    def _dip(self, i: int, result: StepResult, values: list[float]) -> float | None:
-        """Return where a gap is least within a step, by its values and rates at the ends; None where it is not."""
-        (_, one, _), (_, two, _) = result.samples[0], result.samples[-1]
-        a, b = point_velocity(self.body, one, i)[2], point_velocity(self.body, two, i)[2]
-        return a / (a - b) if a < 0.0 < b and min(values) < self.body.size * 1e-3 else None
-
     # ---- contact ----------------------------------------------------------------------------------------------------
 
-    def _touching(self, reach: float = _CLOSED) -> tuple[int, ...]:
+    def _touching(self, reach: float = CLOSED) -> tuple[int, ...]:
         axes, place = frame(self.state.attitude), self.state.place
         found = []
         for i, p in enumerate(self.body.points):
@@ -585,7 +392,7 @@ class HullEngine:
         problem.bias = {i: cross(state.spin, cross(state.spin, p)) for i, p in enumerate(body.points)}
         moving = {}
         for i in near if self.friction < math.inf else ():
-            if self._slip(i) > 3.0 * _STILL * self.speed:
+            if self._slip(i) > 3.0 * STILL * self.speed:
                 x, y, _ = point_velocity(body, state, i)
                 moving[i] = back(problem.axes, unit((x, y, 0.0)))
         candidates = list(self._candidates(problem, near, moving))
@@ -659,7 +466,7 @@ class HullEngine:
                 states.append((rank, way))
         for _, contact in sorted(states, key=lambda state: state[0]):
             known = {i: moving[i] for i in contact.members if i in moving and i not in contact.stuck}
-            found = contacts.sliding(problem, contact, known, 1e-5 * self.ground.gravity if problem.bias else 0.0)
+            found = sliding(problem, contact, known, 1e-5 * self.ground.gravity if problem.bias else 0.0)
             if found is not None:
                 yield found
         flight = contacts.solve(problem, FLIGHT, {})
@@ -827,57 +634,3 @@ class HullEngine:
         if len(self.history.events) > self.settings.most_events:
             self.ended = Status.TOO_MANY_EVENTS
         return self.ended is not None
-
-
-def slip_speed(body: HullBody, state: State, i: int) -> float:
-    """Return the speed of a vertex along the ground."""
-    x, y, _ = point_velocity(body, state, i)
-    return math.hypot(x, y)
-
-
-def levelled(body: HullBody, attitude: tuple[float, ...], members: tuple[int, ...]) -> tuple[float, ...]:
-    """Return an attitude turned by the least small angle that brings an edge or a facet onto the ground."""
-    axes, count = frame(attitude), len(members)
-    a, b = (body.points[members[k]] for k in (0, count // 2 if count < 4 else count // 3))
-    edge = applied(axes, minus(b, a))
-    if count == 2:
-        level = edge[0] * edge[0] + edge[1] * edge[1]
-        turn = (-edge[2] * edge[1] / level, edge[2] * edge[0] / level, 0.0)
-    else:
-        other = applied(axes, minus(body.points[members[(2 * count) // 3]], a))
-        normal = unit(cross(edge, other))
-        normal = normal if normal[2] > 0.0 else scaled(-1.0, normal)
-        turn = (normal[1], -normal[0], 0.0)
-    return normalised(product((1.0, 0.5 * turn[0], 0.5 * turn[1], 0.5 * turn[2]), attitude))
-
-
-def standing(body: HullBody, *, facet: int | None = None, tilt: float = 0.0, azimuth: float = 0.0) -> State:
-    """Return a body at rest that stands in the axes of its vertices, or on a facet, leaning by an angle.
-
-    Parameters
-    ----------
-    body : HullBody
-        The body.
-    facet : int, optional
-        Number of the facet to stand on, as `body.hull` has them; the axes of the vertices stand upright if None.
-    tilt : float
-        How far it leans [rad].
-    azimuth : float
-        In which direction, from x towards y [rad].
-
-    Returns
-    -------
-    State
-        The lowest vertex is on the ground, below or beside the origin; the centre of mass is over the origin.
-    """
-    attitude: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0)
-    if facet is not None:
-        down = unit(body.facets[facet])
-        axis = cross(down, (0.0, 0.0, -1.0))
-        attitude = normalised((1.0 - down[2], *axis)) if down[2] < 1.0 - 1e-12 else (0.0, 1.0, 0.0, 0.0)
-    half = 0.5 * tilt
-    lean = (math.cos(half), -math.sin(half) * math.sin(azimuth), math.sin(half) * math.cos(azimuth), 0.0)
-    attitude = normalised(product(lean, attitude))
-    up = frame(attitude)[2]
-    lowest = min(dot(up, p) for p in body.points)
-    return State((0.0, 0.0, -lowest), attitude, ZERO, ZERO)

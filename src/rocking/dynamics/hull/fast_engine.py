@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.hull.body import HullBody
-from rocking.dynamics.hull.engine import HullSettings
+from rocking.dynamics.hull.history import HullSettings
 from rocking.dynamics.settings import CompiledEngine
 from rocking.dynamics.space.ground import SpatialGround
 from rocking.errors import InvalidValueError

@@ -5,6 +5,7 @@ and the angular velocity in axes of the body. Forces come from the contact probl
 forces, friction and gaps at the stages are there to be watched.
 """
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -20,8 +21,10 @@ from rocking.dynamics.hull.vectors import (
     dot,
     frame,
     length,
+    minus,
     normalised,
     plus,
+    product,
     scaled,
     unit,
 )
@@ -184,3 +187,57 @@ def energies(body: HullBody, state: State, gravity: Vector) -> tuple[float, floa
     w = state.spin
     kinetic = 0.5 * (body.mass * dot(state.velocity, state.velocity) + dot(w, applied(body.tensor, w)))
     return kinetic, -body.mass * dot(gravity, state.place)
+
+
+def slip_speed(body: HullBody, state: State, i: int) -> float:
+    """Return the speed of a vertex along the ground."""
+    x, y, _ = point_velocity(body, state, i)
+    return math.hypot(x, y)
+
+
+def levelled(body: HullBody, attitude: tuple[float, ...], members: tuple[int, ...]) -> tuple[float, ...]:
+    """Return an attitude turned by the least small angle that brings an edge or a facet onto the ground."""
+    axes, count = frame(attitude), len(members)
+    a, b = (body.points[members[k]] for k in (0, count // 2 if count < 4 else count // 3))
+    edge = applied(axes, minus(b, a))
+    if count == 2:
+        level = edge[0] * edge[0] + edge[1] * edge[1]
+        turn = (-edge[2] * edge[1] / level, edge[2] * edge[0] / level, 0.0)
+    else:
+        other = applied(axes, minus(body.points[members[(2 * count) // 3]], a))
+        normal = unit(cross(edge, other))
+        normal = normal if normal[2] > 0.0 else scaled(-1.0, normal)
+        turn = (normal[1], -normal[0], 0.0)
+    return normalised(product((1.0, 0.5 * turn[0], 0.5 * turn[1], 0.5 * turn[2]), attitude))
+
+
+def standing(body: HullBody, *, facet: int | None = None, tilt: float = 0.0, azimuth: float = 0.0) -> State:
+    """Return a body at rest that stands in the axes of its vertices, or on a facet, leaning by an angle.
+
+    Parameters
+    ----------
+    body : HullBody
+        The body.
+    facet : int, optional
+        Number of the facet to stand on, as `body.hull` has them; the axes of the vertices stand upright if None.
+    tilt : float
+        How far it leans [rad].
+    azimuth : float
+        In which direction, from x towards y [rad].
+
+    Returns
+    -------
+    State
+        The lowest vertex is on the ground, below or beside the origin; the centre of mass is over the origin.
+    """
+    attitude: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0)
+    if facet is not None:
+        down = unit(body.facets[facet])
+        axis = cross(down, (0.0, 0.0, -1.0))
+        attitude = normalised((1.0 - down[2], *axis)) if down[2] < 1.0 - 1e-12 else (0.0, 1.0, 0.0, 0.0)
+    half = 0.5 * tilt
+    lean = (math.cos(half), -math.sin(half) * math.sin(azimuth), math.sin(half) * math.cos(azimuth), 0.0)
+    attitude = normalised(product(lean, attitude))
+    up = frame(attitude)[2]
+    lowest = min(dot(up, p) for p in body.points)
+    return State((0.0, 0.0, -lowest), attitude, ZERO, ZERO)
