@@ -9,7 +9,6 @@ from scipy.special import logsumexp, stdtr
 
 from rocking.conventions import FEET, FloatArray, Foot, opposite
 from rocking.errors import InvalidValueError
-from rocking.identification.clicks import heard
 from rocking.identification.design import Design, designs
 from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.posterior import Posterior
@@ -23,8 +22,9 @@ from rocking.identification.results import (
     impulses,
     next_impact,
 )
-from rocking.identification.series import seen
+from rocking.identification.series import fit_series
 from rocking.identification.state_space import DAMPING, FREQUENCY, HALF, MEAN, SHARED, TILT, TREND
+from rocking.identification.times import fit_times
 
 _SHARE, _OF_ALL, _AFTER = 0.66, 0.5, 1.0  # of times; seconds, after which nobody hears the last impacts any more
 _ADVANTAGE, _MOST_SCATTER, _UNLIKELY, _EXPLAINED = 5.0, 0.12, 1e-4, 0.9
@@ -88,7 +88,7 @@ def identify(
 
 
 def _of_times(measurement: ImpactTimes, known: Knowledge) -> Identification:
-    found = heard(measurement, known, None)
+    found = fit_times(measurement, known, None)
     if found is None or found.track.clicks.size < 4:
         return _nothing(measurement, "fewer than four times belong together as impacts")
     track, refused, doubts = found.track, [], list(measurement.doubts)
@@ -123,7 +123,7 @@ def _of_times(measurement: ImpactTimes, known: Knowledge) -> Identification:
 
 
 def _of_series(measurement: RotationSeries, known: Knowledge) -> Identification:
-    found = seen(measurement, known, None)
+    found = fit_series(measurement, known, None)
     if found is None:
         return _nothing(measurement, "the rotation does not pass through its middle often enough")
     residuals = found.posterior.average(found.posterior.residuals)

@@ -8,11 +8,11 @@ import numpy as np
 
 from rocking.conventions import FloatArray, Foot, IntArray
 from rocking.identification import half_cycles
-from rocking.identification.clicks import speeds_between, start
 from rocking.identification.measurement import RotationSeries
 from rocking.identification.posterior import Noise, Posterior, posterior
 from rocking.identification.prior import Knowledge
 from rocking.identification.state_space import SHARED, Path
+from rocking.identification.times import speeds_between, start
 
 _STEP = 1e-5
 _MOST = 3000
@@ -55,7 +55,7 @@ class SampledSeries:
         since = p * (row.time - path.times[g, k])
         sign = 1.0 - 2.0 * self.sides[k]
 
-        def seen(y: FloatArray, alpha: FloatArray) -> FloatArray:
+        def value_at(y: FloatArray, alpha: FloatArray) -> FloatArray:
             rotation, speed = half_cycles.rotation(since, y, alpha)
             return rotation if row.kind == "rotation" else p * speed
 
@@ -63,8 +63,8 @@ class SampledSeries:
         of_rotation = row.kind == "rotation"
         value = rotation if of_rotation else p * speed
         by_since = speed if of_rotation else -p * np.sin(alpha - rotation)
-        by_y = (seen(y * (1.0 + _STEP), alpha) - seen(y * (1.0 - _STEP), alpha)) / (2.0 * _STEP)
-        by_alpha = (seen(y, alpha + _STEP) - seen(y, alpha - _STEP)) / (2.0 * _STEP)
+        by_y = (value_at(y * (1.0 + _STEP), alpha) - value_at(y * (1.0 - _STEP), alpha)) / (2.0 * _STEP)
+        by_alpha = (value_at(y, alpha + _STEP) - value_at(y, alpha - _STEP)) / (2.0 * _STEP)
         slopes = (
             by_since[..., None] * (since[..., None] * path.p_slopes - p[..., None] * path.time_slopes[g, k])
             + by_y[..., None] * path.y_slopes[g, k]
@@ -102,7 +102,7 @@ class Peaks:
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class SeriesFit:
     """What a series says, and how far its noise is correlated."""
 
     posterior: Posterior
@@ -111,7 +111,7 @@ class Seen:
     independent: float  # samples that count
 
 
-def seen(series: RotationSeries, known: Knowledge, scatter: float | None) -> Seen | None:
+def fit_series(series: RotationSeries, known: Knowledge, scatter: float | None) -> SeriesFit | None:
     """Return what a series says, or None if it does not cross its middle often enough."""
     crossings, first = impacts_of(series)
     if crossings.size < _FEWEST:
@@ -144,7 +144,9 @@ def seen(series: RotationSeries, known: Knowledge, scatter: float | None) -> See
         ])  # fmt: skip
     used = tuple(_away(row, impacts, float(s / spread[0])) for row, s in zip(rows, spread, strict=True))
     found = posterior(model, SampledSeries(used, model.sides), scatter, Noise(float(spread[0])), begin)
-    return Seen(found, used, impacts, float(sum(row.values.size / one for row, one in zip(used, each, strict=True))))
+    return SeriesFit(
+        found, used, impacts, float(sum(row.values.size / one for row, one in zip(used, each, strict=True)))
+    )
 
 
 def _away(row: Row, impacts: FloatArray, scale: float) -> Row:

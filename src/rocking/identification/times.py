@@ -19,14 +19,14 @@ _USUAL = 0.9
 
 
 @dataclass(frozen=True, eq=False)
-class Heard:
+class TimesFit:
     """The impacts among the times, and the posterior."""
 
     track: Track
     posterior: Posterior
 
 
-def heard(measurement: ImpactTimes, known: Knowledge, scatter: float | None) -> Heard | None:
+def fit_times(measurement: ImpactTimes, known: Knowledge, scatter: float | None) -> TimesFit | None:
     """Return what impact times say, or None if no three of them belong together."""
     sure = np.full(measurement.times.size, 0.98) if measurement.probabilities is None else measurement.probabilities
     noise = UNKNOWN_NOISE if measurement.sigma is None else Noise(measurement.sigma)
@@ -44,7 +44,7 @@ def heard(measurement: ImpactTimes, known: Knowledge, scatter: float | None) -> 
     observer = Clicks(times, track.impacts - first)
     speeds = speeds_between(times, observer.impacts, known, frequency[0])
     model = known.model(known.sides(speeds.size), float(times[0]), float(speeds[0]), frequency)
-    return Heard(track, posterior(model, observer, scatter, noise, lambda s: start(model, speeds, s)))
+    return TimesFit(track, posterior(model, observer, scatter, noise, lambda s: start(model, speeds, s)))
 
 
 def speeds_between(times: FloatArray, impacts: IntArray, known: Knowledge, ln_p: float) -> FloatArray:
