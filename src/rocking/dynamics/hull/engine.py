@@ -82,6 +82,7 @@ class HullEngine:
     Examples
     --------
     >>> from rocking.bodies.solid import Solid, box
+    >>> from rocking.dynamics.hull import standing
     >>> body = HullBody.of(Solid(box(1.0, 1.0, 4.0)))
     >>> HullEngine(body, HullGround(slope=0.2)).run(standing(body), 0.1).outcome.value
     'stayed at rest: the ground never lifted it'
