@@ -19,6 +19,7 @@ from xml.etree import ElementTree
 from docutils import nodes
 from docutils.parsers.rst import directives
 from sphinx.application import Sphinx
+from sphinx.errors import ExtensionError
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 
 ROOT = Path(__file__).parents[2]
@@ -403,7 +404,9 @@ class Stated(SphinxRole):
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Tell Sphinx."""
+    """Tell Sphinx, and that marks are wrong before anything is run: a failure amid pages can leave their kernels waiting."""
+    if wrong := faults(claims()):
+        raise ExtensionError("\n".join(wrong))
     app.add_directive("claims", Claims)
     app.add_role("claim", ClaimRole())
     app.add_role("stated", Stated())

@@ -343,7 +343,7 @@ def _slides(problem, edge):
     return False
 
 
-@pytest.mark.verifies("existence", "an edge that friction no longer holds slides", within="1e-9", control="within")
+@pytest.mark.verifies("behaviour", "an edge that friction no longer holds slides", within="1e-9", control="within")
 @pytest.mark.parametrize("beyond", [1e-6, 1e-4, 1e-2])
 def test_an_edge_that_friction_no_longer_holds_slides(beyond, monkeypatch):
     """However little it is pulled beyond what friction holds; the fixed point alone finds it in part of them."""
