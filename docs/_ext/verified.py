@@ -404,7 +404,7 @@ class Stated(SphinxRole):
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Tell Sphinx, and that marks are wrong before anything is run: a failure amid pages can leave their kernels waiting."""
+    """Tell Sphinx; wrong marks end it here, for a failure amid pages can leave their kernels waiting."""
     if wrong := faults(claims()):
         raise ExtensionError("\n".join(wrong))
     app.add_directive("claims", Claims)
