@@ -7,7 +7,6 @@ overturn all the same, and which of these should be measured first? For engineer
 
 import rocking as rk
 from rocking.plots import prediction_picture, write
-from rocking.prediction import predict
 from rocking.studies import SyntheticSet
 
 # %%
@@ -16,7 +15,7 @@ from rocking.studies import SyntheticSet
 
 cabinet = rk.Block(width=0.4, height=1.6)
 motions = SyntheticSet("firm-ground", count=6, seed=1, pga=4.0)
-found = predict(cabinet, motions, friction=(0.15, 0.5), count=64)
+found = rk.predict(cabinet, motions, friction=(0.15, 0.5), count=64)
 for sentence in found.sentences:
     print(sentence)
 
@@ -38,5 +37,5 @@ write(prediction_picture(found), "how_likely_it_overturns.png")
 # %%
 # The edges are sound, and the friction was measured.
 
-known = predict(cabinet, motions, friction=0.4, base=0.0, count=64)
+known = rk.predict(cabinet, motions, friction=0.4, base=0.0, count=64)
 print(known.verdict)

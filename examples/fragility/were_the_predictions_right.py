@@ -17,7 +17,7 @@ import numpy as np
 import rocking as rk
 from rocking.motions.integrals import peak_ground_velocity
 from rocking.plots import reliability_picture, write
-from rocking.prediction import predict, score
+from rocking.prediction import score
 
 random = np.random.default_rng(4)
 body = rk.Block(width=0.4, height=1.6)
@@ -42,7 +42,7 @@ print(f"{fell.sum():.0f} of {fell.size} overturned")
 # that overturned at all; either is fitted to the outcomes under all other motions, the prediction to none.
 
 known = {"friction": (0.1, 0.8), "base": (0.0, 0.02), "restitution": (0.85, 0.93), "centre": 1.0}
-foreseen = predict(body, motions, **known, count=32, shares=False)
+foreseen = rk.predict(body, motions, **known, count=32, shares=False)
 pga, pgv = [motion.peak for motion in motions], [peak_ground_velocity(motion) for motion in motions]
 said = foreseen.chances["overturning"].per_motion
 found = score(said, fell, range(180), pga=pga, pgv=pgv, count=foreseen.count)

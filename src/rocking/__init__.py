@@ -6,14 +6,15 @@ from rocking.lazy import exports, presenters
 from rocking.version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from rocking import bodies, dynamics, errors, evidence, examples, motions, plots, reports, restitution, studies
+    from rocking import bodies, dynamics, errors, evidence, examples, motions, plots, restitution, studies
     from rocking.bodies import Block, MassPoints, Region, Section, Solid
     from rocking.bodies.formats import read_body
-    from rocking.campaigns import Campaign
     from rocking.dynamics import Response, free_rocking, simulate, simulate_many
+    from rocking.identification import identify
     from rocking.motions import GroundMotion, pulses, synthetic
     from rocking.motions.formats import read_motion
     from rocking.outcome import Outcome
+    from rocking.prediction import predict
     from rocking.restitution import coefficient_of_restitution
     from rocking.studies._overturning_map import overturning_map
     from rocking.studies._rocking_spectrum import rocking_spectrum
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Block",
-    "Campaign",
     "GroundMotion",
     "MassPoints",
     "Outcome",
@@ -39,15 +39,16 @@ __all__ = [
     "examples",
     "fragility",
     "free_rocking",
+    "identify",
     "inventory",
     "minimum_overturning_acceleration",
     "motions",
     "overturning_map",
     "plots",
+    "predict",
     "pulses",
     "read_body",
     "read_motion",
-    "reports",
     "restitution",
     "rocking_spectrum",
     "simulate",
@@ -59,16 +60,16 @@ __all__ = [
 _HOMES = {
     "bodies": ("Block", "MassPoints", "Region", "Section", "Solid", "bodies"),
     "bodies.formats": ("read_body",),
-    "campaigns": ("Campaign",),
     "dynamics": ("Response", "dynamics", "free_rocking", "simulate", "simulate_many"),
     "errors": ("errors",),
     "evidence": ("evidence",),
     "examples": ("examples",),
+    "identification": ("identify",),
     "motions": ("GroundMotion", "motions", "pulses", "synthetic"),
     "motions.formats": ("read_motion",),
     "outcome": ("Outcome",),
     "plots": ("plots",),
-    "reports": ("reports",),
+    "prediction": ("predict",),
     "restitution": ("coefficient_of_restitution", "restitution"),
     "studies": ("minimum_overturning_acceleration", "overturning_map", "rocking_spectrum", "studies"),
     "studies.fragility": ("fragility",),

@@ -108,9 +108,8 @@ def predict(  # noqa: PLR0913 - everything that is not known is an argument
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.prediction import predict
     >>> pulses = [rk.pulses.sine(amplitude=a, period=0.8) for a in (3.0, 3.4, 5.0)]
-    >>> found = predict(rk.Block(width=0.5, height=2.0), pulses, friction=(0.2, 0.4), count=64)
+    >>> found = rk.predict(rk.Block(width=0.5, height=2.0), pulses, friction=(0.2, 0.4), count=64)
     >>> found.chances["overturning"].per_motion.round(1).tolist()
     [0.0, 0.7, 0.8]
     """
