@@ -88,7 +88,7 @@ class Subject:
         equal = math.isclose(
             self.parameters.right.slenderness_angle, self.parameters.left.slenderness_angle, rel_tol=1e-12
         )
-        return self.measure.uplift(self.scale) if equal and self._are_horizontal else None
+        return self.measure.uplift(self.scale) if equal and self.are_horizontal else None
 
     @cached_property
     def names(self) -> list[str]:
@@ -97,11 +97,11 @@ class Subject:
             motion = self.motions[k]
             names.append(motion.name)
             horizontal &= getattr(motion, "vertical", None) is None
-        self.__dict__.setdefault("_are_horizontal", horizontal)  # no motion is made twice for both
+        self.__dict__.setdefault("are_horizontal", horizontal)  # no motion is made twice for both
         return names
 
     @cached_property
-    def _are_horizontal(self) -> bool:
+    def are_horizontal(self) -> bool:
         # without the names: those of ten million motions take more room than all results
         return all(getattr(self.motions[k], "vertical", None) is None for k in range(len(self.motions)))
 

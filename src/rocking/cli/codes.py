@@ -1,0 +1,214 @@
+"""`rocking codes`: what published rules say of bodies, and what their histories show."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rocking.cli import options
+from rocking.cli.exports import Export, Exports, write_columns
+from rocking.cli.numbers import in_unit, row
+from rocking.cli.page import Page, bar, deliver
+from rocking.conventions import percent
+from rocking.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rocking.cli.arguments import Arguments
+    from rocking.spec.study import StudyProblem
+    from rocking.studies.code_methods import CalledSafe, CodeComparison
+
+COUNT, SEED, LEVEL = 100, 1, "2"
+"""Synthetic motions, and what they are brought to, where nobody says otherwise."""
+
+
+
+def _csv(answer: "CodesAnswer", path: "Path") -> None:
+    found = answer.found
+    rows = [
+        (one.name, body, level, called.total, called.safe, called.overturned, called.ratio, bias.median, bias.censored)
+        for one in found.methods
+        for k, body in enumerate(found.bodies)
+        for bias in [found.bias(one.name, k)]
+        for j, level in enumerate(found.levels)
+        for called in [found.called_safe(one.name, k, j)]
+    ]
+    head = (
+        "method", "body", "level", "histories", "called safe", "overturned of these", "demand over capacity",
+        "capacity over truth", "never overturned",
+    )  # fmt: skip
+    write_columns(path, {name: (values, "") for name, values in zip(head, zip(*rows, strict=True), strict=True)})
+
+
+EXPORTS = {"csv": Export((".csv",), _csv)}
+
+
+def codes(
+    context: typer.Context,
+    body: options.BodyFile = None,
+    record: Annotated[list[str] | None, typer.Argument(help="Record files, file#COMPONENT, or pulses.")] = None,
+    motion: options.SeveralMotions = None,
+    synthetic: Annotated[
+        str | None, typer.Option(help="Family of motions in their place, such as firm-ground.")
+    ] = None,
+    count: Annotated[int | None, typer.Option(help="How many synthetic motions, 100 if not given.")] = None,
+    seed: Annotated[int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.")] = None,
+    measure: Annotated[
+        str, typer.Option(help="Intensity that the motions are brought to, as of rocking fragility.")
+    ] = "pga/(g tan alpha)",
+    levels: Annotated[
+        str | None,
+        typer.Option(
+            help="FIRST:LAST:COUNT, with :log for equal ratios, or A,B,C; records as they are if not given, synthetic "
+            "motions at 2, the limit of the Italian linear check."
+        ),
+    ] = None,
+    restitution: options.Restitution = "ked",
+    width: Annotated[
+        str | None, typer.Option(help=r"Full widths of blocks \[m, or --units]: A,B,C.", rich_help_panel=options.SIZE)
+    ] = None,
+    height: Annotated[
+        str | None, typer.Option(help=r"Full heights of blocks \[m, or --units]: A,B,C.", rich_help_panel=options.SIZE)
+    ] = None,
+    slenderness: Annotated[
+        str | None,
+        typer.Option(help="Height over width, in place of widths, for every height: 4,5.", rich_help_panel=options.SIZE),
+    ] = None,
+    depth: options.Depth = None,
+    density: options.Density = None,
+    mass: options.Mass = None,
+    centre: options.Centre = None,
+    moment_of_inertia: options.Moment = None,
+    units: options.Units = None,
+    sets: options.Set = None,
+    friction: options.Friction = None,
+    threads: options.Threads = None,
+    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    as_json: options.AsJson = False,
+) -> None:
+    """Print what code methods say of bodies, how many that they call safe overturn, and how far off they are."""
+    from rocking.cli.arguments import Arguments, as_typed
+    from rocking.cli.study import TABLES
+    from rocking.motions.intensity import measure as measure_of
+    from rocking.studies.code_methods import compare_code_methods
+
+    exports = Exports.of(out, EXPORTS)
+    arguments = Arguments(context, *TABLES)
+    wanted = measure_of(measure)
+    with as_typed():
+        problem = _problem(arguments)
+        if levels is None and not arguments.body_and_motions()[1]:
+            levels = LEVEL if wanted.needs_body else None
+        at = None if levels is None else row("--levels", levels, "1" if wanted.unit == "-" else wanted.unit)[0]
+        with bar("histories", quiet=as_json) as progress:
+            found = compare_code_methods(
+                problem.bodies, problem.motions, problem.restitution, levels=at, measure=wanted,
+                names=_names(problem, arguments.length or "m"), threads=threads, progress=progress, **problem.stated,
+            )  # fmt: skip
+    deliver(CodesAnswer(found), exports, as_json=as_json)
+
+
+def _problem(arguments: "Arguments") -> "StudyProblem":
+    from rocking.cli.arguments import NO_MOTION, hinted
+    from rocking.cli.study import family, in_lists, problem_of
+
+    body, named = arguments.body_and_motions()
+    synthetic = family(arguments, {"count": COUNT, "seed": SEED})
+    if synthetic is not None and "synthetic" not in synthetic:
+        raise InvalidValueError(f"{NO_MOTION}, or --synthetic firm-ground")
+    with hinted(body, named[0].partition("=")[2] or named[0] if named else None):
+        motions = [synthetic] if synthetic else [in_lists(each) for each in arguments.each(named, arguments.of_body)]
+        tables = {"body": _bodies(arguments, body), "restitution": {"models": [arguments.options["restitution"]]}}
+        return problem_of("histories", arguments, motions, **tables)
+
+
+def _bodies(arguments: "Arguments", file: str | None) -> list[dict[str, Any]]:
+    """Return the tables of the bodies: a file, or blocks of every width and height that was typed."""
+    given = arguments.options
+    widths, heights, ratios = (
+        None if (text := given[name]) is None else row(f"--{name}", text, "1")[0].tolist()
+        for name in ("width", "height", "slenderness")
+    )
+    if ratios is not None:
+        if widths is not None or heights is None:
+            raise InvalidValueError("--slenderness goes with --height, in place of --width")
+        if min(ratios) <= 0.0:
+            raise InvalidValueError(f"--slenderness must be above 0, got {min(ratios):g}; height over width")
+        heights, widths = zip(*[(h, h / ratio) for h in heights for ratio in ratios], strict=True)
+    widths, heights = widths or [None], heights or [None]
+    if len(widths) != len(heights) and 1 not in {len(widths), len(heights)}:
+        raise InvalidValueError(f"--width and --height must be as many, or one, got {len(widths)} and {len(heights)}")
+    most = max(len(widths), len(heights))
+    tables = []
+    for k in range(most):
+        size = {"width": widths[k % len(widths)], "height": heights[k % len(heights)]}
+        arguments.options = {**given, **size}
+        tables.append(arguments.body_table(file))
+    arguments.options = given
+    return tables
+
+
+def _names(problem: "StudyProblem", length: str) -> list[str]:
+    sizes = [(getattr(body, "width", None), getattr(body, "height", None)) for body in problem.bodies]
+    return [
+        f"{type(body).__name__} {k + 1}" if None in size else " x ".join(in_unit(each, length) for each in size)
+        for k, (body, size) in enumerate(zip(problem.bodies, sizes, strict=True))
+    ]
+
+
+@dataclass(frozen=True)
+class CodesAnswer:
+    """What methods say, and what histories show."""
+
+    found: "CodeComparison"
+
+    def facts(self) -> dict[str, Any]:
+        from rocking.studies.code_methods import LEFT_OUT
+
+        return {**self.found.as_dict(), "left_out": LEFT_OUT}
+
+    def show(self, page: Page) -> None:
+        found = self.found
+        fell, many = found.overturned[~(found.overturned != found.overturned)], len(found.motions)
+        motions = found.motions[0] if many == 1 else f"{many}"
+        page.facts([
+            ("bodies", "; ".join(found.bodies)), ("motions", f"{motions}, {'; '.join(found.levels)}"),
+            ("histories", f"{int(fell.sum())} of {fell.size} overturned, restitution {found.restitution}"),
+        ])  # fmt: skip
+        page.line()
+        head = ("method", "safe", "D/C", "overturn of these", "capacity/truth", "scatter")
+        page.table(head, [_row(found, one.name) for one in found.methods], head[:1])
+        if len(found.bodies) * len(found.levels) > 1:
+            page.line("\nOverturned of those that are called safe", "bold")
+            names = [one.name for one in found.methods]
+            page.table(("body", "level", *names), [
+                (body, level, *(_share(found.called_safe(name, k, j)) for name in names))
+                for k, body in enumerate(found.bodies) for j, level in enumerate(found.levels)
+            ], ("body", "level"))  # fmt: skip
+        page.line()
+        page.line(
+            "safe: called so, of all; D/C: median of demand over capacity; capacity/truth: median of the intensity up "
+            "to which a method calls a body safe over the least that overturns it, above 1 where it is unsafe; scatter: "
+            "of its logarithm; in brackets 95 %. Sources, domains, and how sure the readings are: --json."
+        )
+        if found.asymmetric.any():
+            page.line("Where sides differ, the worse one counts, in methods and in histories.")
+
+
+def _row(found: "CodeComparison", name: str) -> tuple[str, ...]:
+    called, bias = found.called_safe(name), found.bias(name)
+    if not called.total:
+        return name, "outside", *["-"] * 4
+    share = "-" if called.interval is None else f"{_share(called)} ({_between(called.interval, 100.0)})"
+    median = f"{bias.median:.3g} ({_between(bias.interval)})" if bias.count else "-"
+    said = ("yes" if called.safe else "no") if called.total == 1 else f"{called.safe} of {called.total}"
+    return name, said, f"{called.ratio:.3g}", share, median, "-" if bias.scatter != bias.scatter else f"{bias.scatter:.2g}"
+
+
+def _share(called: "CalledSafe") -> str:
+    return percent(round(called.share, 3)) if called.safe else "-"
+
+
+def _between(ends: tuple[float, float], factor: float = 1.0) -> str:
+    return "-" if ends[0] != ends[0] else " to ".join(f"{factor * end:.3g}" for end in ends)

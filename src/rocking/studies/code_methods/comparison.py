@@ -1,0 +1,378 @@
+"""Code methods beside histories: what each says of bodies, and what then happens to them under a set of motions."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from rocking import checks, plausibility
+from rocking.bodies import Body
+from rocking.conventions import BoolArray, FloatArray
+from rocking.errors import InvalidValueError
+from rocking.motions.intensity import measure as measure_of
+from rocking.statistics.counts import LEAST_CLUSTERS, share_interval
+from rocking.studies.code_methods.method import CodeMethod, Shaking, Stances
+from rocking.studies.code_methods.methods import CODE_METHODS
+from rocking.studies.fragility.subject import Responses, Subject, checked_levels
+from rocking.studies.histories import Histories, results_of
+from rocking.studies.motion_sets import MotionList
+
+MEASURE = "pga/(g tan alpha)"  # of levels, where nobody says another
+POINTS, REACH, HALVINGS = 64, 50.0, 6
+"""Levels at which the least that overturns is looked for, up to so many times what lifts, and halvings of its place."""
+
+REPETITIONS, TAIL = 1000, 0.025
+AT_MOST = 1.0 + 1e-9  # a demand that is all of the capacity passes: the clauses say "at least" [-]
+QUARTERS = 0.16, 0.5, 0.84  # quantiles that give median and scatter [-]
+Progress = Callable[[int], None] | None
+
+
+@dataclass(frozen=True)
+class Bias:
+    """How a method's capacity compares with the intensity that overturns: method over truth.
+
+    Parameters
+    ----------
+    median : float
+        Median ratio; above 1 the method takes a body for stronger than it is [-].
+    interval : tuple of float
+        95 % interval of the median, by drawing whole motions again; NaN of fewer than five [-].
+    scatter : float
+        Half the distance of the 16 % and 84 % quantiles of the ratio's logarithm; infinite where too many motions
+        do not overturn within the range that was searched, NaN of fewer than five motions [-].
+    count, censored : int
+        Pairs of a motion and a body, and those of them which no level overturned: their ratio lies below all others.
+    """
+
+    median: float
+    interval: tuple[float, float]
+    scatter: float
+    count: int
+    censored: int
+
+
+@dataclass(frozen=True)
+class CalledSafe:
+    """Those that a method calls safe, and how many of them overturn.
+
+    Parameters
+    ----------
+    total : int
+        Cases whose histories were computed and that lie in the method's domain [-].
+    safe : int
+        Cases that it calls safe [-].
+    overturned : int
+        Cases of these that overturn [-].
+    ratio : float
+        Median of demand over capacity, above 1 where it does not call the case safe [-].
+    interval : tuple of float, optional
+        95 % interval of the share that overturns; None where nothing is called safe, or of fewer than five motions some
+        are, in some of which it overturns [-].
+    """
+
+    total: int
+    safe: int
+    overturned: int
+    ratio: float
+    interval: tuple[float, float] | None
+
+    @property
+    def share(self) -> float:
+        """Share that overturns of those that are called safe; NaN where there are none [-]."""
+        return self.overturned / self.safe if self.safe else math.nan
+
+
+@dataclass(frozen=True, eq=False)
+class CodeComparison:
+    """What methods say of bodies under motions, and what histories show.
+
+    Parameters
+    ----------
+    methods : tuple of CodeMethod
+        The methods.
+    bodies, motions : tuple of str
+        Their names.
+    levels : tuple of str
+        What the motions were brought to, in words.
+    capacity : ndarray, shape (methods, motions, bodies)
+        Factor on each motion up to which a method calls a body safe; NaN outside its domain [-].
+    overturning : ndarray, shape (motions, bodies)
+        Least factor that overturns, of either way round; infinite if none did, NaN without a result [-].
+    factors : ndarray, shape (motions, bodies, levels)
+        Factors that bring the motions to the levels [-].
+    overturned : ndarray, shape (motions, bodies, levels)
+        1 where a body overturns at a level, of either way round; NaN without a result [-].
+    asymmetric : ndarray, shape (bodies,)
+        Whether the worse side of a body counts.
+    restitution : str
+        Of the histories, in words.
+    """
+
+    methods: tuple[CodeMethod, ...]
+    bodies: tuple[str, ...]
+    motions: tuple[str, ...]
+    levels: tuple[str, ...]
+    capacity: FloatArray
+    overturning: FloatArray
+    factors: FloatArray
+    overturned: FloatArray
+    asymmetric: BoolArray
+    restitution: str
+
+    def called_safe(self, method: str, body: int | slice = slice(None), level: int | slice = slice(None)) -> CalledSafe:
+        """Return how many a method calls safe, of all bodies and levels or of one, and how many of these overturn.
+
+        Parameters
+        ----------
+        method : str
+            Name of the method.
+        body, level : int, optional
+            Numbers of one body and one level; all together if not given.
+
+        Returns
+        -------
+        CalledSafe
+            The interval is exact for one body at one level, else by drawing whole motions again.
+        """
+        ratio = (self.factors / self.capacity[self._place(method)][:, :, None])[:, body, level]
+        fell = self.overturned[:, body, level]
+        known = np.isfinite(ratio) & ~np.isnan(fell)
+        safe = known & (ratio <= AT_MOST)
+        rows = [np.reshape(each, (len(self.motions), -1)).sum(axis=1) for each in (safe & (fell == 1.0), safe)]
+        hits, count = (int(row.sum()) for row in rows)
+        interval = None
+        alone = isinstance(body, int) and isinstance(level, int)
+        if count and (alone or hits in {0, count}):  # none or all: no draw would show anything else
+            independent = count if alone else int((rows[1] > 0.0).sum())
+            interval = share_interval(min(hits, independent), independent)
+        elif count and (rows[1] > 0.0).sum() >= LEAST_CLUSTERS:
+            again = self._again @ np.stack(rows, axis=1)
+            shares = again[:, 0] / np.where(again[:, 1] > 0.0, again[:, 1], np.nan)
+            interval = _ends(shares)
+        middle = float(np.median(ratio[known])) if known.any() else math.nan
+        return CalledSafe(int(known.sum()), count, hits, middle, interval)
+
+    def bias(self, method: str, body: int | None = None) -> Bias:
+        """Return how a method's capacity compares with what overturns, of all bodies or of one.
+
+        Parameters
+        ----------
+        method : str
+            Name of the method.
+        body : int, optional
+            Number of the body; all together if not given.
+
+        Returns
+        -------
+        Bias
+            Median, interval and scatter; NaN where no pair has both.
+        """
+        chosen = slice(None) if body is None else slice(body, body + 1)
+        truth = self.overturning[:, chosen]
+        ratio = self.capacity[self._place(method)][:, chosen] / truth  # Eq. 309
+        good = np.isfinite(ratio)
+        if not good.any():
+            return Bias(math.nan, (math.nan, math.nan), math.nan, 0, 0)
+        low, middle, high = _quantiles(ratio, good.astype(np.float64), QUARTERS)
+        interval, scatter = (math.nan, math.nan), math.nan
+        if good.any(axis=1).sum() >= LEAST_CLUSTERS:
+            weights = self._again[:, :, None] * good
+            interval = _ends(np.array([_quantiles(ratio, each, (0.5,))[0] for each in weights if each.any()]))
+            scatter = 0.5 * math.log(high / low) if low > 0.0 else math.inf
+        return Bias(middle, interval, scatter, int(good.sum()), int((good & np.isinf(truth)).sum()))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return everything as plain values.
+
+        Returns
+        -------
+        dict
+            By method: where it stands, and for every body its bias and what it calls safe at every level.
+        """
+        numbers = range(len(self.bodies))
+        return {
+            "bodies": list(self.bodies),
+            "worse_side_counts": self.asymmetric.tolist(),
+            "motions": list(self.motions),
+            "levels": list(self.levels),
+            "restitution": self.restitution,
+            "methods": {
+                one.name: {
+                    **{name: getattr(one, name) for name in ("title", "reference", "domain", "reading", "example")},
+                    "bias": [vars(self.bias(one.name, k)) for k in numbers],
+                    "called_safe": [
+                        [_facts(self.called_safe(one.name, k, j)) for j in range(len(self.levels))] for k in numbers
+                    ],
+                    "all_bodies": {
+                        "bias": vars(self.bias(one.name)), "called_safe": _facts(self.called_safe(one.name)),
+                    },
+                }
+                for one in self.methods
+            },
+        }  # fmt: skip
+
+    def _place(self, method: str) -> int:
+        names = [each.name for each in self.methods]
+        return names.index(checks.one_of("method", method, names))
+
+    @cached_property
+    def _again(self) -> FloatArray:
+        """How often each motion is drawn, one row a repetition."""
+        count = len(self.motions)
+        return np.random.default_rng(0).multinomial(count, np.full(count, 1.0 / count), REPETITIONS).astype(np.float64)
+
+
+def _facts(called: CalledSafe) -> dict[str, Any]:
+    return {**vars(called), "share": called.share}
+
+
+def _ends(values: FloatArray) -> tuple[float, float]:
+    low, high = np.nanquantile(values, (TAIL, 1.0 - TAIL), method="inverted_cdf").tolist()
+    return low, high
+
+
+def _quantiles(values: FloatArray, weights: FloatArray, shares: Sequence[float]) -> list[float]:
+    """Return quantiles of values that each count as often as their weight says."""
+    flat, often = np.where(weights > 0.0, values, 0.0).ravel(), weights.ravel()
+    order = np.argsort(flat, kind="stable")
+    summed = np.cumsum(often[order])
+    places = np.searchsorted(summed, np.asarray(shares) * summed[-1] * (1.0 - 1e-12))
+    return [float(flat[order[place]]) for place in places]
+
+
+def compare_code_methods(
+    bodies: Body | Sequence[Body],
+    motions: Any,
+    restitution: Any = "ked",
+    *,
+    levels: Any = None,
+    measure: Any = MEASURE,
+    methods: Sequence[str] | None = None,
+    names: Sequence[str] | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+    **options: Any,
+) -> CodeComparison:
+    """Say of bodies what code methods say, and compute under the same motions what happens to them.
+
+    A body that is not symmetric is judged by its worse side, and its histories are computed both ways round: it
+    overturns where either does. The intensity that overturns is the least factor on each motion that was found to, at
+    64 levels in equal ratios and six halvings, up to 50 times what lifts the body or the largest acceleration that was
+    ever recorded; a thinner stretch below may have been missed.
+
+    Parameters
+    ----------
+    bodies : Body or sequence of Body
+        Plane bodies.
+    motions : GroundMotion, Pulse, MotionSet or a sequence
+        The motions; the methods see their horizontal part alone.
+    restitution : as for `simulate`
+        Of the histories.
+    levels : array_like, optional
+        To what every motion is brought; as they are if not given [unit of the measure].
+    measure : str or IntensityMeasure
+        The measure of the levels; of ``pga/(g tan alpha)`` 2 is the limit of the Italian linear check.
+    methods : sequence of str, optional
+        Names of `CODE_METHODS`; all if not given.
+    names : sequence of str, optional
+        Names of the bodies.
+    threads : int, optional
+        Threads of the fast engine.
+    progress : callable, optional
+        Told how many histories have been computed since it was last called.
+    **options
+        ``gravity`` [m/s2], ``engine``, ``friction`` and other fields of `Settings`.
+
+    Returns
+    -------
+    CodeComparison
+        Capacities by method, outcomes, bias.
+
+    Raises
+    ------
+    InvalidValueError
+        If a body is not plane, a motion is zero throughout, or a value is outside its range.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> small, large = (rk.Block(width=0.2 * height, height=height) for height in (0.6, 6.0))
+    >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.6, 0.8, 1.0)]
+    >>> found = compare_code_methods([small, large], pulses, "housner", levels=[1.9])
+    >>> [found.called_safe("italian-linear", body, 0).share for body in (0, 1)]
+    [1.0, 0.0]
+    """
+    several: list[Any] = [bodies] if isinstance(bodies, Body) else list(bodies)
+    if not several:
+        raise InvalidValueError("bodies must be at least one body, got none")
+    chosen = tuple(CODE_METHODS[checks.one_of("methods", each, list(CODE_METHODS))] for each in methods or CODE_METHODS)
+    gravity = options.get("gravity")
+    stances = Stances.of(several) if gravity is None else Stances.of(several, gravity)
+    kept = MotionList([motions[k] for k in range(len(motions))] if hasattr(motions, "__len__") else motions)
+    shaking, level = Shaking.of(kept), measure_of(measure)
+    at = None if levels is None else checked_levels("levels", levels, level.unit)
+    cases = [_Case.of(body, kept, restitution, level, at, options, threads, progress) for body in several]
+    return CodeComparison(
+        methods=chosen,
+        bodies=tuple(names) if names is not None else tuple(map(repr, several)),
+        motions=tuple(motion.name for motion in shaking.motions),
+        levels=("as they are",) if at is None else tuple(f"{level.name} = {value:g} {level.unit}" for value in at),
+        capacity=np.array([each.capacity(stances, shaking) for each in chosen]),
+        overturning=np.stack([each.least for each in cases], axis=1),
+        factors=np.stack([each.factors for each in cases], axis=1),
+        overturned=np.stack([each.overturned for each in cases], axis=1),
+        asymmetric=np.array([not body.is_symmetric for body in several]),
+        restitution=cases[0].label,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Case:
+    """Histories of one body under all motions, of both ways round where these differ."""
+
+    least: FloatArray  # least factor that overturns, by motion
+    factors: FloatArray  # by motion and level
+    overturned: FloatArray
+    label: str
+
+    @classmethod
+    def of(
+        cls, body: Body, motions: MotionList, restitution: Any, measure: Any, levels: FloatArray | None,
+        options: dict[str, Any], threads: int | None, progress: Progress,
+    ) -> "_Case":  # fmt: skip
+        turned = (body,) if body.is_symmetric else (body, body.mirrored())
+        subjects = [Subject.of(each, motions, restitution, measure, options) for each in turned]
+        one = subjects[0]
+        factors = np.ones((len(motions), 1)) if levels is None else measure.factors(one.intensities, levels)
+
+        def overturned(subject: Subject, histories: Histories, shape: tuple[int, ...]) -> FloatArray:
+            arrays = results_of(histories, threads=threads, progress=progress)
+            return Responses.of(arrays, subject.parameters, shape).overturned
+
+        fell = [overturned(each, each.product(factors), factors.shape) for each in subjects]
+        least = [_least(each, overturned) for each in subjects]
+        return cls(np.minimum.reduce(least), factors, np.maximum.reduce(fell), one.parameters.label)
+
+
+def _least(subject: Subject, overturned: Callable[[Subject, Histories, tuple[int, ...]], FloatArray]) -> FloatArray:
+    """Return the least factor on each motion that was found to overturn; infinite if none, NaN without a result."""
+    peaks, lifts = measure_of("pga").values(subject.motions, subject.scale), subject.scale.threshold
+    light = not subject.are_horizontal
+    highest = min(REACH * lifts, max(plausibility.LARGEST_PGA, 4.0 * lifts))
+    grid = np.geomspace((0.1 if light else 1.0) * lifts, highest, POINTS) / peaks[:, None]
+    fell = overturned(subject, subject.product(grid), grid.shape)
+    first = np.argmax(fell == 1.0, axis=1)
+    rows = np.arange(len(peaks))
+    found = np.where(fell[rows, first] == 1.0, grid[rows, first], np.inf)
+    low, high = grid[rows, np.maximum(first - 1, 0)], found
+    some = np.flatnonzero(np.isfinite(found) & (first > 0))
+    for _ in range(HALVINGS if some.size else 0):
+        middle = np.sqrt(low[some] * high[some])
+        falls = overturned(subject, subject.table(some, middle), middle.shape) == 1.0
+        high[some], low[some] = np.where(falls, middle, high[some]), np.where(falls, low[some], middle)
+    high[some] = np.sqrt(low[some] * high[some])
+    before = np.where(np.isfinite(found), first, POINTS)[:, None] > np.arange(POINTS)
+    return np.where((np.isnan(fell) & before).any(axis=1), np.nan, high)

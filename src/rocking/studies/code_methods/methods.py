@@ -1,0 +1,190 @@
+"""The methods, each as published; what could not be read at its source is in `LEFT_OUT`, not in code."""
+
+import math
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.studies.code_methods.method import CodeMethod, Shaking, Stances
+
+
+class StaticOverturning(CodeMethod):
+    """West's criterion: an acceleration that lifts a body for long enough overturns it."""
+
+    name = "static"
+    title = "static overturning (West)"
+    reference = "West's criterion a = g b/h, as Milne & Omori 1893 and Housner 1963 state it"
+    domain = "any body; says when it lifts, so it is safe for every horizontal motion"
+    reading = "certain: it is the equilibrium of moments about the foot"
+    example = "closed form: the acceleration of uplift"
+
+    def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
+        """Eq. 300."""
+        return stances.uplift / shaking.acceleration  # Eq. 300
+
+
+class ItalianLinearKinematic(CodeMethod):
+    """Italian linear kinematic check of a free-standing body on the ground, with q = 2."""
+
+    name = "italian-linear"
+    title = "Italian linear kinematic check, q = 2"
+    reference = "NTC 2008, Circ. 617/2009 C8A.4.2.3; NTC 2018, Circ. 7/2019 C8.7.1.2: a0* >= a_g S / q"
+    domain = "rigid body on the ground, no filter by a storey; e* = 1 (one body), CF = 1; a_g S is the PGA of the motion"
+    reading = "high: the clause as our specification quotes it; the text of the circular itself was not at hand"
+    behaviour_factor = 2.0  # q [-]
+
+    def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
+        """Eq. 301."""
+        return self.behaviour_factor * stances.uplift / shaking.acceleration  # Eq. 301
+
+
+ROTATIONS = np.linspace(0.1, 1.0, 10)  # over the slenderness angle, at which ASCE's balance is looked for [-]
+
+
+class AsceRocking(CodeMethod):
+    """Energy method of ASCE/SEI 43: a linear oscillator of the frequency and damping that belong to a rotation."""
+
+    name = "asce-43"
+    title = "ASCE/SEI 43 rocking, energy method"
+    reference = "ASCE/SEI 43-05 and 43-19, A.2, approximate method for rocking of an unanchored rigid body, Eq. A-5 ff."
+    domain = (
+        "symmetric body of one mass (F_H = 1), no vertical motion (F_V = 1), C_R > 0; safe if a rotation up to alpha "
+        "balances, without the standard's factors of safety"
+    )
+    reading = (
+        "structure and symbols seen at the head of A.2, equations as our specification re-derives them; how the "
+        "standard iterates and which margin it asks for were not read"
+    )
+    example = "closed form: C_R of a rectangle is Housner's coefficient"
+
+    @staticmethod
+    def restitution(stances: Stances) -> FloatArray:
+        """Return C_R of every side [-]."""
+        a = stances.slope
+        return 1.0 - 2.0 * a**2 / _inertia(stances)  # Eq. 302
+
+    def damping(self, stances: Stances) -> FloatArray:
+        """Return beta_e of every side; NaN where C_R is not above zero [-]."""
+        r = self.restitution(stances)
+        gamma = -2.0 * np.log(np.where(r > 0.0, r, np.nan))
+        return np.asarray(gamma / np.hypot(2.0 * math.pi, gamma))  # Eq. 303
+
+    @staticmethod
+    def oscillator(stances: Stances) -> tuple[FloatArray, FloatArray]:
+        """Return period [s] and capacity [m/s2] at each of `ROTATIONS`, the last axis."""
+        a, h = stances.slope[..., None], stances.height[..., None]
+        rotation = stances.angle[..., None] * ROTATIONS
+        f1 = np.cos(rotation) + a * np.sin(rotation) - 1.0
+        work = 2.0 * stances.gravity * f1
+        period = 2.0 * math.pi * rotation * np.sqrt(_inertia(stances)[..., None] * h / work)  # Eq. 304
+        return period, work / rotation  # Eq. 305
+
+    def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
+        """Eqs. 302 to 305; the largest factor at which some rotation up to alpha balances."""
+        beta, (period, capacity) = self.damping(stances), self.oscillator(stances)
+        found = np.full((len(shaking.motions), *beta.shape), np.nan)
+        alike = np.round(beta, 12)  # sides of one damping share their spectra
+        for value in np.unique(alike[np.isfinite(alike)]):
+            some = alike == value
+            periods, places = np.unique(period[some], return_inverse=True)
+            demand = shaking.spectra(periods, float(value))[:, places.reshape(-1, ROTATIONS.size)]
+            found[:, some] = (capacity[some] / demand).max(axis=-1)
+        return found
+
+
+def _inertia(stances: Stances) -> FloatArray:
+    """Return C_I = I_O / (m h^2), which is 4/3 (1 + a^2) for a rectangle [-]."""
+    h, p = stances.height, stances.frequency_parameter
+    return stances.gravity * np.hypot(stances.half_width, h) / (p * h) ** 2
+
+
+class IshiyamaCriteria(CodeMethod):
+    """Ishiyama: overturning takes both an acceleration that lifts and a velocity."""
+
+    name = "ishiyama"
+    title = "Ishiyama's criteria, acceleration and velocity"
+    reference = "Ishiyama 1982, Earthq. Eng. Struct. Dyn. 10, 635-650; Criteria for overturning of rigid bodies, 8WCEE"
+    domain = "lower limits: below either of both a body stands; the factor 0.4 was found for rectangles on a rigid floor"
+    reading = (
+        "medium: that velocity counts beside acceleration was read in the paper's summary; the formula is our "
+        "specification's, and both of its forms (with R, and 10 B / sqrt(H) in cm) agree within 2.5 %"
+    )
+    share = 0.4  # of the velocity of a single impulse that overturns [-]
+
+    def velocity(self, stances: Stances) -> FloatArray:
+        """Return the ground velocity below which a body stands, by side [m/s]."""
+        alpha, p = stances.angle, stances.frequency_parameter
+        impulse = 2.0 * np.sin(0.5 * alpha) * stances.gravity / (p * np.cos(alpha))
+        return np.asarray(self.share * impulse)  # Eq. 306
+
+    def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
+        """Both must be passed."""
+        lifts = stances.uplift / shaking.acceleration
+        return np.maximum(lifts, self.velocity(stances) / shaking.velocity)
+
+
+class KanekoHayashi(CodeMethod):
+    """Kaneko and Hayashi: the floor acceleration at which half of the bodies overturn."""
+
+    name = "kaneko-hayashi"
+    title = "Kaneko and Hayashi's A_R50"
+    reference = "Kaneko & Hayashi 2004, A proposal for simple equations ... overturning ratios of rigid bodies, 13WCEE"
+    domain = "rectangles, furniture on floors; half of the bodies overturn at its limit by its own account"
+    reading = (
+        "medium: as our specification states it, in cm and s; the equivalent frequency PGA / (2 pi PGV) is to be "
+        "confirmed; f_b is taken where both branches meet, 15.61 for its 15.6"
+    )
+
+    @staticmethod
+    def acceleration(stances: Stances, frequency: FloatArray) -> FloatArray:
+        """Return A_R50 of every side; frequency: of the floor's motion [Hz]. In m and s its 10 is 1 [m/s2]."""
+        ratio = stances.slope
+        width, height = 2.0 * stances.half_width, 2.0 * stances.height
+        slow = stances.gravity * ratio * (1.0 + ratio)
+        quick = width / np.sqrt(height) * (1.0 + ratio) ** 2.5 * 2.0 * math.pi * frequency
+        return np.maximum(slow, quick)  # Eq. 307
+
+    def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
+        """A motion that is scaled keeps its frequency."""
+        frequency = shaking.acceleration / (2.0 * math.pi * shaking.velocity)
+        return self.acceleration(stances, frequency) / shaking.acceleration
+
+
+class HousnerPulse(CodeMethod):
+    """Housner's rectangular pulse of constant acceleration, as long as takes the PGA to reach the PGV."""
+
+    name = "housner-pulse"
+    title = "Housner's rectangular pulse"
+    reference = "Housner 1963, Bull. Seismol. Soc. Am. 53(2) 403-417, constant acceleration of duration t1"
+    domain = "slender bodies (alpha up to about 20 degrees), linearised; the duration PGV / PGA is ours, not Housner's"
+    reading = "certain for the pulse: it follows from the linear equation of motion"
+    example = "our own engine under the pulse (tests), in the limit of slender bodies"
+
+    @staticmethod
+    def acceleration(stances: Stances, duration: FloatArray) -> FloatArray:
+        """Return the acceleration of a pulse of some duration [s] that just overturns, by side [m/s2]."""
+        ratio = 0.5 * (1.0 + 1.0 / np.tanh(0.5 * stances.frequency_parameter * duration))
+        return np.asarray(ratio * stances.gravity * stances.angle)  # Eq. 308
+
+    def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
+        """A motion that is scaled keeps its duration."""
+        return self.acceleration(stances, shaking.velocity / shaking.acceleration) / shaking.acceleration
+
+
+CODE_METHODS: dict[str, CodeMethod] = {
+    method.name: method
+    for method in (
+        StaticOverturning(), ItalianLinearKinematic(), AsceRocking(), IshiyamaCriteria(), KanekoHayashi(),
+        HousnerPulse(),
+    )
+}  # fmt: skip
+"""Every method, by name."""
+
+LEFT_OUT = {
+    "Reggiani Manzo and Vassiliou's size-independent estimate": "only the summary of the paper could be read",
+    "Housner's equal-velocity spectrum, half of the bodies overturn": "the equation could not be read at its source",
+    "Italian non-linear kinematic check": "the text of neither edition could be read",
+    "NZSEE C8, displacement method for face loads": "its text could not be read",
+    "margins of ASCE/SEI 43 over its best estimate": "the clauses could not be read",
+}
+"""What is not here, and why: nothing is written from memory."""
