@@ -1,15 +1,16 @@
 """`rocking codes`: what published rules say of bodies, and what their histories show."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking.bodies import Block
 from rocking.cli import options
 from rocking.cli.exports import Export, Exports, write_columns
 from rocking.cli.numbers import in_unit, row
 from rocking.cli.page import Page, bar, deliver
-from rocking.conventions import percent
+from rocking.conventions import LENGTH_UNITS, percent
 from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
 COUNT, SEED, LEVEL = 100, 1, "2"
 """Synthetic motions, and what they are brought to, where nobody says otherwise."""
-
 
 
 def _csv(answer: "CodesAnswer", path: "Path") -> None:
@@ -73,7 +73,9 @@ def codes(
     ] = None,
     slenderness: Annotated[
         str | None,
-        typer.Option(help="Height over width, in place of widths, for every height: 4,5.", rich_help_panel=options.SIZE),
+        typer.Option(
+            help="Height over width, in place of widths, for every height: 4,5.", rich_help_panel=options.SIZE
+        ),
     ] = None,
     depth: options.Depth = None,
     density: options.Density = None,
@@ -104,8 +106,9 @@ def codes(
         with bar("histories", quiet=as_json) as progress:
             found = compare_code_methods(
                 problem.bodies, problem.motions, problem.restitution, levels=at, measure=wanted,
-                names=_names(problem, arguments.length or "m"), threads=threads, progress=progress, **problem.stated,
+                threads=threads, progress=progress, **problem.stated,
             )  # fmt: skip
+    found = replace(found, bodies=_names(problem, arguments.length or "m"))
     deliver(CodesAnswer(found), exports, as_json=as_json)
 
 
@@ -149,12 +152,13 @@ def _bodies(arguments: "Arguments", file: str | None) -> list[dict[str, Any]]:
     return tables
 
 
-def _names(problem: "StudyProblem", length: str) -> list[str]:
-    sizes = [(getattr(body, "width", None), getattr(body, "height", None)) for body in problem.bodies]
-    return [
-        f"{type(body).__name__} {k + 1}" if None in size else " x ".join(in_unit(each, length) for each in size)
-        for k, (body, size) in enumerate(zip(problem.bodies, sizes, strict=True))
-    ]
+def _names(problem: "StudyProblem", length: str) -> tuple[str, ...]:
+    return tuple(
+        f"{body.width / LENGTH_UNITS[length]:.4g} x {in_unit(body.height, length)}"
+        if isinstance(body, Block)
+        else type(body).__name__
+        for body in problem.bodies
+    )
 
 
 @dataclass(frozen=True)
@@ -177,20 +181,22 @@ class CodesAnswer:
             ("histories", f"{int(fell.sum())} of {fell.size} overturned, restitution {found.restitution}"),
         ])  # fmt: skip
         page.line()
-        head = ("method", "safe", "D/C", "overturn of these", "capacity/truth", "scatter")
-        page.table(head, [_row(found, one.name) for one in found.methods], head[:1])
+        head = ("method", "safe", "D/C", "these overturn", "capacity/truth", "scatter")
+        page.table(head, [_row(found, one.name) for one in found.methods], head[:1], whole={0, 3, 4})
         if len(found.bodies) * len(found.levels) > 1:
             page.line("\nOverturned of those that are called safe", "bold")
             names = [one.name for one in found.methods]
-            page.table(("body", "level", *names), [
-                (body, level, *(_share(found.called_safe(name, k, j)) for name in names))
-                for k, body in enumerate(found.bodies) for j, level in enumerate(found.levels)
-            ], ("body", "level"))  # fmt: skip
+            for j, level in enumerate(found.levels):
+                page.line(level)
+                page.table(("body", *(name.replace("-", " ") for name in names)), [
+                    (body, *(_share(found.called_safe(name, k, j)) for name in names))
+                    for k, body in enumerate(found.bodies)
+                ], ("body",))  # fmt: skip
         page.line()
         page.line(
-            "safe: called so, of all; D/C: median of demand over capacity; capacity/truth: median of the intensity up "
-            "to which a method calls a body safe over the least that overturns it, above 1 where it is unsafe; scatter: "
-            "of its logarithm; in brackets 95 %. Sources, domains, and how sure the readings are: --json."
+            "safe: called so; D/C: median of demand over capacity; capacity/truth: median of the intensity up "
+            "to which a method calls a body safe over the least that overturns it, above 1 where it is unsafe; "
+            "scatter: of its logarithm; in brackets 95 %. Sources, domains, and how sure the readings are: --json."
         )
         if found.asymmetric.any():
             page.line("Where sides differ, the worse one counts, in methods and in histories.")
@@ -202,8 +208,15 @@ def _row(found: "CodeComparison", name: str) -> tuple[str, ...]:
         return name, "outside", *["-"] * 4
     share = "-" if called.interval is None else f"{_share(called)} ({_between(called.interval, 100.0)})"
     median = f"{bias.median:.3g} ({_between(bias.interval)})" if bias.count else "-"
-    said = ("yes" if called.safe else "no") if called.total == 1 else f"{called.safe} of {called.total}"
-    return name, said, f"{called.ratio:.3g}", share, median, "-" if bias.scatter != bias.scatter else f"{bias.scatter:.2g}"
+    said = ("yes" if called.safe else "no") if called.total == 1 else percent(round(called.safe / called.total, 3))
+    return (
+        name,
+        said,
+        f"{called.ratio:.3g}",
+        share,
+        median,
+        "-" if bias.scatter != bias.scatter else f"{bias.scatter:.2g}",
+    )
 
 
 def _share(called: "CalledSafe") -> str:
@@ -211,4 +224,4 @@ def _share(called: "CalledSafe") -> str:
 
 
 def _between(ends: tuple[float, float], factor: float = 1.0) -> str:
-    return "-" if ends[0] != ends[0] else " to ".join(f"{factor * end:.3g}" for end in ends)
+    return "-" if ends[0] != ends[0] else "-".join(f"{factor * end:.3g}" for end in ends)

@@ -51,12 +51,13 @@ EXPORTS = {
     "picture": Export(PICTURES, draw, "matplotlib"),
     "csv": Export((".csv",), _csv),
     "p58": Export((".csv",), _of_curves("to_csv", "fema-p58")),
+    "pelicun": Export((".csv",), _of_curves("to_csv", "pelicun")),
     "nrml": Export((".xml",), _of_curves("to_nrml")),
     "excel": Export((".xlsx",), _of_curves("to_excel"), "openpyxl"),
     "mat": Export((".mat",), _of_curves("to_mat")),
     "netcdf": Export((".nc",), _of_curves("to_netcdf"), "h5netcdf"),
 }
-CURVES = ("p58", "nrml", "excel", "mat", "netcdf")
+CURVES = ("p58", "pelicun", "nrml", "excel", "mat", "netcdf")
 """Files of the curves of one restitution."""
 
 
@@ -148,7 +149,7 @@ def fragility(
     answer.name, answer.crossing = name, crossing
     # the numbers are shown even if a file cannot be made of them
     deliver(answer, as_json=as_json)
-    if {"p58", "nrml"} & exports.names:
+    if {"p58", "pelicun", "nrml"} & exports.names:
         answer.check_crossing()  # before the first file is written
     for path in exports.write(answer):
         if not as_json:

@@ -27,7 +27,6 @@ POINTS, REACH, HALVINGS = 64, 50.0, 6
 REPETITIONS, TAIL = 1000, 0.025
 AT_MOST = 1.0 + 1e-9  # a demand that is all of the capacity passes: the clauses say "at least" [-]
 QUARTERS = 0.16, 0.5, 0.84  # quantiles that give median and scatter [-]
-Progress = Callable[[int], None] | None
 
 
 @dataclass(frozen=True)
@@ -251,9 +250,6 @@ def compare_code_methods(
     levels: Any = None,
     measure: Any = MEASURE,
     methods: Sequence[str] | None = None,
-    names: Sequence[str] | None = None,
-    threads: int | None = None,
-    progress: Progress = None,
     **options: Any,
 ) -> CodeComparison:
     """Say of bodies what code methods say, and compute under the same motions what happens to them.
@@ -277,14 +273,9 @@ def compare_code_methods(
         The measure of the levels; of ``pga/(g tan alpha)`` 2 is the limit of the Italian linear check.
     methods : sequence of str, optional
         Names of `CODE_METHODS`; all if not given.
-    names : sequence of str, optional
-        Names of the bodies.
-    threads : int, optional
-        Threads of the fast engine.
-    progress : callable, optional
-        Told how many histories have been computed since it was last called.
     **options
-        ``gravity`` [m/s2], ``engine``, ``friction`` and other fields of `Settings`.
+        ``threads``, ``progress`` (called with the number of histories done since the last call), ``gravity`` [m/s2],
+        ``engine``, ``friction`` and other fields of `Settings`.
 
     Returns
     -------
@@ -314,12 +305,14 @@ def compare_code_methods(
     kept = MotionList([motions[k] for k in range(len(motions))] if hasattr(motions, "__len__") else motions)
     shaking, level = Shaking.of(kept), measure_of(measure)
     at = None if levels is None else checked_levels("levels", levels, level.unit)
-    cases = [_Case.of(body, kept, restitution, level, at, options, threads, progress) for body in several]
+    cases = [_Case.of(body, kept, restitution, level, at, options) for body in several]
     return CodeComparison(
         methods=chosen,
-        bodies=tuple(names) if names is not None else tuple(map(repr, several)),
+        bodies=tuple(map(repr, several)),
         motions=tuple(motion.name for motion in shaking.motions),
-        levels=("as they are",) if at is None else tuple(f"{level.name} = {value:g} {level.unit}" for value in at),
+        levels=("as they are",)
+        if at is None
+        else tuple(f"{level.name} = {value:g} {level.unit}".removesuffix(" -") for value in at),
         capacity=np.array([each.capacity(stances, shaking) for each in chosen]),
         overturning=np.stack([each.least for each in cases], axis=1),
         factors=np.stack([each.factors for each in cases], axis=1),
@@ -341,15 +334,16 @@ class _Case:
     @classmethod
     def of(
         cls, body: Body, motions: MotionList, restitution: Any, measure: Any, levels: FloatArray | None,
-        options: dict[str, Any], threads: int | None, progress: Progress,
+        options: dict[str, Any],
     ) -> "_Case":  # fmt: skip
+        ground = {name: value for name, value in options.items() if name not in {"threads", "progress"}}
         turned = (body,) if body.is_symmetric else (body, body.mirrored())
-        subjects = [Subject.of(each, motions, restitution, measure, options) for each in turned]
+        subjects = [Subject.of(each, motions, restitution, measure, ground) for each in turned]
         one = subjects[0]
         factors = np.ones((len(motions), 1)) if levels is None else measure.factors(one.intensities, levels)
 
         def overturned(subject: Subject, histories: Histories, shape: tuple[int, ...]) -> FloatArray:
-            arrays = results_of(histories, threads=threads, progress=progress)
+            arrays = results_of(histories, threads=options.get("threads"), progress=options.get("progress"))
             return Responses.of(arrays, subject.parameters, shape).overturned
 
         fell = [overturned(each, each.product(factors), factors.shape) for each in subjects]

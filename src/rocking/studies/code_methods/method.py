@@ -19,16 +19,45 @@ from rocking.motions.spectrum import response_spectrum
 
 @dataclass(frozen=True)
 class Stances:
-    """Bodies seen from either foot, one row a body, right and left in a column each."""
+    """Bodies seen from either foot, one row a body, right and left in a column each.
 
-    half_width: FloatArray  # horizontal distance b from the foot to the centre of mass [m]
-    height: FloatArray  # height h of the centre of mass [m]
-    frequency_parameter: FloatArray  # p [rad/s]
-    gravity: float = g  # [m/s2]
+    Parameters
+    ----------
+    half_width, height : ndarray, shape (bodies, 2)
+        Horizontal distance b from the foot to the centre of mass, and its height h [m].
+    frequency_parameter : ndarray, shape (bodies, 2)
+        Frequency parameter p [rad/s].
+    gravity : float
+        Acceleration of gravity [m/s2].
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> Stances.of([Block(width=0.5, height=2.0)]).slope.tolist()
+    [[0.25, 0.25]]
+    """
+
+    half_width: FloatArray
+    height: FloatArray
+    frequency_parameter: FloatArray
+    gravity: float = g
 
     @classmethod
     def of(cls, bodies: Sequence[Body], gravity: float = g) -> "Stances":
-        """Return what the methods see of plane bodies."""
+        """Return what the methods see of plane bodies.
+
+        Parameters
+        ----------
+        bodies : sequence of Body
+            The bodies.
+        gravity : float
+            Acceleration of gravity [m/s2].
+
+        Returns
+        -------
+        Stances
+            One row a body.
+        """
         for body in bodies:
             if not isinstance(body, Body):
                 raise InvalidValueError(
@@ -36,11 +65,12 @@ class Stances:
                 )
         sides = [[body.side(foot, gravity) for foot in FEET[::-1]] for body in bodies]
         names = "half_width", "centre_height", "frequency_parameter"
-        return cls(*(np.array([[getattr(s, name) for s in pair] for pair in sides]) for name in names), gravity)
+        b, h, p = (np.array([[getattr(side, name) for side in pair] for pair in sides]) for name in names)
+        return cls(b, h, p, gravity)
 
     @property
     def slope(self) -> FloatArray:
-        """b / h, the tangent of the slenderness angle [-]."""
+        """The ratio b / h, the tangent of the slenderness angle [-]."""
         return self.half_width / self.height
 
     @property
@@ -56,13 +86,30 @@ class Stances:
 
 @dataclass(frozen=True)
 class Shaking:
-    """Motions as the methods see them: peaks, and the spectrum of each."""
+    """Motions as the methods see them: peaks, and the spectrum of each.
+
+    Parameters
+    ----------
+    motions : tuple of GroundMotion
+        The motions.
+    """
 
     motions: tuple[GroundMotion, ...]
 
     @classmethod
     def of(cls, motions: Any) -> "Shaking":
-        """Return the leading components of motions, pulses sampled finely."""
+        """Return what the methods see of motions.
+
+        Parameters
+        ----------
+        motions : MotionSet or sequence
+            Records or pulses.
+
+        Returns
+        -------
+        Shaking
+            Their leading components, pulses sampled finely.
+        """
         return cls(tuple(sampled(leading(motions[k])) for k in range(len(motions))))
 
     def _peaks(self, name: str) -> FloatArray:
@@ -79,7 +126,20 @@ class Shaking:
         return self._peaks("pgv")
 
     def spectra(self, periods: FloatArray, damping: float) -> FloatArray:
-        """Return pseudo-spectral accelerations of every motion at some periods [m/s2]."""
+        """Return pseudo-spectral accelerations.
+
+        Parameters
+        ----------
+        periods : ndarray, shape (periods,)
+            Natural periods [s].
+        damping : float
+            Damping ratio [-].
+
+        Returns
+        -------
+        ndarray, shape (motions, periods)
+            One row a motion [m/s2].
+        """
         return np.array([response_spectrum(each, periods, damping).pseudo_acceleration for each in self.motions])
 
 
@@ -99,7 +159,20 @@ class CodeMethod(ABC):
 
     @abstractmethod
     def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
-        """Return the factor on every motion at which the method's limit is reached, by motion, body and side [-]."""
+        """Return the factor on every motion at which the method's limit is reached.
+
+        Parameters
+        ----------
+        stances : Stances
+            The bodies.
+        shaking : Shaking
+            The motions.
+
+        Returns
+        -------
+        ndarray
+            Of a shape that fits (motions, bodies, 2) [-].
+        """
 
     def capacity(self, stances: Stances, shaking: Shaking) -> FloatArray:
         """Return the factor on every motion up to which the method calls a body safe: of its worse side.

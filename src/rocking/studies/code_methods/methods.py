@@ -13,7 +13,7 @@ class StaticOverturning(CodeMethod):
 
     name = "static"
     title = "static overturning (West)"
-    reference = "West's criterion a = g b/h, as Milne & Omori 1893 and Housner 1963 state it"
+    reference = "West's criterion, a = g b/h: equilibrium of moments about the foot"
     domain = "any body; says when it lifts, so it is safe for every horizontal motion"
     reading = "certain: it is the equilibrium of moments about the foot"
     example = "closed form: the acceleration of uplift"
@@ -28,9 +28,13 @@ class ItalianLinearKinematic(CodeMethod):
 
     name = "italian-linear"
     title = "Italian linear kinematic check, q = 2"
-    reference = "NTC 2008, Circ. 617/2009 C8A.4.2.3; NTC 2018, Circ. 7/2019 C8.7.1.2: a0* >= a_g S / q"
-    domain = "rigid body on the ground, no filter by a storey; e* = 1 (one body), CF = 1; a_g S is the PGA of the motion"
-    reading = "high: the clause as our specification quotes it; the text of the circular itself was not at hand"
+    reference = "NTC 2008, Circ. 617/2009 C8A.4; NTC 2018, Circ. 7/2019 C8.7.1.2: a0* = alpha0 g / (e* CF) >= a_g S / q"
+    domain = (
+        "rigid body on the ground, no filter by a storey; e* = 1 (one body), CF = 1; a_g S is the PGA of the motion"
+    )
+    reading = (
+        "high: the clause as the project's specification quotes it; the text of the circular itself was not at hand"
+    )
     behaviour_factor = 2.0  # q [-]
 
     def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
@@ -46,14 +50,16 @@ class AsceRocking(CodeMethod):
 
     name = "asce-43"
     title = "ASCE/SEI 43 rocking, energy method"
-    reference = "ASCE/SEI 43-05 and 43-19, A.2, approximate method for rocking of an unanchored rigid body, Eq. A-5 ff."
+    reference = (
+        "ASCE/SEI 43-05, A.2, approximate method for rocking of an unanchored rigid body, Eq. A-5; 43-19 likewise"
+    )
     domain = (
         "symmetric body of one mass (F_H = 1), no vertical motion (F_V = 1), C_R > 0; safe if a rotation up to alpha "
         "balances, without the standard's factors of safety"
     )
     reading = (
-        "structure and symbols seen at the head of A.2, equations as our specification re-derives them; how the "
-        "standard iterates and which margin it asks for were not read"
+        "structure and symbols seen at the head of A.2, equations as the project's specification re-derives them; how "
+        "the standard iterates and which margin it asks for were not read"
     )
     example = "closed form: C_R of a rectangle is Housner's coefficient"
 
@@ -103,8 +109,10 @@ class IshiyamaCriteria(CodeMethod):
 
     name = "ishiyama"
     title = "Ishiyama's criteria, acceleration and velocity"
-    reference = "Ishiyama 1982, Earthq. Eng. Struct. Dyn. 10, 635-650; Criteria for overturning of rigid bodies, 8WCEE"
-    domain = "lower limits: below either of both a body stands; the factor 0.4 was found for rectangles on a rigid floor"
+    reference = "Ishiyama 1982, Criteria for overturning of rigid bodies by sinusoidal and earthquake excitations"
+    domain = (
+        "lower limits: below either of both a body stands; the factor 0.4 was found for rectangles on a rigid floor"
+    )
     reading = (
         "medium: that velocity counts beside acceleration was read in the paper's summary; the formula is our "
         "specification's, and both of its forms (with R, and 10 B / sqrt(H) in cm) agree within 2.5 %"
@@ -118,7 +126,7 @@ class IshiyamaCriteria(CodeMethod):
         return np.asarray(self.share * impulse)  # Eq. 306
 
     def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
-        """Both must be passed."""
+        """Eq. 306; both must be passed."""
         lifts = stances.uplift / shaking.acceleration
         return np.maximum(lifts, self.velocity(stances) / shaking.velocity)
 
@@ -128,11 +136,11 @@ class KanekoHayashi(CodeMethod):
 
     name = "kaneko-hayashi"
     title = "Kaneko and Hayashi's A_R50"
-    reference = "Kaneko & Hayashi 2004, A proposal for simple equations ... overturning ratios of rigid bodies, 13WCEE"
+    reference = "Kaneko & Hayashi, overturning ratio of furniture: A_R50 and f_b"
     domain = "rectangles, furniture on floors; half of the bodies overturn at its limit by its own account"
     reading = (
-        "medium: as our specification states it, in cm and s; the equivalent frequency PGA / (2 pi PGV) is to be "
-        "confirmed; f_b is taken where both branches meet, 15.61 for its 15.6"
+        "medium: as the project's specification states it, in cm and s; the frequency PGA / (2 pi PGV) is to "
+        "be confirmed; f_b is taken where both branches meet, 15.61 for its 15.6"
     )
 
     @staticmethod
@@ -145,7 +153,7 @@ class KanekoHayashi(CodeMethod):
         return np.maximum(slow, quick)  # Eq. 307
 
     def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
-        """A motion that is scaled keeps its frequency."""
+        """Eq. 307; a motion that is scaled keeps its frequency."""
         frequency = shaking.acceleration / (2.0 * math.pi * shaking.velocity)
         return self.acceleration(stances, frequency) / shaking.acceleration
 
@@ -167,7 +175,7 @@ class HousnerPulse(CodeMethod):
         return np.asarray(ratio * stances.gravity * stances.angle)  # Eq. 308
 
     def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
-        """A motion that is scaled keeps its duration."""
+        """Eq. 308; a motion that is scaled keeps its duration."""
         return self.acceleration(stances, shaking.velocity / shaking.acceleration) / shaking.acceleration
 
 

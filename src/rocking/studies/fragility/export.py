@@ -10,7 +10,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from rocking import checks
+from rocking import checks, conventions
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import MEASURES, spectral_measure, spectral_period
 from rocking.statistics.goodness import STATISTICS
@@ -36,8 +36,11 @@ def table(model: FragilityModel, which: str = "parameters", *, crossing: Crossin
     """Return one of the tables of a model."""
     makers = {"parameters": _parameters, "points": _points}
     word: object = which
-    if not isinstance(word, str) or which not in TABLES:
-        raise InvalidValueError(f"table must be one of {', '.join(TABLES)}, got {which!r:.60}")
+    known = (*TABLES, "pelicun")
+    if not isinstance(word, str) or which not in known:
+        raise InvalidValueError(f"table must be one of {', '.join(known)}, got {which!r:.60}")
+    if which == "pelicun":
+        return _pelicun(model, crossing)
     return makers[which](model) if which in makers else fema_p58_table(model, crossing=crossing)
 
 
@@ -160,6 +163,28 @@ def fema_p58_table(
     return Table.of_rows("fema-p58", header, rows)
 
 
+_PELICUN = "ID", "Incomplete", "Demand-Type", "Demand-Unit", "Demand-Offset", "Demand-Directional"
+_LIMIT_STATE = "Family", "Theta_0", "Theta_1", "DamageStateWeights"
+
+
+def _pelicun(model: FragilityModel, crossing: Crossing) -> Table:
+    """Return the damage model of a component as PELICUN 3 reads it: one row, accelerations in g."""
+    # layout, names of demands, and spectral|period as in NHERI-SimCenter/DamageAndLossModelLibrary, fragility.csv of
+    # seismic/power_network (Hazus v5.1), vocabularies.py, and fragility.csv of California RC Bridges 2025
+    spectral = spectral_period(model.measure)
+    if model.measure != "pga" and (spectral is None or spectral[1] != 0.05):
+        raise InvalidValueError(
+            f"for PELICUN curves stand against pga or sa(period) with 5 % damping, got {model.measure!r:.60}"
+        )
+    demand = "Peak Ground Acceleration" if spectral is None else f"Spectral Acceleration|{spectral[0]!r}"
+    row: list[Cell] = [model.name, 0, demand, "g", 0, 0]
+    curves = nested(model, crossing).curves
+    for curve in curves:
+        row += ["lognormal", curve.median / conventions.g, curve.dispersion, ""]
+    head = (*_PELICUN, *(f"LS{k}-{name}" for k in range(1, len(curves) + 1) for name in _LIMIT_STATE))
+    return Table.of_rows("pelicun", head, [tuple(row)])
+
+
 def with_added_dispersion(dispersion: float, *others: float) -> float:
     """Return the dispersion with others [-], of modelling or construction, added: the root of the sum of squares."""
     parts = [checks.positive("dispersion", dispersion)]
@@ -182,10 +207,10 @@ def to_csv(
         The curves.
     path : str or path
         The file.
-    which : {"parameters", "points", "fema-p58"} or Table
-        What to write.
+    which : {"parameters", "points", "fema-p58", "pelicun"} or Table
+        What to write; for PELICUN 3 a damage model of one component, against pga or sa(period), in g.
     crossing : {"refuse", "common-dispersion"}
-        What to do with curves that cross, in the table of FEMA P-58.
+        What to do with curves that cross, in the tables of FEMA P-58 and PELICUN.
 
     Returns
     -------
