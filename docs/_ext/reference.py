@@ -31,6 +31,7 @@ ROOMS = {
     "rocking.dynamics.space": "Responses in space",
     "rocking.studies": "Studies",
     "rocking.studies.fragility": "Fragility",
+    "rocking.studies.code_methods": "Code methods",
     "rocking.studies.inventory": "Inventories",
     "rocking.studies.sensitivity": "Sensitivity to the restitution",
     "rocking.campaigns": "Campaigns",

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from rocking.studies.adaptive_grid import refined_map
     from rocking.studies.axis import axes
     from rocking.studies.boundaries import boundary
+    from rocking.studies.code_methods import compare_code_methods
     from rocking.studies.fragility import (
         cloud,
         compare_measures,
@@ -43,6 +44,7 @@ __all__ = [
     "axes",
     "boundary",
     "cloud",
+    "compare_code_methods",
     "compare_measures",
     "fragility_sensitivity",
     "incremental_dynamic_analysis",
@@ -66,6 +68,7 @@ _HOMES = {
     ),
     "axis": ("axes",),
     "boundaries": ("boundary",),
+    "code_methods": ("compare_code_methods",),
     "fragility": ("cloud", "compare_measures", "incremental_dynamic_analysis", "multiple_stripe_analysis"),
     "minimum_acceleration": ("minimum_overturning_acceleration", "minimum_overturning_accelerations"),
     "_overturning_map": ("overturning_map",),

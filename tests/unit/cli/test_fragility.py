@@ -220,8 +220,8 @@ def test_every_file(run, tmp_path):
     import xarray as xr
 
     paths = {kind: tmp_path / f"f.{end}" for kind, end in (
-        ("picture", "svg"), ("csv", "csv"), ("p58", "p58.csv"), ("nrml", "xml"), ("excel", "xlsx"), ("mat", "mat"),
-        ("netcdf", "nc"))}  # fmt: skip
+        ("picture", "svg"), ("csv", "csv"), ("p58", "p58.csv"), ("pelicun", "pelicun.csv"), ("nrml", "xml"),
+        ("excel", "xlsx"), ("mat", "mat"), ("netcdf", "nc"))}  # fmt: skip
     words = [part for kind, path in paths.items() for part in ("--out", f"{kind}={path}")]
     words += ["--name", "vase & stand", "--crossing", "common-dispersion"]
     code, out, err = run(*SIZE, *FAMILY, *LEVELS, *words)
@@ -234,6 +234,9 @@ def test_every_file(run, tmp_path):
     assert medians[0] < medians[1]
     assert dispersions[0] == dispersions[1]
     assert {row["Component ID"] for row in p58} == {"vase & stand"}
+    (row,) = csv.DictReader(paths["pelicun"].read_text(encoding="utf-8").splitlines())
+    for k, median in enumerate(medians, 1):
+        assert float(row[f"LS{k}-Theta_0"]) * G == pytest.approx(median, rel=1e-14)
     space = "{http://openquake.org/xmlns/nrml/0.5}"
     params = [one.attrib for one in ET.parse(paths["nrml"]).iter(f"{space}params")]
     # mean and deviation of the lognormal variable itself, in g

@@ -18,7 +18,7 @@ from rocking.studies.code_methods.method import CodeMethod, Shaking, Stances
 from rocking.studies.code_methods.methods import CODE_METHODS
 from rocking.studies.fragility.subject import Responses, Subject, checked_levels
 from rocking.studies.histories import Histories, results_of
-from rocking.studies.motion_sets import MotionList
+from rocking.studies.motion_sets import MotionList, MotionSet
 
 MEASURE = "pga/(g tan alpha)"  # of levels, where nobody says another
 POINTS, REACH, HALVINGS = 64, 50.0, 6
@@ -291,18 +291,18 @@ def compare_code_methods(
     --------
     >>> import rocking as rk
     >>> small, large = (rk.Block(width=0.2 * height, height=height) for height in (0.6, 6.0))
-    >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.6, 0.8, 1.0)]
+    >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.4, 0.6, 0.8)]
     >>> found = compare_code_methods([small, large], pulses, "housner", levels=[1.9])
     >>> [found.called_safe("italian-linear", body, 0).share for body in (0, 1)]
     [1.0, 0.0]
     """
-    several: list[Any] = [bodies] if isinstance(bodies, Body) else list(bodies)
+    several: list[Any] = list(bodies) if isinstance(bodies, Sequence) else [bodies]
     if not several:
         raise InvalidValueError("bodies must be at least one body, got none")
     chosen = tuple(CODE_METHODS[checks.one_of("methods", each, list(CODE_METHODS))] for each in methods or CODE_METHODS)
     gravity = options.get("gravity")
     stances = Stances.of(several) if gravity is None else Stances.of(several, gravity)
-    kept = MotionList([motions[k] for k in range(len(motions))] if hasattr(motions, "__len__") else motions)
+    kept = MotionList([motions[k] for k in range(len(motions))] if isinstance(motions, MotionSet) else motions)
     shaking, level = Shaking.of(kept), measure_of(measure)
     at = None if levels is None else checked_levels("levels", levels, level.unit)
     cases = [_Case.of(body, kept, restitution, level, at, options) for body in several]

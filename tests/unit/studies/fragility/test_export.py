@@ -81,6 +81,23 @@ def test_fema_p58_columns():
     assert with_added_dispersion(0.4, 0.3, 1.2) == pytest.approx(1.3, rel=1e-15, abs=0.0)
 
 
+def test_pelicun_reads_a_row():
+    """Columns and words are those of SimCenter's library (power_network, Hazus v5.1, fragility.csv); medians in g."""
+    made = table(model(), "pelicun")
+    assert ",".join(made.header) == (
+        "ID,Incomplete,Demand-Type,Demand-Unit,Demand-Offset,Demand-Directional,LS1-Family,LS1-Theta_0,LS1-Theta_1,"
+        "LS1-DamageStateWeights,LS2-Family,LS2-Theta_0,LS2-Theta_1,LS2-DamageStateWeights"
+    )
+    (row,) = made.rows
+    assert row[1:7] == (0, "Peak Ground Acceleration", "g", 0, 0, "lognormal")
+    assert row[11] == pytest.approx(4.7 / 9.80665, rel=1e-14)
+    assert (row[8], row[12]) == (0.25, 0.4)
+    spectral = table(model(measure="sa(1.0)"), "pelicun")
+    assert spectral.rows[0][2] == "Spectral Acceleration|1.0"
+    with pytest.raises(InvalidValueError, match=r"PELICUN curves stand against pga or sa\(period\)"):
+        table(model(measure="pgv"), "pelicun")
+
+
 @pytest.mark.parametrize("word", ["=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1", "\n=1", "  =1", "=cmd|'/c calc'!A0"])
 def test_formulas_become_words(tmp_path, word):
     """A name that a spreadsheet would run starts with an apostrophe in the file; a plain one does not."""

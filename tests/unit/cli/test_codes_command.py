@@ -1,0 +1,79 @@
+"""`rocking codes`: what is printed and written, bodies in a grid, refusals."""
+
+import csv
+
+import pytest
+
+from rocking.studies.code_methods import CODE_METHODS, LEFT_OUT
+
+COMMAND = "codes"
+FAMILY = ("--synthetic", "firm-ground", "--count", 6, "--restitution", "housner")
+GRID = ("--height", "60,400", "--slenderness", 5, "--units", "cm")
+
+
+def test_a_grid_of_bodies(printed, answered, tmp_path):
+    """Every method has a line, and every body one of shares; JSON and CSV say the same, sources and readings too."""
+    file = tmp_path / "codes.csv"
+    page = printed(*GRID, *FAMILY, "--levels", "1.5,2", "--out", file)
+    assert "bodies:       12 x 60 cm; 80 x 400 cm" in page
+    assert "pga/(g tan alpha) = 1.5\n" in page
+    found = answered(*GRID, *FAMILY, "--levels", "1.5,2")
+    assert found["bodies"] == ["12 x 60 cm", "80 x 400 cm"]
+    assert found["left_out"] == LEFT_OUT
+    with file.open(newline="", encoding="utf-8") as rows:
+        table = {(row["method"], row["body"], row["level"]): row for row in csv.DictReader(rows)}
+    assert len(table) == 6 * 2 * 2
+    for name, said in found["methods"].items():
+        assert f"\n{name} " in page
+        assert said["reading"] == CODE_METHODS[name].reading
+        for k, body in enumerate(found["bodies"]):
+            for j, level in enumerate(found["levels"]):
+                called, row = said["called_safe"][k][j], table[name, body, level]
+                assert (int(row["called safe"]), int(row["overturned of these"])) == (
+                    called["safe"], called["overturned"],
+                )  # fmt: skip
+                assert called["safe"] <= called["total"] == 6
+    assert found["methods"]["italian-linear"]["called_safe"][0][1]["safe"] == 6
+
+
+def test_one_body_under_one_motion(printed, answered):
+    """Of one case it is said whether it is safe; the levels are those of the motion; a side that is worse counts."""
+    body = ("--width", 0.8, "--height", 2.2, "--centre", "0.52,0.9", "--mass", 650, "--depth", 1.2)
+    page = printed(*body, "sine:amplitude=3.5,period=0.5")
+    assert "0 of 1 overturned" in page
+    assert "the worse one counts" in page
+    rows = {line.split()[0]: line.split()[1] for line in page.splitlines() if line.split()[:1]}
+    assert (rows["static"], rows["italian-linear"]) == ("no", "yes")
+    found = answered(*body, "sine:amplitude=3.5,period=0.5")
+    assert found["worse_side_counts"] == [True]
+    ratio = found["methods"]["static"]["called_safe"][0][0]["ratio"]
+    assert ratio == pytest.approx(3.5 / (9.80665 * 0.28 / 0.9), rel=1e-6)
+    # negative control: the other side alone would be safe
+    assert 3.5 / (9.80665 * 0.52 / 0.9) < 1.0
+
+
+def test_levels_in_another_measure(answered):
+    """Levels of PGA in g bring every motion there, and what a wide body cannot be judged by is outside."""
+    found = answered("--width", 1, "--height", 0.6, *FAMILY, "--measure", "pga", "--levels", "0.2g")
+    assert found["levels"] == ["pga = 1.96133 m/s2"]
+    assert found["methods"]["asce-43"]["called_safe"][0][0]["total"] == 0
+    assert found["methods"]["static"]["called_safe"][0][0] == {
+        "total": 6, "safe": 6, "overturned": 0, "ratio": pytest.approx(0.12, rel=1e-9),
+        "interval": [0.0, pytest.approx(1.0 - 0.025 ** (1 / 6), rel=1e-9)], "share": 0.0,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ((*FAMILY, "--slenderness", 5, "--width", 1), "--slenderness goes with --height"),
+        ((*FAMILY, "--slenderness", 0, "--height", 1), "--slenderness must be above 0"),
+        ((*FAMILY, "--width", "1,2", "--height", "1,2,3"), "must be as many, or one, got 2 and 3"),
+        ((*FAMILY, "--width", 1), "a body is a file, or --width and --height"),
+        (("--width", 1, "--height", 4), "what moves the ground?"),
+        ((*FAMILY, "--width", 1, "--height", 4, "--measure", "pgv/pga", "--levels", 1), "pgv/pga"),
+        ((*FAMILY, "--width", 1, "--height", 4, "--levels", "2g"), "--levels must be a number without a unit"),
+    ],
+)
+def test_what_is_refused(refuses, words, sentence):
+    refuses(words, sentence)

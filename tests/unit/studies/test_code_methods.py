@@ -1,0 +1,90 @@
+"""Code methods beside histories: what a comparison holds, its statistics, and what is refused."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.errors import InvalidValueError
+from rocking.studies import compare_code_methods
+from rocking.studies.code_methods import CODE_METHODS, Stances
+from rocking.studies.code_methods.comparison import _quantiles
+
+SMALL, LARGE = (rk.Block(width=0.2 * height, height=height) for height in (0.6, 6.0))
+PULSES = [rk.pulses.sine(1.0, period) for period in (0.3, 0.4, 0.5, 0.6, 0.8, 1.2)]
+
+
+@pytest.fixture(scope="module")
+def found():
+    return compare_code_methods([SMALL, LARGE], PULSES, "housner", levels=[1.5, 1.9])
+
+
+def test_shapes_and_words(found):
+    assert found.capacity.shape == (len(CODE_METHODS), 6, 2)
+    assert found.overturning.shape == (6, 2)
+    assert found.overturned.shape == found.factors.shape == (6, 2, 2)
+    assert found.levels == ("pga/(g tan alpha) = 1.5", "pga/(g tan alpha) = 1.9")
+    assert found.bodies == (repr(SMALL), repr(LARGE))
+
+
+def test_what_is_called_safe_is_counted(found):
+    """Counts of all cases are those of single ones; a case is safe where its demand is no more than the capacity."""
+    for name in CODE_METHODS:
+        every = [found.called_safe(name, k, j) for k in (0, 1) for j in (0, 1)]
+        whole = found.called_safe(name)
+        assert (whole.safe, whole.overturned) == (sum(e.safe for e in every), sum(e.overturned for e in every))
+    called = found.called_safe("italian-linear", 0, 1)
+    assert called.safe == 6
+    assert called.overturned == int(found.overturned[:, 0, 1].sum())
+    assert called.ratio == pytest.approx(1.9 / 2.0, rel=1e-12)
+    assert math.isnan(found.called_safe("static").share)
+    assert found.called_safe("static").interval is None
+
+
+def test_bias_is_the_median_ratio(found):
+    """By hand: ratios sorted, the third of six; two motions that never overturn stand below all others."""
+    ratios = np.sort(found.capacity[1, :, 0] / found.overturning[:, 0])
+    bias = found.bias("italian-linear", 0)
+    assert bias.median == ratios[2]
+    assert bias.interval[0] <= bias.median <= bias.interval[1]
+    assert bias.count == 6
+    assert bias.censored == int(np.isinf(found.overturning[:, 0]).sum())
+    several = compare_code_methods(SMALL, PULSES[:2], "housner")
+    assert math.isnan(several.bias("static").scatter)  # too few motions to say
+
+
+def test_quantiles_with_weights():
+    """Those of the values, each repeated as often as its weight says."""
+    random = np.random.default_rng(5)
+    values, weights = random.lognormal(size=(7, 3)), random.integers(0, 4, (7, 3)).astype(float)
+    expected = np.quantile(
+        np.repeat(values.ravel(), weights.astype(int).ravel()), (0.16, 0.5, 0.84), method="inverted_cdf"
+    )
+    assert _quantiles(values, weights, (0.16, 0.5, 0.84)) == expected.tolist()
+
+
+def test_methods_are_chosen_by_name():
+    one = compare_code_methods(SMALL, PULSES[0], methods=["ishiyama"])
+    assert [each.name for each in one.methods] == ["ishiyama"]
+    assert one.levels == ("as they are",)
+
+
+@pytest.mark.parametrize("method", CODE_METHODS.values(), ids=list(CODE_METHODS))
+def test_every_method_says_where_it_stands(method):
+    assert all((method.title, method.reference, method.domain, method.reading, method.example))
+    assert type(method).__doc__
+
+
+def test_what_is_refused():
+    box = rk.dynamics.SpatialBody.box(width=0.3, depth=0.3, height=1.0)
+    with pytest.raises(InvalidValueError, match="code methods know plane bodies"):
+        Stances.of([box])
+    with pytest.raises(InvalidValueError, match="code methods know plane bodies"):
+        compare_code_methods(box, PULSES)
+    with pytest.raises(InvalidValueError, match="at least one body"):
+        compare_code_methods([], PULSES)
+    with pytest.raises(InvalidValueError, match="method"):
+        compare_code_methods(SMALL, PULSES, methods=["eurocode"])
+    with pytest.raises(InvalidValueError, match="> 0"):
+        compare_code_methods(SMALL, rk.GroundMotion([0.0, 0.0, 0.0], 0.1))
