@@ -8,8 +8,8 @@ import pytest
 import rocking as rk
 from rocking.conventions import g
 from rocking.studies import MotionList, SyntheticSet, minimum_overturning_acceleration
-from rocking.studies.code_methods import CODE_METHODS, Shaking, Stances, compare_code_methods
-from rocking.studies.code_methods.methods import ROTATIONS
+from rocking.studies.code_methods import CODE_METHODS, compare_code_methods
+from rocking.studies.code_methods.method import Shaking, Stances
 
 pytestmark = pytest.mark.verifies(room="studies")
 
@@ -62,20 +62,23 @@ def test_another_model_of_impact_has_another_coefficient():
                       control="within")  # fmt: skip
 def test_the_capacity_of_asce_is_a_work():
     """Of a slender block 2 g f1 / theta falls from nearly twice to once what lifts it, and f_e is that of the work."""
-    stances = Stances.of([rk.Block(width=0.02, height=1.0)])
+    stances, rotations = Stances.of([rk.Block(width=0.02, height=1.0)]), np.linspace(0.1, 1.0, 10)
     alpha = stances.angle[0, 0]
-    period, capacity = ASCE.oscillator(stances)
+    capacity = np.array([ASCE.oscillator(stances, ratio * stances.angle)[1][0, 0] for ratio in rotations])
     # the tolerance holds terms of alpha^2 = 4e-4
-    np.testing.assert_allclose(capacity[0, 0], g * alpha * (2.0 - ROTATIONS), rtol=0.01)
-    assert not np.allclose(capacity[0, 0], 2.0 * g * alpha, rtol=0.01)
+    np.testing.assert_allclose(capacity, g * alpha * (2.0 - rotations), rtol=0.01)
+    assert not np.allclose(capacity, 2.0 * g * alpha, rtol=0.01)
     # half the stiffness times theta^2 is the work m g R (1 - cos) that the rotation needs: K = I_O omega^2
-    block = BLOCKS[2]
-    side, stances = block.side("right"), Stances.of([block])
-    period, _ = ASCE.oscillator(stances)
-    theta, alpha, size = side.slenderness_angle * ROTATIONS, side.slenderness_angle, side.semi_diagonal
-    work = side.mass * g * size * (np.cos(alpha - theta) - math.cos(alpha))
-    omega = 2.0 * math.pi / period[0, 0]
-    np.testing.assert_allclose(0.5 * side.moment_of_inertia * omega**2 * theta**2, work, rtol=1e-12)
+    side, stances = CABINET.side("right"), Stances.of([CABINET])
+    alpha, size = side.slenderness_angle, side.semi_diagonal
+    for theta in alpha * rotations:
+        period, _ = ASCE.oscillator(stances, np.full((1, 2), theta))
+        work = side.mass * g * size * (math.cos(alpha - theta) - math.cos(alpha))
+        stiffness = side.moment_of_inertia * (2.0 * math.pi / period[0, 0]) ** 2
+        assert 0.5 * stiffness * theta**2 == pytest.approx(work, rel=1e-12)
+    flat = ASCE.capacity(Stances.of([BLOCKS[2]]), FLAT)
+    alpha = BLOCKS[2].slenderness_angle
+    assert flat[0, 0] == pytest.approx(2.0 * g * (1.0 / math.cos(alpha) - 1.0) / alpha, rel=1e-12)
 
 
 @pytest.mark.verifies("closed form", "both published forms of the velocity", within="2.5 %", control="within")

@@ -1,6 +1,7 @@
 """`rocking codes`: what published rules say of bodies, and what their histories show."""
 
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -23,22 +24,19 @@ if TYPE_CHECKING:
 COUNT, SEED, LEVEL = 100, 1, "2"
 """Synthetic motions, and what they are brought to, where nobody says otherwise."""
 
+_HEAD = (
+    "method", "body", "level", "histories", "called safe", "overturned of these", "demand over capacity",
+    "capacity over truth", "never overturned",
+)  # fmt: skip
+
 
 def _csv(answer: "CodesAnswer", path: "Path") -> None:
-    found = answer.found
-    rows = [
-        (one.name, body, level, called.total, called.safe, called.overturned, called.ratio, bias.median, bias.censored)
-        for one in found.methods
-        for k, body in enumerate(found.bodies)
-        for bias in [found.bias(one.name, k)]
-        for j, level in enumerate(found.levels)
-        for called in [found.called_safe(one.name, k, j)]
-    ]
-    head = (
-        "method", "body", "level", "histories", "called safe", "overturned of these", "demand over capacity",
-        "capacity over truth", "never overturned",
-    )  # fmt: skip
-    write_columns(path, {name: (values, "") for name, values in zip(head, zip(*rows, strict=True), strict=True)})
+    found, rows = answer.found, []
+    for one, (k, body), (j, level) in product(found.methods, enumerate(found.bodies), enumerate(found.levels)):
+        called, bias = found.called_safe(one.name, k, j), found.bias(one.name, k)
+        counts = called.total, called.safe, called.overturned
+        rows.append((one.name, body, level, *counts, called.ratio, bias.median, bias.censored))
+    write_columns(path, {name: (values, "") for name, values in zip(_HEAD, zip(*rows, strict=True), strict=True)})
 
 
 EXPORTS = {"csv": Export((".csv",), _csv)}

@@ -77,3 +77,10 @@ def test_levels_in_another_measure(answered):
 )
 def test_what_is_refused(refuses, words, sentence):
     refuses(words, sentence)
+
+
+def test_a_solid_is_refused(refuses, tmp_path):
+    """It is told how a solid stands in a plane."""
+    file = tmp_path / "crate.toml"
+    file.write_text('units = "m"\n[[solid.part]]\nbox = { width = 0.3, depth = 0.3, height = 1.2 }\n', encoding="utf-8")
+    refuses((file, *FAMILY), "code methods know plane bodies")

@@ -19,45 +19,16 @@ from rocking.motions.spectrum import response_spectrum
 
 @dataclass(frozen=True)
 class Stances:
-    """Bodies seen from either foot, one row a body, right and left in a column each.
+    """Bodies seen from either foot, one row a body, right and left in a column each."""
 
-    Parameters
-    ----------
-    half_width, height : ndarray, shape (bodies, 2)
-        Horizontal distance b from the foot to the centre of mass, and its height h [m].
-    frequency_parameter : ndarray, shape (bodies, 2)
-        Frequency parameter p [rad/s].
-    gravity : float
-        Acceleration of gravity [m/s2].
-
-    Examples
-    --------
-    >>> from rocking import Block
-    >>> Stances.of([Block(width=0.5, height=2.0)]).slope.tolist()
-    [[0.25, 0.25]]
-    """
-
-    half_width: FloatArray
-    height: FloatArray
-    frequency_parameter: FloatArray
-    gravity: float = g
+    half_width: FloatArray  # horizontal distance b from the foot to the centre of mass [m]
+    height: FloatArray  # height h of the centre of mass [m]
+    frequency_parameter: FloatArray  # p [rad/s]
+    gravity: float = g  # [m/s2]
 
     @classmethod
     def of(cls, bodies: Sequence[Body], gravity: float = g) -> "Stances":
-        """Return what the methods see of plane bodies.
-
-        Parameters
-        ----------
-        bodies : sequence of Body
-            The bodies.
-        gravity : float
-            Acceleration of gravity [m/s2].
-
-        Returns
-        -------
-        Stances
-            One row a body.
-        """
+        """Return what the methods see of plane bodies; gravity: [m/s2]."""
         for body in bodies:
             if not isinstance(body, Body):
                 raise InvalidValueError(
@@ -86,30 +57,13 @@ class Stances:
 
 @dataclass(frozen=True)
 class Shaking:
-    """Motions as the methods see them: peaks, and the spectrum of each.
-
-    Parameters
-    ----------
-    motions : tuple of GroundMotion
-        The motions.
-    """
+    """Motions as the methods see them: peaks, and the spectrum of each."""
 
     motions: tuple[GroundMotion, ...]
 
     @classmethod
     def of(cls, motions: Any) -> "Shaking":
-        """Return what the methods see of motions.
-
-        Parameters
-        ----------
-        motions : MotionSet or sequence
-            Records or pulses.
-
-        Returns
-        -------
-        Shaking
-            Their leading components, pulses sampled finely.
-        """
+        """Return what the methods see of motions: leading components, pulses sampled finely."""
         return cls(tuple(sampled(leading(motions[k])) for k in range(len(motions))))
 
     def _peaks(self, name: str) -> FloatArray:
@@ -126,20 +80,7 @@ class Shaking:
         return self._peaks("pgv")
 
     def spectra(self, periods: FloatArray, damping: float) -> FloatArray:
-        """Return pseudo-spectral accelerations.
-
-        Parameters
-        ----------
-        periods : ndarray, shape (periods,)
-            Natural periods [s].
-        damping : float
-            Damping ratio [-].
-
-        Returns
-        -------
-        ndarray, shape (motions, periods)
-            One row a motion [m/s2].
-        """
+        """Return pseudo-spectral accelerations of every motion [m/s2] at periods [s] and a damping ratio [-]."""
         return np.array([response_spectrum(each, periods, damping).pseudo_acceleration for each in self.motions])
 
 
@@ -159,14 +100,12 @@ class CodeMethod(ABC):
 
     @abstractmethod
     def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
-        """Return the factor on every motion at which the method's limit is reached.
+        """Return the factor on every motion at which the limit is reached.
 
         Parameters
         ----------
-        stances : Stances
-            The bodies.
-        shaking : Shaking
-            The motions.
+        stances, shaking
+            As for `capacity`.
 
         Returns
         -------
@@ -175,19 +114,19 @@ class CodeMethod(ABC):
         """
 
     def capacity(self, stances: Stances, shaking: Shaking) -> FloatArray:
-        """Return the factor on every motion up to which the method calls a body safe: of its worse side.
+        """Return the factor on every motion up to which a body is called safe.
 
         Parameters
         ----------
         stances : Stances
-            The bodies.
+            Bodies, as ``Stances.of(bodies)``.
         shaking : Shaking
-            The motions.
+            Motions, as ``Shaking.of(motions)``.
 
         Returns
         -------
         ndarray, shape (motions, bodies)
-            Factors; NaN where a body is outside the domain [-].
+            Of the worse side; NaN outside the domain [-].
         """
         shape = (len(shaking.motions), *stances.slope.shape)
         return np.asarray(np.broadcast_to(self.of_sides(stances, shaking), shape).min(axis=2))

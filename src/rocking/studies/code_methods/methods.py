@@ -42,9 +42,6 @@ class ItalianLinearKinematic(CodeMethod):
         return self.behaviour_factor * stances.uplift / shaking.acceleration  # Eq. 301
 
 
-ROTATIONS = np.linspace(0.1, 1.0, 10)  # over the slenderness angle, at which ASCE's balance is looked for [-]
-
-
 class AsceRocking(CodeMethod):
     """Energy method of ASCE/SEI 43: a linear oscillator of the frequency and damping that belong to a rotation."""
 
@@ -54,12 +51,13 @@ class AsceRocking(CodeMethod):
         "ASCE/SEI 43-05, A.2, approximate method for rocking of an unanchored rigid body, Eq. A-5; 43-19 likewise"
     )
     domain = (
-        "symmetric body of one mass (F_H = 1), no vertical motion (F_V = 1), C_R > 0; safe if a rotation up to alpha "
-        "balances, without the standard's factors of safety"
+        "symmetric body of one mass (F_H = 1), no vertical motion (F_V = 1), C_R > 0; safe if at the angle alpha the "
+        "capacity is no less than the demand, without the standard's factors of safety"
     )
     reading = (
-        "structure and symbols seen at the head of A.2, equations as the project's specification re-derives them; how "
-        "the standard iterates and which margin it asks for were not read"
+        "low: structure and symbols seen at the head of A.2, equations as the project's specification re-derives them; "
+        "margins were not read, nor which of several rotations that balance counts: the largest here, as A.1 words it "
+        "for sliding (lowest frequency); if any up to alpha would do, limits would be up to several times as high"
     )
     example = "closed form: C_R of a rectangle is Housner's coefficient"
 
@@ -76,25 +74,23 @@ class AsceRocking(CodeMethod):
         return np.asarray(gamma / np.hypot(2.0 * math.pi, gamma))  # Eq. 303
 
     @staticmethod
-    def oscillator(stances: Stances) -> tuple[FloatArray, FloatArray]:
-        """Return period [s] and capacity [m/s2] at each of `ROTATIONS`, the last axis."""
-        a, h = stances.slope[..., None], stances.height[..., None]
-        rotation = stances.angle[..., None] * ROTATIONS
+    def oscillator(stances: Stances, rotation: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return period [s] and capacity [m/s2] at a rotation of every side [rad]."""
+        a, h = stances.slope, stances.height
         f1 = np.cos(rotation) + a * np.sin(rotation) - 1.0
         work = 2.0 * stances.gravity * f1
-        period = 2.0 * math.pi * rotation * np.sqrt(_inertia(stances)[..., None] * h / work)  # Eq. 304
+        period = 2.0 * math.pi * rotation * np.sqrt(_inertia(stances) * h / work)  # Eq. 304
         return period, work / rotation  # Eq. 305
 
     def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
-        """Eqs. 302 to 305; the largest factor at which some rotation up to alpha balances."""
-        beta, (period, capacity) = self.damping(stances), self.oscillator(stances)
+        """Eqs. 302 to 305, at the rotation that overturns."""
+        beta, (period, capacity) = self.damping(stances), self.oscillator(stances, stances.angle)
         found = np.full((len(shaking.motions), *beta.shape), np.nan)
         alike = np.round(beta, 12)  # sides of one damping share their spectra
         for value in np.unique(alike[np.isfinite(alike)]):
             some = alike == value
             periods, places = np.unique(period[some], return_inverse=True)
-            demand = shaking.spectra(periods, float(value))[:, places.reshape(-1, ROTATIONS.size)]
-            found[:, some] = (capacity[some] / demand).max(axis=-1)
+            found[:, some] = capacity[some] / shaking.spectra(periods, float(value))[:, places.ravel()]
         return found
 
 
