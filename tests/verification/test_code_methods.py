@@ -205,12 +205,13 @@ def test_other_blocks_have_other_shares(tables):
     assert interval(soft, 3)[0] > FIRM[3]
 
 
-@pytest.mark.verifies("repeated sampling", "the share that a method calls safe by its own account", control="within")
+@pytest.mark.verifies("published", "half of the bodies overturn at A_R50", within="20 %", control="within")
 def test_who_knows_the_velocity_is_nearer(tables):
     """Kaneko and Hayashi's median ratio is near 1 on either ground; that of acceleration alone changes with size."""
     for family in ("firm-ground", "soft-ground"):
         found = tables(family)
-        assert 0.8 < found.bias("kaneko-hayashi").median < 1.2
+        assert found.bias("kaneko-hayashi").median == pytest.approx(1.0, abs=0.2)  # its motions were others
+        assert found.bias("housner-pulse").median != pytest.approx(1.0, abs=0.2)
         assert found.bias("kaneko-hayashi").scatter < 0.6 * found.bias("italian-linear").scatter + 0.1
         alone = [found.bias("italian-linear", k).median for k in range(4)]
         assert alone[0] > 1.3 * alone[3]
