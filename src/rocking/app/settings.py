@@ -1,7 +1,5 @@
 """What the server is told when it starts, and what its endpoints share."""
 
-import os
-import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
@@ -9,6 +7,7 @@ from typing import TYPE_CHECKING, cast
 from starlette.requests import HTTPConnection
 
 from rocking.app.work import ComputationQueue
+from rocking.evidence.store import data_folder
 
 if TYPE_CHECKING:
     from rocking.app.records import RecordStore
@@ -40,22 +39,13 @@ class Limits:
     session_seconds: float = 12 * 3600.0  # idle time after which a browser must sign in again [s]
 
 
-def default_folder() -> Path:
-    """Return where this user's records and studies are kept, under the system's folder for data; not created here."""
-    if sys.platform == "win32":
-        root = os.environ.get("LOCALAPPDATA") or str(Path.home() / "AppData" / "Local")
-    else:
-        root = os.environ.get("XDG_DATA_HOME") or str(Path.home() / ".local" / "share")
-    return Path(root) / "rocking"
-
-
 @dataclass(frozen=True)
 class ServerSettings:
     """What the server is told when it starts."""
 
     host: str = "127.0.0.1"  # address to listen on
     port: int = DEFAULT_PORT  # port to listen on
-    folder: Path = field(default_factory=default_folder)  # data folder: records, studies, the key for scripts
+    folder: Path = field(default_factory=data_folder)  # data folder: records, studies, the key for scripts
     allow_remote: bool = False  # whether an address that other machines reach is allowed
     workers: int | None = None  # processes for a study; by default what the campaign chooses
     limits: Limits = Limits()  # how much it accepts

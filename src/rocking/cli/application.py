@@ -36,8 +36,10 @@ def application(arguments: Sequence[str] | None = None) -> typer.Typer:
             app.command(name)(_listed(module, name))
     if named not in COMMANDS:
         from rocking.cli.campaign import campaign
+        from rocking.cli.evidence import evidence
 
         app.add_typer(campaign, name="campaign")
+        app.add_typer(evidence, name="evidence")
     return app
 
 

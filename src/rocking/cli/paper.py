@@ -6,22 +6,26 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking.cli import options
 from rocking.cli.page import Page, bar, print_json
 
 if TYPE_CHECKING:
+    from rocking.evidence._league import LeagueRow
     from rocking.reports.paper_document import Reproduction
 
 
 def paper(
+    evidence: options.Evidence = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for the report, tables and figures; none is written if left out.")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print every number as JSON.")] = False,
 ) -> None:
     """Recompute the paper: every table, figure, erratum and claim, and the league of all models."""
+    from rocking.evidence.store import selected
     from rocking.reports.paper_document import reproduce
 
-    result = reproduce()
+    result = reproduce(selected(evidence) if evidence else None)
     if as_json:
         from rocking.reports.paper_folder import as_plain
 
@@ -68,8 +72,7 @@ def _show(result: "Reproduction") -> None:
     page.line(f"  errata found: {sum(e.found for e in result.errata)} of {len(result.errata)}")
     page.line("\nClaims", "bold")
     page.rich(_claims(result))
-    page.line("\nLeague: RMSE of r over 39 measurements, in bands of h/b; log error of the energy loss", "bold")
-    _league(page, result)
+    show_league(page, result.league, len(result.data))
     page.line("\nVerdict", "bold")
     page.rich(Padding(Text("\n".join(result.verdict)), (0, 0, 0, 2)), soft_wrap=False)
 
@@ -89,13 +92,15 @@ def _claims(result: "Reproduction") -> Any:
     return table
 
 
-def _league(page: Page, result: "Reproduction") -> None:
+def show_league(page: Page, league: "tuple[LeagueRow, ...]", count: int) -> None:
+    """Print how all models fare."""
+    page.line(f"\nLeague: RMSE of r over {count} measurements, in bands of h/b; log error of the energy loss", "bold")
     rows = [
         (
             f"  {row.name}", f"{row.rmse:.4f}", f"{row.bias:+.3f}", *(f"{value:.3f}" for value in row.by_band.values()),
             f"{row.log_loss_rmse:.3f}", f"{row.bic:.1f}",
         )
-        for row in result.league
+        for row in league
     ]  # fmt: skip
     head = ("  model", "RMSE", "bias", "<=3", "3-6", ">6", "loss", "BIC")
-    page.table(head, rows, head[:1], bold={k for k, row in enumerate(result.league) if row.name in {"ked", "housner"}})
+    page.table(head, rows, head[:1], bold={k for k, row in enumerate(league) if row.name in {"ked", "housner"}})

@@ -24,10 +24,11 @@ def serve(
     as_json: options.AsJson = False,
 ) -> None:
     """Open the application: draw a body, drop a record, see it rock. Everything stays on this machine."""
-    from rocking.app.settings import ServerSettings, default_folder
+    from rocking.app.settings import ServerSettings
+    from rocking.evidence.store import data_folder
 
     settings = ServerSettings(
-        host=host, folder=(data or default_folder()).expanduser().absolute(), allow_remote=allow_remote, workers=workers
+        host=host, folder=(data or data_folder()).expanduser().absolute(), allow_remote=allow_remote, workers=workers
     )
     _serve(settings, port, quiet=no_browser or as_json, as_json=as_json)
 

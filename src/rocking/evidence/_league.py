@@ -1,5 +1,6 @@
 """The league table: every model against every measurement, by measures that can tell them apart; and what it says."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -7,19 +8,21 @@ from typing import Any
 
 import numpy as np
 
+from rocking.errors import InvalidValueError
 from rocking.evidence import comparison
-from rocking.evidence.comparison import MEASURES, compare, drawn, resampled
+from rocking.evidence.comparison import FEWEST, MEASURES, compare, drawn, resampled
 from rocking.evidence.contenders import Contender, as_it_is, contenders
 from rocking.evidence.likelihood import rounding_bic
-from rocking.evidence.measurements import BANDS, GROUPS, DataSet, all_measurements
+from rocking.evidence.measurements import BANDS, DataSet, all_measurements
 from rocking.restitution import Ked, RestitutionModel
 
-_UNRESOLVED = 6.0
+_UNRESOLVED, _SLENDER = 6.0, 6.0
+_PUBLISHED = "Two sources, repeated tests of the same blocks and one tape-covered interface are little evidence: what"
 
 
 @dataclass(frozen=True, slots=True)
 class LeagueRow:
-    """One contender's record on the 39 measurements."""
+    """One contender's record on measurements."""
 
     name: str  # in the league
     model: RestitutionModel  # with fitted values where there are any
@@ -52,31 +55,40 @@ class LeagueRow:
         return {**plain, "fitted": {name: self.model.parameters[name] for name in self.parameters}}
 
 
-def league(extra: Sequence[RestitutionModel] = ()) -> tuple[LeagueRow, ...]:
+def league(extra: Sequence[RestitutionModel] = (), measurements: DataSet | None = None) -> tuple[LeagueRow, ...]:
     """Return the league table, best RMSE of r first.
 
     Parameters
     ----------
     extra : sequence of RestitutionModel
         Your own models, to take part as they are.
+    measurements : DataSet, optional
+        What they are judged by; the 39 published coefficients if not given.
 
     Returns
     -------
     tuple of LeagueRow
         One row a contender.
 
+    Raises
+    ------
+    InvalidValueError
+        If the measurements are of fewer than five blocks.
+
     Examples
     --------
     >>> [row.name for row in league() if not row.parameters][0]
     'horizontal-momentum'
     """
-    rows = [*_standing(), *(_row(as_it_is(model), all_measurements()) for model in extra)]
+    data = all_measurements() if measurements is None else measurements
+    if (count := len(set(zip(data.group, data.labels, data.slenderness.tolist(), strict=True)))) < FEWEST:
+        raise InvalidValueError(f"a league needs measurements of at least {FEWEST} blocks, got {count}")
+    rows = [*_standing(data), *(_row(as_it_is(model), data) for model in extra)]
     return tuple(sorted(rows, key=lambda row: row.rmse))
 
 
-@lru_cache(maxsize=1)
-def _standing() -> tuple[LeagueRow, ...]:
-    data = all_measurements()
+@lru_cache(maxsize=4)
+def _standing(data: DataSet) -> tuple[LeagueRow, ...]:
     return tuple(_row(contender, data) for contender in contenders())
 
 
@@ -87,7 +99,7 @@ def _row(contender: Contender, data: DataSet) -> LeagueRow:
     against_ked = compare(data, r, Ked().of_slenderness(data.slenderness))
     count = len(contender.parameters)
     bands = {name: (data.slenderness > a) & (data.slenderness <= b) for name, a, b in BANDS}
-    groups = {name: np.array([group == name for group in data.group]) for name in GROUPS}
+    groups = {name: np.array([group == name for group in data.group]) for name in dict.fromkeys(data.group)}
     each = list(np.eye(len(data), dtype=bool)) if count else [np.ones(len(data), dtype=bool)]
     measures = ("rmse", "bias", "correlation", "concordance", "loss_rmse", "log_loss_rmse")
     return LeagueRow(
@@ -101,12 +113,16 @@ def _row(contender: Contender, data: DataSet) -> LeagueRow:
         leave_group_out=_left_out(contender, data, list(groups.values())),
         bic=rounding_bic(data, r, count),
         by_group={name: comparison.rmse(r[rows], measured[rows]) for name, rows in groups.items()},
-        by_band={name: comparison.rmse(r[rows], measured[rows]) for name, rows in bands.items()},
+        by_band={
+            name: comparison.rmse(r[rows], measured[rows]) if rows.any() else math.nan for name, rows in bands.items()
+        },
         ahead_of_ked=(against_ked.low, against_ked.high),
     )
 
 
 def _left_out(contender: Contender, data: DataSet, subsets: list[Any]) -> float:
+    if contender.parameters and any(left.all() for left in subsets):
+        return math.nan  # nothing is left to fit
     predicted = np.empty(len(data))
     for left in subsets:
         # nothing is fitted where nothing is free, so the whole may be left out at once
@@ -115,46 +131,50 @@ def _left_out(contender: Contender, data: DataSet, subsets: list[Any]) -> float:
     return comparison.rmse(predicted, data.coefficient)
 
 
-def verdict(rows: Sequence[LeagueRow]) -> tuple[str, ...]:
+def verdict(rows: Sequence[LeagueRow], measurements: DataSet | None = None) -> tuple[str, ...]:
     """Put the league table into words, also where the paper's own model loses.
 
     Parameters
     ----------
     rows : sequence of LeagueRow
         The league, which must hold ``ked`` and ``housner``.
+    measurements : DataSet, optional
+        What it is of; the 39 published coefficients if not given.
 
     Returns
     -------
     tuple of str
         One sentence or two each.
     """
+    data = all_measurements() if measurements is None else measurements
     by_name = {row.name: row for row in rows}
     ked, housner = by_name["ked"], by_name["housner"]
     best = min(rows, key=lambda row: row.bic)
     close = [row.name for row in rows if row.bic - best.bic < _UNRESOLVED]
     return (
-        f"Error of r: {_between(ked, housner, 'r')}.",
-        _against_free(ked, [row for row in rows if not row.parameters]),
-        *(f"{name.capitalize()}: {_between(ked, housner, name)}." for name in list(MEASURES)[1:]),
-        f"Above slenderness 6: {_between(ked, housner, 'r', 6.0)}. The bias of KED over all rows is {ked.bias:+.4f} "
-        "(model minus measurement).",
+        f"Error of r: {_between(data, ked, housner, 'r')}.",
+        _against_free(data, ked, [row for row in rows if not row.parameters]),
+        *(f"{name.capitalize()}: {_between(data, ked, housner, name)}." for name in list(MEASURES)[1:]),
+        f"{_slender(data, ked, housner)}The bias of KED over all rows is {ked.bias:+.4f} (model minus measurement).",
         f"With fitted parameters the lowest BIC is that of {best.name} ({best.fitted or 'nothing fitted'}): RMSE "
         f"{best.rmse:.4f}, leave-one-out {best.leave_one_out:.4f}, leave-one-data-set-out {best.leave_group_out:.4f}.",
-        f"What these data cannot resolve: {', '.join(close)} lie within {_UNRESOLVED:g} in BIC of each other. Two "
-        "sources, repeated tests of the same blocks and one tape-covered interface are little evidence: what a model "
-        "does outside slenderness 1.5 to 9.75, or for other shapes, is theory.",
+        f"What these data cannot resolve: {', '.join(close)} lie within {_UNRESOLVED:g} in BIC of each other. "
+        f"{_PUBLISHED if data is all_measurements() else 'What'} a model does outside slenderness "
+        f"{data.slenderness.min():g} to {data.slenderness.max():g}, or for other shapes, is theory.",
     )
 
 
-def _between(one: LeagueRow, other: LeagueRow, measure: str, above: float = 0.0) -> str:
-    data = all_measurements()
-    data = data.rows(np.flatnonzero(data.slenderness > above).tolist())
+def _slender(data: DataSet, ked: LeagueRow, housner: LeagueRow) -> str:
+    rows = data.rows(np.flatnonzero(data.slenderness > _SLENDER).tolist())
+    return f"Above slenderness {_SLENDER:g}: {_between(rows, ked, housner, 'r')}. " if len(rows) else ""
+
+
+def _between(data: DataSet, one: LeagueRow, other: LeagueRow, measure: str) -> str:
     first, second = (row.model.of_slenderness(data.slenderness) for row in (one, other))
     return compare(data, first, second, measure).sentence(one.name, other.name)
 
 
-def _against_free(ked: LeagueRow, free: Sequence[LeagueRow]) -> str:
-    data = all_measurements()
+def _against_free(data: DataSet, ked: LeagueRow, free: Sequence[LeagueRow]) -> str:
     mine = ked.model.of_slenderness(data.slenderness)
     better = [row for row in free if compare(data, row.model.of_slenderness(data.slenderness), mine).sign < 0]
     best = min(free, key=lambda row: row.rmse)
@@ -163,5 +183,5 @@ def _against_free(ked: LeagueRow, free: Sequence[LeagueRow]) -> str:
         return "Among the models without a fitted parameter, KED has the smallest error."
     return (
         f"Models without a fitted parameter that are closer than KED: {names}. The smallest error is that of "
-        f"{best.name}: {_between(best, ked, 'r')}."
+        f"{best.name}: {_between(data, best, ked, 'r')}."
     )

@@ -24,11 +24,11 @@ from rocking.conventions import FloatArray, Foot
 from rocking.evidence.likelihood import fit_scatter, interval_log_likelihood, normal_cdf, scatter
 from rocking.evidence.measurements import DataSet, all_measurements
 from rocking.restitution import Fixed, ImpactGeometry, Interface, RestitutionModel, ShiftedImpulse, model, models
+from rocking.restitution.calibrated import NAMES, kept
 from rocking.restitution.implied import energy_bound
 from rocking.restitution.shifted_impulse import shifted
 
 CALIBRATED_RANGE = (1.5, 9.75)  # slendernesses h/b that were measured; outside, an interval is an extrapolation
-NAMES = ("eta", "k", "s", "gamma")
 LEVEL = 0.95
 KEPT = Path(__file__).parent / "data" / "calibration.npz"
 """The posterior and the misfits of all models, made by `make calibration`; computed anew for other measurements."""
@@ -38,6 +38,25 @@ _K = np.linspace(0.30, 0.80, 26)
 _LOG_S = np.linspace(math.log(0.02), math.log(0.60), 20)
 _GAMMA = np.linspace(0.20, 1.50, 12)
 _SAMPLES = 4000
+FIELDS = ("samples", "marginals", "joint", "summary")
+
+
+@dataclass(frozen=True, eq=False)
+class Nodes:
+    """The grid on which a posterior is evaluated."""
+
+    eta: FloatArray  # interface factor [-]
+    k: FloatArray  # position of the impulse [-]
+    log_s: FloatArray  # logarithm of the scatter scale
+    gamma: FloatArray  # power of the loss in the scatter [-]
+
+    @property
+    def axes(self) -> tuple[FloatArray, ...]:
+        """All four, in this order."""
+        return self.eta, self.k, self.log_s, self.gamma
+
+
+NODES = Nodes(_ETA, _K, _LOG_S, _GAMMA)
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,22 +196,17 @@ def calibrate() -> Calibration:
     (True, True)
     """
     data = all_measurements()
-    with np.load(KEPT) as kept:
-        if kept["inputs"] != fingerprint(data):
-            return calibrate_on(data)
-        marginals = {name: (kept[f"{name}_grid"], kept[f"{name}_weight"]) for name in NAMES}
-        summary = {
-            name: dict(zip(("mean", "sd", "low", "high"), values, strict=True))
-            for name, values in zip(NAMES, kept["summary"].tolist(), strict=True)
-        }
-        return Calibration(kept["samples"], marginals, kept["joint"], summary)
+    stored = kept(KEPT)
+    if stored["inputs"] != fingerprint(data):
+        return calibrate_on(data)
+    return Calibration(**{name: stored[name] for name in FIELDS})
 
 
-def fingerprint(data: DataSet) -> str:
-    """Return the hash of all that a posterior is made of: measurements, grid and number of samples."""
+def fingerprint(data: DataSet, *more: str) -> str:
+    """Return the hash of all that a posterior is made of: measurements, grid, number of samples, and more."""
     arrays = (data.slenderness, data.low, data.high, _ETA, _K, _LOG_S, _GAMMA)
     text = [[f"{value:.12g}" for value in values.tolist()] for values in arrays]
-    return hashlib.sha256(repr((text, _SAMPLES)).encode()).hexdigest()
+    return hashlib.sha256(repr((text, _SAMPLES, *more)).encode()).hexdigest()
 
 
 def keep(path: Path) -> None:
@@ -203,22 +217,26 @@ def keep(path: Path) -> None:
     predictions = np.array([each.of_slenderness(data.slenderness) for each in named])
     arrays: dict[str, Any] = {
         "inputs": fingerprint(data),
-        "samples": calibration.samples,
-        "joint": calibration.joint,
-        "summary": [list(facts.values()) for facts in calibration.summary.values()],
+        **arrays_of(calibration),
         "predictions": predictions,
         "misfits": [fit_scatter(data, each)[:2] for each in predictions],
         "unseen": _unseen(data),
     }
-    for name, (grid, weight) in calibration.marginals.items():
-        arrays |= {f"{name}_grid": grid, f"{name}_weight": weight}
     np.savez_compressed(path, **arrays)
+
+
+def arrays_of(calibration: Calibration) -> dict[str, Any]:
+    """Return a posterior as arrays to keep."""
+    found: dict[str, Any] = {"samples": calibration.samples, "joint": calibration.joint}
+    for name, (grid, weight) in calibration.marginals.items():
+        found |= {f"{name}_grid": grid, f"{name}_weight": weight}
+    return {**found, "summary": [list(facts.values()) for facts in calibration.summary.values()]}
 
 
 def calibrate_on(data: DataSet) -> Calibration:
     """Return the calibration on given measurements."""
     grid = posterior_grid(data)
-    return _summarised(normalised(grid.log_prior + grid.terms.sum(axis=-1)))  # Eq. 136
+    return summarised(normalised(grid.log_prior + grid.terms.sum(axis=-1)))  # Eq. 136
 
 
 @dataclass(frozen=True, eq=False)
@@ -239,16 +257,21 @@ def posterior_grid(data: DataSet) -> PosteriorGrid:
     terms = np.empty_like(sd)
     for i in range(len(_ETA)):
         terms[i] = interval_log_likelihood(data.low, data.high, mean[i], sd[i])
-    eta: FloatArray = 0.5 * np.log1p(-_ETA) + 97.5 * np.log(_ETA)  # Eq. 135
-    k: FloatArray = -0.5 * ((_K - 0.6) / 0.12) ** 2  # Eq. 135
-    return PosteriorGrid(eta[:, None, None, None] + k[None, :, None, None], terms, mean, sd)
+    return PosteriorGrid(log_prior(NODES), terms, mean, sd)
+
+
+def log_prior(nodes: Nodes) -> FloatArray:
+    """Return the logarithm of the prior on nodes, but for a constant; shape (a, b, 1, 1)."""
+    eta: FloatArray = 0.5 * np.log1p(-nodes.eta) + 97.5 * np.log(nodes.eta)  # Eq. 135
+    k: FloatArray = -0.5 * ((nodes.k - 0.6) / 0.12) ** 2  # Eq. 135
+    return eta[:, None, None, None] + k[None, :, None, None]
 
 
 @lru_cache(maxsize=8)
 def unseen(data: DataSet) -> FloatArray:
     """Return the expected coefficients of all rows, each by a calibration that has not seen its data set [-]."""
-    with np.load(KEPT) as kept:
-        return np.array(kept["unseen"]) if kept["inputs"] == fingerprint(data) else _unseen(data)
+    stored = kept(KEPT)
+    return np.array(stored["unseen"]) if stored["inputs"] == fingerprint(data) else _unseen(data)
 
 
 def _unseen(data: DataSet) -> FloatArray:
@@ -322,12 +345,12 @@ def interval_for(
 @lru_cache(maxsize=1024)
 def _misfit(predictions: bytes, data: DataSet) -> tuple[float, float]:
     predicted = np.frombuffer(predictions)
-    with np.load(KEPT) as kept:
-        if kept["inputs"] == fingerprint(data):
-            same = np.abs(kept["predictions"] - predicted).max(axis=1) < 1e-12
-            if same.any():
-                floor, slope = kept["misfits"][same][0].tolist()
-                return floor, slope
+    stored = kept(KEPT)
+    if stored["inputs"] == fingerprint(data):
+        same = np.abs(stored["predictions"] - predicted).max(axis=1) < 1e-12
+        if same.any():
+            floor, slope = stored["misfits"][same][0].tolist()
+            return floor, slope
     floor, slope, _ = fit_scatter(data, predicted)
     return floor, slope
 
@@ -339,8 +362,9 @@ def _geometry(body: Body | Any, onto: Foot) -> tuple[ImpactGeometry, FloatArray]
     return ImpactGeometry.of_slenderness(ratios), np.ones(ratios.shape)
 
 
-def _summarised(weight: FloatArray) -> Calibration:
-    grids = (_ETA, _K, np.exp(_LOG_S), _GAMMA)
+def summarised(weight: FloatArray, nodes: Nodes = NODES) -> Calibration:
+    """Return the calibration of weights on nodes."""
+    grids = (nodes.eta, nodes.k, np.exp(nodes.log_s), nodes.gamma)
     axes = range(weight.ndim)
     marginals = {
         name: (grid, weight.sum(axis=tuple(j for j in axes if j != i)))

@@ -17,6 +17,7 @@ BANDS = (("h/b <= 3", 0.0, 3.0), ("3 < h/b <= 6", 3.0, 6.0), ("h/b > 6", 6.0, np
 """Slenderness bands of the league table: name, above, up to."""
 
 _COLUMNS = ("slenderness", "coefficient", "low", "high", "mass")
+_WORDS = ("labels", "group", "interface", "laboratory")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -41,6 +42,10 @@ class DataSet:
         Data set of each row.
     printed : dict of str to ndarray
         The paper's own columns: ``housner``, ``ked``, ``relative_error``.
+    interface : tuple of str
+        What touches what, in alphabetic order, such as ``granite/granite``; empty where nobody says.
+    laboratory : tuple of str
+        Who measured; empty where nobody says, which counts as another one for each group and interface.
     """
 
     name: str
@@ -54,6 +59,13 @@ class DataSet:
     labels: tuple[str, ...]
     group: tuple[str, ...]
     printed: dict[str, FloatArray]
+    interface: tuple[str, ...] = ()
+    laboratory: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Let what nobody says be empty words."""
+        for name in ("interface", "laboratory"):
+            object.__setattr__(self, name, getattr(self, name) or ("",) * len(self.group))
 
     def __repr__(self) -> str:
         between = f", h/b {self.slenderness.min():g} to {self.slenderness.max():g}" if len(self) else ""
@@ -84,8 +96,7 @@ class DataSet:
         return replace(
             self,
             **{name: getattr(self, name)[index] for name in _COLUMNS},
-            labels=tuple(self.labels[i] for i in index.tolist()),
-            group=tuple(self.group[i] for i in index.tolist()),
+            **{name: tuple(getattr(self, name)[i] for i in index.tolist()) for name in _WORDS},
             printed={key: column[index] for key, column in self.printed.items()},
         )
 
@@ -129,16 +140,24 @@ def all_measurements() -> DataSet:
     >>> len(all_measurements())
     39
     """
-    groups = [datasets()[name] for name in GROUPS]
+    return joined([datasets()[name] for name in GROUPS], "all", "All 39 measurements")
+
+
+def joined(sets: Sequence[DataSet], name: str, title: str) -> DataSet:
+    """Return the measurements of several sets as one."""
     return DataSet(
-        name="all",
-        title="All 39 measurements",
-        source=groups[0].source,
-        **{name: np.concatenate([getattr(each, name) for each in groups]) for name in _COLUMNS},
-        labels=tuple(label for each in groups for label in each.labels),
-        group=tuple(group for each in groups for group in each.group),
+        name=name,
+        title=title,
+        source="; ".join(dict.fromkeys(each.source for each in sets)),
+        **{column: np.concatenate([getattr(each, column) for each in sets]) for column in _COLUMNS},
+        **{words: tuple(word for each in sets for word in getattr(each, words)) for words in _WORDS},
         printed={},
     )
+
+
+def interface_of(words: str) -> str:
+    """Return the materials of an interface in alphabetic order: which of them is on top is not told apart."""
+    return "/".join(sorted(word.strip().lower() for word in words.split("/")))
 
 
 @lru_cache(maxsize=1)
@@ -186,4 +205,6 @@ def _dataset(name: str, table: str, rows: list[dict[str, str]], labels: list[str
         tuple(labels),
         (name,) * len(rows),
         {key: column(field) for key, field in printed.items() if field in rows[0]},
+        tuple(interface_of(str(facts.get("interface", label))) for label in labels),
+        (str(facts.get("laboratory", "")),) * len(rows),
     )

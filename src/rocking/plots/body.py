@@ -8,6 +8,7 @@ import numpy as np
 from rocking.bodies import Block, Body, MassPoints, Section
 from rocking.conventions import FloatArray, Foot
 from rocking.evidence._coefficient_table import CALIBRATED, CoefficientRow
+from rocking.evidence.measurements import all_measurements
 from rocking.plots.evidence import R, measured, predicted
 from rocking.plots.style import DASHED, DOUBLE, GREY, INK, PALE, SINGLE, in_journal_style, model_styles, new_figure
 
@@ -58,7 +59,7 @@ def coefficient_picture(body: Body, tables: Mapping[Foot, Sequence[CoefficientRo
     _rows(axes[1], tables, markers)
     ratios = {foot: body.side(foot).slenderness_ratio for foot in tables}
     predicted(axes[2], low=min(1.2, 0.9 * min(ratios.values())), high=max(10.5, 1.08 * max(ratios.values())))
-    measured(axes[2])
+    measured(axes[2], all_measurements())
     for foot, rows in tables.items():
         for row in rows:
             axes[2].plot([ratios[foot]], [row.coefficient], markers[foot], markersize=4, color=_color(row))

@@ -9,7 +9,7 @@ from rocking.evidence._league import LeagueRow
 from rocking.evidence.bed_fit import bed_coefficients
 from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration, calibrate
 from rocking.evidence.explanation import Explanation
-from rocking.evidence.measurements import GROUPS, all_measurements, datasets
+from rocking.evidence.measurements import GROUPS, DataSet, all_measurements, datasets
 from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, model_styles, new_figure
 from rocking.restitution import model
 from rocking.restitution.bed_table import DAMPING, HARDNESS, POINTS
@@ -38,10 +38,12 @@ def curve(axes: "Axes", name: str, low: float = _LOW, high: float = _HIGH) -> No
     axes.plot(ratio, model(name).of_slenderness(ratio), **model_styles()[name])
 
 
-def measured(axes: "Axes", *, loss: bool = False) -> None:
-    """Draw all measured coefficients, or losses of energy, over slenderness, with what rounding leaves open."""
-    for group, style in GROUP_STYLE.items():
-        data, look = datasets()[group], {"marker": style["marker"]} if loss else style
+def measured(axes: "Axes", every: DataSet, *, loss: bool = False) -> None:
+    """Draw measured coefficients, or losses of energy, over slenderness, with what rounding leaves open."""
+    for group in dict.fromkeys(every.group):
+        data = every.rows([name == group for name in every.group])
+        style = GROUP_STYLE.get(group, {"marker": "D", "label": group})
+        look = {"marker": style["marker"]} if loss else style
         low, value, high = data.low, data.coefficient, data.high
         if loss:
             low, value, high = 1.0 - high**2, 1.0 - value**2, 1.0 - low**2
@@ -60,25 +62,25 @@ def predicted(axes: "Axes", calibration: Calibration | None = None, low: float =
 
 
 @in_journal_style
-def models_and_measurements(calibration: Calibration) -> "Figure":
-    """Draw every model with all 39 measurements: r, and the energy loss, which tells slender bodies apart."""
+def models_and_measurements(calibration: Calibration, data: DataSet) -> "Figure":
+    """Draw every model with all measurements: r, and the energy loss, which tells slender bodies apart."""
     figure, (left, right) = new_figure(DOUBLE, 3.3, columns=2)
     predicted(left, calibration)
     for name in model_styles():
         curve(left, name)
-    measured(left)
+    measured(left, data)
     left.set_ylim(0.45, 1.01)
     left.legend(loc="lower right", ncols=2, columnspacing=0.9, handlelength=2.6)
     ratio = np.linspace(_LOW, _HIGH, 400)
     for name, look in model_styles().items():
         right.plot(ratio, 1.0 - model(name).of_slenderness(ratio) ** 2, **{**look, "label": None})
-    measured(right, loss=True)
+    measured(right, data, loss=True)
     right.set_yscale("log")
     return figure
 
 
 @in_journal_style
-def league_figure(rows: Sequence[LeagueRow]) -> "Figure":
+def league_figure(rows: Sequence[LeagueRow], count: int) -> "Figure":
     """Draw the error of every model with its bootstrap interval, and by slenderness band; best first."""
     figure, (left, right) = new_figure(DOUBLE, 0.9 + 0.19 * len(rows), columns=2, sharey=True)
     place = np.arange(len(rows))[::-1]
@@ -87,7 +89,7 @@ def league_figure(rows: Sequence[LeagueRow]) -> "Figure":
         left.plot([row.rmse_low, row.rmse_high], [y, y], color=color, linewidth=1.0)
         left.plot([row.rmse], [y], marker="o", color=color, markerfacecolor="white" if row.parameters else color)
     left.set_yticks(place, [f"{row.name}  {row.fitted}".strip() for row in rows])
-    left.set_xlabel("RMSE of r, 39 measurements;\n95 % bootstrap interval; open: fitted [-]")
+    left.set_xlabel(f"RMSE of r, {count} measurements;\n95 % bootstrap interval; open: fitted [-]")
     left.set_xlim(left=0.0)
     for marker, band in zip(("v", "o", "^"), rows[0].by_band, strict=True):
         right.plot([row.by_band[band] for row in rows], place, marker=marker, label=band, **HOLLOW)
@@ -101,7 +103,7 @@ def league_figure(rows: Sequence[LeagueRow]) -> "Figure":
 
 
 @in_journal_style
-def calibration_figure(calibration: Calibration) -> "Figure":
+def calibration_figure(calibration: Calibration, data: DataSet) -> "Figure":
     """Draw the posterior of eta and k, and the predictive band."""
     figure, (left, right) = new_figure(DOUBLE, 3.0, columns=2, width_ratios=[1.0, 1.5])
     eta, k = calibration.marginals["eta"][0], calibration.marginals["k"][0]
@@ -112,7 +114,7 @@ def calibration_figure(calibration: Calibration) -> "Figure":
     left.set(xlabel="interface factor η [-]", ylabel="impulse position k [-]", xlim=(0.974, 0.996), ylim=(0.42, 0.70))
     left.set_title("posterior, relative to its peak", loc="left")
     predicted(right, calibration)
-    measured(right)
+    measured(right, data)
     for edge in CALIBRATED_RANGE:
         right.axvline(edge, color=GREY, linewidth=0.6, linestyle=(0, (1, 2)))
     right.set_ylim(0.45, 1.01)

@@ -9,10 +9,10 @@ import numpy as np
 from rocking.checks import one_of
 from rocking.conventions import FloatArray
 from rocking.evidence._league import league
-from rocking.evidence.calibration import calibrate
+from rocking.evidence.calibration import calibrate, calibrate_on
 from rocking.evidence.comparison import relative_error
 from rocking.evidence.explanation import explanation
-from rocking.evidence.measurements import DataSet, datasets
+from rocking.evidence.measurements import DataSet, all_measurements, datasets
 from rocking.plots import evidence
 from rocking.plots.energy_stages import energy_stages_picture, hero
 from rocking.plots.evidence import GROUP_STYLE, SLENDERNESS, R, curve
@@ -56,8 +56,10 @@ def paper_figure(name: str) -> "Figure":
     return figures[one_of("name", name, figures)]()
 
 
-def paper_figures() -> "dict[str, Callable[[], Figure]]":
-    """Return how each figure of the report is drawn, by the name of its file."""
+def paper_figures(data: DataSet | None = None) -> "dict[str, Callable[[], Figure]]":
+    """Return how each figure of the report is drawn, by the name of its file; league and calibration of what data."""
+    data = all_measurements() if data is None else data
+    posterior = calibrate() if data is all_measurements() else calibrate_on(data)
     return {
         "figure_1": _figure_1,
         "figure_2": energy_stages_picture,
@@ -67,9 +69,9 @@ def paper_figures() -> "dict[str, Callable[[], Figure]]":
         "figure_7": _figure_7,
         "figure_8": _figure_8,
         "figure_9": _figure_9,
-        "league": lambda: evidence.league_figure(league()),
-        "models_and_measurements": lambda: evidence.models_and_measurements(calibrate()),
-        "calibration": lambda: evidence.calibration_figure(calibrate()),
+        "league": lambda: evidence.league_figure(league(measurements=data), len(data)),
+        "models_and_measurements": lambda: evidence.models_and_measurements(posterior, data),
+        "calibration": lambda: evidence.calibration_figure(posterior, data),
         "bed_dependence": evidence.bed_dependence_figure,
         "explanations": lambda: evidence.explanations_figure(explanation()),
         "explanation_residuals": lambda: evidence.residuals_figure(explanation()),

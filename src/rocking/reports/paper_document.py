@@ -8,11 +8,18 @@ from itertools import repeat
 from rocking.evidence._claims import claims
 from rocking.evidence._errata import Entry, Erratum, TableRow, errata, recomputed
 from rocking.evidence._league import LeagueRow, league, verdict
-from rocking.evidence.calibration import Calibration, Coverage, calibrate, coverage
+from rocking.evidence.calibration import Calibration, Coverage, calibrate, calibrate_on, coverage
 from rocking.evidence.claim import FAILS, HOLDS, IN_PART, UNRESOLVED, Claim
 from rocking.evidence.comparison import concordance, correlation, relative_error, zone
 from rocking.evidence.explanation import Explanation, Ranked, explanation
-from rocking.evidence.measurements import BANDS, GROUPS, datasets
+from rocking.evidence.hierarchy import (
+    HierarchicalCalibration,
+    LeftOut,
+    calibrate_hierarchy,
+    left_out_groups,
+    sentence_of,
+)
+from rocking.evidence.measurements import BANDS, DataSet, all_measurements, datasets
 from rocking.reports.document import Block, Cell, Document, Paragraph, Picture, ReportSection, ReportTable, made_with
 from rocking.reports.document import table as report_table
 from rocking.restitution import Housner, Ked
@@ -68,16 +75,24 @@ class Reproduction:
     claims: tuple[Claim, ...]  # every claim with its verdict
     errata: tuple[Erratum, ...]  # what recomputing found
     league: tuple[LeagueRow, ...]  # every model against every measurement
-    calibration: Calibration  # the calibrated default
+    calibration: Calibration  # the calibrated default, where every measurement stands alone
     coverage: Coverage  # how its intervals cover what they have not seen
+    hierarchy: HierarchicalCalibration  # that which knows laboratories, interfaces and blocks
+    left_out: tuple[LeftOut, ...]  # groups beside what the others predict of them by it
+    data: DataSet  # what league and calibrations are of
     verdict: tuple[str, ...]  # what the evidence says, in words
 
 
-def reproduce() -> Reproduction:
-    """Recompute the paper."""
-    standings = league()
+def reproduce(measurements: DataSet | None = None) -> Reproduction:
+    """Recompute the paper; its league and calibration on other measurements, where they are given."""
+    data = all_measurements() if measurements is None else measurements
+    standings = league(measurements=data)
     tables = {title: tuple(row for name in names for row in recomputed(name)) for title, names in TABLES.items()}
-    return Reproduction(tables, claims(), errata(), standings, calibrate(), coverage(), verdict(standings))
+    calibration = calibrate() if data is all_measurements() else calibrate_on(data)
+    return Reproduction(
+        tables, claims(), errata(), standings, calibration, coverage(data), calibrate_hierarchy(data),
+        left_out_groups(data), data, verdict(standings, data),
+    )  # fmt: skip
 
 
 def paper_document(result: Reproduction) -> Document:
@@ -85,7 +100,7 @@ def paper_document(result: Reproduction) -> Document:
     sections: dict[str, Sequence[Block]] = {
         "Verdict": [Paragraph(sentence) for sentence in result.verdict],
         "Claims": _claims(result.claims),
-        "League table": _league(result.league),
+        "League table": _league(result),
         "What explains the measurements": explanation_blocks(explanation()),
         "Calibrated default": _calibration(result),
         "Tables": [_paper_table(title, rows) for title, rows in result.tables.items()],
@@ -166,9 +181,10 @@ def _pair(entry: Entry) -> list[Cell]:
     return [Cell(text, "plain" if entry.agrees else "bad") for text in (*numbers, difference)]
 
 
-def _league(rows: Sequence[LeagueRow]) -> list[Block]:
+def _league(result: Reproduction) -> list[Block]:
+    rows, count = result.league, len(result.data)
     whole = ["model", "fitted", "RMSE", "95 % bootstrap", "bias", "loss", "log loss", "Lin", "LOO", "LOG", "BIC"]
-    groups = ["Table 1" if name == "table1" else name for name in GROUPS]
+    groups = ["Table 1" if name == "table1" else name for name in rows[0].by_group]
     split = ["model", *groups, *(name for name, _, _ in BANDS), "RMSE minus KED's, 95 %"]
     return [
         Paragraph(
@@ -177,7 +193,7 @@ def _league(rows: Sequence[LeagueRow]) -> list[Block]:
             "the likelihood and a scatter that grows with the loss (lower is better)."
         ),
         report_table(
-            "All models, all 39 measurements",
+            f"All models, all {count} measurements",
             whole,
             [
                 (row.name, row.fitted, f"{row.rmse:.4f}", f"{row.rmse_low:.4f} - {row.rmse_high:.4f}",
@@ -210,9 +226,24 @@ def _calibration(result: Reproduction) -> list[Block]:
         "s": "scatter scale",
         "gamma": "power of the loss in the scatter",
     }
-    rows = [
-        (name, words[name], *(f"{fact[key]:.4f}" for key in ("mean", "sd", "low", "high")))
-        for name, fact in result.calibration.summary.items()
+    both = (("Posterior", "calibration", result.calibration), ("Hierarchical posterior", "hierarchy", result.hierarchy))
+    posteriors = [
+        report_table(title, ["parameter", "meaning", "mean", "sd", "2.5 %", "97.5 %"], [
+            (name, words[name], *(f"{fact[key]:.4f}" for key in ("mean", "sd", "low", "high")))
+            for name, fact in found.summary.items()
+        ], stem=stem)
+        for title, stem, found in both
+    ]  # fmt: skip
+    groups = [
+        (
+            each.name,
+            each.rows,
+            each.inside,
+            f"{each.width:.3f}",
+            f"{each.probability:.3f}",
+            "yes" if each.within else "no",
+        )
+        for each in result.left_out
     ]
     return [
         Paragraph(
@@ -220,7 +251,15 @@ def _calibration(result: Reproduction) -> list[Block]:
             "interval is the posterior predictive one for a single measured body, with a scatter s (1 - r)^gamma. "
             f"{result.coverage.sentence}"
         ),
-        report_table("Posterior", ["parameter", "meaning", "mean", "sd", "2.5 %", "97.5 %"], rows, stem="calibration"),
+        posteriors[0],
+        Paragraph(sentence_of(result.hierarchy, result.left_out)),
+        posteriors[1],
+        report_table(
+            "Groups that the hierarchical calibration has not seen",
+            ["group", "measurements", "inside", "mean width", "probability of a lower mean", "mean within 95 %"],
+            groups,
+            stem="left_out_groups",
+        ),
         Picture("calibration", "Posterior of eta and k, and the predictive band with all measurements."),
     ]
 

@@ -29,7 +29,7 @@ def write_folder(result: Reproduction, folder: Path, step: Step) -> tuple[list[P
     written: list[Path] = []
     left_out: list[str] = []
     try:
-        _draw(pictures, step)
+        _draw(pictures, step, result)
     except MissingExtraError as error:
         left_out.append(f"no figures, and no report.html and report.pdf, which show them: {error}")
     document = paper_document(result)
@@ -73,6 +73,12 @@ def as_plain(result: Reproduction, document: Document | None = None) -> dict[str
             "covered_one_by_one": [result.coverage.one_by_one, result.coverage.rows],
             "covered_by_data_set": {name: list(counts) for name, counts in result.coverage.by_group.items()},
         },
+        "hierarchical_calibration": {
+            "model": result.hierarchy.model().label,
+            **result.hierarchy.summary,
+            "shares": result.hierarchy.shares,
+            "left_out_groups": [{**asdict(each), "within": each.within} for each in result.left_out],
+        },
         "provenance": document.provenance if document else made_with(),
     }
 
@@ -86,11 +92,11 @@ def _row(row: TableRow) -> dict[str, Any]:
     return {"label": row.label, "slenderness_ratio": row.slenderness, "r_experiment": row.measured, **values}
 
 
-def _draw(folder: Path, step: Step) -> None:
+def _draw(folder: Path, step: Step, result: Reproduction) -> None:
     from rocking.plots.paper_figures import paper_figures
     from rocking.plots.style import write
 
-    for stem, draw in paper_figures().items():
+    for stem, draw in paper_figures(result.data).items():
         step(stem.replace("_", " "))
         figure = draw()
         for kind in ("png", "svg"):

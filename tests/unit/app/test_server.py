@@ -16,10 +16,11 @@ import pytest
 
 from rocking.app import server as warm_up
 from rocking.app.server import DataFolder, FolderInUseError, check_host, listen, write_private
-from rocking.app.settings import ServerSettings, default_folder
+from rocking.app.settings import ServerSettings
 from rocking.cli import main
 from rocking.errors import InvalidValueError
 from rocking.evidence import calibrate
+from rocking.evidence.store import data_folder
 
 pytestmark = pytest.mark.timed
 
@@ -240,9 +241,9 @@ def test_default_folder_follows_the_system(monkeypatch, tmp_path):
     """The data folder is where the system keeps data of programs."""
     if sys.platform != "win32":
         monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
-        assert default_folder() == tmp_path / "rocking"
+        assert data_folder() == tmp_path / "rocking"
         monkeypatch.delenv("XDG_DATA_HOME")
-        assert default_folder() == Path.home() / ".local" / "share" / "rocking"
+        assert data_folder() == Path.home() / ".local" / "share" / "rocking"
 
 
 def test_origin_of_the_page():

@@ -1,0 +1,154 @@
+"""`rocking evidence`: measurements of one's own beside the published ones, and what all of them say of the models."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rocking.cli import options
+from rocking.cli.page import Page, deliver
+
+if TYPE_CHECKING:
+    from rocking.evidence import DataSet
+    from rocking.evidence._league import LeagueRow
+    from rocking.evidence.hierarchy import HierarchicalCalibration, LeftOut
+
+evidence = typer.Typer(
+    name="evidence",
+    help="Add measured coefficients of restitution, list them, and see what all of them say of the models.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    add_completion=False,
+)
+
+
+@evidence.command()
+def add(
+    file: Annotated[Path, typer.Argument(help="File of measurements: TOML or CSV, see the manual.")],
+    as_json: options.AsJson = False,
+) -> None:
+    """Check a file of measurements and add a copy of it to your own evidence; the package is never changed."""
+    from rocking.evidence import store
+
+    deliver(AddedAnswer(*store.add(file)), as_json=as_json)
+
+
+@evidence.command(name="list")
+def list_(as_json: options.AsJson = False) -> None:
+    """Print the published measurements and your own: who measured what, and how many."""
+    from rocking.evidence import store
+    from rocking.evidence.measurement_file import read_measurements
+    from rocking.evidence.measurements import GROUPS, datasets
+
+    sets = [(name, datasets()[name]) for name in GROUPS]
+    deliver(ListAnswer([*sets, *((str(path), read_measurements(path)) for path in store.own_files())]), as_json=as_json)
+
+
+@evidence.command()
+def calibrate(which: options.Evidence = None, as_json: options.AsJson = False) -> None:
+    """Print how all models fare on measurements, and the calibration for a body on an interface that is new."""
+    from rocking.evidence import league, store
+    from rocking.evidence.hierarchy import calibrate_hierarchy, left_out_groups
+
+    data = store.selected(which or ())
+    standings = league(measurements=data)
+    deliver(CalibrationAnswer(data, standings, calibrate_hierarchy(data), left_out_groups(data)), as_json=as_json)
+
+
+@dataclass(frozen=True)
+class AddedAnswer:
+    """A file that was added."""
+
+    path: Path
+    data: "DataSet"
+    new: bool
+
+    def facts(self) -> dict[str, Any]:
+        return {"file": str(self.path), "measurements": len(self.data), "new": self.new}
+
+    def show(self, page: Page) -> None:
+        words = "added to your evidence" if self.new else "are in your evidence already"
+        page.line(f"{self.data!r}: {words}", "bold")
+        page.facts([("file", str(self.path)), ("next", "rocking evidence calibrate")])
+
+
+@dataclass(frozen=True)
+class ListAnswer:
+    """Sets of measurements with their names."""
+
+    sets: "list[tuple[str, DataSet]]"
+
+    def facts(self) -> list[dict[str, Any]]:
+        return [
+            {
+                "name": name, "measurements": len(data), "laboratories": _different(data.laboratory),
+                "interfaces": _different(data.interface),
+                "slenderness": [data.slenderness.min(), data.slenderness.max()],
+                "coefficient": [data.coefficient.min(), data.coefficient.max()], "source": data.source,
+            }
+            for name, data in self.sets
+        ]  # fmt: skip
+
+    def show(self, page: Page) -> None:
+        rows = [
+            (
+                each["name"], str(each["measurements"]), "{:g} - {:g}".format(*each["slenderness"]),
+                "{:.3f} - {:.3f}".format(*each["coefficient"]), ", ".join(each["laboratories"]),
+            )
+            for each in self.facts()
+        ]  # fmt: skip
+        page.table(("set", "n", "h/b", "r", "laboratories"), rows, ("set", "laboratories"))
+        page.line()
+        page.facts(dict.fromkeys(("source", data.source) for _, data in self.sets))
+
+
+@dataclass(frozen=True)
+class CalibrationAnswer:
+    """What measurements say."""
+
+    data: "DataSet"
+    league: "tuple[LeagueRow, ...]"
+    calibration: "HierarchicalCalibration"
+    left_out: "tuple[LeftOut, ...]"
+
+    def facts(self) -> dict[str, Any]:
+        from dataclasses import asdict
+
+        return {
+            "measurements": len(self.data),
+            "model": self.calibration.model().label,
+            "calibration": self.calibration.summary,
+            "shares": self.calibration.shares,
+            "left_out_groups": [{**asdict(each), "within": each.within} for each in self.left_out],
+            "league": [row.as_dict() for row in self.league],
+        }
+
+    def show(self, page: Page) -> None:
+        from rocking.cli.paper import show_league
+        from rocking.evidence import verdict
+        from rocking.evidence.hierarchy import sentence_of
+
+        page.line(f"{self.data!r}: {self.calibration.model().label}", "bold")
+        head = ("", "mean", "sd", "2.5 %", "97.5 %")
+        rows = [
+            (name, *(f"{value:.4f}" for value in facts.values())) for name, facts in self.calibration.summary.items()
+        ]
+        page.table(head, rows, ("",))
+        page.line(sentence_of(self.calibration, self.left_out))
+        page.table(
+            ("group, left out", "n", "inside", "width", "mean within 95 %"),
+            [
+                (e.name, str(e.rows), str(e.inside), f"{e.width:.3f}", "yes" if e.within else "no")
+                for e in self.left_out
+            ],
+            ("group, left out",),
+        )
+        show_league(page, self.league, len(self.data))
+        page.line()
+        for sentence in verdict(self.league, self.data):
+            page.line(sentence)
+
+
+def _different(words: tuple[str, ...]) -> list[str]:
+    return [word for word in dict.fromkeys(words) if word]

@@ -1,0 +1,263 @@
+"""The calibration that knows who measured what: rows of one block, interface and laboratory deviate together.
+
+The calibrated default as in `rocking.evidence.calibration`, but its scatter has shares: what all rows of a laboratory
+have in common, what those of a group with one interface, what those of one block, and what each row has alone. A new
+body on a new interface meets all of them, so that its interval is wider where few interfaces were measured.
+
+Priors: as there for eta, k, s and gamma; the share of the variance that lies between groups is uniform in [0, 1], the
+uniform shrinkage prior (Daniels 1999, Canad. J. Statist. 27, 567-578), as are the part of it that lies between
+laboratories, and the part of the rest that lies between blocks. Effects are integrated in closed form, shares on nodes.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.evidence.calibration import (
+    FIELDS,
+    LEVEL,
+    NODES,
+    Calibration,
+    Nodes,
+    arrays_of,
+    fingerprint,
+    log_prior,
+    normalised,
+    summarised,
+)
+from rocking.evidence.measurements import DataSet, all_measurements
+from rocking.restitution import ImpactGeometry
+from rocking.restitution.calibrated import KEPT, kept
+from rocking.restitution.shifted_impulse import shifted
+
+LEVELS = ("laboratory", "interface", "block", "measurement")
+"""What the variance is divided among, from those that have most rows in common to single rows."""
+
+COARSE = Nodes(*(axis[::2] for axis in NODES.axes))
+_SHARES, _PARTS = 10, 4  # nodes of the share between groups, and of what lies within it or within the rest
+
+
+@dataclass(frozen=True, eq=False)
+class HierarchicalCalibration(Calibration):
+    """Posterior of the calibrated default for a body on an interface that was not measured.
+
+    Parameters
+    ----------
+    shares : dict of str to float
+        Expected shares of the variance of a new measurement: ``laboratory``, ``interface``, ``block`` and
+        ``measurement``; where no laboratory has two groups, or no block two rows, the first or third is in its
+        neighbour's [-].
+    """
+
+    shares: dict[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class LeftOut:
+    """A group of measurements beside what is predicted of it by all others."""
+
+    name: str  # group and interface
+    rows: int  # how many it has
+    inside: int  # those within their intervals for a single measured body
+    width: float  # mean width of these intervals [-]
+    probability: float  # predicted probability of a lower mean than that of the group [-]
+
+    @property
+    def within(self) -> bool:
+        """Whether the group's mean lies within its 95 % interval."""
+        return 0.5 * (1.0 - LEVEL) <= self.probability <= 0.5 * (1.0 + LEVEL)
+
+
+def calibrate_hierarchy(measurements: DataSet | None = None) -> HierarchicalCalibration:
+    """Return the calibration whose scatter has shares of laboratories, interfaces and blocks.
+
+    Parameters
+    ----------
+    measurements : DataSet, optional
+        What was measured; the 39 published coefficients if not given.
+
+    Returns
+    -------
+    HierarchicalCalibration
+        Posterior on a fixed grid: the same numbers every time. Its predictions are of a body on a new interface.
+
+    Examples
+    --------
+    >>> found = calibrate_hierarchy()
+    >>> 0.3 < found.shares["laboratory"] + found.shares["interface"] < 0.9
+    True
+    """
+    data = all_measurements() if measurements is None else measurements
+    return _calibrated(data)
+
+
+@lru_cache(maxsize=8)
+def _calibrated(data: DataSet) -> HierarchicalCalibration:
+    stored = kept(KEPT)
+    if stored["inputs"] == hierarchy_fingerprint(data):
+        shares = dict(zip(LEVELS, stored["shares"].tolist(), strict=True))
+        return HierarchicalCalibration(**{name: stored[name] for name in FIELDS}, shares=shares)
+    posterior = _Posterior(data, NODES)
+    return posterior.calibration(posterior.logarithm)
+
+
+def hierarchy_fingerprint(data: DataSet) -> str:
+    """Return the hash of all that this posterior is made of."""
+    return fingerprint(data, *map(repr, tree(data).items()), str((_SHARES, _PARTS)))
+
+
+def keep_hierarchy() -> None:
+    """Compute what `calibrate_hierarchy` and the model `calibrated` read, and write it."""
+    data = all_measurements()
+    posterior = _Posterior(data, NODES)
+    found = posterior.calibration(posterior.logarithm)
+    shares = np.array(list(found.shares.values()))
+    np.savez_compressed(KEPT, inputs=hierarchy_fingerprint(data), shares=shares, **arrays_of(found))
+
+
+def left_out_groups(measurements: DataSet | None = None) -> tuple[LeftOut, ...]:
+    """Return each group of measurements beside what the others predict of it, on half as many nodes."""
+    data = all_measurements() if measurements is None else measurements
+    posterior = _Posterior(data, COARSE)
+    return tuple(
+        posterior.left_out(laboratory, group) for laboratory, groups in posterior.tree.items() for group in groups
+    )
+
+
+def sentence_of(found: HierarchicalCalibration, groups: tuple[LeftOut, ...]) -> str:
+    """Return what a calibration says of new interfaces, and how it fared on groups that it had not seen."""
+    shares = ", ".join(f"{100.0 * share:.0f} % by {name}" for name, share in found.shares.items() if share > 0.0)
+    rows, inside = sum(each.rows for each in groups), sum(each.inside for each in groups)
+    width = sum(each.rows * each.width for each in groups) / rows
+    return (
+        f"For a body on a new interface the scatter is divided: {shares}. Of {len(groups)} groups, each left out, the "
+        f"means of {sum(each.within for each in groups)} lie within their {100.0 * LEVEL:.0f} % intervals; of their "
+        f"{rows} measurements {inside}, whose intervals are {width:.3f} wide on average."
+    )
+
+
+def tree(data: DataSet) -> dict[str, dict[str, dict[Any, list[int]]]]:
+    """Return the rows by laboratory, group with interface, and block: a label with its slenderness."""
+    found: dict[str, dict[str, dict[Any, list[int]]]] = {}
+    for i, (group, interface) in enumerate(zip(data.group, data.interface, strict=True)):
+        name = f"{group}: {interface}" if interface else group
+        blocks = found.setdefault(data.laboratory[i] or name, {}).setdefault(name, {})
+        blocks.setdefault((data.labels[i], float(data.slenderness[i])), []).append(i)
+    return found
+
+
+def _shares(tree: dict[str, dict[str, dict[Any, list[int]]]]) -> list[tuple[float, ...]]:
+    """Return the nodes of the shares; what no rows tell apart is not divided."""
+    groups = [group for laboratory in tree.values() for group in laboratory.values()]
+    several = any(len(laboratory) > 1 for laboratory in tree.values())
+    again = any(len(rows) > 1 for group in groups for rows in group.values())
+    middle = [((np.arange(n) + 0.5) / n).tolist() for n in (_SHARES, _PARTS)]
+    parts = product(middle[0], middle[1] if several else [0.0], middle[1] if again else [0.0])
+    return [(a * b, a * (1.0 - b), (1.0 - a) * c, (1.0 - a) * (1.0 - c)) for a, b, c in parts]  # Eq. 291
+
+
+@dataclass(frozen=True)
+class _Sums:
+    """What rows say of an effect that they have in common, arrays on the grid of (eta, k, s, gamma)."""
+
+    precision: Any = 0.0
+    moment: Any = 0.0
+    square: Any = 0.0
+    logarithm: Any = 0.0
+
+    def __add__(self, other: "_Sums") -> "_Sums":
+        pairs = zip(vars(self).values(), vars(other).values(), strict=True)
+        return _Sums(*(one + two for one, two in pairs))
+
+    def integrated(self, variance: FloatArray) -> "_Sums":
+        """Return the sums without the effect, which is normal with a variance."""
+        widened = 1.0 + variance * self.precision
+        return _Sums(
+            self.precision / widened, self.moment / widened, self.square - variance * self.moment**2 / widened,
+            self.logarithm + np.log(widened),
+        )  # fmt: skip  # Eq. 293
+
+
+class _Posterior:
+    """The posterior on nodes, laboratory by laboratory: groups can be left out without computing all of it again."""
+
+    def __init__(self, data: DataSet, nodes: Nodes) -> None:
+        self.data, self.nodes, self.tree = data, nodes, tree(data)
+        self.shares = _shares(self.tree)
+        base = shifted(ImpactGeometry.of_slenderness(data.slenderness), nodes.k[:, None])
+        self.mean = np.moveaxis(nodes.eta[:, None, None] * base, -1, 0)[..., None, None]  # row, eta, k, 1, 1
+        self.variance = np.exp(2.0 * nodes.log_s)[:, None]  # s, 1
+        self.rounding = (data.high - data.low) ** 2 / 12.0
+        self.logarithm = log_prior(nodes)[..., None] + sum(map(self._term, self.tree.values()))
+
+    def loading(self, row: int) -> FloatArray:
+        """Return the scatter of a row over s, on the grid of (eta, k, 1, gamma) [-]."""
+        return np.asarray(np.maximum(1.0 - self.mean[row], 1e-6) ** self.nodes.gamma)  # Eq. 133
+
+    def _term(self, groups: dict[str, dict[Any, list[int]]]) -> FloatArray:
+        """Return the logarithm of the likelihood of a laboratory's rows, on the grid and for all shares."""
+        rows = [i for group in groups.values() for block in group.values() for i in block]
+        known = {i: (self.data.coefficient[i] - self.mean[i], self.loading(i)) for i in rows}
+        found = []
+        for share in self.shares:
+            laboratory, interface, block, alone = (self.variance * part for part in share)
+            whole = _Sums()
+            for group in groups.values():
+                inner = _Sums()
+                for members in group.values():
+                    each = sum((self._row(i, alone, *known[i]) for i in members), _Sums())
+                    inner += each if share[2] == 0.0 else each.integrated(block)
+                whole += inner.integrated(interface)
+            whole = whole if share[0] == 0.0 else whole.integrated(laboratory)
+            found.append(-0.5 * (whole.square + whole.logarithm + len(rows) * math.log(2.0 * math.pi)))  # Eq. 294
+        return np.stack(found, axis=-1)
+
+    def _row(self, row: int, variance: FloatArray, residual: FloatArray, loading: FloatArray) -> _Sums:
+        own = variance * loading**2 + self.rounding[row]
+        scaled = loading / own
+        return _Sums(loading * scaled, residual * scaled, residual**2 / own, np.log(own))  # Eq. 292
+
+    def calibration(self, logarithm: FloatArray) -> HierarchicalCalibration:
+        """Return the calibration that a logarithm of weights means."""
+        weight = normalised(logarithm)
+        found, expected = (
+            summarised(weight.sum(axis=-1), self.nodes),
+            weight.sum(axis=(0, 1, 2, 3)) @ np.array(self.shares),
+        )
+        return HierarchicalCalibration(**vars(found), shares=dict(zip(LEVELS, expected.tolist(), strict=True)))
+
+    def without(self, laboratory: str, group: str) -> FloatArray:
+        """Return the logarithm of the weights of all rows but those of a group."""
+        groups = self.tree[laboratory]
+        others = {name: blocks for name, blocks in groups.items() if name != group}
+        return self.logarithm - self._term(groups) + (self._term(others) if others else 0.0)
+
+    def left_out(self, laboratory: str, group: str) -> LeftOut:
+        """Return a group beside what the others predict, as of another laboratory's."""
+        logarithm, blocks = self.without(laboratory, group), list(self.tree[laboratory][group].values())
+        rows = [i for block in blocks for i in block]
+        found = self.calibration(logarithm).predict(self.data.slenderness[rows])
+        measured = self.data.coefficient[rows]
+        inside = int(((found.low <= measured) & (measured <= found.high)).sum())
+        probability = self._below_mean(normalised(logarithm), blocks)
+        return LeftOut(group, len(rows), inside, float((found.high - found.low).mean()), probability)
+
+    def _below_mean(self, weight: FloatArray, blocks: list[list[int]]) -> float:
+        """Return the predicted probability of a mean of rows below the one that was measured."""
+        from scipy.special import ndtr
+
+        rows = [i for block in blocks for i in block]
+        loadings = {i: self.loading(i) for i in rows}
+        sums = [sum(loadings[i] for i in block) for block in blocks]
+        common, by_block, alone = sum(sums) ** 2, sum(each**2 for each in sums), sum(x**2 for x in loadings.values())
+        gap = self.data.coefficient[rows].sum() - self.mean[rows].sum(axis=0)
+        rounding, found = self.rounding[rows].sum(), 0.0
+        for k, (laboratory, interface, block, own) in enumerate(self.shares):
+            variance = self.variance * ((laboratory + interface) * common + block * by_block + own * alone) + rounding
+            found += float((weight[..., k] * ndtr(gap / np.sqrt(variance))).sum())  # Eq. 295
+        return found

@@ -1,0 +1,315 @@
+"""Files of measured coefficients of restitution, in TOML or CSV: what may stand in them, read and written.
+
+Imported only when one is read or written: it loads pydantic.
+"""
+
+import csv
+import io
+import math
+import tomllib
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Field, ValidationError, model_validator
+from pydantic_core import PydanticCustomError
+
+from rocking.bodies.block import Block
+from rocking.bodies.formats.schema import Positive, StrictTable
+from rocking.bodies.formats.words import sentence
+from rocking.errors import InvalidValueError, MeasurementError
+from rocking.evidence.measurements import DataSet, interface_of, joined
+
+_LARGEST, _MOST = 16 * 2**20, 100_000  # bytes of a file, measurements in it
+_NORMAL = 1.959963984540054
+
+Word = Annotated[str, Field(min_length=1, max_length=300)]
+Coefficient = Annotated[float, Field(gt=0.0, le=2.0)]
+
+
+class Measurement(StrictTable):
+    """One measured coefficient of restitution, or a series of them, of one homogeneous rectangle.
+
+    Parameters
+    ----------
+    source, licence : str
+        Publication, or whoever measured it; under what others may use it.
+    interface : str
+        Materials that touch, with a stroke between them: ``granite/granite``.
+    method : str
+        How it was measured: sound, video, laser, ...
+    block : str
+        Name of the block; rows of one block and slenderness deviate together.
+    laboratory, group, material, doi, note : str, optional
+        Who measured; the set of the row, if not the laboratory; of what the block is; DOI of the source; anything else.
+    slenderness_ratio : float, optional
+        h/b; or `width` and `height` [-].
+    width, height : float, optional
+        Full sizes of the block [m].
+    mass : float, optional
+        Its mass [kg].
+    r : float, optional
+        Ratio of velocities, not of energies; or `series` [-].
+    series : list of float, optional
+        Coefficients of single impacts or trials, at least two: their mean counts, and its standard error [-].
+    uncertainty : float, optional
+        Standard deviation of r; or `low` and `high` [-].
+    low, high : float, optional
+        Interval that printed digits leave open [-].
+
+    Examples
+    --------
+    >>> row = Measurement(
+    ...     source="mine",
+    ...     licence="CC0",
+    ...     interface="oak/steel",
+    ...     method="sound",
+    ...     block="A",
+    ...     width=0.1,
+    ...     height=0.4,
+    ...     series=[0.93, 0.95, 0.94],
+    ... )
+    >>> row.ratio, [round(value, 4) for value in row.interval]
+    (4.0, [0.93, 0.94, 0.95])
+    """
+
+    source: Word = Field(description="publication, or whoever measured it")
+    licence: Word = Field(description="under what others may use it, such as CC BY 4.0")
+    interface: Word = Field(description="materials that touch, such as granite/granite")
+    method: Word = Field(description="how it was measured: sound, video, laser, ...")
+    block: Word = Field(description="name of the block; rows of one block deviate together")
+    laboratory: Word | None = Field(None, description="who measured")
+    group: Word | None = Field(None, description="set of the measurement; the laboratory, or the source, if left out")
+    material: Word | None = Field(None, description="what the block is of")
+    doi: Annotated[str, Field(pattern=r"^10\.\d{4,9}/\S+$", max_length=300)] | None = Field(
+        None, description="DOI of the source, such as 10.3390/buildings14072119"
+    )
+    note: Word | None = Field(None, description="anything else")
+    slenderness_ratio: Positive | None = Field(None, description="h/b [-]; or width and height")
+    width: Positive | None = Field(None, description="full width [m]")
+    height: Positive | None = Field(None, description="full height [m]")
+    mass: Positive | None = Field(None, description="mass [kg]")
+    r: Coefficient | None = Field(None, description="coefficient, a ratio of velocities [-]; or series")
+    series: Annotated[list[Coefficient], Field(min_length=2, max_length=_MOST)] | None = Field(
+        None, description="coefficients of single impacts or trials [-]"
+    )
+    uncertainty: Positive | None = Field(None, description="standard deviation of r [-]; or low and high")
+    low: Annotated[float, Field(ge=0.0)] | None = Field(None, description="low end of what printed digits leave open")
+    high: Positive | None = Field(None, description="high end of it [-]")
+
+    @model_validator(mode="after")
+    def _whole(self) -> "Measurement":
+        sizes, ends = (self.width is not None) + (self.height is not None), (self.low, self.high)
+        if sizes != (2 if self.slenderness_ratio is None else 0):
+            raise _contradiction("give slenderness_ratio, or width and height")
+        if (self.r is None) == (self.series is None):
+            raise _contradiction("give r or series, one of them")
+        open_ = [self.uncertainty is not None, None not in ends, self.series is not None]
+        if sum(open_) != 1 or (not open_[1] and ends != (None, None)):
+            raise _contradiction("say how far r is open: give uncertainty, or low and high, or a series alone")
+        low, r, high = self.interval
+        if not low <= r <= high or low == high:
+            raise _contradiction(f"r must lie in an interval that is open, got {low:g} <= {r:g} <= {high:g}")
+        if r > 1.0:
+            raise _contradiction(f"r must be <= 1: a rectangle that gains energy was not measured, got {r:g}")
+        return self
+
+    @property
+    def ratio(self) -> float:
+        """Slenderness ratio h/b [-]."""
+        if self.width is not None and self.height is not None:
+            return self.height / self.width
+        return self.slenderness_ratio or math.nan
+
+    @property
+    def interval(self) -> tuple[float, float, float]:
+        """Low end, r, high end: of a standard deviation the interval that has it [-]."""
+        if self.r is not None and self.low is not None and self.high is not None:
+            return self.low, self.r, self.high
+        series = np.array([self.r] if self.series is None else self.series)
+        r = float(series.mean())
+        deviation = self.uncertainty or float(series.std(ddof=1)) / math.sqrt(series.size)
+        return r - math.sqrt(3.0) * deviation, r, r + math.sqrt(3.0) * deviation
+
+
+def read_measurements(*paths: str | Path) -> DataSet:
+    """Read measured coefficients from files.
+
+    Parameters
+    ----------
+    *paths : str or Path
+        TOML with tables ``[[measurement]]``, where keys above them hold for all; or CSV, one row a measurement, its
+        columns the keys, a series with spaces between its numbers. See `Measurement`.
+
+    Returns
+    -------
+    DataSet
+        All of them.
+
+    Raises
+    ------
+    MeasurementError
+        If a file cannot be read, or a measurement is not whole; the sentence names file, row, key and value.
+    """
+    if not paths:
+        raise InvalidValueError("name at least one file of measurements")
+    sets = [dataset_of(rows_in(Path(path)), Path(path).stem) for path in paths]
+    return sets[0] if len(sets) == 1 else joined(sets, "+".join(each.name for each in sets), "measurements of files")
+
+
+def rows_in(path: Path) -> list[Measurement]:
+    """Return the measurements of a file."""
+    try:
+        data = path.read_bytes()
+    except (OSError, ValueError) as error:
+        raise MeasurementError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from error
+    if len(data) > _LARGEST:
+        raise MeasurementError(f"{path}: has {len(data) / 2**20:.1f} MiB; files of measurements may have up to 16 MiB")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise MeasurementError(f"{path}: is not UTF-8 text (byte {error.start})") from error
+    kinds = {".toml": _tables, ".csv": _lines}
+    if path.suffix.lower() not in kinds:
+        raise MeasurementError(f"{path}: measurements stand in .toml or .csv, got {path.suffix or 'no ending'!r}")
+    found = []
+    for place, keys in kinds[path.suffix.lower()](path, text):
+        if len(found) == _MOST:
+            raise MeasurementError(f"{path}: has more than {_MOST} measurements")
+        try:
+            found.append(Measurement.model_validate(keys))
+        except ValidationError as error:
+            raise MeasurementError(f"{path}, {place}: {sentence(error, None)}") from error
+    if not found:
+        raise MeasurementError(f"{path}: has no measurement")
+    return found
+
+
+def _tables(path: Path, text: str) -> Iterable[tuple[str, dict[str, Any]]]:
+    try:
+        tables = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise MeasurementError(f"{path}: is not TOML that can be read: {str(error)[:200]}") from error
+    rows = tables.pop("measurement", None)
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        raise MeasurementError(f"{path}: has no tables [[measurement]]")
+    for number, row in enumerate(rows, start=1):
+        whole = {**tables, **row}
+        numbers = {key: float(value) for key, value in whole.items() if type(value) is int}
+        yield f"measurement {number}", whole | numbers
+
+
+def _lines(path: Path, text: str) -> Iterable[tuple[str, dict[str, Any]]]:
+    reader = csv.DictReader(io.StringIO(text), restkey="", strict=True)
+    try:
+        for row in reader:
+            place = f"line {reader.line_num}"
+            if "" in row or None in row.values():
+                raise MeasurementError(f"{path}, {place}: has not as many fields as the first line has names")
+            yield place, {key: _value(key, field.strip()) for key, field in row.items() if field.strip()}
+    except csv.Error as error:
+        raise MeasurementError(f"{path}, line {reader.line_num}: is no CSV ({error})") from error
+
+
+def _value(key: str, field: str) -> Any:
+    if key not in _NUMBERS:
+        return field
+    try:
+        return [float(word) for word in field.split()] if key == "series" else float(field)
+    except ValueError:
+        return field  # which is refused as no number
+
+
+_NUMBERS = {"slenderness_ratio", "width", "height", "mass", "r", "series", "uncertainty", "low", "high"}
+
+
+def dataset_of(rows: Sequence[Measurement], name: str) -> DataSet:
+    """Return measurements as a data set."""
+    low, r, high = np.array([row.interval for row in rows]).T
+    return DataSet(
+        name, f"{len(rows)} measurements of {name}",
+        "; ".join(dict.fromkeys(row.source + (f", doi:{row.doi}" if row.doi else "") for row in rows)),
+        np.array([row.ratio for row in rows]), r, low, high,
+        np.array([math.nan if row.mass is None else row.mass for row in rows]),
+        tuple(row.block for row in rows), tuple(row.group or row.laboratory or row.source for row in rows), {},
+        tuple(interface_of(row.interface) for row in rows), tuple(row.laboratory or "" for row in rows),
+    )  # fmt: skip
+
+
+def measurement_of(found: Any, body: Block, **known: Any) -> Measurement:
+    """Return what was identified from a recording as a measurement for the evidence.
+
+    Parameters
+    ----------
+    found : Identification
+        Of `rocking.identification.identify`; its mean coefficient counts.
+    body : Block
+        The block that rocked.
+    **known
+        What a recording does not tell: ``interface``, ``block``, ``method``, ``source``, ``licence`` and more, see
+        `Measurement`.
+
+    Returns
+    -------
+    Measurement
+        For `write_measurements`.
+
+    Raises
+    ------
+    InvalidValueError
+        If it was refused, the body is no block, or a key is missing or unknown.
+    """
+    if found.refused:
+        raise InvalidValueError(f"what was refused is no measurement: {found.refused[0]}")
+    if not isinstance(body, Block):
+        raise InvalidValueError(f"body must be a Block: evidence is of rectangles, got {body!r:.60}")
+    spread = (found.mean.high - found.mean.low) / (2.0 * _NORMAL)
+    keys = {
+        "width": body.width, "height": body.height, "mass": body.mass, "r": found.mean.value, "uncertainty": spread,
+    }  # fmt: skip
+    try:
+        return Measurement.model_validate({**keys, **known})
+    except ValidationError as error:
+        raise InvalidValueError(sentence(error, None)) from error
+
+
+def write_measurements(rows: Sequence[Measurement], path: str | Path) -> Path:
+    """Write measurements as CSV, which `read_measurements` reads again to the last digit.
+
+    Parameters
+    ----------
+    rows : sequence of Measurement
+        The measurements.
+    path : str or Path
+        File with the ending ``.csv``.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no row, or the file has another ending.
+    """
+    path = Path(path)
+    if not rows or path.suffix.lower() != ".csv":
+        raise InvalidValueError(f"write at least one measurement to a file .csv, got {len(rows)} to {path.name!r:.60}")
+    names = [name for name in Measurement.model_fields if any(getattr(row, name) is not None for row in rows)]
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(names)
+        writer.writerows([_field(getattr(row, name)) for name in names] for row in rows)
+    return path
+
+
+def _field(value: Any) -> str:
+    if isinstance(value, list):
+        return " ".join(map(repr, value))
+    return "" if value is None else value if isinstance(value, str) else repr(value)
+
+
+def _contradiction(words: str) -> PydanticCustomError:
+    return PydanticCustomError("contradiction", "{words}", {"words": words})

@@ -1,0 +1,84 @@
+"""A user's own evidence: files of measurements in a folder of this user's, never in the package; and selections."""
+
+import hashlib
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from rocking.errors import InvalidValueError, RockingError
+from rocking.evidence.measurements import GROUPS, DataSet, all_measurements, datasets, joined
+
+PUBLISHED, OWN = "published", "own"
+"""Words of a selection: the 39 coefficients of the package, and all files of the store."""
+
+
+def data_folder() -> Path:
+    """Return where what belongs to this user is kept, under the system's folder for data; not created here."""
+    if sys.platform == "win32":
+        root = os.environ.get("LOCALAPPDATA") or str(Path.home() / "AppData" / "Local")
+    else:
+        root = os.environ.get("XDG_DATA_HOME") or str(Path.home() / ".local" / "share")
+    return Path(root) / "rocking"
+
+
+def store() -> Path:
+    """Return the folder of this user's own evidence."""
+    return data_folder() / "evidence"
+
+
+def own_files() -> list[Path]:
+    """Return the files of the store, in the order of their names."""
+    return sorted(path for path in store().glob("*") if path.suffix in {".toml", ".csv"})
+
+
+def add(path: Path) -> tuple[Path, DataSet, bool]:
+    """Check a file of measurements and copy it into the store; return the copy, its data, and whether it is new."""
+    from rocking.evidence.measurement_file import read_measurements
+
+    data = read_measurements(path)
+    content = path.read_bytes()
+    target = store() / f"{path.stem}-{hashlib.sha256(content).hexdigest()[:8]}{path.suffix.lower()}"
+    if target.exists():
+        return target, data, False
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        partial = target.with_suffix(".part")
+        with partial.open("wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        partial.replace(target)
+    except OSError as error:
+        raise RockingError(f"cannot write to {target.parent}: {error.strerror}") from error
+    return target, data, True
+
+
+def selected(words: Sequence[str] = ()) -> DataSet:
+    """Return the measurements of a selection: files, published sets, `published`, `own`; both of these if empty."""
+    from rocking.evidence.measurement_file import read_measurements
+
+    known, sets = {name: datasets()[name] for name in GROUPS}, []
+    for word in dict.fromkeys(words or ((PUBLISHED, OWN) if own_files() else (PUBLISHED,))):
+        if word == PUBLISHED:
+            sets.append(all_measurements())
+        elif word == OWN:
+            if not own_files():
+                raise InvalidValueError(f"{store()} has no evidence yet: rocking evidence add FILE")
+            sets.append(read_measurements(*own_files()))
+        elif word in known:
+            sets.append(known[word])
+        elif Path(word).suffix:
+            sets.append(read_measurements(word))
+        else:
+            allowed = ", ".join((PUBLISHED, OWN, *known))
+            raise InvalidValueError(
+                f"no measurements named {word!r:.60}; there are {allowed}, and files .toml and .csv"
+            )
+    seen: set[tuple[object, ...]] = set()
+    for data in sets:
+        rows = set(zip(data.group, data.labels, data.slenderness.tolist(), data.coefficient.tolist(), strict=True))
+        if both := seen & rows:
+            raise InvalidValueError(f"{min(both)!r} is in two of the selected sets: it would count twice")
+        seen |= rows
+    return sets[0] if len(sets) == 1 else joined(sets, "+".join(each.name for each in sets), "a selection")
