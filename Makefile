@@ -80,6 +80,7 @@ demo: $(VENV)/demo $(ENGINE)
 # What the calibrated default and the intervals of models are read from; a test asks whether it is what would be computed.
 calibration: $(VENV)/dev
 	$(BIN)/python -c "from rocking.evidence import calibration; calibration.keep(calibration.KEPT)"
+	$(BIN)/python -c "from rocking.evidence import hierarchy; hierarchy.keep_hierarchy()"
 
 lint: $(VENV)/dev $(ENGINE)
 	$(BIN)/ruff check .

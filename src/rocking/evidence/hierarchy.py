@@ -48,6 +48,8 @@ class HierarchicalCalibration(Calibration):
 
     Parameters
     ----------
+    samples, marginals, joint, summary
+        As of `Calibration`.
     shares : dict of str to float
         Expected shares of the variance of a new measurement: ``laboratory``, ``interface``, ``block`` and
         ``measurement``; where no laboratory has two groups, or no block two rows, the first or third is in its

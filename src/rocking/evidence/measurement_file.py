@@ -173,7 +173,7 @@ def rows_in(path: Path) -> list[Measurement]:
     kinds = {".toml": _tables, ".csv": _lines}
     if path.suffix.lower() not in kinds:
         raise MeasurementError(f"{path}: measurements stand in .toml or .csv, got {path.suffix or 'no ending'!r}")
-    found = []
+    found: list[Measurement] = []
     for place, keys in kinds[path.suffix.lower()](path, text):
         if len(found) == _MOST:
             raise MeasurementError(f"{path}: has more than {_MOST} measurements")

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from importlib.resources import files
+from typing import Any
 
 import numpy as np
 
@@ -93,12 +94,9 @@ class DataSet:
             Those rows.
         """
         index = np.arange(len(self))[np.asarray(chosen)]
-        return replace(
-            self,
-            **{name: getattr(self, name)[index] for name in _COLUMNS},
-            **{name: tuple(getattr(self, name)[i] for i in index.tolist()) for name in _WORDS},
-            printed={key: column[index] for key, column in self.printed.items()},
-        )
+        chosen_rows: dict[str, Any] = {name: getattr(self, name)[index] for name in _COLUMNS}
+        chosen_rows |= {name: tuple(getattr(self, name)[i] for i in index.tolist()) for name in _WORDS}
+        return replace(self, **chosen_rows, printed={key: column[index] for key, column in self.printed.items()})
 
 
 @lru_cache(maxsize=1)
@@ -145,14 +143,10 @@ def all_measurements() -> DataSet:
 
 def joined(sets: Sequence[DataSet], name: str, title: str) -> DataSet:
     """Return the measurements of several sets as one."""
-    return DataSet(
-        name=name,
-        title=title,
-        source="; ".join(dict.fromkeys(each.source for each in sets)),
-        **{column: np.concatenate([getattr(each, column) for each in sets]) for column in _COLUMNS},
-        **{words: tuple(word for each in sets for word in getattr(each, words)) for words in _WORDS},
-        printed={},
-    )
+    rows: dict[str, Any] = {column: np.concatenate([getattr(each, column) for each in sets]) for column in _COLUMNS}
+    rows |= {words: tuple(word for each in sets for word in getattr(each, words)) for words in _WORDS}
+    source = "; ".join(dict.fromkeys(each.source for each in sets))
+    return DataSet(name=name, title=title, source=source, **rows, printed={})
 
 
 def interface_of(words: str) -> str:

@@ -70,14 +70,12 @@ class Calibrated(InertiaModel):
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
         """Return the mean over the posterior, node by node within what energy allows."""
         bound = np.sqrt(geometry.old_gyration / geometry.new_gyration)  # Eq. 29
-        found = np.zeros_like(bound)
-        for eta, k, weight in _nodes():
-            found += weight * np.minimum(eta * shifted(geometry, k), bound)  # Eq. 296
-        return found
+        means = (weight * np.minimum(eta * shifted(geometry, k), bound) for eta, k, weight in _nodes())
+        return np.asarray(sum(means))  # Eq. 296
 
 
 @lru_cache(maxsize=1)
-def _nodes() -> tuple[tuple[float, float, float], ...]:
+def _nodes() -> tuple[tuple[FloatArray, ...], ...]:
     """Return the positions of the impulse among the samples, each with its mean factor before and its share behind."""
     eta, k = kept(KEPT)["samples"][:, :2].T
-    return tuple((float(eta[k == node].mean()), float(node), float((k == node).mean())) for node in np.unique(k))
+    return tuple((eta[k == node].mean(), node, (k == node).mean()) for node in np.unique(k))
