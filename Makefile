@@ -10,7 +10,7 @@ BIN := $(VENV)/bin
 unexport PYTHONDONTWRITEBYTECODE
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test docs oldest packages coverage portable portable-quick lint golden engine campaign fuzz fuzz-web durability predictions identification virtual-rocks questions bench mutants lock clean
+.PHONY: help demo test docs oldest packages coverage portable portable-quick lint golden engine campaign fuzz fuzz-web durability predictions identification evidence-sets virtual-rocks questions bench mutants lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
@@ -25,6 +25,7 @@ help:
 	@echo "make campaign the long verifications    make durability  kill campaigns 300 times"
 	@echo "make predictions  2000 bodies foreseen of which base, friction and restitution are hidden, and the scores (goes on where it stopped)"
 	@echo "make identification  10000 free rockings made up, heard with bounces and gaps, and how often intervals hold the truth (goes on where it stopped)"
+	@echo "make evidence-sets  1000 sets of measurements made up, and how often a left-out group lies within its interval (goes on where it stopped)"
 	@echo "make virtual-rocks  20 rocks foreseen from their scans, and what another program makes of them (goes on where it stopped)"
 	@echo "make fuzz-web thousands of damaged requests to the web application, 50 users at once"
 	@echo "make mutants  deliberate errors in the numerical core, and how many the tests notice (3 hours; goes on where it stopped)"
@@ -162,6 +163,9 @@ predictions: $(VENV)/dev $(ENGINE)
 
 identification: $(VENV)/dev
 	$(BIN)/python -m benchmarks.identification
+
+evidence-sets: $(VENV)/dev
+	$(BIN)/python -m benchmarks.evidence_sets
 
 virtual-rocks: $(VENV)/dev $(ENGINE)
 	$(BIN)/python -m benchmarks.virtual_rocks

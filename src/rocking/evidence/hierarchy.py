@@ -104,20 +104,18 @@ def _calibrated(data: DataSet) -> HierarchicalCalibration:
     if stored["inputs"] == hierarchy_fingerprint(data):
         shares = dict(zip(LEVELS, stored["shares"].tolist(), strict=True))
         return HierarchicalCalibration(**{name: stored[name] for name in FIELDS}, shares=shares)
-    posterior = _Posterior(data, NODES)
-    return posterior.calibration(posterior.logarithm)
+    return _Posterior(data, NODES).whole()
 
 
 def hierarchy_fingerprint(data: DataSet) -> str:
     """Return the hash of all that this posterior is made of."""
-    return fingerprint(data, *map(repr, tree(data).items()), str((_SHARES, _PARTS)))
+    return fingerprint(data, *map(repr, tree(data).items()), str((_SHARES, _PARTS, data.coefficient.tolist())))
 
 
 def keep_hierarchy() -> None:
     """Compute what `calibrate_hierarchy` and the model `calibrated` read, and write it."""
     data = all_measurements()
-    posterior = _Posterior(data, NODES)
-    found = posterior.calibration(posterior.logarithm)
+    found = _Posterior(data, NODES).whole()
     shares = np.array(list(found.shares.values()))
     np.savez_compressed(KEPT, inputs=hierarchy_fingerprint(data), shares=shares, **arrays_of(found))
 
@@ -126,9 +124,14 @@ def left_out_groups(measurements: DataSet | None = None) -> tuple[LeftOut, ...]:
     """Return each group of measurements beside what the others predict of it, on half as many nodes."""
     data = all_measurements() if measurements is None else measurements
     posterior = _Posterior(data, COARSE)
-    return tuple(
-        posterior.left_out(laboratory, group) for laboratory, groups in posterior.tree.items() for group in groups
-    )
+    terms = {laboratory: posterior.term(groups) for laboratory, groups in posterior.tree.items()}
+    whole, found = posterior.log_prior + sum(terms.values()), []
+    for laboratory, groups in posterior.tree.items():
+        for name, blocks in groups.items():
+            others = {other: each for other, each in groups.items() if other != name}
+            rest = whole - terms[laboratory] + (posterior.term(others) if others else 0.0)
+            found.append(posterior.left_out(name, list(blocks.values()), rest))
+    return tuple(found)
 
 
 def sentence_of(found: HierarchicalCalibration, groups: tuple[LeftOut, ...]) -> str:
@@ -195,13 +198,13 @@ class _Posterior:
         self.mean = np.moveaxis(nodes.eta[:, None, None] * base, -1, 0)[..., None, None]  # row, eta, k, 1, 1
         self.variance = np.exp(2.0 * nodes.log_s)[:, None]  # s, 1
         self.rounding = (data.high - data.low) ** 2 / 12.0
-        self.logarithm = log_prior(nodes)[..., None] + sum(map(self._term, self.tree.values()))
+        self.log_prior = log_prior(nodes)[..., None]
 
     def loading(self, row: int) -> FloatArray:
         """Return the scatter of a row over s, on the grid of (eta, k, 1, gamma) [-]."""
         return np.asarray(np.maximum(1.0 - self.mean[row], 1e-6) ** self.nodes.gamma)  # Eq. 133
 
-    def _term(self, groups: dict[str, dict[Any, list[int]]]) -> FloatArray:
+    def term(self, groups: dict[str, dict[Any, list[int]]]) -> FloatArray:
         """Return the logarithm of the likelihood of a laboratory's rows, on the grid and for all shares."""
         rows = [i for group in groups.values() for block in group.values() for i in block]
         known = {i: (self.data.coefficient[i] - self.mean[i], self.loading(i)) for i in rows}
@@ -212,17 +215,21 @@ class _Posterior:
             for group in groups.values():
                 inner = _Sums()
                 for members in group.values():
-                    each = sum((self._row(i, alone, *known[i]) for i in members), _Sums())
+                    each = sum((self.row(i, alone, *known[i]) for i in members), _Sums())
                     inner += each if share[2] == 0.0 else each.integrated(block)
                 whole += inner.integrated(interface)
             whole = whole if share[0] == 0.0 else whole.integrated(laboratory)
             found.append(-0.5 * (whole.square + whole.logarithm + len(rows) * math.log(2.0 * math.pi)))  # Eq. 294
         return np.stack(found, axis=-1)
 
-    def _row(self, row: int, variance: FloatArray, residual: FloatArray, loading: FloatArray) -> _Sums:
+    def row(self, row: int, variance: FloatArray, residual: FloatArray, loading: FloatArray) -> _Sums:
         own = variance * loading**2 + self.rounding[row]
         scaled = loading / own
         return _Sums(loading * scaled, residual * scaled, residual**2 / own, np.log(own))  # Eq. 292
+
+    def whole(self) -> HierarchicalCalibration:
+        """Return the calibration on all rows."""
+        return self.calibration(self.log_prior + sum(map(self.term, self.tree.values())))
 
     def calibration(self, logarithm: FloatArray) -> HierarchicalCalibration:
         """Return the calibration that a logarithm of weights means."""
@@ -233,21 +240,14 @@ class _Posterior:
         )
         return HierarchicalCalibration(**vars(found), shares=dict(zip(LEVELS, expected.tolist(), strict=True)))
 
-    def without(self, laboratory: str, group: str) -> FloatArray:
-        """Return the logarithm of the weights of all rows but those of a group."""
-        groups = self.tree[laboratory]
-        others = {name: blocks for name, blocks in groups.items() if name != group}
-        return self.logarithm - self._term(groups) + (self._term(others) if others else 0.0)
-
-    def left_out(self, laboratory: str, group: str) -> LeftOut:
-        """Return a group beside what the others predict, as of another laboratory's."""
-        logarithm, blocks = self.without(laboratory, group), list(self.tree[laboratory][group].values())
+    def left_out(self, name: str, blocks: list[list[int]], logarithm: FloatArray) -> LeftOut:
+        """Return a group beside what the weights of the others predict, as of another laboratory's."""
         rows = [i for block in blocks for i in block]
         found = self.calibration(logarithm).predict(self.data.slenderness[rows])
         measured = self.data.coefficient[rows]
         inside = int(((found.low <= measured) & (measured <= found.high)).sum())
         probability = self._below_mean(normalised(logarithm), blocks)
-        return LeftOut(group, len(rows), inside, float((found.high - found.low).mean()), probability)
+        return LeftOut(name, len(rows), inside, float((found.high - found.low).mean()), probability)
 
     def _below_mean(self, weight: FloatArray, blocks: list[list[int]]) -> float:
         """Return the predicted probability of a mean of rows below the one that was measured."""
