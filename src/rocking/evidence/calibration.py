@@ -50,11 +50,6 @@ class Nodes:
     log_s: FloatArray  # logarithm of the scatter scale
     gamma: FloatArray  # power of the loss in the scatter [-]
 
-    @property
-    def axes(self) -> tuple[FloatArray, ...]:
-        """All four, in this order."""
-        return self.eta, self.k, self.log_s, self.gamma
-
 
 NODES = Nodes(_ETA, _K, _LOG_S, _GAMMA)
 

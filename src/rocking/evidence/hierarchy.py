@@ -21,7 +21,6 @@ from rocking.conventions import FloatArray
 from rocking.evidence.calibration import (
     FIELDS,
     LEVEL,
-    NODES,
     Calibration,
     Nodes,
     arrays_of,
@@ -38,7 +37,13 @@ from rocking.restitution.shifted_impulse import shifted
 LEVELS = ("laboratory", "interface", "block", "measurement")
 """What the variance is divided among, from those that have most rows in common to single rows."""
 
-COARSE = Nodes(*(axis[::2] for axis in NODES.axes))
+NODES = Nodes(
+    np.linspace(0.9655, 0.9999, 17),
+    np.linspace(0.30, 0.80, 14),
+    np.linspace(math.log(0.02), math.log(0.80), 12),
+    np.linspace(0.20, 1.50, 8),
+)
+"""Fewer than where rows stand alone: a posterior that is as wide as a step or more is summed to 1e-4."""
 _SHARES, _PARTS = 10, 4  # nodes of the share between groups, and of what lies within it or within the rest
 
 
@@ -109,7 +114,8 @@ def _calibrated(data: DataSet) -> HierarchicalCalibration:
 
 def hierarchy_fingerprint(data: DataSet) -> str:
     """Return the hash of all that this posterior is made of."""
-    return fingerprint(data, *map(repr, tree(data).items()), str((_SHARES, _PARTS, data.coefficient.tolist())))
+    nodes = [[f"{value:.12g}" for value in axis.tolist()] for axis in vars(NODES).values()]
+    return fingerprint(data, repr((tree(data), data.coefficient.tolist(), nodes, _SHARES, _PARTS)))
 
 
 def keep_hierarchy() -> None:
@@ -121,9 +127,9 @@ def keep_hierarchy() -> None:
 
 
 def left_out_groups(measurements: DataSet | None = None) -> tuple[LeftOut, ...]:
-    """Return each group of measurements beside what the others predict of it, on half as many nodes."""
+    """Return each group of measurements beside what the others predict of it."""
     data = all_measurements() if measurements is None else measurements
-    posterior = _Posterior(data, COARSE)
+    posterior = _Posterior(data, NODES)
     terms = {laboratory: posterior.term(groups) for laboratory, groups in posterior.tree.items()}
     whole, found = posterior.log_prior + sum(terms.values()), []
     for laboratory, groups in posterior.tree.items():

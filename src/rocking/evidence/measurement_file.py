@@ -226,7 +226,7 @@ _NUMBERS = {"slenderness_ratio", "width", "height", "mass", "r", "series", "unce
 
 def dataset_of(rows: Sequence[Measurement], name: str) -> DataSet:
     """Return measurements as a data set."""
-    low, r, high = np.array([row.interval for row in rows]).T
+    low, r, high = np.ascontiguousarray(np.array([row.interval for row in rows]).T)
     return DataSet(
         name, f"{len(rows)} measurements of {name}",
         "; ".join(dict.fromkeys(row.source + (f", doi:{row.doi}" if row.doi else "") for row in rows)),

@@ -1,0 +1,59 @@
+"""`rocking evidence`: a file is added, listed and counted in; `rocking paper` on a selection."""
+
+import pytest
+
+from rocking.evidence import store
+
+pytestmark = pytest.mark.verifies(room="doors")
+
+ROWS = """source,licence,interface,method,block,laboratory,width,height,r,uncertainty
+me,CC0,oak/steel,sound,A,me,0.1,0.4,0.94,0.004
+me,CC0,oak/steel,sound,B,me,0.1,0.3,0.91,0.004
+"""
+
+
+@pytest.fixture
+def own(monkeypatch, tmp_path):
+    monkeypatch.setattr(store, "data_folder", lambda: tmp_path / "data")
+    path = tmp_path / "mine.csv"
+    path.write_text(ROWS, "utf-8")
+    return path
+
+
+@pytest.mark.verifies("behaviour")
+def test_add_list_calibrate(printed, answered, own):
+    """A file is added once and listed; models and calibration are then of 41 measurements in ten groups."""
+    assert "added to your evidence" in printed("evidence", "add", own)
+    assert answered("evidence", "add", own)["new"] is False
+    assert "are in your evidence already" in printed("evidence", "add", own)
+    assert [each["measurements"] for each in answered("evidence", "list")] == [12, 9, 9, 9, 2]
+    assert "Ceh" in printed("evidence", "list")
+    found = answered("evidence", "calibrate")
+    assert (found["measurements"], len(found["left_out_groups"])) == (41, 10)
+    assert sum(found["shares"].values()) == pytest.approx(1.0)
+    assert answered("evidence", "calibrate", "published")["measurements"] == 39
+    page = printed("evidence", "calibrate", "S", "M", own)
+    assert "20 measurements of r" in page
+    assert "me: oak/steel" in page
+
+
+@pytest.mark.verifies("behaviour")
+def test_paper_on_a_selection(answered, own):
+    """League and calibration of the paper's report are of what is selected; tables, errata and claims stay."""
+    found = answered("paper", "published", own)
+    assert "me" in found["league"][0]["by_group"]
+    assert found["calibration"]["covered_one_by_one"][1] == 41
+    assert len(found["hierarchical_calibration"]["left_out_groups"]) == 10
+    whole = answered("paper")
+    assert found["claims"] == whole["claims"]
+    assert found["league"] != whole["league"]
+
+
+@pytest.mark.verifies("damage")
+def test_what_is_refused(refuses, own, tmp_path):
+    """A word that is no selection, a file that is none, and too few blocks are refused in a sentence."""
+    refuses(["evidence", "calibrate", "T"], "no measurements named 'T'")
+    refuses(["evidence", "calibrate", "own"], "rocking evidence add FILE")
+    refuses(["evidence", "calibrate", own], "at least 5 blocks, got 2")
+    refuses(["evidence", "add", tmp_path / "none.csv"], "cannot be read")
+    assert store.own_files() == []

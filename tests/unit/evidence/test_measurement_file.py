@@ -1,0 +1,232 @@
+"""Files of measurements: the published rows through them to all digits, what is refused, and a user's own store."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.errors import InvalidValueError, MeasurementError, RockingError
+from rocking.evidence import (
+    Measurement,
+    all_measurements,
+    calibrate,
+    calibrate_hierarchy,
+    league,
+    measurement_of,
+    read_measurements,
+    store,
+    write_measurements,
+)
+from rocking.evidence.calibration import NAMES, calibrate_on
+from rocking.identification import ImpactTimes, identify
+
+pytestmark = pytest.mark.verifies(room="evidence")
+
+ROW = {
+    "source": "Doe 2026", "licence": "CC0", "interface": "Steel/oak", "method": "sound", "block": "A",
+    "slenderness_ratio": 3.0, "r": 0.9, "uncertainty": 0.004,
+}  # fmt: skip
+
+
+def published(path):
+    """The published rows as a file."""
+    data = all_measurements()
+    rows = [
+        Measurement(
+            source=data.source, licence="CC BY 4.0", method="as compiled", interface=data.interface[i],
+            laboratory=data.laboratory[i] or None, group=data.group[i], block=data.labels[i],
+            slenderness_ratio=float(data.slenderness[i]), r=float(data.coefficient[i]), low=float(data.low[i]),
+            high=float(data.high[i]), mass=None if np.isnan(data.mass[i]) else float(data.mass[i]),
+        )
+        for i in range(len(data))
+    ]  # fmt: skip
+    return write_measurements(rows, path)
+
+
+@pytest.mark.verifies("same bits", "the published rows, written and read")
+def test_published_rows_through_a_file(tmp_path):
+    """The 39 rows through a file give the same league, the same calibrations and the same data, to the last digit."""
+    data, own = all_measurements(), read_measurements(published(tmp_path / "all.csv"))
+    for name in ("slenderness", "coefficient", "low", "high", "mass"):
+        assert getattr(own, name).tolist() == pytest.approx(getattr(data, name).tolist(), rel=0.0, abs=0.0, nan_ok=True)
+    assert (own.group, own.labels, own.interface) == (data.group, data.labels, data.interface)
+    assert own.laboratory == data.laboratory
+    for one, other in zip(league(measurements=own), league(), strict=True):
+        assert one.as_dict() == other.as_dict()
+    calibration = calibrate_on(own)
+    for name in NAMES:
+        assert calibration.summary[name] == pytest.approx(calibrate().summary[name], rel=1e-9)
+    assert (calibration.samples == calibrate().samples).all(axis=1).mean() > 0.995
+    assert calibrate_hierarchy(own).summary == calibrate_hierarchy().summary
+    fewer = own.rows(range(38))
+    assert league(measurements=fewer)[0].rmse != league()[0].rmse
+
+
+TOML = """
+source = "Doe 2026"
+doi = "10.1234/abc"
+licence = "CC BY 4.0"
+laboratory = "Doe"
+method = "video"
+interface = "oak / Steel"
+
+[[measurement]]
+block = "A"
+width = 0.1
+height = 0.35
+mass = 2
+series = [0.9, 0.92, 0.91]
+
+[[measurement]]
+block = "B"
+slenderness_ratio = 5
+r = 0.95
+uncertainty = 0.01
+"""
+
+
+@pytest.mark.verifies("closed form", "mean and standard error of a series", within="1e-12")
+def test_what_a_file_says(tmp_path):
+    """Keys at the top hold for all; a series counts as its mean with its standard error, of which bounds are made."""
+    path = tmp_path / "oak.toml"
+    path.write_text(TOML, "utf-8")
+    found = read_measurements(path)
+    assert found.slenderness == pytest.approx([3.5, 5.0])
+    assert found.coefficient == pytest.approx([0.91, 0.95])
+    assert (found.high - found.low) / np.sqrt(12.0) == pytest.approx([0.01 / np.sqrt(3.0), 0.01], rel=1e-12)
+    assert found.interface == ("oak/steel",) * 2
+    assert found.group == found.laboratory == ("Doe",) * 2
+    assert found.source == "Doe 2026, doi:10.1234/abc"
+    assert found.mass[0] == 2.0
+    assert np.isnan(found.mass[1])
+    table = tmp_path / "oak.csv"
+    table.write_text("block,slenderness_ratio,series,source,licence,interface,method\nA,3.5,.9 .92 .91,D,CC0,x/y,m\n")
+    assert read_measurements(path, table).coefficient == pytest.approx([0.91, 0.95, 0.91])
+
+
+WRONG = {
+    "energy": ({"r": 1.02}, "must be <= 1"),
+    "per cent": ({"r": 91.0}, "<= 2"),
+    "no uncertainty": ({"uncertainty": None}, "how far r is open"),
+    "both": ({"low": 0.89, "high": 0.91}, "how far r is open"),
+    "half an interval": ({"uncertainty": None, "low": 0.89}, "how far r is open"),
+    "outside": ({"uncertainty": None, "low": 0.91, "high": 0.92}, "must lie in an interval"),
+    "r and series": ({"series": [0.9, 0.91]}, "r or series"),
+    "one trial": ({"r": None, "uncertainty": None, "series": [0.9]}, "at least 2"),
+    "equal trials": ({"r": None, "uncertainty": None, "series": [0.9, 0.9]}, "that is open"),
+    "no size": ({"slenderness_ratio": None}, "slenderness_ratio, or width and height"),
+    "half a size": ({"width": 0.1}, "slenderness_ratio, or width and height"),
+    "unknown": ({"interfase": "x"}, "did you mean interface"),
+    "no source": ({"source": None}, "source"),
+    "nan": ({"r": float("nan")}, "finite"),
+    "doi": ({"doi": "https://doi.org/10.1/x"}, "doi"),
+    "text": ({"mass": "heavy"}, "must be a number"),
+}  # fmt: skip
+
+
+@pytest.mark.verifies("damage")
+@pytest.mark.parametrize("how", WRONG)
+def test_rows_that_are_refused(tmp_path, how):
+    """A row that is not whole is refused with file, line and cause; the row itself is accepted."""
+    change, words = WRONG[how]
+    path = tmp_path / "rows.csv"
+    row = {**ROW, **change}
+
+    def text(row):
+        values = [" ".join(map(str, v)) if isinstance(v, list) else "" if v is None else str(v) for v in row.values()]
+        return f"{','.join(row)}\n{','.join(values)}\n"
+
+    path.write_text(text(ROW), "utf-8")
+    assert len(read_measurements(path)) == 1
+    path.write_text(text(row), "utf-8")
+    with pytest.raises(MeasurementError, match=r"rows\.csv, line 2: ") as refusal:
+        read_measurements(path)
+    assert words in str(refusal.value)
+
+
+FILES = {
+    "nothing.toml": ("", "no tables"),
+    "list.toml": ("measurement = [1]", "no tables"),
+    "broken.toml": ("[[measurement", "is not TOML"),
+    "empty.csv": ("source,licence\n", "no measurement"),
+    "short.csv": ("source,licence\na\n", "as many fields"),
+    "long.csv": ("source,licence\na,b,c\n", "as many fields"),
+    "quotes.csv": ('source,licence\n"a"b,c\n', "is no CSV"),
+    "rows.txt": ("", ".toml or .csv"),
+}
+
+
+@pytest.mark.verifies("damage")
+@pytest.mark.parametrize("name", FILES)
+def test_files_that_are_refused(tmp_path, name):
+    """Files that hold no measurements are refused by name and cause."""
+    text, words = FILES[name]
+    (tmp_path / name).write_text(text, "utf-8")
+    with pytest.raises(MeasurementError, match=f"{name}.*{words}"):
+        read_measurements(tmp_path / name)
+    (tmp_path / name).write_bytes(b"\xff\xfe\xfa")
+    with pytest.raises(MeasurementError, match="UTF-8"):
+        read_measurements(tmp_path / name)
+    with pytest.raises(MeasurementError, match="cannot be read"):
+        read_measurements(tmp_path / f"no_{name}")
+
+
+@pytest.mark.verifies("behaviour")
+def test_what_was_identified_is_a_measurement(tmp_path):
+    """The mean of an identification, with its interval as standard deviation, goes into a file and comes back."""
+    times = [0.0, 1.2158, 2.2432, 3.1403, 3.9387, 4.6583, 5.3126, 5.9119, 6.4634]
+    block = rk.Block(width=1.0, height=4.0, density=700.0)
+    found = identify(ImpactTimes(times, sigma=1e-3), block, tilt=0.0)
+    known = {name: ROW[name] for name in ("source", "licence", "interface", "method", "block")}
+    row = measurement_of(found, block, **known)
+    data = read_measurements(write_measurements([row], tmp_path / "mine.csv"))
+    assert data.coefficient[0] == found.mean.value
+    deviation = (data.high[0] - data.low[0]) / np.sqrt(12.0)
+    assert deviation == pytest.approx((found.mean.high - found.mean.low) / 3.919928, rel=1e-6)
+    assert (data.slenderness[0], data.mass[0]) == (4.0, block.mass)
+    with pytest.raises(InvalidValueError, match="licence is missing"):
+        measurement_of(found, block, **{name: word for name, word in known.items() if name != "licence"})
+    with pytest.raises(InvalidValueError, match="must be a Block"):
+        measurement_of(found, rk.MassPoints([(0, 2)], [1.0], (-1, 1)), **known)
+    with pytest.raises(InvalidValueError, match="refused"):
+        measurement_of(dataclasses.replace(found, refused=("it is a bell",)), block, **known)
+    with pytest.raises(InvalidValueError, match="at least one"):
+        write_measurements([], tmp_path / "none.csv")
+
+
+@pytest.fixture
+def own(monkeypatch, tmp_path):
+    monkeypatch.setattr(store, "data_folder", lambda: tmp_path / "data")
+    path = tmp_path / "oak.toml"
+    path.write_text(TOML, "utf-8")
+    return path
+
+
+def test_the_store(own):
+    """A file is copied once; what is selected is the published rows and it; nothing is counted twice."""
+    target, data, new = store.add(own)
+    assert (len(data), new, target.parent.parent.name) == (2, True, "data")
+    assert store.add(own) == (target, store.add(own)[1], False) or store.add(own)[2] is False
+    assert store.own_files() == [target]
+    assert len(store.selected()) == 41
+    assert len(store.selected(["own"])) == 2
+    assert len(store.selected(["S", str(own)])) == 11
+    with pytest.raises(InvalidValueError, match="count twice"):
+        store.selected(["own", str(own)])
+    with pytest.raises(InvalidValueError, match="no measurements named 'T'"):
+        store.selected(["T"])
+    with pytest.raises(InvalidValueError, match="at least 5 blocks, got 2"):
+        league(measurements=store.selected(["own"]))
+
+
+def test_an_empty_store(monkeypatch, tmp_path):
+    """Without a store the published rows alone are selected, and own ones are asked for; a file in its place is told."""
+    monkeypatch.setattr(store, "data_folder", lambda: tmp_path / "data")
+    assert store.selected() is all_measurements()
+    with pytest.raises(InvalidValueError, match="rocking evidence add"):
+        store.selected(["own"])
+    (tmp_path / "data").write_text("a file")
+    (tmp_path / "oak.toml").write_text(TOML, "utf-8")
+    with pytest.raises(RockingError, match="cannot write"):
+        store.add(tmp_path / "oak.toml")
