@@ -213,7 +213,7 @@ class _Posterior:
     def term(self, groups: dict[str, dict[Any, list[int]]]) -> FloatArray:
         """Return the logarithm of the likelihood of a laboratory's rows, on the grid and for all shares."""
         rows = [i for group in groups.values() for block in group.values() for i in block]
-        known = {i: (self.data.coefficient[i] - self.mean[i], self.loading(i)) for i in rows}
+        known = {i: (self.data.coefficient[i] - self.mean[i], self.loading(i)) for i in rows}  # Eq. 290
         found = []
         for share in self.shares:
             laboratory, interface, block, alone = (self.variance * part for part in share)
