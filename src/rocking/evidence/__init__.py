@@ -10,8 +10,9 @@ if TYPE_CHECKING:
     from rocking.evidence._errata import errata
     from rocking.evidence._league import league, verdict
     from rocking.evidence._restitution_distribution import RestitutionDistribution, restitution_distribution
-    from rocking.evidence.calibration import Calibration, calibrate, interval_for
+    from rocking.evidence.calibration import Calibration, calibrate
     from rocking.evidence.hierarchy import HierarchicalCalibration, calibrate_hierarchy
+    from rocking.evidence.interval import interval_for
     from rocking.evidence.measurement_file import Measurement, measurement_of, read_measurements, write_measurements
     from rocking.evidence.measurements import DataSet, all_measurements, datasets
     from rocking.evidence.recommendation import ModelForBody, Recommendation
@@ -46,8 +47,9 @@ _HOMES = {
     "_errata": ("errata",),
     "_league": ("league", "verdict"),
     "_restitution_distribution": ("RestitutionDistribution", "restitution_distribution"),
-    "calibration": ("Calibration", "calibrate", "interval_for"),
+    "calibration": ("Calibration", "calibrate"),
     "hierarchy": ("HierarchicalCalibration", "calibrate_hierarchy"),
+    "interval": ("interval_for",),
     "measurement_file": ("Measurement", "measurement_of", "read_measurements", "write_measurements"),
     "measurements": ("DataSet", "all_measurements", "datasets"),
     "recommendation": ("ModelForBody", "Recommendation"),

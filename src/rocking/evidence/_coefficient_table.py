@@ -6,10 +6,11 @@ from typing import Any
 
 from rocking.bodies import Body
 from rocking.conventions import Foot
-from rocking.evidence.calibration import CALIBRATED_RANGE, PredictedCoefficient, calibrate, interval_for
-from rocking.restitution import Implication, RestitutionModel, implied, model, models
+from rocking.evidence.calibration import CALIBRATED_RANGE
+from rocking.evidence.interval import interval_for
+from rocking.restitution import Calibrated, Implication, RestitutionModel, implied, model, models
 
-CALIBRATED = "calibrated"
+CALIBRATED = Calibrated.name
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +47,8 @@ class CoefficientRow:
 
 
 def default_models() -> list[RestitutionModel]:
-    """Return every registered model that needs no value by hand, in the order of the registry."""
-    return [model(name) for name in models() if name != "fixed"]
+    """Return every registered model that needs no value by hand, the calibrated default before all others."""
+    return [model(name) for name in sorted(models(), key=lambda name: name != CALIBRATED) if name != "fixed"]
 
 
 def coefficient_table(
@@ -69,7 +70,7 @@ def coefficient_table(
     onto : {"left", "right"}
         The foot on which it lands.
     eta : float
-        Interface factor applied to every model [-].
+        Interface factor applied to every model but the calibrated default, which has its own [-].
     calibrated : bool
         Whether the calibrated default comes first.
 
@@ -85,26 +86,20 @@ def coefficient_table(
     >>> rows[0].name, [round(row.coefficient, 6) for row in rows if row.name == "housner"]
     ('calibrated', [0.911765])
     """
-    rows = []
-    if calibrated:
-        posterior = calibrate()
-        title = f"default, fitted to the published measurements: {posterior.model().label}"
-        prediction = posterior.predict(body, onto=onto)
-        outside = outside_evidence(body, onto)
-        rows.append(_row(body, onto, CALIBRATED, title, prediction, (outside,) if outside else ()))
-    for each in default_models() if which is None else which:
-        known = model(each, eta=eta)
-        warnings = tuple(flag.value for flag in known.evaluate(body, onto).flags)
-        rows.append(_row(body, onto, known.label, known.title, interval_for(known, body, onto=onto), warnings))
-    return tuple(rows)
+    chosen = [each for each in which or default_models() if not isinstance(each, Calibrated)]
+    fitted = [Calibrated()] if calibrated else []
+    return tuple(_row(body, onto, each) for each in (*fitted, *(model(each, eta=eta) for each in chosen)))
 
 
-def _row(
-    body: Body, onto: Foot, name: str, title: str, interval: PredictedCoefficient, warnings: tuple[str, ...]
-) -> CoefficientRow:
-    value, low, high = float(interval.coefficient), float(interval.low), float(interval.high)
+def _row(body: Body, onto: Foot, known: RestitutionModel) -> CoefficientRow:
+    interval, given = interval_for(known, body, onto=onto), known.evaluate(body, onto)
+    warnings = tuple(flag.value for flag in given.flags)
+    if isinstance(known, Calibrated) and (outside := outside_evidence(body, onto)):
+        warnings = (*warnings, outside)
+    value, low, high = given.coefficient, float(interval.low), float(interval.high)
     implication = implied(body, value, onto=onto)
-    return CoefficientRow(name, title, value, low, high, implication, (*warnings, *implication.objections))
+    objections = (*warnings, *implication.objections)
+    return CoefficientRow(known.label, known.title, value, low, high, implication, objections)
 
 
 def outside_evidence(body: Body, onto: Foot = "right") -> str:

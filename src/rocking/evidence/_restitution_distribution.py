@@ -12,7 +12,8 @@ from rocking.bodies import Block, Body
 from rocking.conventions import FEET, FloatArray, Foot, percent
 from rocking.dynamics.impact_laws import RandomRestitution
 from rocking.errors import InvalidValueError
-from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration, calibrate
+from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration
+from rocking.evidence.hierarchy import calibrate_hierarchy
 from rocking.evidence.likelihood import scatter
 from rocking.portable import trapezoid
 from rocking.restitution import ImpactGeometry
@@ -157,7 +158,7 @@ class RestitutionDistribution:
 def restitution_distribution(
     body: Body | float, *, onto: Foot = "right", calibration: Calibration | None = None
 ) -> RestitutionDistribution:
-    """Return the distribution of a body's coefficient of restitution from the calibrated model.
+    """Return the distribution of a body's coefficient of restitution from the calibrated model, on a new interface.
 
     Parameters
     ----------
@@ -166,7 +167,7 @@ def restitution_distribution(
     onto : {"left", "right"}
         The foot on which it lands, of which quantiles are asked; laws are of both.
     calibration : Calibration, optional
-        Posterior of the model; that of all measurements if not given.
+        Posterior of the model; `calibrate_hierarchy` of the published measurements if not given.
 
     Returns
     -------
@@ -185,7 +186,7 @@ def restitution_distribution(
     >>> bool(low < found.mean < high)
     True
     """
-    posterior = calibrate() if calibration is None else calibration
+    posterior = calibrate_hierarchy() if calibration is None else calibration
     known: Body = (
         body if isinstance(body, Body) else Block(width=1.0, height=checks.positive("slenderness_ratio", body))
     )

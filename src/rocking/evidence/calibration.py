@@ -23,7 +23,7 @@ from rocking.bodies import Body
 from rocking.conventions import FloatArray, Foot
 from rocking.evidence.likelihood import fit_scatter, interval_log_likelihood, normal_cdf, scatter
 from rocking.evidence.measurements import DataSet, all_measurements
-from rocking.restitution import Fixed, ImpactGeometry, Interface, RestitutionModel, ShiftedImpulse, model, models
+from rocking.restitution import ImpactGeometry, Interface, RestitutionModel, ShiftedImpulse, model, models
 from rocking.restitution.calibrated import NAMES, kept
 from rocking.restitution.implied import energy_bound
 from rocking.restitution.shifted_impulse import shifted
@@ -129,7 +129,7 @@ class Calibration:
         True
         """
         if isinstance(body, Body):
-            values, shape = self._predicted(*_geometry(body, onto)), ()
+            values, shape = self._predicted(*geometry_of(body, onto)), ()
         else:
             ratios = checks.positive_array("slenderness_ratio", body)
             values, shape = self._of_ratios(np.ascontiguousarray(ratios).tobytes()), ratios.shape
@@ -138,7 +138,7 @@ class Calibration:
 
     @lru_cache(maxsize=16)  # noqa: B019 - there is one calibration, and pictures ask it for the same ratios again
     def _of_ratios(self, ratios: bytes) -> tuple[FloatArray, ...]:
-        return self._predicted(*_geometry(np.frombuffer(ratios), "right"))
+        return self._predicted(*geometry_of(np.frombuffer(ratios), "right"))
 
     def _predicted(self, geometry: ImpactGeometry, bound: FloatArray) -> tuple[FloatArray, ...]:
         samples, weight = self._distinct
@@ -208,14 +208,13 @@ def keep(path: Path) -> None:
     """Compute what `calibrate` and `interval_for` read, and write it."""
     data = all_measurements()
     calibration = calibrate_on(data)
-    named = [model(name) for name in models() if name != "fixed"]
+    named = [model(name) for name in models() if name not in ("calibrated", "fixed")]
     predictions = np.array([each.of_slenderness(data.slenderness) for each in named])
     arrays: dict[str, Any] = {
         "inputs": fingerprint(data),
         **arrays_of(calibration),
         "predictions": predictions,
         "misfits": [fit_scatter(data, each)[:2] for each in predictions],
-        "unseen": _unseen(data),
     }
     np.savez_compressed(path, **arrays)
 
@@ -262,23 +261,6 @@ def log_prior(nodes: Nodes) -> FloatArray:
     return eta[:, None, None, None] + k[None, :, None, None]
 
 
-@lru_cache(maxsize=8)
-def unseen(data: DataSet) -> FloatArray:
-    """Return the expected coefficients of all rows, each by a calibration that has not seen its data set [-]."""
-    stored = kept(KEPT)
-    return np.array(stored["unseen"]) if stored["inputs"] == fingerprint(data) else _unseen(data)
-
-
-def _unseen(data: DataSet) -> FloatArray:
-    grid, expected = posterior_grid(data), np.empty(len(data))
-    whole, mean = grid.log_prior + grid.terms.sum(axis=-1), grid.mean[:, :, 0, 0]
-    for name in dict.fromkeys(data.group):
-        rows = [i for i, group in enumerate(data.group) if group == name]
-        weight = normalised(whole - grid.terms[..., rows].sum(axis=-1)).sum(axis=(2, 3))
-        expected[rows] = (weight[..., None] * mean[..., rows]).sum(axis=(0, 1))
-    return expected
-
-
 def marginal_quantiles(grid: FloatArray, weight: FloatArray, levels: tuple[float, ...]) -> list[float]:
     """Return quantiles of a marginal posterior at some probabilities [-] between the nodes of its grid."""
     # they are of the density whose logarithm is a cubic spline through the nodes: fourth order in their distance
@@ -300,57 +282,8 @@ def normalised(log_weight: FloatArray) -> FloatArray:
     return np.asarray(weight / weight.sum())  # Eq. 136
 
 
-def interval_for(
-    model: RestitutionModel, body: Body, *, onto: Foot = "right", measurements: DataSet | None = None
-) -> PredictedCoefficient:
-    """Return a model's coefficient with an interval from its own misfit to the measurements.
-
-    The interval is the coefficient plus and minus the normal quantile of the scatter around the model's own
-    predictions, bias included: it says how far one measured body may lie from this model.
-
-    Parameters
-    ----------
-    model : RestitutionModel
-        Any model; a fixed coefficient takes the scatter of the calibrated default.
-    body : Body
-        The body.
-    onto : {"left", "right"}
-        The foot on which it lands.
-    measurements : DataSet, optional
-        What was measured; the 39 published ones if not given.
-
-    Returns
-    -------
-    PredictedCoefficient
-        Coefficient and interval, within [0, energy bound].
-    """
-    data = all_measurements() if measurements is None else measurements
-    _, bound = _geometry(body, onto)
-    r = np.asarray(model.coefficient(body, onto))
-    if isinstance(model, Fixed):
-        floor, slope = (calibrate().summary[name]["mean"] for name in ("s", "gamma"))
-    else:
-        floor, slope = _misfit(model.of_slenderness(data.slenderness).tobytes(), data)
-    sd = scatter(r, floor, slope)
-    reach = 1.959963984540054 * sd
-    top = np.maximum(bound, r)
-    return PredictedCoefficient(r, np.clip(r - reach, 0.0, None), np.minimum(r + reach, top.reshape(())), sd)
-
-
-@lru_cache(maxsize=1024)
-def _misfit(predictions: bytes, data: DataSet) -> tuple[float, float]:
-    predicted = np.frombuffer(predictions)
-    stored = kept(KEPT)
-    if stored["inputs"] == fingerprint(data):
-        same = np.abs(stored["predictions"] - predicted).max(axis=1) < 1e-12
-        if same.any():
-            floor, slope = stored["misfits"][same][0].tolist()
-            return floor, slope
-    floor, slope, _ = fit_scatter(data, predicted)
-    return floor, slope
-
-
-def _geometry(body: Body | Any, onto: Foot) -> tuple[ImpactGeometry, FloatArray]:
+def geometry_of(body: Body | Any, onto: Foot) -> tuple[ImpactGeometry, FloatArray]:
+    """Return the impact of a body, or of rectangles by slenderness [-], and the bound that energy sets [-]."""
     if isinstance(body, Body):
         return ImpactGeometry.of_body(body, onto), np.array([energy_bound(body, onto)])
     ratios = np.atleast_1d(checks.positive_array("slenderness_ratio", body)).ravel()

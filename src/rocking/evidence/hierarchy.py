@@ -121,9 +121,9 @@ def hierarchy_fingerprint(data: DataSet) -> str:
 def keep_hierarchy() -> None:
     """Compute what `calibrate_hierarchy` and the model `calibrated` read, and write it."""
     data = all_measurements()
-    found = _Posterior(data, NODES).whole()
+    found, unknown = _Posterior(data, NODES).whole(), unseen(data)
     shares = np.array(list(found.shares.values()))
-    np.savez_compressed(KEPT, inputs=hierarchy_fingerprint(data), shares=shares, **arrays_of(found))
+    np.savez_compressed(KEPT, inputs=hierarchy_fingerprint(data), shares=shares, unseen=unknown, **arrays_of(found))
 
 
 def left_out_groups(measurements: DataSet | None = None) -> tuple[LeftOut, ...]:
@@ -138,6 +138,19 @@ def left_out_groups(measurements: DataSet | None = None) -> tuple[LeftOut, ...]:
             rest = whole - terms[laboratory] + (posterior.term(others) if others else 0.0)
             found.append(posterior.left_out(name, list(blocks.values()), rest))
     return tuple(found)
+
+
+@lru_cache(maxsize=8)
+def unseen(data: DataSet) -> FloatArray:
+    """Return the expected coefficients of all rows, each by a calibration that has not seen its data set [-]."""
+    stored = kept(KEPT)
+    if stored["inputs"] == hierarchy_fingerprint(data):
+        return np.array(stored["unseen"])
+    group, expected = np.array(data.group), np.empty(len(data))
+    for name in dict.fromkeys(data.group):
+        rows = group == name
+        expected[rows] = _Posterior(data.rows(~rows), NODES).whole().predict(data.slenderness[rows]).coefficient
+    return expected
 
 
 def sentence_of(found: HierarchicalCalibration, groups: tuple[LeftOut, ...]) -> str:
@@ -235,7 +248,8 @@ class _Posterior:
 
     def whole(self) -> HierarchicalCalibration:
         """Return the calibration on all rows."""
-        return self.calibration(self.log_prior + sum(map(self.term, self.tree.values())))
+        shape = (*map(len, vars(self.nodes).values()), len(self.shares))
+        return self.calibration(np.broadcast_to(self.log_prior + sum(map(self.term, self.tree.values())), shape))
 
     def calibration(self, logarithm: FloatArray) -> HierarchicalCalibration:
         """Return the calibration that a logarithm of weights means."""

@@ -20,8 +20,8 @@ from enum import Enum
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.evidence.calibration import unseen
 from rocking.evidence.comparison import FEWEST, Difference, bias, compare, loss_rmse, rmse
+from rocking.evidence.hierarchy import unseen
 from rocking.evidence.measurements import BANDS, DataSet
 from rocking.restitution import RestitutionModel
 

@@ -4,7 +4,6 @@ import math
 import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -13,13 +12,24 @@ from rocking.bodies import Body, Solid
 from rocking.conventions import FEET, FloatArray, Foot
 from rocking.errors import GeometryError, InvalidValueError, PlausibilityWarning, RockingError
 from rocking.evidence._coefficient_table import CALIBRATED, default_models
-from rocking.evidence.calibration import Calibration, PredictedCoefficient, calibrate, calibrate_on, interval_for
+from rocking.evidence.calibration import Calibration, PredictedCoefficient
+from rocking.evidence.hierarchy import calibrate_hierarchy
+from rocking.evidence.interval import interval_for
 from rocking.evidence.judgement import Judgement, Standing, TrackRecord, judge
 from rocking.evidence.likelihood import scatter
 from rocking.evidence.measurements import DataSet, all_measurements
 from rocking.evidence.recommendation import ModelForBody, Overturned, Recommendation, product
 from rocking.outcome import Outcome
-from rocking.restitution import Fixed, ImpactGeometry, Interface, RestitutionModel, identity_report, implied, model
+from rocking.restitution import (
+    Calibrated,
+    Fixed,
+    ImpactGeometry,
+    Interface,
+    RestitutionModel,
+    identity_report,
+    implied,
+    model,
+)
 from rocking.restitution.impact import contact_of, is_whole_base
 from rocking.restitution.implied import energy_bound
 from rocking.restitution.shifted_impulse import shifted
@@ -41,12 +51,14 @@ def recommendation_for(
     known: object = data
     if not isinstance(known, DataSet) or not len(known):
         raise InvalidValueError(f"measurements must be a DataSet of at least one row, got {measurements!r:.60}")
-    candidates = default_models() if models is None else _chosen(models)
+    candidates = [
+        each for each in (default_models() if models is None else _chosen(models)) if not isinstance(each, Calibrated)
+    ]
     refused = [(each, _refusals(each, given)) for each in candidates]
     admitted = [each for each, reasons in refused if not reasons]
     ratios = tuple(sorted({given.side(foot).slenderness_ratio for foot in FEET}))
     judged = judge(admitted, ratios, data)
-    posterior = _posterior(data)
+    posterior = calibrate_hierarchy(data)
     title = f"default, fitted to the measurements: {posterior.model().label}"
     predicted: list[tuple[str, str, dict[Foot, PredictedCoefficient], TrackRecord, tuple[str, ...]]] = [
         (CALIBRATED, title, _both(given, posterior.predict), judged.calibrated, ())
@@ -65,14 +77,9 @@ def recommendation_for(
     return made if motion is None else _moved(made, motion, posterior)
 
 
-@lru_cache(maxsize=4)
-def _posterior(data: DataSet) -> Calibration:
-    return calibrate() if data is all_measurements() else calibrate_on(data)
-
-
 def _chosen(models: Sequence[Any]) -> list[RestitutionModel]:
     found = {each.label: each for each in map(model, _several(models))}
-    if CALIBRATED in found:
+    if not isinstance(found.get(CALIBRATED, Calibrated()), Calibrated):
         raise InvalidValueError(f"{CALIBRATED!r} is the default, which is judged anyhow; give your model another name")
     for each in found.values():
         if isinstance(each.model if isinstance(each, Interface) else each, Fixed):

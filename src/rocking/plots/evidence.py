@@ -7,8 +7,9 @@ import numpy as np
 
 from rocking.evidence._league import LeagueRow
 from rocking.evidence.bed_fit import bed_coefficients
-from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration, calibrate
+from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration
 from rocking.evidence.explanation import Explanation
+from rocking.evidence.hierarchy import calibrate_hierarchy
 from rocking.evidence.measurements import GROUPS, DataSet, all_measurements, datasets
 from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, model_styles, new_figure
 from rocking.restitution import model
@@ -55,7 +56,7 @@ def measured(axes: "Axes", every: DataSet, *, loss: bool = False) -> None:
 def predicted(axes: "Axes", calibration: Calibration | None = None, low: float = _LOW, high: float = _HIGH) -> None:
     """Draw the calibrated default over a range of slenderness [-], with its 95 % interval."""
     ratio = np.linspace(low, high, 80)
-    prediction = (calibration or calibrate()).predict(ratio)
+    prediction = (calibration or calibrate_hierarchy()).predict(ratio)
     look: dict[str, Any] = {"color": PALE, "linewidth": 0.0, "zorder": 0, "label": "calibrated, 95 %"}
     axes.fill_between(ratio, prediction.low, prediction.high, **look)
     axes.plot(ratio, prediction.coefficient, color=GREY, linewidth=0.9, zorder=1)

@@ -16,8 +16,8 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.prediction.uncertain import Uncertain
 
-MEASURED, COMPLEMENTARITY = "measured", "complementarity"
-"""Restitution by what the published measurements say of a body; by the laws of contact at the corners alone."""
+MEASURED, COMPLEMENTARITY = ("measured", "calibrated"), "complementarity"
+"""Restitution by what the published measurements say of a body, drawn; by the laws of contact at the corners alone."""
 
 FRICTION = ((0.3, 0.8), 0.01, 10.0, "-")
 CENTRE = ((0.97, 1.03), 0.5, 1.5, "-")

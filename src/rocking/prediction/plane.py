@@ -13,7 +13,7 @@ from rocking.dynamics.contact.batch import RowsWithContact
 from rocking.dynamics.parameters import coefficients_of
 from rocking.dynamics.settings import Settings, processors
 from rocking.errors import InvalidValueError
-from rocking.evidence import calibrate, restitution_distribution
+from rocking.evidence import calibrate_hierarchy, restitution_distribution
 from rocking.motions.components import rotated, with_vertical
 from rocking.outcome import Outcome, overturned
 from rocking.prediction.mechanics import (
@@ -80,8 +80,8 @@ class PlaneMechanics(Mechanics):
 
     def _set_restitution(self, told: Any) -> None:
         """Take coefficients onto both feet for probabilities, and whether they follow the base."""
-        word = told if isinstance(told, str) else MEASURED if told is None else ""
-        if word == MEASURED:
+        word = told if isinstance(told, str) else MEASURED[0] if told is None else ""
+        if word in MEASURED:
             found = restitution_distribution(self.body)
             self._tables = [found.tables[foot] for foot in FEET]
             words = f"{self._tables[1][25]:.3f} to {self._tables[1][-26]:.3f} onto the right foot in 95 % of draws"
@@ -157,7 +157,7 @@ class PlaneMechanics(Mechanics):
             old = 1 - new
             r = np.interp(level, np.linspace(0.0, 1.0, table.size), table)
             if self._follows:
-                k = np.asarray(calibrate().summary["k"]["mean"])
+                k = np.asarray(calibrate_hierarchy().summary["k"]["mean"])
                 now = shifted(self._impact(levers[:, old], levers[:, new], height), k)
                 before = shifted(self._impact(self._levers[old], self._levers[new], self._height), k)
                 r = r * np.maximum(now, 0.0) / np.maximum(before, 1e-3)

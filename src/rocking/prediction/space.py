@@ -89,15 +89,15 @@ class SpaceMechanics(Mechanics):
 
     def _set_restitution(self, told: Any) -> None:
         """Take a law of impacts, and the distribution of its number."""
-        word = told if isinstance(told, str) else MEASURED if told is None else ""
-        if word == MEASURED:
+        word = told if isinstance(told, str) else MEASURED[0] if told is None else ""
+        if word in MEASURED:
             self._law, (found, words) = fast_engine.POSITION, self._measured()
             at = np.linspace(0.0, 1.0, found.size)
             one = Uncertain(words, lambda u: np.interp(u, at, found))
             self.assumed.append(f"restitution: {words} (the published measurements, with the scatter of single bodies)")
         elif word:
             if word not in _LAWS:
-                names = ", ".join([MEASURED, *_LAWS])
+                names = ", ".join([*MEASURED, *_LAWS])
                 raise InvalidValueError(f"restitution in space must be one of {names}, or a coefficient, got {word!r}")
             self._law, one = _LAWS[word], Uncertain(word, lambda u: np.zeros(u.shape), fixed=True)
         else:

@@ -10,6 +10,7 @@ from rocking.restitution.recommendation import recommend
 from rocking.restitution.registry import coefficient_of_restitution, homes, model, models, register
 
 if TYPE_CHECKING:
+    from rocking.restitution.calibrated import Calibrated
     from rocking.restitution.contact_bed import ContactBedModel
     from rocking.restitution.distributed_impulse import DistributedImpulse
     from rocking.restitution.fixed import Fixed
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from rocking.restitution.shifted_impulse import ShiftedImpulse
 
 __all__ = [
+    "Calibrated",
     "ContactBedModel",
     "DistributedImpulse",
     "EnergyBalance",

@@ -19,6 +19,7 @@ _MODELS: dict[str, type[RestitutionModel] | str] = {
     "distributed-impulse": "DistributedImpulse",
     "plastic-winkler": "PlasticWinkler",
     "contact-bed": "ContactBedModel",
+    "calibrated": "Calibrated",
     "fixed": "Fixed",
 }
 
@@ -132,13 +133,6 @@ def _kind(name: str) -> type[RestitutionModel]:
     return found
 
 
-_CALIBRATED = (
-    "'calibrated' is no model but what the measurements say of a body: give the number that rocking cor prints, or let "
-    "it scatter by --set restitution.distribution={posterior=true}, in Python "
-    "rk.evidence.restitution_distribution(body).per_history(seed=1)"
-)
-
-
 def _factor(eta: Any) -> float:
     return checks.within("eta", eta, 0.0, 1.0, open_low=True, hint="the interface factor can only lose energy")
 
@@ -150,8 +144,6 @@ def _parsed(words: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, f
     given = parameters_in(tail, words, parameters)
     name = checks.spelling(name, _MODELS)
     if name not in _MODELS:
-        if name == "calibrated":
-            raise UnknownModelError(_CALIBRATED)
         there, near = ", ".join(_MODELS), checks.nearest(name, _MODELS)
         raise UnknownModelError(f"no restitution model named {name!r}; there are {there}{near}")
     return built(_kind(name), name, given), eta

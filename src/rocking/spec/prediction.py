@@ -47,7 +47,7 @@ def options_of(document: "PredictedBody", body: Body | Solid, inputs: InputFiles
     ground = document.settings.model_dump(exclude_none=True, exclude={"engine"})
     options = {**document.predict.model_dump(exclude_none=True), **ground}
     model = options.get("restitution")
-    if isinstance(model, str) and model not in {MEASURED, COMPLEMENTARITY} and not isinstance(body, Solid):
+    if isinstance(model, str) and model not in {*MEASURED, COMPLEMENTARITY} and not isinstance(body, Solid):
         table = RestitutionTable(model=model)
         options["restitution"] = next(iter(restitutions_of(table, 0, [body], inputs).values()))
     return options

@@ -2,7 +2,7 @@
 
 import { svg } from "/app/dom.js";
 
-// the calibrated value is no model: it has a row beside them
+// the calibrated model is drawn as a band, so that the server states no colour for it
 const CALIBRATED = { name: "calibrated", short_name: "calibrated", colour: "#8A8A8A", dash: [] };
 
 const models = new Map([[CALIBRATED.name, CALIBRATED]]);

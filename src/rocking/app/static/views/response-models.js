@@ -6,7 +6,7 @@ import { swatch, wordsOf } from "/views/response-labels.js";
 import { readRestitution, writeRestitution } from "/views/response-restitution.js";
 
 const USUAL = 0.9;
-const CALIBRATED = "The calibrated value that Impact shows is a number: type it as a coefficient of your own.";
+const CALIBRATED = "The calibrated model is fitted to the published measurements; Impact shows its interval.";
 
 // a model whose number has to be given is the coefficient of one's own
 const complete = ({ parameters }) => Object.values(parameters).every((one) => one.default !== null);
