@@ -142,13 +142,13 @@ def left_out_groups(measurements: DataSet | None = None) -> tuple[LeftOut, ...]:
 
 @lru_cache(maxsize=8)
 def unseen(data: DataSet) -> FloatArray:
-    """Return the expected coefficients of all rows, each by a calibration that has not seen its data set [-]."""
+    """Return the expected coefficients of all rows, each by a calibration that has not seen its group [-]."""
     stored = kept(KEPT)
     if stored["inputs"] == hierarchy_fingerprint(data):
         return np.array(stored["unseen"])
-    group, expected = np.array(data.group), np.empty(len(data))
-    for name in dict.fromkeys(data.group):
-        rows = group == name
+    groups, expected = _groups(data), np.empty(len(data))
+    for name in dict.fromkeys(groups):
+        rows = np.array(groups) == name
         expected[rows] = _Posterior(data.rows(~rows), NODES).whole().predict(data.slenderness[rows]).coefficient
     return expected
 
@@ -168,11 +168,16 @@ def sentence_of(found: HierarchicalCalibration, groups: tuple[LeftOut, ...]) -> 
 def tree(data: DataSet) -> dict[str, dict[str, dict[Any, list[int]]]]:
     """Return the rows by laboratory, group with interface, and block: a label with its slenderness."""
     found: dict[str, dict[str, dict[Any, list[int]]]] = {}
-    for i, (group, interface) in enumerate(zip(data.group, data.interface, strict=True)):
-        name = f"{group}: {interface}" if interface else group
+    for i, name in enumerate(_groups(data)):
         blocks = found.setdefault(data.laboratory[i] or name, {}).setdefault(name, {})
         blocks.setdefault((data.labels[i], float(data.slenderness[i])), []).append(i)
     return found
+
+
+def _groups(data: DataSet) -> list[str]:
+    """Return the group of each row: its data set and interface."""
+    pairs = zip(data.group, data.interface, strict=True)
+    return [f"{group}: {interface}" if interface else group for group, interface in pairs]
 
 
 def _shares(tree: dict[str, dict[str, dict[Any, list[int]]]]) -> list[tuple[float, ...]]:

@@ -5,7 +5,7 @@ The rule, which nothing but the measurements decides:
 1. Judged by are the measurements in the slenderness bands in which the sides of the body lie; all measurements where
    those are of fewer than five specimens.
 2. Models stand as they are, nothing fitted. The calibrated default stands by predictions of calibrations that have not
-   seen the data set of the measurement.
+   seen the measurement's group: its data set and interface.
 3. A model is set aside if its root mean square error of r is above that of the closest by a paired bootstrap interval
    that does not include zero (`rocking.evidence.comparison`), and by more than the rounding of the printed digits. What
    is left is not resolved.

@@ -23,7 +23,7 @@ def recommend(
     The rule is one of the measurements, and nobody's opinion. Models stand against the measurements of similar
     slenderness; one whose error is above that of the closest by a 95 % paired bootstrap interval, and by more than the
     measurements were rounded, is set aside, unless the body is outside of what was measured. For a number the
-    calibrated default is taken, which is judged by data sets that it has not seen; where it is set aside, the closest
+    calibrated default is taken, which is judged by groups that it has not seen; where it is set aside, the closest
     model that remains. For a decision its scatter is drawn, and the models of the lowest and of the highest coefficient
     that remain are run beside it.
 
