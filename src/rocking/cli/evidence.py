@@ -6,13 +6,20 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking.cli import options
 from rocking.cli.page import Page, deliver
 
 if TYPE_CHECKING:
     from rocking.evidence import DataSet
     from rocking.evidence._league import LeagueRow
     from rocking.evidence.hierarchy import HierarchicalCalibration, LeftOut
+
+Selection = Annotated[
+    list[str] | None,
+    typer.Argument(
+        help="Which measurements: published, own (what was added), table1, S, M, L, or files (.toml, .csv)."
+    ),
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 evidence = typer.Typer(
     name="evidence",
@@ -26,7 +33,7 @@ evidence = typer.Typer(
 @evidence.command()
 def add(
     file: Annotated[Path, typer.Argument(help="File of measurements: TOML or CSV, see the manual.")],
-    as_json: options.AsJson = False,
+    as_json: AsJson = False,
 ) -> None:
     """Check a file of measurements and add a copy of it to your own evidence; the package is never changed."""
     from rocking.evidence import store
@@ -35,7 +42,7 @@ def add(
 
 
 @evidence.command(name="list")
-def list_(as_json: options.AsJson = False) -> None:
+def list_(as_json: AsJson = False) -> None:
     """Print the published measurements and your own: who measured what, and how many."""
     from rocking.evidence import store
     from rocking.evidence.measurement_file import read_measurements
@@ -46,7 +53,7 @@ def list_(as_json: options.AsJson = False) -> None:
 
 
 @evidence.command()
-def calibrate(which: options.Evidence = None, as_json: options.AsJson = False) -> None:
+def calibrate(which: Selection = None, as_json: AsJson = False) -> None:
     """Print how all models fare on measurements, and the calibration for a body on an interface that is new."""
     from rocking.evidence import league, store
     from rocking.evidence.hierarchy import calibrate_hierarchy, left_out_groups

@@ -96,12 +96,6 @@ Restitutions = Annotated[
         autocompletion=completion.models,
     ),
 ]
-Evidence = Annotated[
-    list[str] | None,
-    typer.Argument(
-        help="Which measurements: published, own (what was added), table1, S, M, L, or files (.toml, .csv)."
-    ),
-]
 Scale = Annotated[float, key(tables.MotionKeys, "scale")]
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking.cli import options
+from rocking.cli.evidence import Selection
 from rocking.cli.page import Page, bar, print_json
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def paper(
-    evidence: options.Evidence = None,
+    which: Selection = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for the report, tables and figures; none is written if left out.")
     ] = None,
@@ -25,7 +25,7 @@ def paper(
     from rocking.evidence.store import selected
     from rocking.reports.paper_document import reproduce
 
-    result = reproduce(selected(evidence) if evidence else None)
+    result = reproduce(selected(which)) if which else reproduce()
     if as_json:
         from rocking.reports.paper_folder import as_plain
 

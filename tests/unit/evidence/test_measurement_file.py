@@ -221,7 +221,7 @@ def test_the_store(own):
 
 
 def test_an_empty_store(monkeypatch, tmp_path):
-    """Without a store the published rows alone are selected; own ones are asked for, and a file in its place is told."""
+    """Without a store the published rows alone are selected; own ones are asked for; a file in its place is told."""
     monkeypatch.setattr(store, "data_folder", lambda: tmp_path / "data")
     assert store.selected() is all_measurements()
     with pytest.raises(InvalidValueError, match="rocking evidence add"):
