@@ -22,6 +22,12 @@ DENSITIES = 10.0, 23000.0  # polystyrene foam; osmium, the densest element, has 
 LARGEST_PGA = 41.0
 """No record has more: 40.2 m/s2, all components, Iwate-Miyagi 2008 (Aoi et al. 2008, Science 322:727) [m/s2]."""
 
+LARGEST_PGV, LARGEST_PGD = 5.0, 15.0
+"""Round limits above what stations on faults show, some 4 m/s and 10 m at TCU068, Chi-Chi 1999 [m/s], [m]."""
+
+END_VELOCITY = 0.1, 0.25
+"""Ground comes to rest: what is left of a record's velocity at its end [m/s], and as a share of the largest [-]."""
+
 GRAVITIES = 1.6, 25.0  # of the Moon, 1.62, and of Jupiter, 24.8 [m/s2]
 
 FRICTIONS = 10.0, 100.0
@@ -74,6 +80,21 @@ def of_acceleration(peak: float) -> tuple[str, ...]:
         f"a ground acceleration of {peak:.4g} m/s2 ({peak / 9.80665:.3g} g) is more than any recorded, {LARGEST_PGA:g} "
         "m/s2; is its unit or its scale another?",
     )
+
+
+def of_integrals(end: float, velocity: float, displacement: float) -> tuple[str, ...]:
+    """Return the doubt about a record by its velocity at the end, its largest one [m/s], its largest displacement [m]."""
+    if velocity > LARGEST_PGV or displacement > LARGEST_PGD:
+        return (
+            f"integrated, it reaches {velocity:.3g} m/s and {displacement:.3g} m, more than the {LARGEST_PGV:g} m/s and "
+            f"{LARGEST_PGD:g} m of any ground; is it no acceleration, in another unit, or without a corrected baseline?",
+        )
+    if abs(end) > max(END_VELOCITY[0], END_VELOCITY[1] * velocity):
+        return (
+            f"integrated, it ends at {end:.3g} m/s, of {velocity:.3g} m/s at most, where the ground is at rest; is its "
+            "baseline corrected, or its end cut off?",
+        )
+    return ()
 
 
 def of_scaled(motions: Iterable[Any], scales: Any) -> tuple[str, ...]:

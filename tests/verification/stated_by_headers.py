@@ -104,6 +104,64 @@ def _geonet(text: str) -> list[Stated]:
     return [Stated(int(n), float(step), abs(float(peak)), _unit_of(peak)) for n, step, peak in rows]
 
 
+def _usc(text: str) -> list[Stated]:
+    return [Stated(int(word), None) for word in _all(r"^NO\. OF POINTS *= *(\d+)", text)] or _csmip_v1(
+        re.sub(r"FILE +\d+ OF UNCORRECTED", "UNCORRECTED", text)
+    )
+
+
+def _geonet_v1(text: str) -> list[Stated]:
+    counts = _all(r"^Number of points +(\d+)", text)
+    steps = _all(r"^Raw readings .* at +intervals +of +(\S+) +s", text)
+    peaks = _all(r"^Acceleration: +peak +(\S+)", text)
+    rows = zip(counts, steps, peaks, strict=True)
+    return [Stated(int(n), float(step), abs(float(peak)), _unit_of(peak)) for n, step, peak in rows]
+
+
+def _csmnc(text: str) -> list[Stated]:
+    peak = _all(r"^PEAK VALUE: *(\S+)", text)[0]
+    count, step = _all(r"^NO\. OF POINTS: *(\d+)", text)[0], _all(r"INTERVALS OF: *(\S+)", text)[0]
+    return [Stated(int(count), float(step), abs(float(peak)), _unit_of(peak))]
+
+
+def _nsmn(text: str) -> list[Stated]:
+    count, step = _all(r"^NUMBER OF DATA *: *(\d+)", text)[0], _all(r"^SAMPLING INTERVAL \(sec\) *: *(\S+)", text)[0]
+    line = _all(r"PGA VALUES \(gal\) *:(.*)", text)[0]
+    return [Stated(int(count), float(step), abs(float(peak)), _unit_of(peak)) for peak in _all(r"\) *(\S+)", line)]
+
+
+def _unam(text: str) -> list[Stated]:
+    peaks, steps, counts = (
+        _all(rf"^{key}[^:\n]*: */(.*)", text)[0].split("/")
+        for key in (r"ACEL\. MAX\.\(Gal\)", "INTERVALO DE MUESTREO, C1", r"NUM\. TOTAL DE MUESTRAS, C1")
+    )
+    rows = zip(counts, steps, peaks, strict=True)
+    return [Stated(int(n), float(step), abs(float(peak)), _unit_of(peak.strip())) for n, step, peak in rows]
+
+
+def _itaca(text: str) -> list[Stated]:
+    peak = _all(r"^PGA \(m/s/s\) *: *(\S+)", text)[0]
+    count, step = _all(r"^Number of Data *: *(\d+)", text)[0], _all(r"^Time Increment \(s\) *: *(\S+)", text)[0]
+    return [Stated(int(count), float(step), abs(float(peak)), _unit_of(peak))]
+
+
+def _csn(text: str) -> list[Stated]:
+    rate = float(_all(r"^# *Tasa de muestreo: *(\S+)", text)[0])
+    counts = _all(r"^# *N\S*mero de muestras: *(\S+)", text)
+    rows = [line for line in text.split("\n") if line.strip() and not line.startswith("#")]
+    return [Stated(int(counts[0]) if counts else len(rows), 1.0 / rate)]
+
+
+def _slist(text: str) -> list[Stated]:
+    counts, rates = _all(r"^TIMESERIES [^,]*, (\d+) samples", text), _all(r" samples, (\S+) sps", text)
+    return [Stated(int(n), 1.0 / float(rate)) for n, rate in zip(counts, rates, strict=True)]
+
+
+def _eqsig(text: str) -> list[Stated]:
+    count, step = re.findall(r"^\s*(\d+)[\s,]+(\d*\.\S+)[\s,]*$", text, re.MULTILINE)[0]
+    return [Stated(int(count), float(step))]
+
+
 def _bhrc(text: str) -> list[Stated]:
     counts, seconds = _all(r"^NO\. OF POINTS = +(\d+)", text), _all(r"DURATION = +(\S+)", text)
     return [Stated(int(n), None) for n, _ in zip(counts, seconds, strict=True)]
@@ -121,4 +179,13 @@ HEADERS: dict[str, Callable[[str], list[Stated]]] = {
     "cwa": _cwa,
     "geonet-v2a": _geonet,
     "bhrc": _bhrc,
+    "usc": _usc,
+    "geonet-v1a": _geonet_v1,
+    "csmnc": _csmnc,
+    "nsmn": _nsmn,
+    "unam": _unam,
+    "itaca": _itaca,
+    "csn": _csn,
+    "slist": _slist,
+    "eqsig": _eqsig,
 }

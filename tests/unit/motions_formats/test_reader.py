@@ -155,7 +155,7 @@ def test_no_finite_number_further_down_is_named_as_ever(tmp_path: Path) -> None:
     [
         "Dear reader,\nnan is no record.\n",  # words beside it
         "nan\n1 2\n3 4 5\n",  # ragged
-        "1 2 3 4 nan\n1 2 3 4 5\n",  # five columns without names
+        " ".join(["1"] * 20) + " nan\n" + " ".join(["1"] * 21) + "\n",  # more columns than are read
         "nan x\n0.1 1\n0.2 2\n",  # another damage on the same line
         "x5\n1\nnan\n",  # damage of another kind before it
         "nano\n1\n2\n",  # a name

@@ -72,7 +72,9 @@ def test_units_are_those_of_each_file(made_up: Callable[..., Record], tmp_path: 
     np.testing.assert_allclose(motion.vertical, expected, rtol=0.0, atol=1e-5)
     with pytest.raises(InvalidValueError, match="say vertical= one of these"):
         read_motion(along, vertical_path=three)
-    tables = [written(tmp_path, "columns", name, values, unit="g") for name, values in (("a", ALONG), ("b", UP))]
+    tables = [tmp_path / "a.txt", tmp_path / "b.txt"]
+    for table, values in zip(tables, (ALONG, UP), strict=True):
+        table.write_text("\n".join(f"{0.02 * k:.2f} {value!r}" for k, value in enumerate(values.tolist())))
     with pytest.raises(RecordError, match="say units="):
         read_motion(tables[0], vertical_path=tables[1])
     assert read_motion(tables[0], units="g", vertical_path=tables[1]).peak_vertical == pytest.approx(9.80665, rel=1e-6)
@@ -139,6 +141,6 @@ def test_both_parts_can_be_written_to_one_file(tmp_path: Path) -> None:
     both = with_vertical(along, GroundMotion(UP, 0.02, metadata={"component": "acceleration"}))
     path = tmp_path / "both.txt"
     write_motion(both, path, "columns")
-    again = read_motion(path, units="m/s2", component="column 2", vertical="column 3")
+    again = read_motion(path, component="acceleration", vertical="acceleration vertical")
     np.testing.assert_allclose(again.acceleration, ALONG, rtol=0.0, atol=1e-6)
     np.testing.assert_allclose(again.vertical, UP, rtol=0.0, atol=1e-6)

@@ -93,7 +93,8 @@ def _component(source: Source, top: int, units: str | None, asked: float | None)
     step = headers.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, asked)
     headers.check_duration(source, duration, count, step, headers.half_digit(points[2]))
     again = numbers.number(source, reals, source.lines[reals][26:39], "duration")
-    headers.check_stated(source, again, duration, 1e-5 * duration, "duration")
+    with source.doubting():
+        headers.check_stated(source, again, duration, 1e-5 * duration, "duration")
     values, line = numbers.fixed(source, reals + _REALS, count, _PER_LINE, _WIDTH)
     if line >= len(source.lines) or source.lines[line].strip() != _END:
         raise source.error(min(line, len(source.lines) - 1), f"{_END} expected after {count} samples")

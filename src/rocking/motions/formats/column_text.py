@@ -26,8 +26,9 @@ _BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))")
 _SECONDS = {"s", "sec", "secs", "second", "seconds", "sek"}
 _TIMES = {"time", "times", "zeit", "temps", "tiempo", "tempo", "tid", "tijd"}
 _OTHER_WORDS = ("vel", "disp", "geschw", "verschieb", "rotation", "period", "freq")
+_VELOCITIES, _LENGTHS = {"m/s", "cm/s", "mm/s", "in/s", "ft/s"}, {"m", "cm", "mm", "in", "ft"}
 _OTHER_UNITS = {
-    *("m/s", "cm/s", "mm/s", "in/s", "ft/s", "m", "cm", "mm", "in", "ft", "in/s2", "ft/s2"),
+    *(*_VELOCITIES, *_LENGTHS, "in/s2", "ft/s2"),
     *("rad", "deg", "rad/s", "deg/s", "rad/s2", "deg/s2", "s", "ms", "us", "min", "h", "hz", "khz"),
     *("v", "mv", "n", "kn", "pa", "kpa", "mpa", "count", "counts", "cnt", "%", "%g", "-", "1"),
 }
@@ -74,6 +75,25 @@ def states_sampling(text: str) -> bool:
     return _OTHER_FORMAT.search(text[:200]) is not None
 
 
+def names_on(text: str) -> tuple[str, ...] | None:
+    """Return the names of columns that a line holds, if it holds nothing else."""
+    return _names(text, _separator(text)) if text and not states_sampling(text) else None
+
+
+def kind_of(unit: str) -> tuple[str | None, str]:
+    """Return what unit of acceleration a word is, and of which quantity it is one; nothing if it is no unit.
+
+    >>> kind_of("cm/s/s"), kind_of("cm/sec"), kind_of("furlong")
+    (('cm/s2', 'acceleration'), (None, 'velocity'), (None, ''))
+    """
+    behind = _plain(unit)
+    small = _SPELT.get(behind.lower(), behind.lower())
+    if behind in ACCELERATION_UNITS or small in _OF_ANY_CASE:
+        return (behind if behind in ACCELERATION_UNITS else small), "acceleration"
+    kinds = ((_VELOCITIES, "velocity"), (_LENGTHS, "displacement"), (_OTHER_UNITS | _SECONDS, "other"))
+    return None, next((kind for units, kind in kinds if small in units), "")
+
+
 @dataclass(frozen=True, slots=True)
 class ColumnName:
     """A column by what stands above it."""
@@ -92,8 +112,7 @@ class ColumnName:
             return cls(place, text, text)
         behind = _plain(found[2] if found[2] is not None else found[3])
         small = _SPELT.get(behind.lower(), behind.lower())
-        unit = behind if behind in ACCELERATION_UNITS else small if small in _OF_ANY_CASE else None
-        known = unit is not None or small in _OTHER_UNITS | _SECONDS
+        unit, known = kind_of(behind)
         return cls(place, text, found[1].strip() if known and found[1].strip() else text, unit, small)
 
     @property
@@ -139,8 +158,10 @@ class NamedColumns:
         if len(times) > 1:
             raise source.error(None, f"{_listed(times)} are both called a time; remove all but one")
         if not found:
+            kinds = {kind_of(one.behind)[1] for one in named} & {"velocity", "displacement"}
+            hold = f", they hold {' and '.join(sorted(kinds))}" if kinds else ""
             raise source.error(
-                None, f"none of the columns {_listed(named)} is an acceleration in {_UNITS}; name one such as acc [g]"
+                None, f"none of the columns {_listed(named)} is an acceleration in {_UNITS}{hold}; name one such as acc [g]"
             )
         spectral = [one for one in named if one not in found and one.is_period]
         if not times and spectral:

@@ -1,6 +1,8 @@
 """Columns of numbers, with or without a line of names: one value a line, or a time and accelerations."""
 
 import math
+import re
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
@@ -8,6 +10,8 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
 from rocking.motions.formats.column_text import MARK, MOST_NAMED, ColumnName, ColumnText, NamedColumns, states_sampling
+from rocking.motions.formats import headers
+from rocking.motions.formats.comments import Said, is_understood
 from rocking.motions.formats.headers import in_unit, step_between_samples, step_of_times
 from rocking.motions.formats.numbers import number
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
@@ -77,27 +81,40 @@ class Columns(RecordFormat):
         # without names they are "acceleration", or "column 2", "column 3", "column 4" after the times
         if not source.is_text:
             raise source.error(None, "not a text file")
+        headers.refuse_other(source)
         text = ColumnText.of(source)
         if not text.rows:
             raise source.error(None, "no line with numbers")
         # such a number comes first: what it does to names, commas and widths would only hide it
         for line, cells in text.rows[:_LOOK]:
             _ = [_value(source, line, cell) for cell in cells if _beyond_numbers(cell)]
-        chosen = _by_place(source, text) if text.names is None else NamedColumns.of(source, text.names)
-        values = _table(source, text)
-        step, metadata = time_step, {}
+        comments = _comments(source)
+        said = Said.of(source, comments, len(text.rows[0][1]))
+        names = text.names or said.names
+        wide = names is None and len(text.rows[0][1]) > _MOST_COLUMNS
+        if wide:
+            chosen, values = _row_by_row(source, _table(source, text, ragged=True))
+        else:
+            chosen = _by_place(source, text) if names is None else NamedColumns.of(source, names)
+            values = _table(source, text, ragged=False)
+        told = time_step if said.step is None else step_between_samples(source, said.step, time_step)
+        step, metadata = told, {}
         if chosen.time is not None:
             times, place = values[:, chosen.time.place], chosen.time.place
-            step = step_of_times(source, times, [cells[place] for _, cells in text.rows], time_step)
+            step = step_of_times(source, times, [cells[place] for _, cells in text.rows], told)
             metadata = {"first time": f"{times[0]:g} s"}
         step = step_between_samples(source, None, step)
+        if said.count is not None:
+            headers.check_count(source, said.count, len(values))
+        if said.unit is not None and all(one.unit is None for one in chosen.accelerations):
+            chosen = replace(chosen, accelerations=tuple(replace(one, unit=said.unit) for one in chosen.accelerations))
         if chosen.left_out:
             metadata["left out"] = ", ".join(chosen.left_out)
         parts = tuple(
             Component(one.name, values[:, one.place].copy(), one.unit or "", step)
             for one in chosen.with_unit(source, units).accelerations
         )
-        header = [*_comments(source), *filter(None, [text.heading])]
+        header = [*(comment for _, comment in comments), *filter(None, [text.heading])]
         return Record(self.name, parts, "\n".join(header), metadata)
 
     def write(self, record: Record) -> bytes:
@@ -106,8 +123,9 @@ class Columns(RecordFormat):
         step = record.components[0].time_step
         if len({row.size for row in rows}) > 1 or any(part.time_step != step for part in record.components):
             raise RecordError("columns holds components of the same length and step; write each to a file of its own")
-        names = ", ".join(one_line(part.name, 40) for part in record.components)
-        lines = [f"# time [s], {names} [{record.components[0].unit}]"]
+        named = [re.sub(r"[\[\](),;=]", " ", one_line(part.name, 40)).strip() for part in record.components]
+        unit = record.components[0].unit
+        lines = [", ".join(["# time [s]", *(f"{name or 'acceleration'} [{unit}]" for name in named)])]
         for place, sample in enumerate(np.column_stack(rows)):
             lines.append(" ".join([f"{place * step:.9f}", *(repr(float(value)) for value in sample)]))
         return ("\n".join(lines) + "\n").encode("latin-1")
@@ -115,7 +133,8 @@ class Columns(RecordFormat):
 
 def _looked_at(source: Source) -> list[tuple[int, list[str]]] | None:
     """Return the first lines of cells, not yet numbers, that decide whether these are columns; None if they are not."""
-    if not source.is_text or any(states_sampling(text) for text in _comments(source, _LONGEST_HEADER)):
+    comments = [text for _, text in _comments(source, _LONGEST_HEADER)]
+    if not source.is_text or any(states_sampling(text) and not is_understood(text) for text in comments):
         return None
     text = ColumnText.of(source, _LOOK)
     # damage further down is told by the reader, with its line, where names say that these are columns
@@ -124,7 +143,7 @@ def _looked_at(source: Source) -> list[tuple[int, list[str]]] | None:
     if len(counts) != 1:
         return None
     if text.names is None:
-        return looked if max(counts) <= _MOST_COLUMNS else None
+        return looked if max(counts) <= MOST_NAMED else None
     # so is one name more or less, where the separator is clear
     clear = counts == {len(text.names)} or text.separator in {";", "\t", ","}
     return looked if clear and max(counts) <= MOST_NAMED else None
@@ -138,8 +157,9 @@ def _beyond_numbers(cell: str) -> bool:
         return False
 
 
-def _comments(source: Source, most: int | None = None) -> list[str]:
-    return [text for text in source.lines[:most] if text.removeprefix(MARK).lstrip()[:1] in {"#", "%"}]
+def _comments(source: Source, most: int | None = None) -> list[tuple[int, str]]:
+    bare = ((line, text.removeprefix(MARK)) for line, text in enumerate(source.lines[:most]))
+    return [(line, text) for line, text in bare if text.lstrip()[:1] in {"#", "%"}]
 
 
 def _by_place(source: Source, text: ColumnText) -> NamedColumns:
@@ -153,7 +173,20 @@ def _by_place(source: Source, text: ColumnText) -> NamedColumns:
     return NamedColumns(named[0], tuple(named[1:]), ())
 
 
-def _table(source: Source, text: ColumnText) -> FloatArray:
+def _row_by_row(source: Source, values: FloatArray) -> tuple[NamedColumns, FloatArray]:
+    """Return what many columns without names are: times and accelerations, or one acceleration that goes on and on."""
+    accelerations = tuple(ColumnName(place, "", f"column {place + 1}") for place in range(1, values.shape[1]))
+    first = values[:, 0][np.isfinite(values[:, 0])]
+    rises = np.diff(first)
+    if first.size > 2 and (rises > 0.0).all() and np.ptp(rises) <= 0.5 * rises.mean():
+        if not np.isfinite(values).all():
+            raise source.error(None, f"the last line must have {values.shape[1]} numbers, as the first")
+        return NamedColumns(ColumnName(0, "", "column 1"), accelerations, ()), values
+    one = NamedColumns(None, (ColumnName(0, "", "acceleration"),), ())
+    return one, values[np.isfinite(values)].reshape(-1, 1)
+
+
+def _table(source: Source, text: ColumnText, *, ragged: bool) -> FloatArray:
     commas = [line for line, _ in text.rows if "," in source.lines[line]]
     points = [line for line, cells in text.rows if any("." in cell for cell in cells)]
     if commas and text.separator == "" and not points:
@@ -165,12 +198,15 @@ def _table(source: Source, text: ColumnText) -> FloatArray:
         columns, why = len(text.rows[0][1]), " as on the first line"
     else:
         columns, why = len(text.names), ", as many as there are names"
-    values = np.empty((len(text.rows), columns))
+    values = np.full((len(text.rows), columns), np.nan)
     for row, (line, cells) in enumerate(text.rows):
+        if ragged and row == len(text.rows) - 1 and 0 < len(cells) < columns:
+            values[row, : len(cells)] = [_value(source, line, cell) for cell in cells]
+            continue
         if len(cells) != columns:
             raise source.error(line, f"{columns} numbers expected{why}, found {len(cells)}{hint}")
         values[row] = [_value(source, line, cell) for cell in cells]
-    if len(text.rows) < 2:
+    if len(text.rows) < 2 and not ragged:
         raise source.error(None, "at least 2 samples are needed, found 1")
     return values
 

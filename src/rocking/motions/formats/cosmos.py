@@ -15,7 +15,7 @@ from rocking.motions.formats.headers import (
     check_peak,
     check_peak_time,
 )
-from rocking.motions.formats.numbers import fixed, fortran_form, in_width, whole
+from rocking.motions.formats.numbers import fixed, fortran_form, in_width, whole, word
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
 
 _TITLE = re.compile(r".*\(Format v\s*0*1\.[12]0? with\s+(\d+) text lines\).*", re.IGNORECASE)
@@ -24,9 +24,12 @@ _TABLE = re.compile(
 )
 _COMMENTS = re.compile(r"\s*(\d+)\s+Comment line\(?s?\)? follow.*", re.IGNORECASE)
 _DATA = re.compile(
-    r"\s*(\d+)\s+(\w+)\s+pts,\s*approx\s+(\S+)\s+secs?,\s*units\s*=\s*([^,(]+)\(\s*(\d+)\s*\),\s*Format\s*=\s*(\(.*?\))\s*",
+    r"\s*(\d+)\s+(\w[\w .]*?)\s+pts,\s*approx\s+(\S+)\s+secs?,\s*units\s*=\s*([^,(]+)\(\s*(\d+)\s*\),?\s*"
+    r"Format\s*=\s*(\(.*?\))\s*",
     re.IGNORECASE,
 )
+_END = re.compile(r"/&|\s*End-of-data\b", re.IGNORECASE)
+_CODE = re.compile(r"\|\s*<SCNL>\s*[\w-]+\.(\w{3})\.", re.IGNORECASE)
 _UNKNOWN = -999.0
 _MOST_TEXT = 200
 # places in the headers, counted from 0: what is measured, its unit, azimuth, count; step [ms], length, peak, its time
@@ -34,8 +37,7 @@ _QUANTITY, _UNIT, _CHANNEL, _AZIMUTH, _COUNT = 1, 2, 49, 53, 69
 _STEP, _LENGTH, _PEAK, _PEAK_TIME = 61, 62, 63, 64
 # codes of the units that are accelerations; what the line before the data may call them
 _UNITS = {2: ("g", {"g"}), 4: ("cm/s2", {"cm/sec2", "cm/sec/sec", "cm/s2", "cm/s/s", "cm/sec^2", "gal"})}
-# header and data round apart: the peak is written in fewer digits than the samples
-_ROUNDING = {"cm/s2": 6e-4, "g": 1e-5}
+_LEAST_DECIMALS = 3  # of a peak that is written in fewer digits than its columns have room for
 
 
 class Cosmos(RecordFormat):
@@ -43,10 +45,11 @@ class Cosmos(RecordFormat):
 
     name: ClassVar[str] = "cosmos"
     title: ClassVar[str] = "COSMOS v1.20, Consortium of Organizations for Strong Motion Observation Systems"
-    suffixes: ClassVar[tuple[str, ...]] = (".v1", ".v2", ".v1c", ".v2c")
+    suffixes: ClassVar[tuple[str, ...]] = (".v1", ".v2", ".v0c", ".v1c", ".v2c")
     notes: ClassVar[str] = (
-        "Verified on the published test file: one channel, cm/sec2. Several channels in one file and data in g follow "
-        "the description of the format. Only units 02 (g) and 04 (cm/sec2) are read; counts and volts are refused."
+        "Layout: COSMOS Strong Motion Data Format, Ver. 1.20 (15 August 2001). Verified on the published test file and "
+        "on one of 2018 of the U.S. Geological Survey, each of one channel in cm/sec2; several channels and data in g "
+        "follow the description. Only units 02 (g) and 04 (cm/sec2) are read; counts and volts are refused."
     )
 
     def recognises(self, source: Source) -> bool:
@@ -76,7 +79,7 @@ def _title(text: str) -> re.Match[str] | None:
     return _TITLE.fullmatch(text[:LONGEST_LINE])
 
 
-def _table(source: Source, line: int, kind: str, least: int) -> tuple[FloatArray, int]:
+def _table(source: Source, line: int, kind: str, least: int) -> tuple[FloatArray, int, tuple[int, int]]:
     found = _TABLE.fullmatch(source.lines[line][:LONGEST_LINE]) if line < len(source.lines) else None
     if found is None or found[2].lower() != kind:
         raise source.expected(line, f"{kind.title()}-header values follow on ... lines")
@@ -87,7 +90,7 @@ def _table(source: Source, line: int, kind: str, least: int) -> tuple[FloatArray
     values, after = fixed(source, line + 1, count, per_line, width)
     if kind == "integer" and (values != values.round()).any():
         raise source.error(line, "whole numbers expected in this header")
-    return values, after
+    return values, after, (per_line, width)
 
 
 def _channel(source: Source, first: int, units: str | None, time_step: float | None) -> tuple[Channel, int]:
@@ -95,33 +98,38 @@ def _channel(source: Source, first: int, units: str | None, time_step: float | N
     texts = whole(source, first, title[1], "number of text lines") if title else 0
     if not 12 <= texts <= _MOST_TEXT or first + texts + 1 >= len(source.lines):
         raise source.error(first, f"12 to {_MOST_TEXT} text lines expected, and as many lines after this one")
-    wholes, line = _table(source, first + texts, "integer", 100)
-    figures, line = _table(source, line, "real", 100)
-    line = _after_comments(source, line)
+    wholes, reals, _ = _table(source, first + texts, "integer", 100)
+    figures, comments, layout = _table(source, reals, "real", 100)
+    line = _after_comments(source, comments)
     data, code = _data_line(source, line)
     if (int(wholes[_QUANTITY]), int(wholes[_UNIT])) != (1, code):
         raise source.error(line, "the header of whole numbers must state acceleration (1) and the unit of this line")
-    stated = _UNITS[code][0]
-    unit = headers.acceleration_unit(source, stated, units)
+    unit = headers.acceleration_unit(source, _UNITS[code][0], units)
     known = None if figures[_STEP] == _UNKNOWN else float(figures[_STEP] / 1000.0)
     step = headers.step_between_samples(source, known, time_step)
     form = fortran_form(source, line, data[6])
     values, after = fixed(source, line + 1, whole(source, line, data[1], "count", 2), *form)
-    peak = _check(source, wholes, figures, values, step, _ROUNDING[stated])
+    largest = word(source, line + 1, int(np.abs(values).argmax()), *form)
+    rounding = headers.printed_rounding(word(source, reals + 1, _PEAK, *layout), largest, _LEAST_DECIMALS)
+    peak = _check(source, wholes, figures, values, step, rounding)
     if re.fullmatch(r"\d{1,6}\.?\d{0,6}", data[3]):
         check_duration(source, float(data[3]), values.size, step, 1.0)
-    if not source.begins(after, "/&"):
+    if after >= len(source.lines) or not _END.match(source.lines[after]):
         raise source.expected(after, "End of data for channel")
     header = source.lines[first : line + 1]
-    return (header, _label(header[:texts], wholes[_AZIMUTH]), Component("", values, unit, step, peak)), after + 1
+    label = _label(header, texts, wholes[_AZIMUTH])
+    return (header, label, Component("", values, unit, step, peak)), after + 1
 
 
-def _label(texts: list[str], azimuth: float) -> str:
-    """Return number and direction, as ``CHAN 1: 90``: the azimuth if it is known, else what the text says."""
-    label = next((text[:LONGEST_LINE] for text in texts if text.startswith("Sta Cha")), "")
+def _label(header: list[str], texts: int, azimuth: float) -> str:
+    """Return number and direction, as ``CHAN 1: 90``: the azimuth if it is known, else what the text or a code says."""
+    label = next((text[:LONGEST_LINE] for text in header[:texts] if text.startswith("Sta Cha")), "")
     number = re.match(r"Sta Cha\w*\s*:?\s*(\d+)", label)
-    word = re.search(r":\s*([\w-]+)(?:\s+deg\b|\s+\()", label)
-    direction = (word[1] if word else "") if azimuth == _UNKNOWN else f"{azimuth:.0f}"
+    found = re.search(r":\s*([\w-]+)(?:\s+deg\b|\s+\()", label, re.IGNORECASE)
+    code = next((code[1] for text in header if (code := _CODE.match(text[:LONGEST_LINE]))), "")
+    # an azimuth of 0 may stand for none where the text gives no degrees
+    known = azimuth > 0.0 or (azimuth == 0.0 and not code) or re.search(r"\bdeg\b", label, re.IGNORECASE)
+    direction = f"{azimuth:.0f}" if azimuth != _UNKNOWN and known else code or (found[1] if found else "")
     return f"CHAN {number[1] if number else 1}: {direction}"
 
 
@@ -131,11 +139,13 @@ def _data_line(source: Source, line: int) -> tuple[re.Match[str], int]:
     if found is None:
         raise source.expected(line, "... pts, approx ... secs, units=...,Format=...")
     code = int(found[5][:4])
-    if not found[2].lower().startswith("accel") or code not in _UNITS:
+    if "count" in found[4].lower() or "count" in found[2].lower():
+        raise source.error(line, "the file holds counts of the recorder, no accelerations; take its V1 or V2 file")
+    if not re.search(r"\baccel", found[2], re.IGNORECASE) or code not in _UNITS:
         raise source.error(
             line, f"acceleration in g (02) or cm/sec2 (04) expected, found {found[2]} in {found[4].strip()}"
         )
-    if found[4].strip().lower() not in _UNITS[code][1]:
+    if found[4].strip(" .\t").lower() not in _UNITS[code][1]:
         raise source.error(line, f"unit {found[4].strip()!r} contradicts its code {code:02d}")
     return found, code
 

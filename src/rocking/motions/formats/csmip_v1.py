@@ -1,4 +1,4 @@
-"""CSMIP / CDMG Volume 1: uncorrected accelerograms, pairs of time and acceleration, one channel after another."""
+"""CSMIP / CDMG Volume 1: uncorrected accelerograms, one channel after another; Caltech's and USC's before them."""
 
 import re
 from collections.abc import Sequence
@@ -8,40 +8,48 @@ import numpy as np
 
 from rocking.conventions import ACCELERATION_UNITS, FloatArray, g
 from rocking.motions.formats import headers
-from rocking.motions.formats.headers import LONGEST_LINE, Channel, check_count, check_peak, check_peak_time
-from rocking.motions.formats.numbers import fixed, fortran_form, in_width, number, whole
+from rocking.motions.formats.headers import LONGEST_LINE, Channel, check_count, check_peak
+from rocking.motions.formats.numbers import fixed, fortran_form, in_width, number, whole, word
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
 
-_TITLE = re.compile(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.IGNORECASE)
 _TEXT_LINES, _WHOLE_LINES, _REAL_LINES = 13, 7, 7
-_EVEN = re.compile(r"\s*(\d+)\s+POINTS\b.*\bEQUALLY SPACED AT\s+(\S+?)\s*SEC\b[.,]?\s*(.*)", re.IGNORECASE)
+_SPACED = re.compile(r"\s*(\d+)\s+POINTS\b.*\bEQUALLY SPACED AT\s+(\S+?)\s*SEC\b[.,]?\s*(.*)", re.IGNORECASE)
+_RATED = re.compile(r"\s*(\d+)\s+(?:\w+\s+)?(?:POINTS|PTS)\s+AT\s+(\S+)\s+(?:PTS|POINTS|SAMPLES)/SEC\b[.,]?(.*)", re.I)
+_POINTS = re.compile(r"NO\. OF POINTS\s*=\s*(\d{1,9})\b", re.IGNORECASE)
 _UNIT = re.compile(r"(?<![\w/])(G/10|CM/SEC/SEC|CM/SEC2|GALS?|G)(?![\w/*])")
 _UNITS = {"G/10": "g/10", "CM/SEC/SEC": "cm/s2", "CM/SEC2": "cm/s2", "GAL": "gal", "GALS": "gal", "G": "g"}
 _STATED_MAX = re.compile(r"\bMAX\s*=(?:\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*(G/10|CM/SEC/SEC|CM/SEC2|GALS?|G)(?![\w/*]))?")
 _LENGTH, _PEAK, _PEAK_TIME = 2, 6, 7
+_PAIRS = 10, 7  # columns of times and samples, and their width
 
 
 class CsmipV1(RecordFormat):
-    """CSMIP / CDMG Volume 1 files."""
+    """CSMIP / CDMG Volume 1 files, and RENADIC's of Chile."""
 
     name: ClassVar[str] = "csmip-v1"
-    title: ClassVar[str] = "CSMIP Volume 1 (uncorrected), California Geological Survey"
+    title: ClassVar[str] = "CSMIP Volume 1 (uncorrected), California Geological Survey; RENADIC, Chile"
     suffixes: ClassVar[tuple[str, ...]] = (".v1", ".raw")
     notes: ClassVar[str] = (
-        "Written from public documentation; no real file was at hand. Uncorrected: neither baseline nor instrument. "
-        "Unevenly spaced times are refused. Count, record length, peak (to 0.001 g) in numbers "
-        "and in text, and its time are checked."
+        "Layout: CSMIP's standard tape format, report OSMS 85-03. Verified on files of 1992, 2012 and 2019, and on "
+        "three of RENADIC, whose time of the peak counts from the trigger. Uncorrected: neither baseline nor "
+        "instrument. Samples at uneven times are resampled. Count and peak, in numbers and in text, are checked."
     )
+    begins: ClassVar[re.Pattern[str]] = re.compile(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.IGNORECASE)
+    _skip: ClassVar[int] = 0  # blanks before the pairs of a line
+    _has_peak: ClassVar[bool] = True  # whether the numbers of the header end in the peak and its time
+    _end: ClassVar[str] = "/&"  # with what the line behind the samples begins
 
     def recognises(self, source: Source) -> bool:
         """Return whether it begins as an uncorrected accelerogram with whole numbers after 13 lines."""
-        if not source.is_text or not _TITLE.match(source.lines[0]) or len(source.lines) <= _TEXT_LINES:
+        if not source.is_text or not self.begins.match(source.lines[0]) or len(source.lines) <= _TEXT_LINES:
             return False
         return re.fullmatch(r"[\s\d-]{5,80}", source.lines[_TEXT_LINES]) is not None
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the record, a component for each channel, named by its direction, or CHAN 1 where these repeat."""
-        channels = headers.read_channels(source, _TITLE.match, lambda line: _channel(source, line, units, time_step))
+        channels = headers.read_channels(
+            source, self.begins.match, lambda line: self._channel(source, line, units, time_step)
+        )
         return headers.record_of_channels(self.name, channels, headers.names_in(channels[0][0][1:]))
 
     def write(self, record: Record) -> bytes:
@@ -51,37 +59,94 @@ class CsmipV1(RecordFormat):
             lines += _lines(record, row, values.round(3))
         return ("\r\n".join(lines) + "\r\n").encode("latin-1")
 
+    def _channel(self, source: Source, first: int, units: str | None, time_step: float | None) -> tuple[Channel, int]:
+        after = first + _TEXT_LINES + _WHOLE_LINES + _REAL_LINES
+        if len(source.lines) <= after or not self.begins.match(source.lines[first]):
+            raise source.error(first, f"UNCORRECTED ACCELEROGRAM DATA and {after - first} header lines expected")
+        header = source.lines[first:after]
+        wholes, reals = fixed(source, first + _TEXT_LINES, 100, 16, 5)
+        # the last line of the reals is written full or not
+        last = -(-len(source.lines[after - 1].rstrip()) // 10)
+        figures, line = fixed(source, reals, 48 + min(8, max(1, last)), 8, 10)
+        # newer files state the number of samples at place 33, older ones at 28
+        count = whole(source, first + _TEXT_LINES, f"{wholes[32] or wholes[27]:.0f}", "number of samples", 2)
+        for text in header[:_TEXT_LINES]:
+            if points := _POINTS.search(text[:LONGEST_LINE]):
+                check_count(source, int(points[1]), count)
+        unit = headers.acceleration_unit(source, _unit([text[:LONGEST_LINE] for text in header[:_TEXT_LINES]]), units)
+        even = _even(source, line, count, unit)
+        if even:
+            step, form = even
+            raw, behind = fixed(source, line + 1, count, *form)
+            values, zero, done = raw, 0.0, {}
+            printed = word(source, line + 1, int(np.abs(raw).argmax()), *form)
+        else:
+            pairs, behind = fixed(source, line, 2 * count, *_PAIRS, self._skip)
+            raw, top = pairs[1::2].copy(), int(np.abs(pairs[1::2]).argmax())
+            values, step, done = headers.at_even_steps(source, pairs[::2], raw, 0.001)
+            zero = float(pairs[2 * top]) - int(np.abs(values).argmax()) * step
+            printed = f"{raw[top]:.3f}"
+        step = headers.step_between_samples(source, step, time_step)
+        if self._end and not source.begins(behind, self._end):
+            raise source.expected(behind, "END OF DATA FOR CHANNEL")
+        lasts = zero + (values.size - 1) * step
+        if figures[_LENGTH] > 0.0 and abs(figures[_LENGTH] - lasts) > step + 0.06:
+            source.doubt(None, f"the header states a record of {figures[_LENGTH]:g} s, the last sample is at {lasts:g} s")
+        in_g = ACCELERATION_UNITS[unit] / g
+        peak, at = (float(figures[place]) if self._has_peak else 0.0 for place in (_PEAK, _PEAK_TIME))
+        if peak:
+            rounding = headers.half_digit(word(source, reals, _PEAK, 8, 10)) + in_g * headers.half_digit(printed)
+            check_peak(source, peak, raw * in_g, rounding)
+            headers.check_peak_time(source, at - zero, values * in_g, step, rounding)
+        told = _check_text(source, first, raw * ACCELERATION_UNITS[unit], headers.half_digit(printed) * in_g * g)
+        stated = abs(peak) / in_g if peak else None if told is None else told / ACCELERATION_UNITS[unit]
+        return (header, header[6][:LONGEST_LINE], Component("", values, unit, step, stated, done)), behind + bool(self._end)
 
-def _channel(source: Source, first: int, units: str | None, time_step: float | None) -> tuple[Channel, int]:
-    after = first + _TEXT_LINES + _WHOLE_LINES + _REAL_LINES
-    if len(source.lines) <= after or not _TITLE.match(source.lines[first]):
-        raise source.error(first, f"UNCORRECTED ACCELEROGRAM DATA and {after - first} header lines expected")
-    header = source.lines[first:after]
-    wholes, line = fixed(source, first + _TEXT_LINES, 100, 16, 5)
-    # the last line of the reals is written full or not
-    last = -(-len(source.lines[after - 1].rstrip()) // 10)
-    figures, line = fixed(source, line, 48 + min(8, max(1, last)), 8, 10)
-    # newer files state the number of samples at place 33, older ones at 28
-    count = whole(source, first + _TEXT_LINES, f"{wholes[32] or wholes[27]:.0f}", "number of samples", 2)
-    unit = headers.acceleration_unit(source, _unit([text[:LONGEST_LINE] for text in header[:_TEXT_LINES]]), units)
-    even = _EVEN.fullmatch(source.lines[line][:LONGEST_LINE])
-    if even:
-        check_count(source, count, whole(source, line, even[1], "number of samples", 2))
-        step, zero = number(source, line, even[2], "time step"), 0.0
-        form = re.search(r"\(\s*\d+[FE]\d+\.\d+\s*\)", even[3].upper())
-        per_line, width = fortran_form(source, line, form[0]) if form else (8, 9)
-        values, line = fixed(source, line + 1, count, per_line, width)
-    else:
-        pairs, line = fixed(source, line, 2 * count, 10, 7)
-        step, zero, values = headers.uniform_step(source, pairs[::2], 0.001), float(pairs[0]), pairs[1::2].copy()
-    step = headers.step_between_samples(source, step, time_step)
-    if not source.begins(line, "/&"):
-        raise source.expected(line, "END OF DATA FOR CHANNEL")
-    peak = _check_figures(source, figures, values, step, zero, unit)
-    told = _check_text(source, first, values * ACCELERATION_UNITS[unit])
-    if peak is None and told is not None:
-        peak = told / ACCELERATION_UNITS[unit]
-    return (header, header[6][:LONGEST_LINE], Component("", values, unit, step, peak)), line + 1
+
+class Usc(CsmipV1):
+    """Volume 1 of Caltech and of USC, after which CSMIP's was made."""
+
+    name: ClassVar[str] = "usc"
+    title: ClassVar[str] = "Volume I (uncorrected) of Caltech and the University of Southern California"
+    suffixes: ClassVar[tuple[str, ...]] = (".v1", ".s0a", ".raw")
+    notes: ClassVar[str] = (
+        "Layout: Trifunac and Lee 1973, Caltech report EERL 73-03, and the file itself; verified on one of 1994. "
+        "Pairs of time and acceleration, resampled where the times are uneven. It states no peak: a damaged sample "
+        "can pass. Uncorrected: neither baseline nor instrument."
+    )
+    begins: ClassVar[re.Pattern[str]] = re.compile(r"\s*FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOL", re.IGNORECASE)
+    _skip: ClassVar[int] = 1
+    _has_peak: ClassVar[bool] = False
+    _end: ClassVar[str] = ""
+
+    def write(self, record: Record) -> bytes:
+        """Return a file of Volume I, in g/10 with 3 decimals."""
+        lines: list[str] = []
+        for row, values in enumerate(headers.in_unit(record, self.name, "g/10", 99)):
+            made = _lines(record, row, values.round(3))[:-1]
+            made[0] = f"FILE {row + 1:5d} OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:"
+            made[6] = f"COMP {one_line(record.components[row].name, 20)}"
+            header = _TEXT_LINES + _WHOLE_LINES + _REAL_LINES
+            lines += [*made[:header], *(f" {text}" for text in made[header:])]
+        return ("\r\n".join(lines) + "\r\n").encode("latin-1")
+
+
+def _even(source: Source, line: int, count: int, unit: str) -> tuple[float, tuple[int, int]] | None:
+    """Return step and columns of samples at even times, which a line states before them; none before pairs."""
+    text = source.lines[line][:LONGEST_LINE]
+    spaced, rated = _SPACED.fullmatch(text), _RATED.fullmatch(text)
+    found = spaced or rated
+    if found is None:
+        return None
+    check_count(source, count, whole(source, line, found[1], "number of samples", 2))
+    tail = found[3].upper()
+    if "COUNT" in tail:
+        raise source.error(line, "the file holds counts of the recorder, no accelerations")
+    headers.acceleration_unit(source, _unit([tail]), unit)
+    amount = number(source, line, found[2], "time step" if spaced else "sampling rate")
+    form = re.search(r"\(\s*\d+[FE]\d+\.\d+\s*\)", tail)
+    step = amount if spaced else 1.0 / amount if amount > 0.0 else 0.0
+    return step, fortran_form(source, line, form[0]) if form else (8, 9)
 
 
 def _unit(texts: Sequence[str]) -> str | None:
@@ -93,23 +158,8 @@ def _unit(texts: Sequence[str]) -> str | None:
     return None
 
 
-def _check_figures(
-    source: Source, figures: FloatArray, values: FloatArray, step: float, zero: float, unit: str
-) -> float | None:
-    length, peak, at = (float(figures[place]) for place in (_LENGTH, _PEAK, _PEAK_TIME))
-    lasts = zero + (values.size - 1) * step
-    if length > 0.0 and abs(length - lasts) > step + 0.06:
-        raise source.error(None, f"the header states a record of {length:g} s, the last sample is at {lasts:g} s")
-    if peak == 0.0:
-        return None
-    in_g = ACCELERATION_UNITS[unit] / g
-    check_peak(source, peak, values * in_g, 6e-4)
-    check_peak_time(source, at - zero, values * in_g, step, 6e-4)
-    return abs(peak) / in_g
-
-
-def _check_text(source: Source, first: int, values: FloatArray) -> float | None:
-    """Compare samples in m/s2 with the peak that the text lines state, if they do, and return it in m/s2."""
+def _check_text(source: Source, first: int, values: FloatArray, rounding: float) -> float | None:
+    """Compare samples with the peak that the text lines state, if they do, and return it; samples, rounding in m/s2."""
     for line in range(first, first + _TEXT_LINES):
         found = _STATED_MAX.search(source.lines[line][:LONGEST_LINE].upper())
         if found is None:
@@ -117,8 +167,8 @@ def _check_text(source: Source, first: int, values: FloatArray) -> float | None:
         if found[1] is None:
             raise source.error(line, "MAX = a number and its unit expected; damaged?")
         factor = ACCELERATION_UNITS[_UNITS[found[2]]]
-        # the samples are printed to 0.001 g/10, the peak to its last digit
-        check_peak(source, float(found[1]), values / factor, headers.half_digit(found[1]) + 1.1e-4 * g / factor, "MAX")
+        slack = headers.half_digit(found[1]) + rounding / factor
+        check_peak(source, float(found[1]), values / factor, slack, "MAX")
         return abs(float(found[1])) * factor
     return None
 
@@ -138,5 +188,5 @@ def _lines(record: Record, row: int, values: FloatArray) -> list[str]:
     texts[6] = f"CHAN {row + 1:2d}: {one_line(part.name, 20)}"
     texts[11] = f"UNITS OF UNCOR ACCEL ARE SEC AND G/10.     MAX  = {figures[_PEAK]:.3f} G"
     lines = texts + in_width(wholes, 16, 5, 0) + in_width(figures, 8, 10, 3)
-    lines += in_width(np.column_stack((times, values)).ravel(), 10, 7, 3)
+    lines += in_width(np.column_stack((times, values)).ravel(), *_PAIRS, 3)
     return [*lines, f"/&  ----------  END OF DATA FOR CHANNEL {row + 1:2d}  ----------"]

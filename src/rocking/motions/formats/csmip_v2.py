@@ -8,7 +8,7 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.motions.formats import headers
 from rocking.motions.formats.headers import Channel, check_count, check_peak, check_peak_time
-from rocking.motions.formats.numbers import fixed, fortran_form, in_width, number, whole
+from rocking.motions.formats.numbers import fixed, fortran_form, in_width, number, whole, word
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
 
 _TITLE = re.compile(r"\s*CORRECTED ACCELEROGRAM\b", re.IGNORECASE)
@@ -21,7 +21,7 @@ _POINTS = re.compile(r"\s*(\d+)\s+POINTS OF INSTRUMENT", re.IGNORECASE)
 _TEXT_LINES, _HEADER_LINES = 25, 45
 _STEP, _PEAKS = 60, {"ACCEL": (64, 65), "VELOC": (66, 67), "DISPL": (68, 69)}
 _COUNTS = {"ACCEL": 52, "VELOC": 63, "DISPL": 65}
-_ROUNDING = 6e-4
+_LEAST_DECIMALS = 2  # of a peak that older files round, and print with a zero behind
 
 
 class CsmipV2(RecordFormat):
@@ -31,9 +31,10 @@ class CsmipV2(RecordFormat):
     title: ClassVar[str] = "CSMIP Volume 2 (corrected), California Geological Survey"
     suffixes: ClassVar[tuple[str, ...]] = (".v2",)
     notes: ClassVar[str] = (
-        "Verified on one real file of 1983 with three channels of unequal length. Counts, peaks and times of peaks of "
-        "acceleration, velocity and displacement are checked. Newer files that state a format such as (8f10.6) follow "
-        "the public documentation; no real one was at hand."
+        "Layout: CSMIP's standard tape format, report OSMS 85-03. Verified on a file of 1983 with three channels of "
+        "unequal length and on one of 1979. Count, step and peak of the acceleration are checked; what velocity and "
+        "displacement contradict is a warning. Newer files that state a format such as (8f10.6) follow the public "
+        "documentation; no real one was at hand."
     )
 
     def recognises(self, source: Source) -> bool:
@@ -60,35 +61,50 @@ def _channel(source: Source, first: int, unit: str, time_step: float | None) -> 
     header = source.lines[first : first + _HEADER_LINES]
     if len(header) < _HEADER_LINES or not _TITLE.match(header[0]):
         raise source.error(first, f"CORRECTED ACCELEROGRAM and {_HEADER_LINES} header lines expected")
-    wholes, line = fixed(source, first + _TEXT_LINES, 100, 16, 5)
-    figures, line = fixed(source, line, 100, 8, 10)
-    step: float | None = None
-    blocks: dict[str, FloatArray] = {}
-    while line < len(source.lines) and _BLOCK.fullmatch(source.lines[line]):
-        kind, values, own, line = _block(source, line)
-        if kind in blocks or (step is not None and own != step):
-            raise source.error(line, f"{kind} stated twice, or with another step than before")
-        if not blocks:
+    wholes, reals = fixed(source, first + _TEXT_LINES, 100, 16, 5)
+    figures, line = fixed(source, reals, 100, 8, 10)
+    part: Component | None = None
+    while line < len(source.lines) and (found := _BLOCK.fullmatch(source.lines[line])):
+        if found[2].upper() == "ACCEL":
+            if part is not None:
+                raise source.error(line, "ACCEL stated twice")
+            values, own, rounding, line = _checked_block(source, line, wholes, figures, reals)
             step = headers.step_between_samples(source, own, time_step)
-        check_count(source, int(wholes[_COUNTS[kind]]), values.size)
-        # the header has the step in three decimals
-        if abs(figures[_STEP] - own) > 5.1e-4:
-            stated = f"the header states a step of {figures[_STEP]:g} s, the {kind} data one of {own:g} s"
-            raise source.error(None, stated)
-        at, peak = (float(figures[place]) for place in _PEAKS[kind])
-        check_peak(source, peak, values, _ROUNDING, f"{kind} peak")
-        check_peak_time(source, at, values, own, _ROUNDING)
-        blocks[kind] = values
-    if "ACCEL" not in blocks or step is None:
+            _check_texts(source, first, header[:_TEXT_LINES], values, step, rounding)
+            part = Component("", values, unit, step, abs(float(figures[_PEAKS["ACCEL"][1]])))
+            continue
+        # not kept, and so no reason to refuse what is
+        with source.doubting():
+            _checked_block(source, line, wholes, figures, reals)
+        line += 1
+        while line < len(source.lines) and not source.begins(line, "/&") and not _BLOCK.fullmatch(source.lines[line]):
+            line += 1
+    if part is None:
         raise source.error(line, "POINTS OF ACCEL DATA EQUALLY SPACED AT ... SEC expected")
-    _check_texts(source, first, header[:_TEXT_LINES], blocks["ACCEL"], step)
     if not source.begins(line, "/&"):
         raise source.expected(line, "END OF DATA FOR CHANNEL")
-    part = Component("", blocks["ACCEL"], unit, step, abs(float(figures[_PEAKS["ACCEL"][1]])))
     return (header, header[7][:200], part), line + 1
 
 
-def _block(source: Source, line: int) -> tuple[str, FloatArray, float, int]:
+def _checked_block(
+    source: Source, line: int, wholes: FloatArray, figures: FloatArray, reals: int
+) -> tuple[FloatArray, float, float, int]:
+    """Return samples, their step, how far their peak may be from a stated one, and the line after them."""
+    kind, values, step, form, after = _block(source, line)
+    check_count(source, int(wholes[_COUNTS[kind]]), values.size)
+    # the header has the step in three decimals
+    if abs(figures[_STEP] - step) > 5.1e-4:
+        stated = f"the header states a step of {figures[_STEP]:g} s, the {kind} data one of {step:g} s"
+        raise source.error(None, stated)
+    at, peak = (float(figures[place]) for place in _PEAKS[kind])
+    largest = word(source, line + 1, int(np.abs(values).argmax()), *form)
+    rounding = headers.printed_rounding(word(source, reals, _PEAKS[kind][1], 8, 10), largest, _LEAST_DECIMALS)
+    check_peak(source, peak, values, rounding, f"{kind} peak")
+    check_peak_time(source, at, values, step, rounding)
+    return values, step, rounding, after
+
+
+def _block(source: Source, line: int) -> tuple[str, FloatArray, float, tuple[int, int], int]:
     found = _BLOCK.fullmatch(source.lines[line])
     if found is None:
         raise source.error(line, "POINTS OF ... DATA EQUALLY SPACED AT ... SEC expected")
@@ -101,17 +117,20 @@ def _block(source: Source, line: int) -> tuple[str, FloatArray, float, int]:
     per_line, width = fortran_form(source, line, form[1]) if form else (8, 10)
     step = number(source, line, found[3], "time step")
     values, after = fixed(source, line + 1, count, per_line, width)
-    return kind, values, step, after
+    return kind, values, step, (per_line, width), after
 
 
-def _check_texts(source: Source, first: int, texts: list[str], values: FloatArray, step: float) -> None:
+def _check_texts(
+    source: Source, first: int, texts: list[str], values: FloatArray, step: float, rounding: float
+) -> None:
     for line, text in enumerate(texts, first):
         peak, points = _PEAK.fullmatch(text), _POINTS.match(text)
         if _SAYS_PEAK.match(text) and not peak:
             raise source.error(line, f"PEAK ACCELERATION = ... CM/SEC/SEC AT ... SEC expected, got {text[:60]!r}")
         if peak:
-            check_peak(source, number(source, line, peak[1], "peak"), values, _ROUNDING)
-            check_peak_time(source, number(source, line, peak[2], "time"), values, step, _ROUNDING)
+            slack = max(rounding, headers.half_digit(peak[1]))
+            check_peak(source, number(source, line, peak[1], "peak"), values, slack)
+            check_peak_time(source, number(source, line, peak[2], "time"), values, step, slack)
         if points:
             check_count(source, int(points[1][:9]), values.size)
 

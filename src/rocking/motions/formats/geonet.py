@@ -1,10 +1,10 @@
-"""GeoNet Volume 2 of GNS Science, New Zealand: corrected accelerations, velocities and displacements of 3 components.
+"""GeoNet of GNS Science, New Zealand: Volume 1, raw accelerations, and Volume 2, corrected and integrated, of 3 components.
 
 Each component: 16 lines of text, 4 lines of 10 whole numbers and 6 of 10 real ones of width 8, then the acceleration
 [mm/s2], velocity [mm/s] and displacement [mm], each 10 numbers of width 8 a line and on a new line. Checked on four
 files (2016 Kaikoura and 2018 earthquakes, Cusp and Basalt recorders): counts, step, duration and all nine peaks with
-their times, which count from real number 22 (5 s in all four) after the first sample. Not checked: older layouts, and
-Volume 1 (raw readings), which is refused.
+their times, which count from real number 22 (5 s in all four) after the first sample. Volume 1 has the same header and the
+acceleration alone; checked on one file of 2016 (Basalt recorder). Not checked: older layouts.
 """
 
 import re
@@ -19,10 +19,8 @@ from rocking.motions.formats.record import Component, Record, RecordFormat, Sour
 
 _TEXTS, _WHOLES, _REALS = 16, 4, 6
 _PER_LINE, _WIDTH = 10, 8
-_TITLE = "Corrected accelerogram"
-_POINTS = r"Number of points +(\d{1,9}) +Duration +(\d+\.\d*) +sec"
-_STEP = r"Instrument corrected data at +(\d*\.\d+) +sec intervals"
-_PEAK = r"{}: +peak +(-?\d+\.\d+|-?\.\d+) +{} +at +(\d+\.\d*) +sec.*"
+_POINTS = r"Number of points +(\d{1,9}) +Duration +(\d+\.\d*) +s(?:ec)?"
+_PEAK = r"{}: +[Pp]eak +(-?\d+\.\d+|-?\.\d+) +{} +at +(\d+\.\d*) +s(?:ec)?\b.*"
 # what the file gives, its unit and decimals
 _SERIES = (("Acceleration", "mm/s/s", 1), ("Velocity", "mm/s", 2), ("Displacement", "mm", 3))
 
@@ -33,21 +31,22 @@ class GeonetV2A(RecordFormat):
     name: ClassVar[str] = "geonet-v2a"
     title: ClassVar[str] = "GeoNet Volume 2 (V2A) of GNS Science, New Zealand"
     suffixes: ClassVar[tuple[str, ...]] = (".v2a",)
-    notes: ClassVar[str] = (
-        "In mm/s2. Velocities and displacements are not kept, but their counts and peaks are checked. "
-        "Volume 1 is refused."
-    )
+    notes: ClassVar[str] = "In mm/s2. Velocities and displacements are not kept; what they contradict is a warning."
     marks: ClassVar[tuple[str, ...]] = (
-        _TITLE, "Number of points", "Instrument corrected data at", "Acceleration:", "Displacement:",
+        "Corrected accelerogram", "Number of points", "Instrument corrected data at", "Acceleration:", "Displacement:",
     )  # fmt: skip
     top: ClassVar[int] = _TEXTS + 3
+    begins: ClassVar[str] = "Corrected accelerogram"
+    step: ClassVar[str] = r"Instrument corrected data at +(\d*\.\d+) +sec intervals"
+    says_step: ClassVar[str] = "Instrument corrected data at {} sec intervals"
+    counts: ClassVar[tuple[int, ...]] = (33, 34, 35)  # where the number of samples stands among the whole numbers
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         unit = headers.acceleration_unit(source, "mm/s2", units)
         components: list[Component] = []
         line = 0
         while len(components) < 3:
-            component, line = _component(source, line, unit, time_step)
+            component, line = self._component(source, line, unit, time_step)
             if component.name in {other.name for other in components}:
                 raise source.error(None, f"component {component.name[:20]!r} is there twice")
             components.append(component)
@@ -70,62 +69,91 @@ class GeonetV2A(RecordFormat):
             raise RecordError(f"GeoNet holds three components of different names, got {', '.join(names)}")
         lines: list[str] = []
         for part, name, values in zip(record.components, names, rows, strict=True):
-            lines += _written(record, name, values, part.time_step)
+            lines += self._written(record, name, values, part.time_step)
         return ("\n".join(lines) + "\n").encode("latin-1")
 
+    def _component(self, source: Source, top: int, unit: str, asked: float | None) -> tuple[Component, int]:
+        text = source.lines[top : top + _TEXTS]
+        if len(text) < _TEXTS or not text[0].startswith(self.begins):
+            raise source.error(top, f"a component beginning with {self.begins!r} expected; one of three missing?")
+        points = numbers.matched(source, top + 9, _POINTS)
+        count, duration = int(points[1]), float(points[2])
+        step = headers.step_between_samples(source, float(numbers.matched(source, top + 10, self.step)[1]), asked)
+        name = numbers.matched(source, top + 12, r"Component +(\S+).*")[1]
+        wholes, line = numbers.fixed(source, top + _TEXTS, _WHOLES * _PER_LINE, _PER_LINE, _WIDTH)
+        reals, line = numbers.fixed(source, line, _REALS * _PER_LINE, _PER_LINE, _WIDTH)
+        for place in self.counts:
+            headers.check_count(source, int(wholes[place]), count)
+        if count < 2:
+            raise source.error(top + 9, f"at least 2 points expected, found {count}")
+        headers.check_duration(source, duration, count, step, headers.half_digit(points[2]))
+        values, peak = _series(source, line, count, step, text, 0, float(reals[21]))
+        line += -(-count // _PER_LINE)
+        if len(self.counts) > 1:
+            with source.doubting():
+                for k in (1, 2):
+                    _series(source, line + (k - 1) * -(-count // _PER_LINE), count, step, text, k, float(reals[21]))
+            after = range(line, len(source.lines))
+            line = next((at for at in after if source.begins(at, self.begins)), len(source.lines))
+        about = metadata_of(axis=" ".join(text[12].split()[2:]), filter=text[11])
+        return Component(name, values, unit, step, peak, about), line
 
-def _component(source: Source, top: int, unit: str, asked: float | None) -> tuple[Component, int]:
-    text = source.lines[top : top + _TEXTS]
-    if len(text) < _TEXTS or not text[0].startswith(_TITLE):
-        raise source.error(top, f"a component beginning with {_TITLE!r} expected; one of three missing?")
-    points = numbers.matched(source, top + 9, _POINTS)
-    count, duration = int(points[1]), float(points[2])
-    stated = numbers.matched(source, top + 10, _STEP)
-    step = headers.step_between_samples(source, float(stated[1]), asked)
-    name = numbers.matched(source, top + 12, r"Component +(\S+).*")[1]
-    wholes, line = numbers.fixed(source, top + _TEXTS, _WHOLES * _PER_LINE, _PER_LINE, _WIDTH)
-    reals, line = numbers.fixed(source, line, _REALS * _PER_LINE, _PER_LINE, _WIDTH)
-    for stated_count in wholes[33:36]:
-        headers.check_count(source, int(stated_count), count)
-    if count < 2:
-        raise source.error(top + 9, f"at least 2 points expected, found {count}")
-    headers.check_duration(source, duration, count, step, headers.half_digit(points[2]))
-    series: list[FloatArray] = []
-    peaks: list[float] = []
-    for k, (what, of, _) in enumerate(_SERIES):
-        first = source.lines[line][:_WIDTH] if line < len(source.lines) else ""
-        values, line = numbers.fixed(source, line, count, _PER_LINE, _WIDTH)
-        peak = numbers.matched(source, top + 13 + k, _PEAK.format(what, of))
-        # series of large numbers are printed with fewer decimals than their peak
-        rounding = max(headers.half_digit(peak[1]), headers.half_digit(first))
-        series.append(values)
-        headers.check_peak(source, float(peak[1]), values, rounding, f"peak of {what.lower()}, {name}")
-        headers.check_peak_time(source, float(peak[2]) + float(reals[21]), values, step, rounding)
-        peaks.append(abs(float(peak[1])))
-    about = metadata_of(axis=" ".join(text[12].split()[2:]), filter=text[11])
-    return Component(name, series[0], unit, step, peaks[0], about), line
+    def _written(self, record: Record, name: str, values: FloatArray, step: float) -> list[str]:
+        count = values.size
+        station, event, filtered = (record.text(key, 60, "unknown") for key in ("station", "event", "filter"))
+        lines = [
+            *[f"{self.begins} unknown", f"Site {station.partition(' ')[0]}", "unknown", "Instrument unknown"],
+            *["Resolution: unknown", "Accelerogram unknown", "unknown", event, "Epicentre unknown"],
+            f"Number of points {count:5d}    Duration {(count - 1) * step:.4f} sec",
+            self.says_step.format(f"{step:.9g}").replace(" 1 s", " 1.0 s"),
+            *[filtered, f"Component {name}"],
+        ]
+        blocks: list[str] = []
+        for k, (what, of, decimals) in enumerate(_SERIES):
+            if k:
+                values = np.concatenate([[0.0], np.cumsum(0.5 * step * (values[1:] + values[:-1]))])
+            if k and len(self.counts) == 1:
+                lines.append(f"{what} record unevaluated")
+                continue
+            rounded = np.round(values, decimals)
+            words = [f"{value:{_WIDTH}.{decimals}f}" for value in rounded.tolist()]
+            if max(map(len, words)) > _WIDTH:
+                raise RecordError(f"{what.lower()} of {np.abs(values).max():g} {of} does not fit into {_WIDTH} columns")
+            at = int(np.abs(rounded).argmax())
+            lines.append(f"{what + ':':<14} peak {rounded[at]:8.{decimals}f} {of:<6} at {at * step:.4f} sec")
+            blocks += ["".join(words[k : k + _PER_LINE]) for k in range(0, count, _PER_LINE)]
+        wholes = numbers.in_columns([count if k in self.counts else 0 for k in range(40)], _PER_LINE, "{:8d}")
+        return [*lines, *wholes, *numbers.in_columns([0.0] * 60, _PER_LINE, "{:8.2f}"), *blocks]
 
 
-def _written(record: Record, name: str, values: FloatArray, step: float) -> list[str]:
-    velocity = np.concatenate([[0.0], np.cumsum(0.5 * step * (values[1:] + values[:-1]))])
-    displacement = np.concatenate([[0.0], np.cumsum(0.5 * step * (velocity[1:] + velocity[:-1]))])
-    count = values.size
-    station, event, filtered = (record.text(key, 60, "unknown") for key in ("station", "event", "filter"))
-    lines = [
-        *[f"{_TITLE} unknown", f"Site {station.partition(' ')[0]}", "unknown", "Instrument unknown"],
-        *["Resolution: unknown", "Accelerogram unknown", "unknown", event, "Epicentre unknown"],
-        f"Number of points {count:5d}    Duration {(count - 1) * step:.4f} sec",
-        f"Instrument corrected data at {step:.9g} sec intervals".replace(" 1 sec", " 1.0 sec"),
-        *[filtered, f"Component {name}"],
-    ]
-    blocks: list[str] = []
-    for (what, of, decimals), row in zip(_SERIES, (values, velocity, displacement), strict=True):
-        rounded = np.round(row, decimals)
-        words = [f"{value:{_WIDTH}.{decimals}f}" for value in rounded.tolist()]
-        if max(map(len, words)) > _WIDTH:
-            raise RecordError(f"{what.lower()} of {np.abs(row).max():g} {of} does not fit into {_WIDTH} columns")
-        at = int(np.abs(rounded).argmax())
-        lines.append(f"{what + ':':<14} peak {rounded[at]:8.{decimals}f} {of:<6} at {at * step:.4f} sec")
-        blocks += ["".join(words[k : k + _PER_LINE]) for k in range(0, count, _PER_LINE)]
-    wholes = numbers.in_columns([0] * 33 + [count] * 3 + [0] * 4, _PER_LINE, "{:8d}")
-    return [*lines, *wholes, *numbers.in_columns([0.0] * 60, _PER_LINE, "{:8.2f}"), *blocks]
+class GeonetV1A(GeonetV2A):
+    """GeoNet Volume 1, as recorded."""
+
+    name: ClassVar[str] = "geonet-v1a"
+    title: ClassVar[str] = "GeoNet Volume 1 (V1A) of GNS Science, New Zealand"
+    suffixes: ClassVar[tuple[str, ...]] = (".v1a",)
+    notes: ClassVar[str] = "In mm/s2, neither filtered nor corrected: remove the mean and correct the baseline."
+    marks: ClassVar[tuple[str, ...]] = (
+        "Uncorrected accelerogram", "Number of points", "Raw readings in units of", "Acceleration:", "Component",
+    )  # fmt: skip
+    begins: ClassVar[str] = "Uncorrected accelerogram"
+    step: ClassVar[str] = r"Raw readings in units of +1\.0+ +mm/s/s +at intervals of +(\d*\.\d+) +s(?:ec)?"
+    says_step: ClassVar[str] = "Raw readings in units of 1.00 mm/s/s at intervals of {} s"
+    counts: ClassVar[tuple[int, ...]] = (33,)
+
+
+def _series(
+    source: Source, line: int, count: int, step: float, text: list[str], k: int, late: float
+) -> tuple[FloatArray, float]:
+    """Return one of the series of a component and its stated peak; peak times begin `late` after the samples."""
+    what, of, _ = _SERIES[k]
+    first = source.lines[line][:_WIDTH] if line < len(source.lines) else ""
+    values, _ = numbers.fixed(source, line, count, _PER_LINE, _WIDTH)
+    peak = re.fullmatch(_PEAK.format(what, of), text[13 + k].strip())
+    if peak is None:
+        raise source.error(None, f"the peak of {what.lower()} cannot be understood: {text[13 + k].strip()[:60]!r}")
+    # series of large numbers are printed with fewer decimals than their peak
+    rounding = max(headers.half_digit(peak[1]), headers.half_digit(first))
+    headers.check_peak(source, float(peak[1]), values, rounding, f"peak of {what.lower()}, {text[12].split()[1]}")
+    headers.check_peak_time(source, float(peak[2]) + late, values, step, rounding)
+    return values, abs(float(peak[1]))

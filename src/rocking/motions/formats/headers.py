@@ -28,6 +28,32 @@ def acceleration_unit(source: Source, stated: str | None, asked: str | None) -> 
     return stated or asked or ""
 
 
+_OTHER = re.compile(r"(?<![^\W_])(?:(vel|velocity|velocities|vt2)|(disp|dis|displacements?|dt2))(?![^\W_])", re.IGNORECASE)
+
+
+_ACCELERATION = re.compile(r"(?<![^\W_])acc", re.IGNORECASE)
+
+
+def refuse_other(source: Source, words: str = "") -> None:
+    """Refuse a file whose name, or what it says of itself, is that of velocities or displacements."""
+    for text, where in ((source.name, "its name"), (words, "its header")):
+        found = _OTHER.search(text[:LONGEST_LINE])
+        if found and not _ACCELERATION.search(text[:LONGEST_LINE]):
+            kind = "velocity" if found[1] else "displacement"
+            raise source.error(
+                None,
+                f"accelerations are needed, and {where} says {found[0]!r}, a {kind}; take the file of accelerations, or "
+                "rename it if it holds them",
+            )
+
+
+def doubt_channel(source: Source, code: str) -> None:
+    """Doubt accelerations of a channel whose SEED code is that of a seismometer, which records velocities."""
+    # SEED Reference Manual 2.4, appendix A: the second letter is the instrument, H and L for high and low gain
+    if re.fullmatch(r"[A-Z][HLM][A-Z0-9]", code):
+        source.doubt(None, f"channel {code} is by its code one of velocities; were its samples made accelerations?")
+
+
 def step_between_samples(source: Source, stated: float | None, asked: float | None) -> float:
     """Return the step of a file: what it states, or what the user says where it states nothing; 1e-6 to 10 s [s]."""
     step = stated if stated is not None else asked
@@ -104,6 +130,43 @@ def uniform_step(source: Source, times: FloatArray, unit: float) -> float:
     return step
 
 
+def at_even_steps(
+    source: Source, times: FloatArray, values: FloatArray, unit: float
+) -> tuple[FloatArray, float, dict[str, str]]:
+    """Return samples at even steps, their step [s], and what was done to them.
+
+    Where the times are uneven beyond rounding at `unit`, straight lines between the samples are sampled at a round
+    step not above the usual one, at instants of which one is that of the largest sample.
+    """
+    try:
+        return values.copy(), uniform_step(source, times, unit), {}
+    except RecordError:
+        gaps = np.diff(times)
+        half = times.size // 2
+        usual = float(np.median((times[half:] - times[: times.size - half]) / half)) if half else 0.0
+        line = times - usual * np.arange(times.size)
+        # a few times off an even row are damage, and no way of sampling
+        odd = np.abs(line - np.median(line)) > 2.0 * unit
+        reach = float(times[-1] - times[0])
+        if not 1e-6 <= usual <= 10.0 or (gaps < 0.0).any() or odd.sum() <= max(10, times.size // 100):
+            raise
+        step = max(round(one * 10.0**power, 9) for power in range(-6, 2) for one in (1, 2, 5) if one * 10.0**power <= usual)
+        if reach > 100.0 * usual * times.size:
+            raise
+    top = int(np.abs(values).argmax())
+    before, behind = (int(span / step + 1e-9) for span in (times[top] - times[0], times[-1] - times[top]))
+    # of samples at one printed time the larger is kept
+    order = np.lexsort((-np.abs(values), times))
+    _, first = np.unique(times[order], return_index=True)
+    kept = order[first]
+    even = np.interp(times[top] + step * np.arange(-before, behind + 1), times[kept], values[kept])
+    even[before] = values[top]
+    gap = f", the longest gap {gaps.max():.3g} s" if gaps.max() > 10.0 * usual else ""
+    told = f"{times.size} samples at uneven times{gap}, resampled at {step:g} s by straight lines"
+    source.doubt(None, told)
+    return even, step, {"resampled": told}
+
+
 def check_count(source: Source, stated: int, found: int) -> None:
     """Refuse a file that holds another number of samples than its header states."""
     if stated != found:
@@ -126,20 +189,20 @@ def check_end(source: Source, first: int) -> None:
 
 
 def check_peak_time(source: Source, stated: float, values: FloatArray, step: float, rounding: float) -> None:
-    """Refuse a file whose largest value is not where its header states it, to a step [s]."""
+    """Doubt a header whose largest value is not where it states, to a step [s]; some count from another instant."""
     largest = np.abs(values)
     at = stated / step
     near = largest[max(0, math.ceil(at - 1.01)) : max(0, math.floor(at + 1.01) + 1)] if 0.0 <= at < 1e9 else largest[:0]
     if not near.size or near.max() < largest.max() - rounding:
         found = float(largest.argmax()) * step
-        raise source.error(None, f"the header states the peak at {stated:g} s, the data have it at {found:g} s")
+        source.doubt(None, f"the header states the peak at {stated:g} s, the data have it at {found:g} s")
 
 
 def check_duration(source: Source, stated: float, count: int, step: float, rounding: float) -> None:
-    """Refuse a file whose stated duration, of all steps or from first to last sample, is not that of its samples."""
+    """Doubt a stated duration, of all steps or from first to last sample, that is not that of the samples [s]."""
     off = min(abs(stated - samples * step) for samples in (count - 1, count))
     if not off <= 1.001 * rounding + 1e-9:
-        raise source.error(
+        source.doubt(
             None, f"the header states a duration of {stated:g} s, {count} samples at {step:g} s last {count * step:g} s"
         )
 
@@ -152,6 +215,20 @@ def half_digit(word: str) -> float:
     """
     mantissa, _, exponent = word.strip().upper().replace("D", "E").partition("E")
     return 0.500001 * 10.0 ** min(int(exponent or "0") - len(mantissa.partition(".")[2]), 300)
+
+
+def printed_rounding(stated: str, sample: str, least: int) -> float:
+    """Return how far a printed peak may be from a printed sample: half a last digit of each.
+
+    Zeros at the end of the peak, beyond `least` decimals, may be none of its digits.
+
+    >>> f"{printed_rounding('-29.340', '29.342', 2):.4g}", f"{printed_rounding('.0791795', '.079180', 3):.3g}"
+    ('0.0055', '5.5e-07')
+    """
+    mantissa, mark, exponent = re.fullmatch(r"([^eEdD]*)([eEdD]?)(.*)", stated.strip()).groups()  # type: ignore[union-attr]
+    whole, _, digits = mantissa.partition(".")
+    digits = digits[:least] + digits[least:].rstrip("0")
+    return half_digit(f"{whole}.{digits}{mark}{exponent}") + half_digit(sample)
 
 
 def check_stated(source: Source, stated: float, found: float, rounding: float, what: str) -> None:
@@ -184,14 +261,15 @@ def read_channels(
 def record_of_channels(format: str, channels: Sequence[Channel], metadata: dict[str, str]) -> Record:
     """Return a record whose components are named by direction, or by channel number where directions repeat."""
     header = "\n".join("\n".join(lines) for lines, _, _ in channels)
-    found = [re.search(r"CHAN\s*(\d+)\s*:\s*(.*?)\s*(?:DEG\b.*)?$", label, re.IGNORECASE) for _, label, _ in channels]
-    numbers = [one[1] if one else str(place) for place, one in enumerate(found, 1)]
+    form = re.compile(r"(?:CHAN\s*(\d+)\s*:|^\s*COMP\b)\s*(.*?)\s*(?:DEG\b.*|\s{3}.*)?$", re.IGNORECASE)
+    found = [form.search(label) for _, label, _ in channels]
+    numbers = [(one and one[1]) or str(place) for place, one in enumerate(found, 1)]
     names = directions = [one[2].strip() if one else "" for one in found]
     if len({name.casefold() for name in directions}) < len(channels) or "" in directions:
         unique = len(set(numbers)) == len(channels)
         names = [f"CHAN {n}" for n in (numbers if unique else range(1, len(channels) + 1))]
     parts = (
-        replace(part, name=name, metadata={"channel": chan, "direction": direction})
+        replace(part, name=name, metadata={**part.metadata, "channel": chan, "direction": direction})
         for (_, _, part), name, chan, direction in zip(channels, names, numbers, directions, strict=True)
     )
     return Record(format, tuple(parts), header, metadata)
@@ -199,6 +277,8 @@ def record_of_channels(format: str, channels: Sequence[Channel], metadata: dict[
 
 def names_in(texts: Sequence[str]) -> dict[str, str]:
     """Return event and station from the text lines after the titles."""
-    station = re.search(r"STATION NO\.?\s*(\w+)", texts[3][:LONGEST_LINE], re.IGNORECASE)
+    station = re.search(r"STATION (?:NO\.?|ID\.?|USC#)\s*(\w+)", texts[3][:LONGEST_LINE], re.IGNORECASE)
     number = station[1] if station else ""
-    return metadata_of(event=texts[0], date=texts[1].split("(")[0], station_number=number, station=texts[4])
+    # what stands beyond column 40 or three blanks belongs to the network, or counts letters
+    event, date, place = (re.split(r"\s{3}|\(", text.strip())[0] for text in (texts[0], texts[1], texts[4]))
+    return metadata_of(event=event, date=date, station_number=number, station=place)

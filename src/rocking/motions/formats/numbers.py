@@ -53,14 +53,40 @@ def free(source: Source, first: int, last: int, columns: int | None = None) -> F
     return found if columns is None else found.reshape(-1, columns)
 
 
-def fixed(source: Source, first: int, count: int, per_line: int, width: int) -> tuple[FloatArray, int]:
-    """Return `count` numbers in columns of fixed width, which need no blank between them, and the line after them."""
+def rows(source: Source, first: int, last: int) -> FloatArray:
+    """Return the numbers on some lines, which hold as many as the first of them, save the last; blank ones none."""
+    columns, short = 0, False
+    for line in range(first, last):
+        words = len(source.lines[line].split())
+        columns = columns or words
+        if words and (short or words > columns):
+            raise source.error(line, f"{columns} numbers a line expected save on the last; missing or damaged?")
+        short = short or 0 < words < columns
+    if not columns:
+        raise source.error(None, "no sample after the header")
+    return free(source, first, last)
+
+
+def word(source: Source, first: int, place: int, per_line: int, width: int) -> str:
+    """Return how one of the numbers in columns of fixed width is printed."""
+    line, column = divmod(place, per_line)
+    return source.lines[first + line].rstrip()[column * width : (column + 1) * width].strip()
+
+
+def fixed(
+    source: Source, first: int, count: int, per_line: int, width: int, skip: int = 0
+) -> tuple[FloatArray, int]:
+    """Return `count` numbers in columns of fixed width, which need no blank between them, and the line after them.
+
+    Each line begins with `skip` blanks that belong to no column.
+    """
     values: list[float] = []
     line = first
     while len(values) < count:
         if line >= len(source.lines):
             raise source.error(None, f"{count} samples expected, the file ends after {len(values)}")
         text = source.lines[line].rstrip()
+        text = text[skip:] if not text[:skip].strip() else text
         wanted = min(per_line, count - len(values))
         if len(text) > wanted * width or len(text) <= (wanted - 1) * width:
             raise source.error(line, f"{wanted} columns of {width} characters expected, found {len(text)} characters")

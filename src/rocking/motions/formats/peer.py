@@ -5,15 +5,17 @@ from typing import ClassVar
 
 from rocking.conventions import FloatArray
 from rocking.motions.formats.headers import acceleration_unit, check_count, check_end, in_unit, step_between_samples
-from rocking.motions.formats.numbers import free, in_columns, number, whole
+from rocking.motions.formats.numbers import in_columns, number, rows, whole
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
 
 _LONGEST_HEADER, _LONGEST_LINE = 60, 400
 _KEYED = re.compile(r"\bNPTS\s*=.*\bDT\s*=|\bDT\s*=.*\bNPTS\s*=", re.IGNORECASE)
 _OLD = re.compile(r"\s*(\S+)\s+(\S+)\s+NPTS\s*,\s*DT\s*(?:\(?SEC\)?)?[\s,.]*", re.IGNORECASE)
 _UNIT = re.compile(r"\bUNITS?\s+(?:OF|ARE|IS|IN)\s*:?\s*(\(?[^\s,;.]*)", re.IGNORECASE)
+_OTHER = re.compile(r"\s*(VELOCITY|DISPLACEMENT)\b.*(?:TIME|HISTORY|SERIES|UNITS)", re.IGNORECASE)
 _IN_WORDS = re.compile(r"(\d+)\s+points\s+at\s+equal\s+spacing\s+of\s+(\d*\.\d+)\s*sec", re.IGNORECASE)
-_REST = re.compile(r"[\s,.]*(SEC(ONDS?)?)?[\s,.]*")
+# behind the step NGA files say how they were filtered: "SEC,  -5 POLE @ .03000 HZ"
+_REST = re.compile(r"[\s,.]*(SEC(ONDS?)?[\s.]*(,.*)?)?[\s,.]*")
 _NUMBERS = re.compile(r"[\s\d.+\-EeDd]*\d[\s\d.+\-EeDd]*")
 _PROSE = re.compile(r"\b[A-Za-z]{3,}\b.*\b[A-Za-z]{3,}\b")
 _END = re.compile(r"\s*\*+\s*End\s+Data\s*\*+\s*", re.IGNORECASE)
@@ -100,38 +102,32 @@ def _size(source: Source, line: int) -> tuple[int, float]:
 
 
 def _keyed(text: str) -> dict[str, str] | None:
-    """Return what NPTS and DT are equal to; none if the line says anything else."""
-    words = dict(re.findall(r"\b(NPTS|DT)\s*=\s*([^\s,]+)", text.upper()))
+    """Return what NPTS and DT are equal to; none if the line says anything else, save behind the seconds."""
+    found = re.findall(r"\b(NPTS|DT)\s*=\s*([^\s,]+)", text.upper())
     rest = re.sub(r"\b(NPTS|DT)\s*=\s*[^\s,]+", "", text.upper())
-    return words if len(words) == 2 and _REST.fullmatch(rest) else None
+    return dict(found) if len(found) == len(dict(found)) == 2 and _REST.fullmatch(rest) else None
 
 
 def _unit(source: Source, header: list[str]) -> str | None:
     found: str | None = None
     for line, text in enumerate(header):
+        other = _OTHER.match(text)
+        beside = f": a {other[1].lower()}; its acceleration is in the .AT2 file beside it" if other else ""
         for stated in _UNIT.findall(text):
             if stated.strip("()").upper() != "G":
-                raise source.error(line, f"PEER accelerations are in g, the header states {stated[:20]!r}")
+                raise source.error(line, f"PEER accelerations are in g, the header states {stated[:20]!r}{beside}")
             found = "g"
+        if beside:
+            raise source.error(line, f"PEER accelerations are in g, the header states {text.strip()[:40]!r}{beside}")
     return found
 
 
 def _values(source: Source, first: int) -> FloatArray:
-    after = len(source.lines)
-    columns, short = 0, False
     for line in range(first, len(source.lines)):
         if _END.fullmatch(source.lines[line]):
             check_end(source, line + 1)
-            after = line
-            break
-        words = len(source.lines[line].split())
-        columns = columns or words
-        if words and (short or words > columns):
-            raise source.error(line, f"{columns} numbers a line expected save on the last; missing or damaged?")
-        short = short or 0 < words < columns
-    if not columns:
-        raise source.error(None, "no sample after the header")
-    return free(source, first, after)
+            return rows(source, first, line)
+    return rows(source, first, len(source.lines))
 
 
 def _who(header: list[str]) -> tuple[dict[str, str], str]:

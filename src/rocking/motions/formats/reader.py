@@ -2,16 +2,20 @@
 
 import hashlib
 from collections.abc import Mapping
+from dataclasses import replace
 from datetime import UTC, datetime
 from importlib import import_module
 from os import PathLike
 from pathlib import Path
 
-from rocking import checks
+import numpy as np
+
+from rocking import checks, plausibility
 from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError, RecordError, RockingError
 from rocking.motions.components import with_vertical
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source
+from rocking.motions.integrals import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
 
 LAST_RESORT = "columns"
@@ -23,12 +27,21 @@ _CLASSES = {
     "cosmos": "cosmos.Cosmos",
     "csmip-v1": "csmip_v1.CsmipV1",
     "csmip-v2": "csmip_v2.CsmipV2",
+    "usc": "csmip_v1.Usc",
     "smc-usgs": "smc.SmcUsgs",
     "smc-boore": "smc.SmcBoore",
     "knet": "knet.Knet",
     "cwa": "cwa.Cwa",
+    "geonet-v1a": "geonet.GeonetV1A",
     "geonet-v2a": "geonet.GeonetV2A",
     "bhrc": "bhrc.Bhrc",
+    "csmnc": "csmnc.Csmnc",
+    "nsmn": "nsmn.Nsmn",
+    "unam": "unam.Unam",
+    "itaca": "itaca.Itaca",
+    "csn": "csn.Csn",
+    "slist": "slist.Slist",
+    "eqsig": "eqsig.Eqsig",
     "miniseed": "miniseed.MiniSeed",
     "sac": "sac.Sac",
     LAST_RESORT: "columns.Columns",
@@ -238,13 +251,17 @@ def _read(source: Source, format: str | None, units: str | None, time_step: floa
     chosen: RecordFormat | None = None
     try:
         chosen = _recognised(source) if format is None else format_named(format)
-        return chosen.read(source, units, time_step)
+        record = chosen.read(source, units, time_step)
     except RockingError:
         raise
     except Exception as error:  # whatever a file provokes in a reader is a refusal; where it came from stays chained
         where = "while its format was looked for" if chosen is None else f"as {chosen.name}"
         what = f"it cannot be read {where} ({type(error).__name__}: {str(error)[:120]}); damaged, or another format?"
         raise source.error(None, what) from error
+    if not source.doubts:
+        return record
+    plausibility.warn(source.doubts)
+    return replace(record, metadata={**record.metadata, "doubts": "; ".join(source.doubts)})
 
 
 def _motion(source: Source, record: Record, part: Component) -> GroundMotion:
@@ -254,7 +271,11 @@ def _motion(source: Source, record: Record, part: Component) -> GroundMotion:
     told = f"read from {source.name}, SHA-256 {digest}, format {record.format}, component {part.name}, unit {part.unit}"
     name = " ".join(metadata[key] for key in ("event", "station") if metadata.get(key)) or Path(source.name).stem
     acceleration = part.acceleration * ACCELERATION_UNITS[part.unit]
-    return GroundMotion(acceleration, part.time_step, None, name, metadata, (told,))
+    motion = GroundMotion(acceleration, part.time_step, None, name, metadata, (told, *source.doubts))
+    velocity, displacement = ground_velocity(motion), ground_displacement(motion)
+    ends = float(velocity[-1]), float(np.abs(velocity).max()), float(np.abs(displacement).max())
+    plausibility.warn(f"{source.name}: {doubt}" for doubt in plausibility.of_integrals(*ends))
+    return motion
 
 
 def _joined(motion: GroundMotion, upright: GroundMotion, beside: Source, *, same_file: bool) -> GroundMotion:

@@ -2,7 +2,8 @@
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -22,6 +23,7 @@ class Source:
 
     name: str  # its name, for messages
     content: bytes  # what is in it
+    doubts: list[str] = field(default_factory=list, compare=False)  # what a reader found odd and did not refuse
 
     @classmethod
     def of_path(cls, path: Path) -> "Source":
@@ -53,6 +55,18 @@ class Source:
     def error(self, line: int | None, cause: str) -> RecordError:
         """Return the error for a line, to be raised."""
         return RecordError(f"{self.name}{'' if line is None else f', line {line + 1}'}: {cause}")
+
+    def doubt(self, line: int | None, cause: str) -> None:
+        """Keep a doubt about a line, which is said once the file is read."""
+        self.doubts.append(str(self.error(line, cause)))
+
+    @contextmanager
+    def doubting(self) -> Iterator[None]:
+        """Make a doubt of what is refused within: it is no count, unit, step or peak of the acceleration."""
+        try:
+            yield
+        except RecordError as error:
+            self.doubts.append(str(error))
 
     def begins(self, line: int, mark: str) -> bool:
         """Return whether there is such a line and it begins with a mark."""

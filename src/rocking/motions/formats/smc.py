@@ -40,8 +40,8 @@ class SmcUsgs(RecordFormat):
     title: ClassVar[str] = "SMC of the U.S. Geological Survey, 8 columns of 10 characters"
     suffixes: ClassVar[tuple[str, ...]] = (".smc",)
     notes: ClassVar[str] = (
-        "Accelerations are in cm/s2 by the format's definition. Velocities, displacements, spectra and unevenly spaced "
-        "samples are refused."
+        "Layout: USGS, smcfmt.txt. Accelerations are in cm/s2 by the format's definition. Samples at uneven times, "
+        "which state no rate, are resampled. Velocities, displacements and spectra are refused."
     )
     _per_line: ClassVar[int] = 8
     _width: ClassVar[int] = 10
@@ -66,17 +66,27 @@ class SmcUsgs(RecordFormat):
             )
         header = _header(source)
         rate, count = header.real[1], header.whole[16]
-        if rate is None:
-            raise source.error(TEXTS + WHOLES, "no sampling rate: samples at uneven times are not supported")
         if count is None or count < 2:
             raise source.error(TEXTS + 2, f"number of samples must be at least 2, found {count}")
-        if not rate > 0.0:
+        if rate is not None and not rate > 0.0:
             raise source.error(TEXTS + WHOLES, f"sampling rate must be above zero, found {rate:g}")
         unit = headers.acceleration_unit(source, "cm/s2", units)
-        step = headers.step_between_samples(source, 1.0 / rate, time_step)
-        values, after = numbers.fixed(source, header.first, count, self._per_line, self._width)
-        headers.check_end(source, after)
-        stated = self._check_peaks(source, header, values, rate)
+        numbers_read, after = numbers.fixed(source, header.first, count, self._per_line, self._width)
+        done: dict[str, str] = {}
+        if rate is not None:
+            headers.check_end(source, after)
+            values, step = numbers_read, 1.0 / rate
+            stated = self._check_peaks(source, header, values, np.arange(count) * step)
+        else:
+            # without a rate there are as many times as samples, and both are counted
+            if count % 2:
+                raise source.error(TEXTS + 2, f"pairs of time and sample make an even count, found {count}")
+            with source.doubting():
+                headers.check_end(source, after)
+            times, raw = numbers_read[::2], numbers_read[1::2].copy()
+            stated = self._check_peaks(source, header, raw, times)
+            values, step, done = headers.at_even_steps(source, times, raw, 10.0**-self._decimals * max(1.0, times[-1]))
+        step = headers.step_between_samples(source, step, time_step)
         upwards, azimuth = header.whole[12:14]
         printed = re.search(r"component= *(\S+)", source.lines[5])
         level = str(azimuth) if azimuth is not None else printed[1] if printed else "unnamed"
@@ -90,7 +100,7 @@ class SmcUsgs(RecordFormat):
         }
         metadata = metadata_of(**{key: " ".join(text.split()) for key, text in texts.items() if text.strip(" *")})
         raw = "\n".join(source.lines[: header.first])
-        return Record(self.name, (Component(name, values, unit, step, stated),), raw, metadata)
+        return Record(self.name, (Component(name, values, unit, step, stated, done),), raw, metadata)
 
     def write(self, record: Record) -> bytes:
         (given,) = headers.in_unit(record, self.name, "cm/s2", 1)
@@ -118,7 +128,7 @@ class SmcUsgs(RecordFormat):
         lines += ["".join(words[k : k + self._per_line]) for k in range(0, len(words), self._per_line)]
         return ("\n".join(lines) + "\n").encode("ascii", "replace")
 
-    def _check_peaks(self, source: Source, header: _Header, values: FloatArray, rate: float) -> float | None:
+    def _check_peaks(self, source: Source, header: _Header, values: FloatArray, times: FloatArray) -> float | None:
         extremes = [header.real[29], header.real[31]]
         for what, when, stated, found in (
             ("maximum", header.real[28], extremes[0], float(values.max())),
@@ -129,9 +139,11 @@ class SmcUsgs(RecordFormat):
             # half a unit of the samples' last digit, and as much for the header's seven
             rounding = abs(stated) * (0.51 * 10.0**-self._decimals + 6e-7)
             headers.check_stated(source, stated, found, rounding, what)
-            at = round(when * rate) if when is not None and abs(when) * rate < 1e9 else 0
-            if when is not None and not (0 <= at < values.size and abs(values[at] - stated) <= rounding):
-                raise source.error(None, f"the header states a {what} of {stated:g} at {when:g} s, the data do not")
+            if when is None:
+                continue
+            here = np.abs(times - when) <= 0.51 * (times[1] - times[0]) + 1e-4 * abs(when)
+            if not (np.abs(values[here] - stated) <= rounding).any():
+                source.doubt(None, f"the header states a {what} of {stated:g} at {when:g} s, the data do not")
         printed = re.search(r"pk[a-z ]*=\s*([+-]?\d+\.?\d*(?:E[+-]\d+)?)", source.lines[6])
         if printed:
             headers.check_peak(source, float(printed[1]), values, headers.half_digit(printed[1]), "pk")

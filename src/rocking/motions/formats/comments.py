@@ -1,0 +1,62 @@
+"""What comments above columns say of them: names, unit, step and number, or that they are no accelerations."""
+
+import re
+from dataclasses import dataclass
+
+from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.column_text import ColumnName, kind_of, names_on, readable
+from rocking.motions.formats.record import Source
+
+_NUMBER = r"(\d*\.?\d+(?:[eE][-+]?\d+)?)"
+_SAYS = r"\b[^\d=:]{0,20}[=:]\s*"
+_BOTH = re.compile(rf"\bNPTS\s*,\s*DT\s*[=:]?\s*(\d+)[\s,]+{_NUMBER}", re.IGNORECASE)
+_COUNT = re.compile(rf"\b(?:npts|nsamples|number of (?:points|samples|data)){_SAYS}(\d+)\b", re.IGNORECASE)
+_STEP = re.compile(
+    rf"\b(?:dt|delta_?t|time[_ -]?(?:step|increment)|sampling[_ -](?:interval|period|step)){_SAYS}{_NUMBER}\s*(ms\b)?", re.I
+)
+_RATE = re.compile(rf"\b(?:sampling|sample)[_ -](?:rate|freq\w*){_SAYS}{_NUMBER}", re.IGNORECASE)
+_UNIT = re.compile(r"\bunits?\b\s*(?:[:=]|of|are|is|in)\s*[\[(]?\s*([A-Za-z][\w/^*.-]*)", re.IGNORECASE)
+_UNIT_OF = re.compile(r"\b(?:accel|veloc|displ)\w*\s+(?:in\s+|\[|\()\s*([A-Za-z][\w/^*.-]*)", re.IGNORECASE)
+_OTHER = re.compile(r"^\W*(?:ground )?(velocity|displacement)\b.*(?:series|histor|record|trace|component|$)", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Said:
+    """What the comments of a file say; None and nothing where they are silent."""
+
+    names: tuple[str, ...] | None = None
+    unit: str | None = None  # a key of `rocking.conventions.ACCELERATION_UNITS`
+    step: float | None = None  # [s]
+    count: int | None = None
+
+    @classmethod
+    def of(cls, source: Source, comments: list[tuple[int, str]], columns: int) -> "Said":
+        """Read comments by their lines; what speaks of velocities or displacements alone is refused."""
+        names, unit, step, count = None, None, None, None
+        for line, text in comments:
+            bare = readable(text.strip().lstrip("#% \t")[:400])
+            if both := _BOTH.search(bare):
+                count, step = int(both[1][:9]), numbers.number(source, line, both[2])
+            elif found := _COUNT.search(bare):
+                count = int(found[1][:9])
+            if found := _STEP.search(bare):
+                step = numbers.number(source, line, found[1]) * (1e-3 if found[2] else 1.0)
+            if (found := _RATE.search(bare)) and (rate := numbers.number(source, line, found[1])) > 0.0:
+                step = 1.0 / rate
+            for word in (*_UNIT.findall(bare), *_UNIT_OF.findall(bare)):
+                said, kind = kind_of(word.rstrip(".-"))
+                if kind in {"velocity", "displacement"}:
+                    raise source.error(line, f"accelerations are needed, the file states {word}, a {kind}")
+                unit = headers.acceleration_unit(source, unit, said) if said else unit
+            called = names_on(bare)
+            if called and len(called) == columns and any(kind_of(ColumnName.of(0, one).behind)[1] for one in called):
+                names = called
+        other = next((one for line, text in comments if (one := _OTHER.match(text[:200]))), None)
+        if other and not unit and not names and not any(re.search("accel", text, re.IGNORECASE) for _, text in comments):
+            headers.refuse_other(source, other[1])
+        return cls(names, unit, step, count)
+
+
+def is_understood(text: str) -> bool:
+    """Return whether a comment that speaks of a sampling says it in a way that is read here."""
+    return any(form.search(text[:400]) for form in (_BOTH, _COUNT, _STEP, _RATE))

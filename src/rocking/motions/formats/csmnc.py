@@ -1,0 +1,69 @@
+"""CSMNC, China's strong-motion network: 16 lines of header, then one component, 8 numbers a line.
+
+Layout: the header itself, on two files of 2012 (ETNA recorders).
+"""
+
+import re
+from typing import ClassVar
+
+import numpy as np
+
+from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
+from rocking.motions.formats.said import after, said, side_by_side, text_said
+
+_HEADER = 16
+_UNITS = {"CM/SEC/SEC": "cm/s2", "CM/S/S": "cm/s2", "CM/S2": "cm/s2", "GAL": "gal"}
+
+
+class Csmnc(RecordFormat):
+    """Accelerations of the China Strong Motion Networks Center."""
+
+    name: ClassVar[str] = "csmnc"
+    title: ClassVar[str] = "China Strong Motion Networks Center (CSMNC)"
+    suffixes: ClassVar[tuple[str, ...]] = (".dat",)
+    notes: ClassVar[str] = "Verified on two files of 2012. Uncorrected files: neither baseline nor instrument."
+    marks: ClassVar[tuple[str, ...]] = (
+        r"COMP\. ", r"(UN)?CORRECTED \w+ +UNIT:", r"NO\. OF POINTS:", "PEAK VALUE:", "PRE-EVENT TIME:",
+    )  # fmt: skip
+    top: ClassVar[int] = _HEADER + 2
+
+    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
+        last = after(source, r"NO\. OF POINTS:", self.top)
+        first = next((k for k in range(last, len(source.lines)) if re.fullmatch(r"[-\d. E+]*\d\s*", source.lines[k])), last)
+        kind, unit = said(source, first, "(?:UN)?CORRECTED", r"(ACCELERATION|VELOCITY|DISPLACEMENT)\s+UNIT:\s*(\S+)").groups()
+        if kind.upper() != "ACCELERATION":
+            raise source.error(None, f"accelerations are needed, the file holds a {kind.lower()} in {unit}")
+        if unit.upper() not in _UNITS:
+            raise source.error(None, f"unit CM/SEC/SEC expected, found {unit[:20]!r}")
+        unit = headers.acceleration_unit(source, _UNITS[unit.upper()], units)
+        points = said(source, first, r"NO\. OF POINTS:", r"(\d{1,9})\s+EQUALLY SPACED INTERVALS OF:\s*(\d*\.?\d+)\s*SEC")
+        step = headers.step_between_samples(source, float(points[2]), time_step)
+        peak = said(source, first, "PEAK VALUE:", r"([-+]?\d*\.?\d+)\s+AT\s+(\d*\.?\d+)\s*SEC\s+DURATION:\s*(\d*\.?\d+)\s*SEC")
+        name = text_said(source, first, r"COMP\.") or "acceleration"
+        texts = {"date": source.lines[1], "event": source.lines[2], "station": text_said(source, first, "STATION:")}
+        about = Record(self.name, (Component(name, np.empty(0), unit, step),), "", metadata_of(**texts))
+        record = side_by_side(source, about, first, int(points[1]), (peak[1],))
+        (part,) = record.components
+        # the time is cut at its last digit, not rounded
+        slack = 2.0 * headers.half_digit(peak[1])
+        headers.check_peak_time(source, float(peak[2]), part.acceleration, step, slack)
+        headers.check_duration(source, float(peak[3]), int(points[1]), step, headers.half_digit(peak[3]))
+        return record
+
+    def write(self, record: Record) -> bytes:
+        """Return a file of one component, in cm/s2."""
+        (values,) = headers.in_unit(record, self.name, "cm/s2", 1)
+        part, top = record.components[0], int(np.abs(values).argmax())
+        event, station, date = (record.text(key, 60, "unknown") for key in ("event", "station", "date"))
+        lines = [
+            *["unknown", date, event, "EPICENTER unknown", "MAGNITUDE unknown", f"STATION: {station}", "SITE CONDITION:"],
+            *["INSTRUMENT TYPE:", "OBSERVING POINT:", f"COMP. {one_line(part.name, 20)}"],
+            "UNCORRECTED ACCELERATION          UNIT: CM/SEC/SEC",
+            f"NO. OF POINTS:  {values.size}  EQUALLY SPACED INTERVALS OF:  {part.time_step:.9f}  SEC",
+            f"PEAK VALUE: {values[top]:.3f}   AT   {top * part.time_step:.2f} SEC    DURATION:  "
+            f"{values.size * part.time_step:.2f} SEC",
+            *["PRE-EVENT TIME:  0  SEC", "CSMNC", ""],
+            *numbers.in_columns(values, 8, "{: .6E} "),
+        ]
+        return ("\n".join(lines) + "\n").encode("latin-1")

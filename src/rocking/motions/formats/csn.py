@@ -1,0 +1,60 @@
+"""CSN, Chile's national seismological centre: comments in Spanish, then one sample of one component a line.
+
+Layout: as the programs behind the SIBER-RISK strong-motion database of Chile read the centre's files, in m/s2; no file of
+the centre was at hand.
+"""
+
+import re
+from typing import ClassVar
+
+import numpy as np
+
+from rocking.motions.formats import headers
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
+from rocking.motions.formats.said import after, said, side_by_side, text_said
+
+
+class Csn(RecordFormat):
+    """Text files of the Centro Sismologico Nacional."""
+
+    name: ClassVar[str] = "csn"
+    title: ClassVar[str] = "Centro Sismologico Nacional (CSN), Chile"
+    suffixes: ClassVar[tuple[str, ...]] = (".txt",)
+    notes: ClassVar[str] = (
+        "In m/s2 by its description; no file of the centre was at hand. It states no peak, and where it states no "
+        "number of samples a damaged end can pass."
+    )
+    marks: ClassVar[tuple[str, ...]] = (r"# *Tiempo", r"# *Tasa de muestreo", r"# *Esta")
+    top: ClassVar[int] = 20
+
+    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
+        first = after(source, "#", self.top)
+        unit = headers.acceleration_unit(source, "m/s2", units)
+        rate = float(said(source, first, r"# *Tasa de muestreo[^:\d]*:?", r"(\d+\.?\d*)\s*(?:muestras|Hz|sps)\S*.*")[1])
+        step = headers.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, time_step)
+        found = sum(1 for text in source.lines[first:] if text.strip())
+        # not in the description; where a line speaks of samples it must be understood
+        if any(re.search(r"\bmuestras\b", text) and "Tasa" not in text for text in source.lines[:first]):
+            stated = said(source, first, r"# *N\S*mero de muestras\s*:?", r"\d{1,9}")[0]
+            headers.check_count(source, int(stated), found)
+        place = text_said(source, first, r"# *Esta\S*").split()
+        name = place[-1] if len(place) > 1 else "acceleration"
+        metadata = metadata_of(
+            station=place[0].strip(",") if place else "", starttime=text_said(source, first, r"# *Tiempo[^:]*:").rstrip("Z")
+        )
+        about = Record(self.name, (Component(name, np.empty(0), unit, step),), "", metadata)
+        return side_by_side(source, about, first, found)
+
+    def write(self, record: Record) -> bytes:
+        """Return a file of one component, in m/s2."""
+        (values,) = headers.in_unit(record, self.name, "m/s2", 1)
+        part = record.components[0]
+        lines = [
+            f"# Tiempo de inicio: {record.text('starttime', 40, '1970-01-01T00:00:00')}Z",
+            f"# Tasa de muestreo: {1.0 / part.time_step:.12g} muestras/segundo",
+            f"# Numero de muestras: {values.size}",
+            f"# Estacion: {record.text('station', 10, 'unknown').replace(' ', '_')} Componente: "
+            f"{one_line(part.name, 20).replace(' ', '_')}",
+            *(f"{value:.9E}" for value in values.tolist()),
+        ]
+        return "\n".join([*lines, ""]).encode("latin-1")

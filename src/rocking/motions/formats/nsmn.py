@@ -1,0 +1,61 @@
+"""AFAD, Turkey's national strong-motion network (NSMN): 18 lines of header, then the three components side by side.
+
+Layout: the header itself, on a file of 2017; the same in the reader of the USGS' `gmprocess` (io/nsmn), not copied.
+"""
+
+import re
+from typing import ClassVar
+
+import numpy as np
+
+from rocking.errors import RecordError
+from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
+from rocking.motions.formats.said import after, columns_of, said, side_by_side, text_said
+
+_PEAK = r"\(([^()]+)\)\s*([-+]?\d*\.?\d+)"
+_KEYS = {"event": "EARTHQUAKE DATE", "station": "PLACE", "station number": "STATION ID", "Record Time": "RECORD TIME"}
+
+
+class Nsmn(RecordFormat):
+    """Text files of AFAD, three components."""
+
+    name: ClassVar[str] = "nsmn"
+    title: ClassVar[str] = "AFAD, national strong-motion network of Turkey (NSMN, TR-NSMN)"
+    suffixes: ClassVar[tuple[str, ...]] = (".txt",)
+    notes: ClassVar[str] = "Verified on one file of 2017, in gal, of which the mean was removed."
+    marks: ClassVar[tuple[str, ...]] = (
+        "STRONG GROUND MOTION RECORDS OF", r"NUMBER OF DATA\b", r"SAMPLING INTERVAL\b", r"(RAW |CORRECTED )?PGA VALUES",
+        r"STATION ID\b",
+    )  # fmt: skip
+    top: ClassVar[int] = 25
+
+    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
+        first = after(source, r"\s*N\w*-S\w*\s+E\w*-W\w*\s+U\w*-D\w*\s*$", self.top)
+        count = int(said(source, first, r"NUMBER OF DATA\s*:", r"\d{1,9}")[0])
+        stated = float(said(source, first, r"SAMPLING INTERVAL \(sec\)\s*:", r"\d*\.?\d+")[0])
+        step = headers.step_between_samples(source, stated, time_step)
+        found = said(source, first, r"(?:RAW |CORRECTED )?PGA VALUES", rf"\(gal\)\s*:\s*((?:{_PEAK}\s*){{3}})")
+        unit = headers.acceleration_unit(source, "gal", units)
+        peaks = re.findall(_PEAK, found[1])
+        names = source.lines[first - 1].split()
+        if [name.strip() for name, _ in peaks] != names:
+            raise source.error(first - 1, f"the peaks are of {', '.join(name for name, _ in peaks)}, the columns of others")
+        metadata = {key: text_said(source, first, rf"{word}\s*:") for key, word in _KEYS.items()}
+        metadata = metadata_of(**{key.replace(" ", "_"): text for key, text in metadata.items()})
+        about = Record(self.name, tuple(Component(name, np.empty(0), unit, step) for name in names), "", metadata)
+        return side_by_side(source, about, first, count, [peak for _, peak in peaks])
+
+    def write(self, record: Record) -> bytes:
+        """Return a file of three components, in gal with 6 decimals."""
+        table, step = columns_of(record, self.name, "gal", 3)
+        names = [part.name for part in record.components]
+        if len(names) != 3 or not re.fullmatch(r"N\S*-S\S* E\S*-W\S* U\S*-D\S*", " ".join(names)):
+            raise RecordError(f"NSMN holds components such as N-S, E-W, U-D, got {', '.join(names)[:60]}")
+        table = table.round(6)
+        largest = " ".join(f"({name}) {np.abs(row).max():.6f}" for name, row in zip(names, table.T, strict=True))
+        lines = ["STRONG GROUND MOTION RECORDS OF TURKIYE"]
+        lines += [f"{word:<24}: {record.text(key, 60, 'unknown')}" for key, word in _KEYS.items()]
+        lines += [f"NUMBER OF DATA          : {len(table)}", f"SAMPLING INTERVAL (sec) : {step:.9f}"]
+        lines += [f"RAW PGA VALUES (gal)    : {largest}", "".join(f"{one_line(name, 12):>13}" for name in names)]
+        return "\n".join([*lines, *numbers.in_width(table.ravel(), 3, 13, 6), ""]).encode("latin-1")

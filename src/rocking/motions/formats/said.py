@@ -1,0 +1,85 @@
+"""Headers that say a key and a value a line, and the samples of all components below them, side by side."""
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from rocking.errors import RecordError
+from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.record import Component, Record, Source
+
+_LONGEST = 200  # characters of a header line that patterns look at
+
+
+def said(source: Source, last: int, key: str, value: str) -> re.Match[str]:
+    """Return what the one line above `last` that begins with a key says, of which a pattern must make sense."""
+    begins = re.compile(rf"\s*{key}\s*(.*?)\s*", re.IGNORECASE)
+    found = [(line, hit) for line, text in enumerate(source.lines[:last]) if (hit := begins.fullmatch(text[:_LONGEST]))]
+    plain = key.replace("\\", "").partition("[")[0].strip(": ")
+    if len(found) != 1:
+        raise source.error(None, f"one header line that begins with {plain!r} expected, found {len(found)}")
+    line, hit = found[0]
+    understood = re.fullmatch(value, hit[1], re.IGNORECASE)
+    if understood is None:
+        raise source.error(line, f"{plain} cannot be understood: {hit[1][:40]!r}")
+    return understood
+
+
+def text_said(source: Source, last: int, key: str) -> str:
+    """Return what a line says in words; nothing where there is none or several."""
+    try:
+        return said(source, last, key, ".*")[0]
+    except RecordError:
+        return ""
+
+
+def after(source: Source, mark: str, most: int) -> int:
+    """Return the line behind the last one near the top that begins with a pattern."""
+    form = re.compile(mark, re.IGNORECASE)
+    found = [line for line, text in enumerate(source.lines[:most]) if form.match(text[:_LONGEST])]
+    if not found or not source.is_text:
+        raise source.error(None, f"no line that begins with {mark.replace(chr(92), '')!r} near the top")
+    return found[-1] + 1
+
+
+def side_by_side(
+    source: Source,
+    record: Record,
+    first: int,
+    count: int,
+    peaks: Sequence[str] = (),
+    form: tuple[int, int] | None = None,
+) -> Record:
+    """Return a record with the samples from a line on: by Fortran columns or between blanks, checked by printed peaks.
+
+    Its components come without samples, in their order.
+    """
+    across = len(record.components)
+    if form is None:
+        values = numbers.rows(source, first, len(source.lines))
+    else:
+        values, behind = numbers.fixed(source, first, count * across, *form)
+        headers.check_end(source, behind)
+    if values.size != count * across:
+        raise source.error(None, f"the header states {count} samples, the file holds {values.size / across:g}")
+    if count < 2:
+        raise source.error(None, f"at least 2 samples are needed, found {count}")
+    word = source.lines[first].split()[0] if form is None else source.lines[first][: form[1]]
+    parts = []
+    for place, part in enumerate(record.components):
+        column, stated = values[place::across].copy(), None
+        if peaks:
+            rounding = headers.half_digit(peaks[place]) + headers.half_digit(word)
+            headers.check_peak(source, float(peaks[place]), column, rounding, f"peak of {part.name}")
+            stated = abs(float(peaks[place]))
+        parts.append(Component(part.name, column, part.unit, part.time_step, stated, part.metadata))
+    return Record(record.format, tuple(parts), "\n".join(source.lines[:first]), record.metadata)
+
+
+def columns_of(record: Record, name: str, unit: str, most: int) -> tuple[np.ndarray, float]:
+    """Return the samples of a record as columns, and their step [s], for writers."""
+    samples = headers.in_unit(record, name, unit, most)
+    if len({row.size for row in samples}) > 1 or len({part.time_step for part in record.components}) > 1:
+        raise RecordError(f"{name} holds components of the same length and step; write each to a file of its own")
+    return np.column_stack(samples), record.components[0].time_step

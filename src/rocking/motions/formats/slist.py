@@ -1,0 +1,88 @@
+"""ObsPy's and IRIS' text formats SLIST and TSPAIR: a line TIMESERIES for each channel, then samples or times and samples.
+
+Layout: ObsPy's documentation of `obspy.io.ascii`; IRIS DMC, "ASCII time series formats".
+"""
+
+import re
+from typing import ClassVar
+
+import numpy as np
+
+from rocking.errors import RecordError
+from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
+
+_HEAD = re.compile(
+    r"TIMESERIES (\w*)_(\w*)_(\w*)_(\w*)_?\w?, (\d{1,9}) samples, (\d+\.?\d*) sps, ([\d\-T:.]+)Z?, (SLIST|TSPAIR), "
+    r"(INTEGER|FLOAT|ASCII), *(.*?) *(?:,.*)?"
+)
+_UNITS = {"m/s**2": "m/s2", "m/s^2": "m/s2", "m/s2": "m/s2", "m/s/s": "m/s2", "cm/s**2": "cm/s2", "cm/s2": "cm/s2", "gal": "gal"}
+
+
+class Slist(RecordFormat):
+    """SLIST and TSPAIR."""
+
+    name: ClassVar[str] = "slist"
+    title: ClassVar[str] = "SLIST and TSPAIR, text of ObsPy and IRIS"
+    suffixes: ClassVar[tuple[str, ...]] = (".ascii", ".slist", ".tspair")
+    notes: ClassVar[str] = "Counts are refused; where the unit is no acceleration by name it must be told."
+    def recognises(self, source: Source) -> bool:
+        """Return whether the first line begins as that of a channel."""
+        return source.is_text and source.lines[0].startswith("TIMESERIES ")
+
+    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
+        """Return the record, a component for each channel; its gaps would be channels of one name."""
+        starts = [line for line, text in enumerate(source.lines) if text.startswith("TIMESERIES")]
+        if not starts or starts[0] != 0:
+            raise source.error(0, "a line that begins with TIMESERIES expected")
+        parts = []
+        for first, last in zip(starts, [*starts[1:], len(source.lines)], strict=True):
+            parts.append(_channel(source, first, last, units, time_step))
+        names = [part.name for part in parts]
+        if len(set(names)) != len(names):
+            raise source.error(None, f"a channel of {', '.join(sorted(set(names)))} has a gap or an overlap; cut it out first")
+        metadata = {key: text for key, text in parts[0].metadata.items() if text}
+        return Record(self.name, tuple(parts), "\n".join(source.lines[line] for line in starts), metadata)
+
+    def write(self, record: Record) -> bytes:
+        """Return an SLIST file in m/s2."""
+        lines: list[str] = []
+        station = re.sub(r"\W|_", "", record.text("station", 5)) or "XXXXX"
+        codes = [re.sub(r"\W|_", "", one_line(part.name, 20)) or "X" for part in record.components]
+        if len(set(codes)) != len(codes):
+            raise RecordError(f"components need different channel codes, got {', '.join(codes)[:60]}")
+        for part, code, values in zip(record.components, codes, headers.in_unit(record, self.name, "m/s2", 99), strict=True):
+            head = f"{values.size} samples, {1.0 / part.time_step:.12g} sps, 1970-01-01T00:00:00.000000, SLIST, FLOAT, m/s**2"
+            lines += [f"TIMESERIES XX_{station}__{code}_D, {head}", *numbers.in_columns(values, 6, "{:+.10e}  ")]
+        return "\n".join([*lines, ""]).encode("latin-1")
+
+
+def _channel(source: Source, first: int, last: int, units: str | None, time_step: float | None) -> Component:
+    found = _HEAD.fullmatch(source.lines[first][:300])
+    if found is None:
+        raise source.error(first, "TIMESERIES code, ... samples, ... sps, time, SLIST or TSPAIR, kind, unit expected")
+    network, station, _, code, count, rate, start, layout, kind, word = found.groups()
+    if "count" in word.lower() or kind == "ASCII":
+        raise source.error(first, f"the file holds {word[:20] or 'text'}, no accelerations: remove the response first")
+    unit = headers.acceleration_unit(source, _UNITS.get(word.lower()), units)
+    step = headers.step_between_samples(source, 1.0 / float(rate) if float(rate) > 0.0 else 0.0, time_step)
+    if layout == "SLIST":
+        values = numbers.rows(source, first + 1, last)
+    else:
+        rows = [(line, source.lines[line].split()) for line in range(first + 1, last) if source.lines[line].strip()]
+        values = np.array([_value(source, line, words) for line, words in rows])
+        times = [np.datetime64(words[0].rstrip("Z"), "ns") for _, words in rows]
+        late = np.array([float((time - times[0]) / np.timedelta64(1, "ns")) * 1e-9 for time in times])
+        if np.abs(late - step * np.arange(late.size)).max(initial=0.0) > 0.01 * step + 1e-6:
+            raise source.error(first, f"the times are not {step:g} s apart throughout; a line missing?")
+    headers.check_count(source, int(count), values.size)
+    if values.size < 2:
+        raise source.error(first, f"at least 2 samples are needed, found {values.size}")
+    headers.doubt_channel(source, code)
+    return Component(code or "unnamed", values, unit, step, None, {"network": network, "station": station, "starttime": start})
+
+
+def _value(source: Source, line: int, words: list[str]) -> float:
+    if len(words) != 2 or not re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z?", words[0]):
+        raise source.error(line, f"a time and a sample expected, found {' '.join(words)[:60]!r}")
+    return numbers.number(source, line, words[1])
