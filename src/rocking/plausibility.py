@@ -83,11 +83,11 @@ def of_acceleration(peak: float) -> tuple[str, ...]:
 
 
 def of_integrals(end: float, velocity: float, displacement: float) -> tuple[str, ...]:
-    """Return the doubt about a record by its velocity at the end, its largest one [m/s], its largest displacement [m]."""
+    """Return the doubt about a record by its velocity at the end, its largest [m/s], its largest displacement [m]."""
     if velocity > LARGEST_PGV or displacement > LARGEST_PGD:
         return (
-            f"integrated, it reaches {velocity:.3g} m/s and {displacement:.3g} m, more than the {LARGEST_PGV:g} m/s and "
-            f"{LARGEST_PGD:g} m of any ground; is it no acceleration, in another unit, or without a corrected baseline?",
+            f"integrated, it reaches {velocity:.3g} m/s and {displacement:.3g} m, more than {LARGEST_PGV:g} m/s or "
+            f"{LARGEST_PGD:g} m; is it no acceleration, in another unit, or without a corrected baseline?",
         )
     if abs(end) > max(END_VELOCITY[0], END_VELOCITY[1] * velocity):
         return (

@@ -105,9 +105,7 @@ def _geonet(text: str) -> list[Stated]:
 
 
 def _usc(text: str) -> list[Stated]:
-    return [Stated(int(word), None) for word in _all(r"^NO\. OF POINTS *= *(\d+)", text)] or _csmip_v1(
-        re.sub(r"FILE +\d+ OF UNCORRECTED", "UNCORRECTED", text)
-    )
+    return [Stated(one.samples, None) for one in _csmip_v1(re.sub(r"FILE +\d+ OF UNCORR", "UNCORR", text))]
 
 
 def _geonet_v1(text: str) -> list[Stated]:

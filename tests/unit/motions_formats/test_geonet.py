@@ -103,7 +103,7 @@ def test_a_file_that_ends_early_or_late_is_refused() -> None:
     with pytest.raises(RecordError, match="three missing"):
         read(whole[: 2 * len(whole) // 3 - 1])
     short = "\n".join(whole.split("\n")[:-1])
-    with pytest.raises(RecordError, match="more|displacement|expected"):
+    with pytest.raises(RecordError, match=r"more|displacement|expected"):
         read(short.rpartition("Corrected")[0] + "\n1.0")
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import pytest
 
 from rocking.conventions import ACCELERATION_UNITS
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, RecordError
 from rocking.motions.formats import Source, formats, read_motion, read_record
 
 
@@ -46,6 +46,86 @@ RECORDS = [
     Known("four_column/*.txt", "columns", "g", 0.02, (8171,) * 3, (0.0995, 0.1712, 0.0373), "g", 5.1e-5, "g"),
     Known("sac/*.sac", "sac", "m/s2", 0.02, (15001,), (0.00348981,), "g", 5e-9, "m/s2"),
 ]  # fmt: skip
+
+
+class Wanted(NamedTuple):
+    """What a file that was once refused must give, by what its own header states; half a last digit of the peaks."""
+
+    pattern: str
+    format: str
+    unit: str
+    step: float
+    samples: tuple[int, ...]
+    peaks: tuple[float, ...] = ()
+    digit: float = 0.0
+    told: tuple[str | None, float | None] = (None, None)
+    doubt: str = ""
+
+
+WANTED = [
+    Wanted("cosmos/*.V2c", "cosmos", "cm/s2", 0.005, (42000,), (6.851512,), 5e-7),
+    Wanted("csmip_v1/CICCC.RAW", "csmip-v1", "g", 0.01, (35430, 35402, 35406), (0.567, 0.471, 0.361), 5e-4),
+    Wanted("csmip_v1/CE89146.V1", "csmip-v1", "g", 0.005, (13200,) * 3, (0.079, 0.021, 0.045), 5e-4),
+    # 59.998 s at 0.002 s; 0.055, 0.015 and 0.043 g
+    Wanted("csmip_v1/NEWPORT.RAW", "csmip-v1", "g/10", 0.002, (30000, 29999, 29999), (0.55, 0.15, 0.43), 5e-3,
+           doubt="12080 samples at uneven"),
+    Wanted("csmip_v2/CHAN14.V2", "csmip-v2", "cm/s2", 0.01, (5696,), (225.09,), 5e-3),
+    Wanted("renadic/arica*", "csmip-v1", "g/10", 0.005, (26600,) * 3, (0.52, 0.29, 0.57), 5e-3,
+           doubt="the peak at 14.1 s"),
+    Wanted("renadic/iqui*", "csmip-v1", "g/10", 0.005, (27600,) * 3, (0.59, 0.50, 0.43), 5e-3,
+           doubt="the peak at 10.87 s"),
+    Wanted("renadic/papudo*", "csmip-v1", "g/10", 0.005, (17754,) * 3, (2.95, 1.55, 4.21), 5e-3),
+    Wanted("peer/*.AT2", "peer", "g", 0.01, (4316,)),
+    Wanted("nsmn_turkey/*", "nsmn", "gal", 0.01, (28683,) * 3, (13.200332, 12.163827, 9.840572), 5e-7),
+    Wanted("unam/*", "unam", "gal", 0.005, (35600,) * 3, (25.6114, 58.7394, 42.3377), 5e-5),
+    Wanted("csmnc_china/ua0001.dat", "csmnc", "cm/s2", 0.005, (12800,), (16.986,), 5e-4),
+    Wanted("csmnc_china/ua0002.dat", "csmnc", "cm/s2", 0.005, (12800,), (17.669,), 5e-4),
+    Wanted("geonet_v1a/*", "geonet-v1a", "mm/s2", 0.005, (65536,) * 3, (2394.8, 2584.4, 1589.9), 0.05),
+    Wanted("itaca_acc/*", "itaca", "m/s2", 0.005, (23000,), (1.5980753e-2,), 5e-10),
+    Wanted("bbp/2001-SCE.acc.bbp", "columns", "cm/s2", 0.025, (4096,) * 3),
+    Wanted("headerless/BM68elc.acc", "columns", "g", 0.01, (4000,), told=("g", 0.01)),
+    Wanted("headerless/H-E12140.dat", "columns", "cm/s2", 0.005, (7802,), told=("cm/s2", 0.005)),
+    Wanted("eqsig/*", "eqsig", "m/s2", 0.01, (910,), told=("m/s2", None)),
+    # 34.716 s at 0.002 s
+    Wanted("usc/*", "usc", "g/10", 0.002, (17359,), doubt="8095 samples at uneven"),
+    Wanted("smc_uneven/*", "smc-usgs", "cm/s2", 0.001, (48550,), (228.3932,), 5e-3, doubt="33449 samples at uneven"),
+]  # fmt: skip
+REFUSED = [
+    ("cosmos/*.V0c", r"line 49: the file holds counts of the recorder, no accelerations"),
+    ("peer/*.VT2", r"line 3: .* the header states 'CM/S': a velocity; its acceleration is in the .AT2 file"),
+    ("bbp/2001-SCE.vel.bbp", r"accelerations are needed, and its name says 'vel', a velocity"),
+    ("mseed/segv.mseed", "it has room for 57; damaged"),
+    ("columns/*.csv", "columns expected, found 0"),
+]
+
+
+@pytest.mark.filterwarnings("always")
+@pytest.mark.parametrize("wanted", WANTED, ids=lambda wanted: wanted.pattern)
+def test_once_refused_reads_as_its_header_states(shared_records: Path, wanted: Wanted) -> None:
+    """Count, step, unit and peak are the header's, by one reader; what it doubts is said and kept."""
+    path = _file(shared_records / "refused", wanted.pattern)
+    assert {name for name, one in formats().items() if one.recognises(Source.of_path(path))} - {"columns"} <= {
+        wanted.format
+    }
+    record = read_record(path, None, *wanted.told)
+    assert record.format == wanted.format
+    found = {(part.unit, part.time_step) for part in record.components}
+    assert found == {(wanted.unit, wanted.step)}
+    assert tuple(part.acceleration.size for part in record.components) == wanted.samples
+    for part, peak in zip(record.components, wanted.peaks, strict=bool(wanted.peaks)):
+        # and half a digit of the samples
+        assert part.peak == pytest.approx(peak, abs=1.15 * wanted.digit, rel=0.0)
+    assert wanted.doubt in record.metadata.get("doubts", "")
+    assert bool(wanted.doubt) == ("doubts" in record.metadata)
+
+
+@pytest.mark.parametrize(("pattern", "words"), REFUSED)
+def test_once_misread_is_refused_by_what_it_is(shared_records: Path, pattern: str, words: str) -> None:
+    """Counts, velocities, damage and what is no record are named, whatever unit the user says."""
+    path = _file(shared_records / "refused", pattern)
+    for units in (None, "cm/s2"):
+        with pytest.raises(RecordError, match=words):
+            read_record(path, None, units)
 
 
 def _file(folder: Path, pattern: str) -> Path:

@@ -23,6 +23,7 @@ _DAMAGED_NUMBER = re.compile(r"[^\W\d_][+-]?[\d.,]+([eEdD][+-]?\d*)?")
 # what states its own sampling is a header of another format, damaged: not to be passed over as a comment or as names
 _OTHER_FORMAT = re.compile(r"sample\s*rate|sampling|record\s*length|npts|ndata", re.IGNORECASE)
 _BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))")
+_TAIL = re.compile(r"(.*[^\W_])_((?:mm|cm|m)_s2?)")
 _SECONDS = {"s", "sec", "secs", "second", "seconds", "sek"}
 _TIMES = {"time", "times", "zeit", "temps", "tiempo", "tempo", "tid", "tijd"}
 _OTHER_WORDS = ("vel", "disp", "geschw", "verschieb", "rotation", "period", "freq")
@@ -107,7 +108,9 @@ class ColumnName:
     @classmethod
     def of(cls, place: int, text: str) -> "ColumnName":
         """Read what stands above a column."""
-        found = _BRACKETS.fullmatch(text)
+        # as our own tables name them: acceleration_m_s2
+        tail = _TAIL.fullmatch(text)
+        found = _BRACKETS.fullmatch(f"{tail[1]} [{tail[2].replace('_', '/')}]" if tail else text)
         if found is None:
             return cls(place, text, text)
         behind = _plain(found[2] if found[2] is not None else found[3])
@@ -161,7 +164,8 @@ class NamedColumns:
             kinds = {kind_of(one.behind)[1] for one in named} & {"velocity", "displacement"}
             hold = f", they hold {' and '.join(sorted(kinds))}" if kinds else ""
             raise source.error(
-                None, f"none of the columns {_listed(named)} is an acceleration in {_UNITS}{hold}; name one such as acc [g]"
+                None,
+                f"none of the columns {_listed(named)} is an acceleration in {_UNITS}{hold}; name one such as acc [g]",
             )
         spectral = [one for one in named if one not in found and one.is_period]
         if not times and spectral:

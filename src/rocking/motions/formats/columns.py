@@ -9,8 +9,8 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats.column_text import MARK, MOST_NAMED, ColumnName, ColumnText, NamedColumns, states_sampling
 from rocking.motions.formats import headers
+from rocking.motions.formats.column_text import MARK, MOST_NAMED, ColumnName, ColumnText, NamedColumns, states_sampling
 from rocking.motions.formats.comments import Said, is_understood
 from rocking.motions.formats.headers import in_unit, step_between_samples, step_of_times
 from rocking.motions.formats.numbers import number

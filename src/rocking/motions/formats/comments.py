@@ -12,12 +12,15 @@ _SAYS = r"\b[^\d=:]{0,20}[=:]\s*"
 _BOTH = re.compile(rf"\bNPTS\s*,\s*DT\s*[=:]?\s*(\d+)[\s,]+{_NUMBER}", re.IGNORECASE)
 _COUNT = re.compile(rf"\b(?:npts|nsamples|number of (?:points|samples|data)){_SAYS}(\d+)\b", re.IGNORECASE)
 _STEP = re.compile(
-    rf"\b(?:dt|delta_?t|time[_ -]?(?:step|increment)|sampling[_ -](?:interval|period|step)){_SAYS}{_NUMBER}\s*(ms\b)?", re.I
+    rf"\b(?:dt|delta_?t|time[_ -]?(?:step|increment)|sampling[_ -](?:interval|period|step)){_SAYS}{_NUMBER}\s*(ms\b)?",
+    re.I,
 )
 _RATE = re.compile(rf"\b(?:sampling|sample)[_ -](?:rate|freq\w*){_SAYS}{_NUMBER}", re.IGNORECASE)
 _UNIT = re.compile(r"\bunits?\b\s*(?:[:=]|of|are|is|in)\s*[\[(]?\s*([A-Za-z][\w/^*.-]*)", re.IGNORECASE)
 _UNIT_OF = re.compile(r"\b(?:accel|veloc|displ)\w*\s+(?:in\s+|\[|\()\s*([A-Za-z][\w/^*.-]*)", re.IGNORECASE)
-_OTHER = re.compile(r"^\W*(?:ground )?(velocity|displacement)\b.*(?:series|histor|record|trace|component|$)", re.IGNORECASE)
+_OTHER = re.compile(
+    r"^\W*(?:ground )?(velocity|displacement)\b.*(?:series|histor|record|trace|component|$)", re.IGNORECASE
+)
 
 
 @dataclass(frozen=True)
@@ -52,7 +55,12 @@ class Said:
             if called and len(called) == columns and any(kind_of(ColumnName.of(0, one).behind)[1] for one in called):
                 names = called
         other = next((one for line, text in comments if (one := _OTHER.match(text[:200]))), None)
-        if other and not unit and not names and not any(re.search("accel", text, re.IGNORECASE) for _, text in comments):
+        if (
+            other
+            and not unit
+            and not names
+            and not any(re.search("accel", text, re.IGNORECASE) for _, text in comments)
+        ):
             headers.refuse_other(source, other[1])
         return cls(names, unit, step, count)
 

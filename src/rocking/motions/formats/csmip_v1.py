@@ -74,11 +74,11 @@ class CsmipV1(RecordFormat):
             if points := _POINTS.search(text[:LONGEST_LINE]):
                 check_count(source, int(points[1]), count)
         unit = headers.acceleration_unit(source, _unit([text[:LONGEST_LINE] for text in header[:_TEXT_LINES]]), units)
-        even = _even(source, line, count, unit)
+        even, done = _even(source, line, count, unit), dict[str, str]()
         if even:
             step, form = even
             raw, behind = fixed(source, line + 1, count, *form)
-            values, zero, done = raw, 0.0, {}
+            values, zero = raw, 0.0
             printed = word(source, line + 1, int(np.abs(raw).argmax()), *form)
         else:
             pairs, behind = fixed(source, line, 2 * count, *_PAIRS, self._skip)
@@ -91,7 +91,9 @@ class CsmipV1(RecordFormat):
             raise source.expected(behind, "END OF DATA FOR CHANNEL")
         lasts = zero + (values.size - 1) * step
         if figures[_LENGTH] > 0.0 and abs(figures[_LENGTH] - lasts) > step + 0.06:
-            source.doubt(None, f"the header states a record of {figures[_LENGTH]:g} s, the last sample is at {lasts:g} s")
+            source.doubt(
+                None, f"the header states a record of {figures[_LENGTH]:g} s, the last sample is at {lasts:g} s"
+            )
         in_g = ACCELERATION_UNITS[unit] / g
         peak, at = (float(figures[place]) if self._has_peak else 0.0 for place in (_PEAK, _PEAK_TIME))
         if peak:
@@ -100,7 +102,9 @@ class CsmipV1(RecordFormat):
             headers.check_peak_time(source, at - zero, values * in_g, step, rounding)
         told = _check_text(source, first, raw * ACCELERATION_UNITS[unit], headers.half_digit(printed) * in_g * g)
         stated = abs(peak) / in_g if peak else None if told is None else told / ACCELERATION_UNITS[unit]
-        return (header, header[6][:LONGEST_LINE], Component("", values, unit, step, stated, done)), behind + bool(self._end)
+        return (header, header[6][:LONGEST_LINE], Component("", values, unit, step, stated, done)), behind + bool(
+            self._end
+        )
 
 
 class Usc(CsmipV1):
@@ -114,7 +118,9 @@ class Usc(CsmipV1):
         "Pairs of time and acceleration, resampled where the times are uneven. It states no peak: a damaged sample "
         "can pass. Uncorrected: neither baseline nor instrument."
     )
-    begins: ClassVar[re.Pattern[str]] = re.compile(r"\s*FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOL", re.IGNORECASE)
+    begins: ClassVar[re.Pattern[str]] = re.compile(
+        r"\s*FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOL", re.IGNORECASE
+    )
     _skip: ClassVar[int] = 1
     _has_peak: ClassVar[bool] = False
     _end: ClassVar[str] = ""
@@ -186,6 +192,7 @@ def _lines(record: Record, row: int, values: FloatArray) -> list[str]:
     texts[4] = f"STATION NO. {record.text('station number', 8)}"
     texts[5] = record.text("station", 70)
     texts[6] = f"CHAN {row + 1:2d}: {one_line(part.name, 20)}"
+    texts[10] = f"NO. OF POINTS = {values.size:6d}"
     texts[11] = f"UNITS OF UNCOR ACCEL ARE SEC AND G/10.     MAX  = {figures[_PEAK]:.3f} G"
     lines = texts + in_width(wholes, 16, 5, 0) + in_width(figures, 8, 10, 3)
     lines += in_width(np.column_stack((times, values)).ravel(), *_PAIRS, 3)

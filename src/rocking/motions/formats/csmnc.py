@@ -29,17 +29,24 @@ class Csmnc(RecordFormat):
     top: ClassVar[int] = _HEADER + 2
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        last = after(source, r"NO\. OF POINTS:", self.top)
-        first = next((k for k in range(last, len(source.lines)) if re.fullmatch(r"[-\d. E+]*\d\s*", source.lines[k])), last)
-        kind, unit = said(source, first, "(?:UN)?CORRECTED", r"(ACCELERATION|VELOCITY|DISPLACEMENT)\s+UNIT:\s*(\S+)").groups()
+        first = after(source, "PRE-EVENT TIME:", self.top)
+        while first < len(source.lines) and not re.search(r"\d", source.lines[first]):
+            first += 1
+        kind, unit = said(
+            source, first, "(?:UN)?CORRECTED", r"(ACCELERATION|VELOCITY|DISPLACEMENT)\s+UNIT:\s*(\S+)"
+        ).groups()
         if kind.upper() != "ACCELERATION":
             raise source.error(None, f"accelerations are needed, the file holds a {kind.lower()} in {unit}")
         if unit.upper() not in _UNITS:
             raise source.error(None, f"unit CM/SEC/SEC expected, found {unit[:20]!r}")
         unit = headers.acceleration_unit(source, _UNITS[unit.upper()], units)
-        points = said(source, first, r"NO\. OF POINTS:", r"(\d{1,9})\s+EQUALLY SPACED INTERVALS OF:\s*(\d*\.?\d+)\s*SEC")
+        points = said(
+            source, first, r"NO\. OF POINTS:", r"(\d{1,9})\s+EQUALLY SPACED INTERVALS OF:\s*(\d*\.?\d+)\s*SEC"
+        )
         step = headers.step_between_samples(source, float(points[2]), time_step)
-        peak = said(source, first, "PEAK VALUE:", r"([-+]?\d*\.?\d+)\s+AT\s+(\d*\.?\d+)\s*SEC\s+DURATION:\s*(\d*\.?\d+)\s*SEC")
+        peak = said(
+            source, first, "PEAK VALUE:", r"([-+]?\d*\.?\d+)\s+AT\s+(\d*\.?\d+)\s*SEC\s+DURATION:\s*(\d*\.?\d+)\s*SEC"
+        )
         name = text_said(source, first, r"COMP\.") or "acceleration"
         texts = {"date": source.lines[1], "event": source.lines[2], "station": text_said(source, first, "STATION:")}
         about = Record(self.name, (Component(name, np.empty(0), unit, step),), "", metadata_of(**texts))
@@ -57,7 +64,15 @@ class Csmnc(RecordFormat):
         part, top = record.components[0], int(np.abs(values).argmax())
         event, station, date = (record.text(key, 60, "unknown") for key in ("event", "station", "date"))
         lines = [
-            *["unknown", date, event, "EPICENTER unknown", "MAGNITUDE unknown", f"STATION: {station}", "SITE CONDITION:"],
+            *[
+                "unknown",
+                date,
+                event,
+                "EPICENTER unknown",
+                "MAGNITUDE unknown",
+                f"STATION: {station}",
+                "SITE CONDITION:",
+            ],
             *["INSTRUMENT TYPE:", "OBSERVING POINT:", f"COMP. {one_line(part.name, 20)}"],
             "UNCORRECTED ACCELERATION          UNIT: CM/SEC/SEC",
             f"NO. OF POINTS:  {values.size}  EQUALLY SPACED INTERVALS OF:  {part.time_step:.9f}  SEC",

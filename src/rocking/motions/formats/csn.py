@@ -1,6 +1,6 @@
 """CSN, Chile's national seismological centre: comments in Spanish, then one sample of one component a line.
 
-Layout: as the programs behind the SIBER-RISK strong-motion database of Chile read the centre's files, in m/s2; no file of
+Layout: as the programs behind Chile's SIBER-RISK strong-motion database read the centre's files, in m/s2; no file of
 the centre was at hand.
 """
 
@@ -29,6 +29,9 @@ class Csn(RecordFormat):
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         first = after(source, "#", self.top)
+        for line, text in enumerate(source.lines[:first]):
+            if not text.startswith("#"):
+                raise source.error(line, "a comment expected, before the first sample")
         unit = headers.acceleration_unit(source, "m/s2", units)
         rate = float(said(source, first, r"# *Tasa de muestreo[^:\d]*:?", r"(\d+\.?\d*)\s*(?:muestras|Hz|sps)\S*.*")[1])
         step = headers.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, time_step)
@@ -40,7 +43,8 @@ class Csn(RecordFormat):
         place = text_said(source, first, r"# *Esta\S*").split()
         name = place[-1] if len(place) > 1 else "acceleration"
         metadata = metadata_of(
-            station=place[0].strip(",") if place else "", starttime=text_said(source, first, r"# *Tiempo[^:]*:").rstrip("Z")
+            station=place[0].strip(",") if place else "",
+            starttime=text_said(source, first, r"# *Tiempo[^:]*:").rstrip("Z"),
         )
         about = Record(self.name, (Component(name, np.empty(0), unit, step),), "", metadata)
         return side_by_side(source, about, first, found)

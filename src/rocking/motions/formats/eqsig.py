@@ -8,6 +8,7 @@ import re
 from typing import ClassVar
 
 from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.column_text import kind_of
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
 
 _SIZE = re.compile(r"\s*(\d{1,9})[\s,]+(\d*\.\d+(?:[eE][-+]?\d+)?)[\s,]*")
@@ -22,7 +23,9 @@ class Eqsig(RecordFormat):
     title: ClassVar[str] = "eqsig and OpenSees: a line `npts dt`, with or without a name above, then accelerations"
     suffixes: ClassVar[tuple[str, ...]] = (".txt", ".dat", ".acc")
     states_unit: ClassVar[bool] = False
-    notes: ClassVar[str] = "Verified on one file of eqsig. Nothing tells an acceleration from a velocity, nor g from m/s2."
+    notes: ClassVar[str] = (
+        "Verified on one file of eqsig. Nothing tells an acceleration from a velocity, nor g from m/s2."
+    )
 
     def recognises(self, source: Source) -> bool:
         """Return whether a count and a step stand on a line of their own, under words, and numbers follow."""
@@ -45,7 +48,11 @@ class Eqsig(RecordFormat):
         step = headers.step_between_samples(source, float(found[2]), time_step)
         names = " ".join(text.strip() for text in source.lines[:line])
         headers.refuse_other(source, names)
-        unit = headers.acceleration_unit(source, None, units)
+        said = re.search(r"\[([^\[\]]+)\]", names)
+        unit, kind = kind_of(said[1]) if said else (None, "")
+        if kind in {"velocity", "displacement"}:
+            headers.refuse_other(source, kind)
+        unit = headers.acceleration_unit(source, unit, units)
         values = numbers.rows(source, line + 1, len(source.lines))
         headers.check_count(source, int(found[1]), values.size)
         if values.size < 2:
@@ -54,12 +61,12 @@ class Eqsig(RecordFormat):
         return Record(self.name, (part,), "\n".join(source.lines[: line + 1]), metadata_of(event=names))
 
     def write(self, record: Record) -> bytes:
-        """Return a file of one component, in its unit, which the file cannot state."""
+        """Return a file of one component, with its unit behind the name."""
         (values,) = headers.in_unit(record, self.name, None, 1)
         part = record.components[0]
-        name = record.text("event", 60) or one_line(part.name, 20)
+        name = re.sub(r"[\[\]]", " ", record.text("event", 60) or one_line(part.name, 20))
         step = f"{part.time_step:.9f}"
-        lines = [f"motion {name}", f"{values.size} {step}", *(repr(value) for value in values.tolist())]
+        lines = [f"motion {name} [{part.unit}]", f"{values.size} {step}", *(repr(value) for value in values.tolist())]
         return "\n".join([*lines, ""]).encode("latin-1")
 
 

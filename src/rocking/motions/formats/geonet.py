@@ -1,10 +1,10 @@
-"""GeoNet of GNS Science, New Zealand: Volume 1, raw accelerations, and Volume 2, corrected and integrated, of 3 components.
+"""GeoNet of GNS Science, New Zealand: 3 components, of Volume 1 as recorded, of Volume 2 corrected and integrated.
 
 Each component: 16 lines of text, 4 lines of 10 whole numbers and 6 of 10 real ones of width 8, then the acceleration
 [mm/s2], velocity [mm/s] and displacement [mm], each 10 numbers of width 8 a line and on a new line. Checked on four
 files (2016 Kaikoura and 2018 earthquakes, Cusp and Basalt recorders): counts, step, duration and all nine peaks with
-their times, which count from real number 22 (5 s in all four) after the first sample. Volume 1 has the same header and the
-acceleration alone; checked on one file of 2016 (Basalt recorder). Not checked: older layouts.
+their times, which count from real number 22 (5 s in all four) after the first sample. Volume 1 has the same header and
+the acceleration alone; checked on one file of 2016 (Basalt recorder). Not checked: older layouts.
 """
 
 import re
@@ -87,12 +87,23 @@ class GeonetV2A(RecordFormat):
         if count < 2:
             raise source.error(top + 9, f"at least 2 points expected, found {count}")
         headers.check_duration(source, duration, count, step, headers.half_digit(points[2]))
-        values, peak = _series(source, line, count, step, text, 0, float(reals[21]))
-        line += -(-count // _PER_LINE)
+
+        def series(k: int, line: int) -> tuple[FloatArray, float, int]:
+            what, of, _ = _SERIES[k]
+            first = source.lines[line][:_WIDTH] if line < len(source.lines) else ""
+            values, behind = numbers.fixed(source, line, count, _PER_LINE, _WIDTH)
+            peak = numbers.matched(source, top + 13 + k, _PEAK.format(what, of))
+            # series of large numbers are printed with fewer decimals than their peak
+            rounding = max(headers.half_digit(peak[1]), headers.half_digit(first))
+            headers.check_peak(source, float(peak[1]), values, rounding, f"peak of {what.lower()}, {name}")
+            headers.check_peak_time(source, float(peak[2]) + float(reals[21]), values, step, rounding)
+            return values, abs(float(peak[1])), behind
+
+        values, peak, line = series(0, line)
         if len(self.counts) > 1:
+            # not kept, and so no reason to refuse what is
             with source.doubting():
-                for k in (1, 2):
-                    _series(source, line + (k - 1) * -(-count // _PER_LINE), count, step, text, k, float(reals[21]))
+                series(2, series(1, line)[2])
             after = range(line, len(source.lines))
             line = next((at for at in after if source.begins(at, self.begins)), len(source.lines))
         about = metadata_of(axis=" ".join(text[12].split()[2:]), filter=text[11])
@@ -140,20 +151,3 @@ class GeonetV1A(GeonetV2A):
     step: ClassVar[str] = r"Raw readings in units of +1\.0+ +mm/s/s +at intervals of +(\d*\.\d+) +s(?:ec)?"
     says_step: ClassVar[str] = "Raw readings in units of 1.00 mm/s/s at intervals of {} s"
     counts: ClassVar[tuple[int, ...]] = (33,)
-
-
-def _series(
-    source: Source, line: int, count: int, step: float, text: list[str], k: int, late: float
-) -> tuple[FloatArray, float]:
-    """Return one of the series of a component and its stated peak; peak times begin `late` after the samples."""
-    what, of, _ = _SERIES[k]
-    first = source.lines[line][:_WIDTH] if line < len(source.lines) else ""
-    values, _ = numbers.fixed(source, line, count, _PER_LINE, _WIDTH)
-    peak = re.fullmatch(_PEAK.format(what, of), text[13 + k].strip())
-    if peak is None:
-        raise source.error(None, f"the peak of {what.lower()} cannot be understood: {text[13 + k].strip()[:60]!r}")
-    # series of large numbers are printed with fewer decimals than their peak
-    rounding = max(headers.half_digit(peak[1]), headers.half_digit(first))
-    headers.check_peak(source, float(peak[1]), values, rounding, f"peak of {what.lower()}, {text[12].split()[1]}")
-    headers.check_peak_time(source, float(peak[2]) + late, values, step, rounding)
-    return values, abs(float(peak[1]))

@@ -28,7 +28,9 @@ def acceleration_unit(source: Source, stated: str | None, asked: str | None) -> 
     return stated or asked or ""
 
 
-_OTHER = re.compile(r"(?<![^\W_])(?:(vel|velocity|velocities|vt2)|(disp|dis|displacements?|dt2))(?![^\W_])", re.IGNORECASE)
+_OTHER = re.compile(
+    r"(?<![^\W_])(?:(vel|velocity|velocities|vt2)|(disp|dis|displacements?|dt2))(?![^\W_])", re.IGNORECASE
+)
 
 
 _ACCELERATION = re.compile(r"(?<![^\W_])acc", re.IGNORECASE)
@@ -42,8 +44,8 @@ def refuse_other(source: Source, words: str = "") -> None:
             kind = "velocity" if found[1] else "displacement"
             raise source.error(
                 None,
-                f"accelerations are needed, and {where} says {found[0]!r}, a {kind}; take the file of accelerations, or "
-                "rename it if it holds them",
+                f"accelerations are needed, and {where} says {found[0]!r}, a {kind}; take the file of accelerations, "
+                "or rename it if it holds them",
             )
 
 
@@ -150,7 +152,9 @@ def at_even_steps(
         reach = float(times[-1] - times[0])
         if not 1e-6 <= usual <= 10.0 or (gaps < 0.0).any() or odd.sum() <= max(10, times.size // 100):
             raise
-        step = max(round(one * 10.0**power, 9) for power in range(-6, 2) for one in (1, 2, 5) if one * 10.0**power <= usual)
+        step = max(
+            round(one * 10.0**power, 9) for power in range(-6, 2) for one in (1, 2, 5) if one * 10.0**power <= usual
+        )
         if reach > 100.0 * usual * times.size:
             raise
     top = int(np.abs(values).argmax())
@@ -225,7 +229,7 @@ def printed_rounding(stated: str, sample: str, least: int) -> float:
     >>> f"{printed_rounding('-29.340', '29.342', 2):.4g}", f"{printed_rounding('.0791795', '.079180', 3):.3g}"
     ('0.0055', '5.5e-07')
     """
-    mantissa, mark, exponent = re.fullmatch(r"([^eEdD]*)([eEdD]?)(.*)", stated.strip()).groups()  # type: ignore[union-attr]
+    mantissa, mark, exponent = stated.strip().upper().replace("D", "E").partition("E")
     whole, _, digits = mantissa.partition(".")
     digits = digits[:least] + digits[least:].rstrip("0")
     return half_digit(f"{whole}.{digits}{mark}{exponent}") + half_digit(sample)

@@ -29,7 +29,8 @@ class Itaca(RecordFormat):
     suffixes: ClassVar[tuple[str, ...]] = (".acc",)
     notes: ClassVar[str] = "Verified on one file of 2009, in m/s2. ITACA's DYNA files are the format esm."
     marks: ClassVar[tuple[str, ...]] = (
-        r"Orientation\s*:", r"Time Increment \(s\)\s*:", r"Number of Data\s*:", r"PGA \(m/s/s\)\s*:", r"Acc\w+ time series in",
+        r"Orientation\s*:", r"Time Increment \(s\)\s*:", r"Number of Data\s*:", r"PGA \(m/s/s\)\s*:",
+        r"Acc\w+ time series in",
     )  # fmt: skip
     top: ClassVar[int] = 20
 

@@ -112,6 +112,7 @@ def _component(source: Source, trace: Trace, units: str | None, asked: float | N
             raise source.error(
                 None, f"{trace.id} holds counts, no accelerations: use MiniSeed.with_response(stationxml_path)"
             )
+        headers.doubt_channel(source, name)
         return Component(name, values, headers.acceleration_unit(source, None, units), step)
     unit = headers.acceleration_unit(source, "m/s2", units)
     sensitivity = _sensitivity(source, trace, trace.channels)

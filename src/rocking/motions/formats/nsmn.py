@@ -40,7 +40,9 @@ class Nsmn(RecordFormat):
         peaks = re.findall(_PEAK, found[1])
         names = source.lines[first - 1].split()
         if [name.strip() for name, _ in peaks] != names:
-            raise source.error(first - 1, f"the peaks are of {', '.join(name for name, _ in peaks)}, the columns of others")
+            raise source.error(
+                first - 1, f"the peaks are of {', '.join(name for name, _ in peaks)}, the columns of others"
+            )
         metadata = {key: text_said(source, first, rf"{word}\s*:") for key, word in _KEYS.items()}
         metadata = metadata_of(**{key.replace(" ", "_"): text for key, text in metadata.items()})
         about = Record(self.name, tuple(Component(name, np.empty(0), unit, step) for name in names), "", metadata)

@@ -73,9 +73,7 @@ def word(source: Source, first: int, place: int, per_line: int, width: int) -> s
     return source.lines[first + line].rstrip()[column * width : (column + 1) * width].strip()
 
 
-def fixed(
-    source: Source, first: int, count: int, per_line: int, width: int, skip: int = 0
-) -> tuple[FloatArray, int]:
+def fixed(source: Source, first: int, count: int, per_line: int, width: int, skip: int = 0) -> tuple[FloatArray, int]:
     """Return `count` numbers in columns of fixed width, which need no blank between them, and the line after them.
 
     Each line begins with `skip` blanks that belong to no column.

@@ -15,6 +15,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import MissingExtraError, RecordError, how_to_install
 from rocking.motions.formats import headers
 from rocking.motions.formats.foreign import ForeignReader
@@ -50,9 +51,10 @@ class Sac(RecordFormat):
             value = struct.unpack_from(order + "f", source.content, offset)[0]
             if value != _UNDEFINED and not abs(value) <= most:
                 raise source.error(None, f"the header's {place} must be within {most:g} degrees of 0, found {value:g}")
-        unit = headers.acceleration_unit(source, None, units)
         trace = read_traces(source, "SAC", checksize=True)[0]
         said = trace.sac
+        own = str(said.get("kuser0", "")).strip()
+        unit = headers.acceleration_unit(source, own if own in ACCELERATION_UNITS else None, units)
         if said.get("iftype") != _TIME_SERIES or not said.get("leven"):
             raise source.error(None, "an evenly spaced time series is needed")
         if said.get("idep") in _OTHER:
@@ -74,15 +76,17 @@ class Sac(RecordFormat):
         peak = max(abs(known["depmax"]), abs(known["depmin"]))
         stated = None if _UNDEFINED in {known["depmax"], known["depmin"]} else peak
         name = trace.about["channel"] or "unnamed"
+        headers.doubt_channel(source, name)
         return Record(self.name, (Component(name, values, unit, step, stated),), trace.header, trace.about)
 
     def write(self, record: Record) -> bytes:
-        """Return a SAC file, in the unit of the component, which the file cannot state."""
+        """Return a SAC file, in the unit of the component, which stands in the header's first text of the user."""
         (values,) = headers.in_unit(record, self.name, None, 1)
         if np.abs(values).max() > 1e37:
             raise RecordError(f"SAC holds accelerations below 1e37, got {np.abs(values).max():g}; wrong unit?")
         part = record.components[0]
         trace = trace_of(values.astype(np.float32), part, record)
+        trace.stats.sac = {"kuser0": part.unit}
         content = BytesIO()
         trace.write(content, format="SAC")
         return content.getvalue()

@@ -16,7 +16,7 @@ def said(source: Source, last: int, key: str, value: str) -> re.Match[str]:
     """Return what the one line above `last` that begins with a key says, of which a pattern must make sense."""
     begins = re.compile(rf"\s*{key}\s*(.*?)\s*", re.IGNORECASE)
     found = [(line, hit) for line, text in enumerate(source.lines[:last]) if (hit := begins.fullmatch(text[:_LONGEST]))]
-    plain = key.replace("\\", "").partition("[")[0].strip(": ")
+    plain = _plain(key)
     if len(found) != 1:
         raise source.error(None, f"one header line that begins with {plain!r} expected, found {len(found)}")
     line, hit = found[0]
@@ -24,6 +24,11 @@ def said(source: Source, last: int, key: str, value: str) -> re.Match[str]:
     if understood is None:
         raise source.error(line, f"{plain} cannot be understood: {hit[1][:40]!r}")
     return understood
+
+
+def _plain(pattern: str) -> str:
+    """Return a pattern of a key as a user would read it."""
+    return re.sub(r"\\s[*+]|\\S[*+]?|\\|\(\?:|\[.*", "", pattern).strip(" :*")
 
 
 def text_said(source: Source, last: int, key: str) -> str:
@@ -39,7 +44,7 @@ def after(source: Source, mark: str, most: int) -> int:
     form = re.compile(mark, re.IGNORECASE)
     found = [line for line, text in enumerate(source.lines[:most]) if form.match(text[:_LONGEST])]
     if not found or not source.is_text:
-        raise source.error(None, f"no line that begins with {mark.replace(chr(92), '')!r} near the top")
+        raise source.error(None, f"no line that begins with {_plain(mark)!r} near the top")
     return found[-1] + 1
 
 

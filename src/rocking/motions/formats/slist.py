@@ -1,4 +1,4 @@
-"""ObsPy's and IRIS' text formats SLIST and TSPAIR: a line TIMESERIES for each channel, then samples or times and samples.
+"""ObsPy's and IRIS' text formats SLIST and TSPAIR: a line TIMESERIES a channel, then samples, or times and samples.
 
 Layout: ObsPy's documentation of `obspy.io.ascii`; IRIS DMC, "ASCII time series formats".
 """
@@ -10,13 +10,13 @@ import numpy as np
 
 from rocking.errors import RecordError
 from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.column_text import kind_of
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
 
 _HEAD = re.compile(
-    r"TIMESERIES (\w*)_(\w*)_(\w*)_(\w*)_?\w?, (\d{1,9}) samples, (\d+\.?\d*) sps, ([\d\-T:.]+)Z?, (SLIST|TSPAIR), "
-    r"(INTEGER|FLOAT|ASCII), *(.*?) *(?:,.*)?"
+    r"TIMESERIES ([^\W_]*)_([^\W_]*)_([^\W_]*)_([^\W_]*)_\w?, (\d{1,9}) samples, (\d+\.?\d*) sps, ([\d\-T:.]+)Z?, "
+    r"(SLIST|TSPAIR), (INTEGER|FLOAT|ASCII), *(.*?) *(?:,.*)?"
 )
-_UNITS = {"m/s**2": "m/s2", "m/s^2": "m/s2", "m/s2": "m/s2", "m/s/s": "m/s2", "cm/s**2": "cm/s2", "cm/s2": "cm/s2", "gal": "gal"}
 
 
 class Slist(RecordFormat):
@@ -26,6 +26,7 @@ class Slist(RecordFormat):
     title: ClassVar[str] = "SLIST and TSPAIR, text of ObsPy and IRIS"
     suffixes: ClassVar[tuple[str, ...]] = (".ascii", ".slist", ".tspair")
     notes: ClassVar[str] = "Counts are refused; where the unit is no acceleration by name it must be told."
+
     def recognises(self, source: Source) -> bool:
         """Return whether the first line begins as that of a channel."""
         return source.is_text and source.lines[0].startswith("TIMESERIES ")
@@ -40,7 +41,9 @@ class Slist(RecordFormat):
             parts.append(_channel(source, first, last, units, time_step))
         names = [part.name for part in parts]
         if len(set(names)) != len(names):
-            raise source.error(None, f"a channel of {', '.join(sorted(set(names)))} has a gap or an overlap; cut it out first")
+            raise source.error(
+                None, f"a channel of {', '.join(sorted(set(names)))} has a gap or an overlap; cut it out first"
+            )
         metadata = {key: text for key, text in parts[0].metadata.items() if text}
         return Record(self.name, tuple(parts), "\n".join(source.lines[line] for line in starts), metadata)
 
@@ -51,9 +54,14 @@ class Slist(RecordFormat):
         codes = [re.sub(r"\W|_", "", one_line(part.name, 20)) or "X" for part in record.components]
         if len(set(codes)) != len(codes):
             raise RecordError(f"components need different channel codes, got {', '.join(codes)[:60]}")
-        for part, code, values in zip(record.components, codes, headers.in_unit(record, self.name, "m/s2", 99), strict=True):
-            head = f"{values.size} samples, {1.0 / part.time_step:.12g} sps, 1970-01-01T00:00:00.000000, SLIST, FLOAT, m/s**2"
-            lines += [f"TIMESERIES XX_{station}__{code}_D, {head}", *numbers.in_columns(values, 6, "{:+.10e}  ")]
+        for part, code, values in zip(
+            record.components, codes, headers.in_unit(record, self.name, "m/s2", 99), strict=True
+        ):
+            size = f"{values.size} samples, {1.0 / part.time_step:.12g} sps, 1970-01-01T00:00:00.000000"
+            lines += [
+                f"TIMESERIES XX_{station}__{code}_D, {size}, SLIST, FLOAT, m/s**2",
+                *numbers.in_columns(values, 6, "{:+.10e}  "),
+            ]
         return "\n".join([*lines, ""]).encode("latin-1")
 
 
@@ -64,7 +72,10 @@ def _channel(source: Source, first: int, last: int, units: str | None, time_step
     network, station, _, code, count, rate, start, layout, kind, word = found.groups()
     if "count" in word.lower() or kind == "ASCII":
         raise source.error(first, f"the file holds {word[:20] or 'text'}, no accelerations: remove the response first")
-    unit = headers.acceleration_unit(source, _UNITS.get(word.lower()), units)
+    said, quantity = kind_of(word)
+    if quantity in {"velocity", "displacement"}:
+        raise source.error(first, f"accelerations are needed, the file states {word}, a {quantity}")
+    unit = headers.acceleration_unit(source, said, units)
     step = headers.step_between_samples(source, 1.0 / float(rate) if float(rate) > 0.0 else 0.0, time_step)
     if layout == "SLIST":
         values = numbers.rows(source, first + 1, last)
@@ -79,7 +90,9 @@ def _channel(source: Source, first: int, last: int, units: str | None, time_step
     if values.size < 2:
         raise source.error(first, f"at least 2 samples are needed, found {values.size}")
     headers.doubt_channel(source, code)
-    return Component(code or "unnamed", values, unit, step, None, {"network": network, "station": station, "starttime": start})
+    return Component(
+        code or "unnamed", values, unit, step, None, {"network": network, "station": station, "starttime": start}
+    )
 
 
 def _value(source: Source, line: int, words: list[str]) -> float:

@@ -71,21 +71,22 @@ class SmcUsgs(RecordFormat):
         if rate is not None and not rate > 0.0:
             raise source.error(TEXTS + WHOLES, f"sampling rate must be above zero, found {rate:g}")
         unit = headers.acceleration_unit(source, "cm/s2", units)
-        numbers_read, after = numbers.fixed(source, header.first, count, self._per_line, self._width)
+        values, after = numbers.fixed(source, header.first, count, self._per_line, self._width)
         done: dict[str, str] = {}
         if rate is not None:
             headers.check_end(source, after)
-            values, step = numbers_read, 1.0 / rate
-            stated = self._check_peaks(source, header, values, np.arange(count) * step)
+            step = 1.0 / rate
+            stated = self._check_peaks(source, header, values, np.arange(count, dtype=np.float64) * step)
         else:
             # without a rate there are as many times as samples, and both are counted
             if count % 2:
                 raise source.error(TEXTS + 2, f"pairs of time and sample make an even count, found {count}")
             with source.doubting():
                 headers.check_end(source, after)
-            times, raw = numbers_read[::2], numbers_read[1::2].copy()
-            stated = self._check_peaks(source, header, raw, times)
-            values, step, done = headers.at_even_steps(source, times, raw, 10.0**-self._decimals * max(1.0, times[-1]))
+            times, values = values[::2], values[1::2].copy()
+            stated = self._check_peaks(source, header, values, times)
+            digit = 10.0**-self._decimals * max(1.0, float(times[-1]))
+            values, step, done = headers.at_even_steps(source, times, values, digit)
         step = headers.step_between_samples(source, step, time_step)
         upwards, azimuth = header.whole[12:14]
         printed = re.search(r"component= *(\S+)", source.lines[5])

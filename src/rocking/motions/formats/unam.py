@@ -48,7 +48,11 @@ class Unam(RecordFormat):
             raise source.error(None, f"{channels} channels are stated, and samples in {form[:20]}")
         if len(set(names)) < channels or "" in names:
             names = [f"CHAN {place}" for place in range(1, channels + 1)]
-        texts = {"event": r"FECHA DEL SISMO[^:]*:", "station": r"NOMBRE DE LA ESTACION\s*:", "magnitude": r"MAGNITUD\(ES\)\s*:"}
+        texts = {
+            "event": r"FECHA DEL SISMO[^:]*:",
+            "station": r"NOMBRE DE LA ESTACION\s*:",
+            "magnitude": r"MAGNITUD\(ES\)\s*:",
+        }
         metadata = metadata_of(**{key: text_said(source, head, word) for key, word in texts.items()})
         about = Record(self.name, tuple(Component(name, np.empty(0), unit, step) for name in names), "", metadata)
         return side_by_side(source, about, first, int(counts[0]), peaks, (across, width))
@@ -83,5 +87,7 @@ def _listed(source: Source, last: int, key: str, channels: int, form: str) -> li
             words += said(source, last, rf"{key},?\s*{which}[^:]*:", r"/.*")[0][1:].split("/")
     words = [word.strip() for word in words]
     if len(words) != channels or not all(re.fullmatch(form, word) for word in words):
-        raise source.error(None, f"{key.replace(chr(92), '')}: {channels} values behind slashes expected, found {words[:12]}")
+        raise source.error(
+            None, f"{key.replace(chr(92), '')}: {channels} values behind slashes expected, found {words[:12]}"
+        )
     return words
