@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking import plausibility
 from rocking.bodies.formats import read_body
 from rocking.bodies.solid import Part, Solid, box
 from rocking.cli import main
@@ -229,3 +230,23 @@ def test_the_api_and_the_page_say_it():
     assert described(rk.Block(width=0.5, height=2.0), 9.81, None)["warnings"] == []
     strong = MotionAnswer.of(rk.pulses.sine(amplitude=3000.0, period=0.8), [1.0], 0.05)
     assert "306 g" in motion_facts(strong.motion, strong.samples, strong.measures)["warnings"][0]
+
+
+def test_what_no_ground_does_is_doubted(tmp_path) -> None:
+    """A velocity read as an acceleration, and one that does not come to rest, are warned of; an honest pulse is not."""
+    assert plausibility.of_integrals(0.0, 1.0, 0.5) == ()
+    assert "more than 5 m/s or 15 m" in plausibility.of_integrals(0.0, 1.0, 99.0)[0]
+    assert "more than 5 m/s or 15 m" in plausibility.of_integrals(0.0, 6.0, 1.0)[0]
+    assert "ends at 0.3 m/s" in plausibility.of_integrals(-0.3, 1.0, 0.5)[0].replace("-", "")
+    time = np.arange(0.0, 20.0, 0.01)
+    path = tmp_path / "record.txt"
+    for values, words in (
+        (np.sin(np.pi * time), None),
+        (0.05 + 0.0 * time, "ends at"),
+        (3.0 * np.sin(np.pi * time) ** 2, "more than"),
+    ):
+        path.write_text("\n".join(f"{t:.2f} {v:.6f}" for t, v in zip(time, values, strict=True)))
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            rk.read_motion(path, units="m/s2")
+        assert [words in str(one.message) for one in said] == ([True] if words else [])

@@ -284,3 +284,123 @@ def test_damaged_copies_are_refused_or_have_a_sample_for_every_line(gap: str) ->
         assert part.acceleration.size == len(plain) - any(word in plain[0] for word in ("time", "acc", "[", "]"))
         assert abs(part.time_step - 0.02) < 1e-12
     assert refused > 200
+
+
+BBP = (
+    "#    time(sec)      N-S({0})      E-W({0})      U-D({0})\n"
+    "0.0\t1.0\t2.0\t3.0\n2.5e-2\t4.0\t5.0\t6.0\n5.0e-2\t7.0\t8.0\t9.0\n"
+)
+PAIRS = "0.00 0.1\n0.01 -0.2\n0.02 0.3\n"
+
+
+def test_names_in_a_comment_are_names() -> None:
+    """Units behind the names of a comment, as of SCEC's broadband platform, say what the columns are."""
+    record = COLUMNS.read(_source(BBP.format("cm/s/s")))
+    assert [(part.name, part.unit) for part in record.components] == [(name, "cm/s2") for name in ("N-S", "E-W", "U-D")]
+    assert record.components[2].acceleration.tolist() == [3.0, 6.0, 9.0]
+    with pytest.raises(RecordError, match="states the unit cm/s2, you say g"):
+        COLUMNS.read(_source(BBP.format("cm/s/s")), "g")
+    for unit, quantity in (("cm/s", "velocity"), ("cm", "displacement")):
+        for told in (None, "cm/s2"):
+            with pytest.raises(RecordError, match=rf"is an acceleration in .*, they hold {quantity}"):
+                COLUMNS.read(_source(BBP.format(unit)), told)
+    # names without any unit stay a remark
+    assert COLUMNS.read(_source("# t NS EW UD\n" + BBP.split("\n", 1)[1]), "g").components[0].name == "column 2"
+
+
+@pytest.mark.parametrize(
+    ("comment", "unit", "step"),
+    [
+        ("# units= cm/s^2", "cm/s2", 0.01), ("% Acceleration in g", "g", 0.01), ("# Unit: m/s/s", "m/s2", 0.01),
+        ("# acceleration (gal), dt = 0.01 s", "gal", 0.01), ("# units of g, NPTS= 3, time step [s]: 0.01", "g", 0.01),
+        ("# units: mg; sampling rate [Hz] = 100", "mg", 0.01), ("# units g\n# units = g", "g", 0.01),
+    ],
+)  # fmt: skip
+def test_comments_state_unit_step_and_number(comment: str, unit: str, step: float) -> None:
+    """They are used, and what the user says must agree; a lone column needs no option then."""
+    part = COLUMNS.read(_source(f"{comment}\n{PAIRS}")).components[0]
+    assert (part.unit, part.time_step) == (unit, step)
+    with pytest.raises(RecordError, match=f"states the unit {unit}, you say mm/s2"):
+        COLUMNS.read(_source(f"{comment}\n{PAIRS}"), "mm/s2")
+    if "0.01" in comment or "100" in comment:
+        source = _source(f"{comment}\n0.1\n-0.2\n0.3\n")
+        assert COLUMNS.recognises(source)
+        assert COLUMNS.read(source).components[0].time_step == step
+        with pytest.raises(RecordError, match=r"states a time step of 0\.01 s, you say 0\.02"):
+            COLUMNS.read(source, time_step=0.02)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("# units= cm/s\n" + PAIRS, "the file states cm/s, a velocity"),
+        ("% Velocity in m/s\n" + PAIRS, "the file states m/s, a velocity"),
+        ("# unit: cm\n" + PAIRS, "the file states cm, a displacement"),
+        ("# Velocity time series\n" + PAIRS, "its header says 'Velocity'"),
+        ("# dt = 0.02\n" + PAIRS, r"states a time step of 0\.01 s, you say 0\.02"),
+        ("# NPTS = 4\n" + PAIRS, "states 4 samples, the file holds 3"),
+        ("# NPTS, DT: 3 0.02\n" + PAIRS, r"you say 0\.02"),
+        ("# units= g\n# units= cm/s2\n" + PAIRS, "the file states the unit g, you say cm/s2"),
+    ],
+)
+def test_what_comments_contradict_is_refused(text: str, words: str) -> None:
+    """A velocity is none of g, whatever the user says; a step or number that the columns do not have is damage."""
+    with pytest.raises(RecordError, match=words):
+        COLUMNS.read(_source(text), None if "units= g" in text else "g")
+
+
+def test_remarks_say_nothing() -> None:
+    """The control: words that are no statement are passed over."""
+    for remark in (
+        "# velocity model of the basin",
+        "# dt unknown",
+        "# filtered at 0.1 Hz, see units below",
+        "# seed: 1",
+    ):
+        part = COLUMNS.read(_source(f"{remark}\n{PAIRS}"), "g").components[0]
+        assert (part.unit, part.time_step, part.acceleration.tolist()) == ("g", 0.01, [0.1, -0.2, 0.3])
+
+
+@pytest.mark.parametrize("name", ["2001-SCE.vel.bbp", "a_velocity.txt", "RSN1.VT2", "x-disp.dat", "H.DT2"])
+def test_a_name_of_velocities_is_refused(name: str) -> None:
+    """A file that is called a velocity or displacement is none of accelerations, unless it is called that as well."""
+    with pytest.raises(RecordError, match="accelerations are needed, and its name says"):
+        COLUMNS.read(Source(name, PAIRS.encode()), "cm/s2")
+    for good in ("velvet.txt", "acc_vel_disp.txt", "displaced.txt", "level.dat"):
+        assert COLUMNS.read(Source(good, PAIRS.encode()), "cm/s2").components[0].unit == "cm/s2"
+
+
+def test_many_numbers_a_line_go_on_row_after_row() -> None:
+    """Five or more without names are one acceleration, the last line shorter; with rising times they are columns."""
+    values = [round(0.1 * k * (-1) ** k, 3) for k in range(17)]
+    lines = [" ".join(map(str, values[k : k + 5])) for k in range(0, 17, 5)]
+    source = _source("\n".join(lines))
+    assert COLUMNS.recognises(source)
+    part = COLUMNS.read(source, "g", 0.01).components[0]
+    assert (part.acceleration.tolist(), part.time_step) == (values, 0.01)
+    with pytest.raises(RecordError, match="say time_step="):
+        COLUMNS.read(source, "g")
+    for damaged, words in (("0.5 1", "line 2: 5 numbers expected"), (" ".join(["1"] * 6), "found 6")):
+        with pytest.raises(RecordError, match=words):
+            COLUMNS.read(_source("\n".join([lines[0], damaged, *lines[2:]])), "g", 0.01)
+    wide = "\n".join(f"{0.01 * k:.2f} {k} {-k} {2 * k} {k * k}" for k in range(9))
+    many = COLUMNS.read(_source(wide), "g").components
+    assert [part.name for part in many] == [f"column {place}" for place in range(2, 6)]
+    assert many[3].acceleration.tolist() == [float(k * k) for k in range(9)]
+
+
+def test_our_own_tables_read_back_without_options(made_up) -> None:
+    """Columns that are written state their unit; so do the tables of `rocking motion`, which hold velocities beside."""
+    record = made_up("N-S", "a [odd], name", unit="g")
+    again = COLUMNS.read(_source(COLUMNS.write(record).decode()))
+    assert [(part.name, part.unit) for part in again.components] == [("N-S", "g"), ("a odd name", "g")]
+    table = (
+        "time_s,acceleration_m_s2,velocity_m_s,displacement_m\n0.0,1.0,0.0,0.0\n0.02,2.0,0.03,0.0\n0.04,0.0,0.05,0.1\n"
+    )
+    (part,) = COLUMNS.read(_source(table)).components
+    assert (part.name, part.unit, part.time_step, part.acceleration.tolist()) == (
+        "acceleration",
+        "m/s2",
+        0.02,
+        [1, 2, 0],
+    )

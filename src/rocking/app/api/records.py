@@ -66,6 +66,7 @@ RecordFacts: Any = shape(
     needs=(list[Need], "what must still be told before it can be used"),
     choices=(dict[Need, list[str]], "what may be told"),
     message=(str, "why, in a sentence; empty if nothing is missing"),
+    doubts=(str, "what its header states and its data contradict, or what was resampled; empty if nothing"),
 )
 
 
@@ -156,6 +157,7 @@ def record_facts(content: bytes, name: str, stated: dict[str, Any]) -> dict[str,
         "needs": sorted(reasons, key=_ORDER.index),
         "choices": {name: choices[name] for name in reasons if name in choices},
         "message": next(iter(reasons.values()), ""),
+        "doubts": "" if record is None else record.metadata.get("doubts", ""),
     }
 
 

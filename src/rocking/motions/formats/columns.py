@@ -139,6 +139,9 @@ def _looked_at(source: Source) -> list[tuple[int, list[str]]] | None:
     text = ColumnText.of(source, _LOOK)
     # damage further down is told by the reader, with its line, where names say that these are columns
     looked = text.rows if text.names is None else text.rows[:1]
+    # an acceleration that goes on row after row ends where it ends
+    if 1 < len(looked) < _LOOK and len(looked[0][1]) > _MOST_COLUMNS:
+        looked = looked[:-1]
     counts = {len(cells) for _, cells in looked}
     if len(counts) != 1:
         return None

@@ -19,7 +19,7 @@ _RATE = re.compile(rf"\b(?:sampling|sample)[_ -](?:rate|freq\w*){_SAYS}{_NUMBER}
 _UNIT = re.compile(r"\bunits?\b\s*(?:[:=]|of|are|is|in)\s*[\[(]?\s*([A-Za-z][\w/^*.-]*)", re.IGNORECASE)
 _UNIT_OF = re.compile(r"\b(?:accel|veloc|displ)\w*\s+(?:in\s+|\[|\()\s*([A-Za-z][\w/^*.-]*)", re.IGNORECASE)
 _OTHER = re.compile(
-    r"^\W*(?:ground )?(velocity|displacement)\b.*(?:series|histor|record|trace|component|$)", re.IGNORECASE
+    r"^\W*(?:ground )?(velocity|displacement)(?:\b.*(?:series|histor|record|trace)|\s*$)", re.IGNORECASE
 )
 
 
@@ -42,7 +42,7 @@ class Said:
                 count, step = int(both[1][:9]), numbers.number(source, line, both[2])
             elif found := _COUNT.search(bare):
                 count = int(found[1][:9])
-            if found := _STEP.search(bare):
+            if not both and (found := _STEP.search(bare)):
                 step = numbers.number(source, line, found[1]) * (1e-3 if found[2] else 1.0)
             if (found := _RATE.search(bare)) and (rate := numbers.number(source, line, found[1])) > 0.0:
                 step = 1.0 / rate

@@ -45,7 +45,7 @@ def refuse_other(source: Source, words: str = "") -> None:
             raise source.error(
                 None,
                 f"accelerations are needed, and {where} says {found[0]!r}, a {kind}; take the file of accelerations, "
-                "or rename it if it holds them",
+                "or correct that if it holds them",
             )
 
 

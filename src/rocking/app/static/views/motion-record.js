@@ -147,7 +147,7 @@ class RecordEditor {
     }
     this.questions = [];
     fill(this.asked);
-    fill(this.said);
+    fill(this.said, ...(answer.doubts ? [note(`Check the input: ${answer.doubts}.`, "warning")] : []));
     this.choose();
   }
 
