@@ -125,7 +125,7 @@ def _csmnc(text: str) -> list[Stated]:
 def _nsmn(text: str) -> list[Stated]:
     count, step = _all(r"^NUMBER OF DATA *: *(\d+)", text)[0], _all(r"^SAMPLING INTERVAL \(sec\) *: *(\S+)", text)[0]
     line = _all(r"PGA VALUES \(gal\) *:(.*)", text)[0]
-    return [Stated(int(count), float(step), abs(float(peak)), _unit_of(peak)) for peak in _all(r"\) *(\S+)", line)]
+    return [Stated(int(count), float(step), abs(float(peak)), _unit_of(peak)) for peak in _all(r"\)\s*(\S+)", line)]
 
 
 def _unam(text: str) -> list[Stated]:

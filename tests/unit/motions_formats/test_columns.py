@@ -336,6 +336,7 @@ def test_comments_state_unit_step_and_number(comment: str, unit: str, step: floa
         ("# units= cm/s\n" + PAIRS, "the file states cm/s, a velocity"),
         ("% Velocity in m/s\n" + PAIRS, "the file states m/s, a velocity"),
         ("# unit: cm\n" + PAIRS, "the file states cm, a displacement"),
+        ("# units = counts\n" + PAIRS, "the file states counts, a count of a recorder"),
         ("# Velocity time series\n" + PAIRS, "its header says 'Velocity'"),
         ("# dt = 0.02\n" + PAIRS, r"states a time step of 0\.01 s, you say 0\.02"),
         ("# NPTS = 4\n" + PAIRS, "states 4 samples, the file holds 3"),

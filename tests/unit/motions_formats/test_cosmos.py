@@ -121,3 +121,54 @@ def test_round_trip(made_up) -> None:
     assert [part.name for part in again.components] == ["0", "90", "270"]
     with pytest.raises(RecordError, match=r"does not fit into 1. characters"):
         COSMOS.write(made_up("0", scale=1e6))
+
+
+@pytest.mark.parametrize("end", ["/&  ----------  End of data for channel  1", "End-of-data for ChanHNE acceleration"])
+def test_both_end_marks(end: str) -> None:
+    """CGS ends a channel with /& and the U.S. Geological Survey in words; another channel may follow either."""
+    lines = [*_channel()[:-1], end]
+    assert len(COSMOS.read(_source([*lines, *_channel(2, 70)[:-1], end, ""])).components) == 2
+    with pytest.raises(RecordError, match="End of data for channel expected"):
+        COSMOS.read(_source([*lines[:-1], "The end"]))
+
+
+@pytest.mark.parametrize("unit", ["g(02)", "g.     (02)", "G.(02)", "g (02)"])
+@pytest.mark.parametrize("comma", [",", "", " , "])
+def test_units_as_agencies_write_them(unit: str, comma: str) -> None:
+    """With a full stop, blanks, and no comma before the format."""
+    text = "\n".join(_channel(unit=unit, code=2)).replace("),Format", f"){comma}Format")
+    assert COSMOS.read(_source([text])).components[0].unit == "g"
+
+
+def test_counts_are_named() -> None:
+    """Volume 0 holds counts of the recorder, which its own lines say."""
+    text = "\n".join(_channel(unit=" counts(50)", code=50)).replace("acceleration pts", "raw accel.   pts")
+    with pytest.raises(RecordError, match="line 46: the file holds counts of the recorder, no accelerations"):
+        COSMOS.read(_source([text]))
+    with pytest.raises(RecordError, match="line 1: the file holds spectra"):
+        COSMOS.read(_source(["\n".join(_channel()).replace("Corrected acceleration", "Response spectra")]))
+
+
+def test_a_channel_is_named_by_its_code_where_no_azimuth_is_stated() -> None:
+    """An azimuth of 0 without degrees in the text is none where SCNL names the channel."""
+    text = (
+        "\n".join(_channel(azimuth=0)).replace("  1: 0 deg (", "  ?:Other (").replace("| two", "|<SCNL>BMR.BNZ.AK.--")
+    )
+    assert COSMOS.read(_source([text])).components[0].name == "BNZ"
+    assert COSMOS.read(_source(_channel(azimuth=0))).components[0].name == "0"
+
+
+@pytest.mark.parametrize(
+    ("printed", "good"), [("  -12.345000", True), ("  -12.345400", False), ("  -12.346000", False)]
+)
+def test_a_peak_is_as_sharp_as_its_digits(printed: str, good: bool) -> None:
+    """Zeros at its end may be none of its digits, down to three decimals; half a digit of either is rounding."""
+    text = "\n".join(_channel())
+    source = _source([text.replace("  -12.345000", printed)])
+    if good:
+        assert COSMOS.read(source).components[0].stated_peak == 12.345
+    else:
+        with pytest.raises(RecordError, match="the data have 12.345"):
+            COSMOS.read(source)
+    rounded = text.replace("-12.34500   2.00000", "-12.34549   2.00000")
+    assert COSMOS.read(_source([rounded])).components[0].peak == 12.34549

@@ -169,6 +169,49 @@ def test_v1_text_alone_states_the_peak() -> None:
     assert V1.read(_source([without], "\n")).components[0].stated_peak is None
 
 
+def test_v1_modern_channels_state_rate_unit_and_format() -> None:
+    """Two channels of their own length in (8f9.6), in g, with the end in newer words; one is asked for by its name."""
+    channels = []
+    for number, direction in ((1, "360 Deg"), (2, " Up")):
+        lines = _v1(number, direction, unit="sec and g .        Max  =  -1.235 g , at  .06 sec.")
+        lines[0] = "Uncorrected Accelerogram Data             Processed: 02/13/12"
+        even = "".join(f"{v / 10:9.6f}" for v in TENTHS)
+        head = "   7 Accelerogram points at 50 pts/sec in units of g .      Format: (8f9.6)"
+        channels += [*lines[:27], head, even, f"/&  ----------  End of Data for Station Channel   {number}"]
+    text = "\n".join(channels)
+    record = V1.read(_source([text]))
+    assert [(part.name, part.unit, part.time_step) for part in record.components] == [
+        ("360", "g", 0.02),
+        ("Up", "g", 0.02),
+    ]
+    np.testing.assert_allclose(record.components[1].acceleration, np.array(TENTHS) / 10.0, rtol=0.0, atol=1e-12)
+    for old, new, words in (
+        ("at 50 pts/sec", "at 0 pts/sec", "time step must be in"),
+        ("in units of g .", "in units of counts .", "counts of the recorder, no accelerations"),
+        ("in units of g .", "in units of gal .", "states the unit gal, you say g"),
+        ("   7 Accelero", "   8 Accelero", "states 7 samples, the file holds 8"),
+    ):
+        with pytest.raises(RecordError, match=words):
+            V1.read(_source([text.replace(old, new)]))
+
+
+def test_v1_peak_time_from_the_trigger_is_doubted() -> None:
+    """RENADIC counts it from the trigger: the record is read, and its peak stays checked."""
+    lines = _v1()
+    text = "\n".join(lines).replace("    -1.235      .060", "    -1.235      .020")
+    source = _source([text])
+    assert V1.read(source).components[0].acceleration.tolist() == TENTHS
+    assert source.doubts == ["hand.v: the header states the peak at 0.02 s, the data have it at 0.06 s"]
+
+
+def test_v2_velocity_that_was_rounded_is_doubted_only_beyond_its_digits() -> None:
+    """-5.500 beside -5.504 is a zero that is no digit; -5.506 is a doubt, and neither refuses."""
+    for other, doubts in (("    -5.504", 0), ("    -5.506", 1)):
+        source = _source(["\n".join(_v2()).replace("      .100    -5.500", f"      .100{other}")])
+        assert V2.read(source).components[0].acceleration.tolist() == ACCEL
+        assert len(source.doubts) == doubts
+
+
 def test_v1_evenly_spaced_variant() -> None:
     """A line that states an even spacing stands for the column of times."""
     lines = _v1(unit="IN G. MAX")

@@ -172,7 +172,7 @@ DAMAGES = {
     ),
     "slist": (
         ("8 samples", "9 samples", "states 9 samples, the file holds 8"),
-        ("M/S**2", "Counts", "holds Counts, no accelerations"),
+        ("M/S**2", "Counts", "the file states Counts, a count of a recorder"),
         ("HNE_D", "HHE_D", "doubt:channel HHE is by its code one of velocities"),
         (", SLIST,", ", TRIPLE,", "TIMESERIES code"),
     ),
@@ -228,11 +228,9 @@ def test_a_count_and_a_step_on_a_line_of_their_own() -> None:
             eqsig.read(source)
     with pytest.raises(RecordError, match="states 8 samples, the file holds 7"):
         eqsig.read(Source("x", EQSIG.replace("7 0.01", "8 0.01").encode()), "g")
-    for text, name in (
-        (EQSIG.replace("one", "velocity"), "x"),
-        (EQSIG, "one_vel.txt"),
-        (EQSIG.replace("one", "[cm/s]"), "x"),
-    ):
+    with pytest.raises(RecordError, match="the file states cm/s, a velocity"):
+        eqsig.read(Source("x", EQSIG.replace("one", "[cm/s]").encode()), "g")
+    for text, name in ((EQSIG.replace("one", "velocity"), "x"), (EQSIG, "one_vel.txt")):
         with pytest.raises(RecordError, match=r"accelerations are needed, and its (header|name) says 'vel"):
             eqsig.read(Source(name, text.encode()), "g")
     # times and samples are no count and step, whatever the first line

@@ -26,6 +26,8 @@ def _source(text: str) -> Source:
         "DT= .02000 SEC, NPTS= 7",
         "   7    0.0200    NPTS, DT",
         "7 .02 NPTS,DT (SEC)",
+        "NPTS=   7, DT=   .0200 SEC,  -5 POLE @      .03000 HZ,   0 POLE @      .00000",
+        "NPTS= 7, DT= .02 SECONDS., filtered",
     ],
 )
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r\r\n"])
@@ -96,7 +98,8 @@ DAMAGES = [
     ("-.2500000E+00", "1e999", "line 5: number is beyond all range"),
     ("-.2500000E+00", "", "line 6|holds 6"),
     # a velocity file looks the same but for its unit
-    ("ACCELERATION TIME HISTORY IN UNITS OF G", "VELOCITY TIME SERIES IN UNITS OF CM/S", "states 'CM/S'"),
+    ("ACCELERATION TIME HISTORY IN UNITS OF G", "VELOCITY TIME SERIES IN UNITS OF CM/S", "'CM/S': a velocity; .*AT2"),
+    ("ACCELERATION TIME HISTORY IN UNITS OF G", "DISPLACEMENT TIME SERIES IN CM", "a displacement; .*AT2"),
     (".5000000E-01\n", ".5000000E-01\n\n.1\n", "line 8: 5 numbers a line expected"),
 ]
 

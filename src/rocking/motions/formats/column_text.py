@@ -27,15 +27,19 @@ _TAIL = re.compile(r"(.*[^\W_])_((?:mm|cm|m)_s2?)")
 _SECONDS = {"s", "sec", "secs", "second", "seconds", "sek"}
 _TIMES = {"time", "times", "zeit", "temps", "tiempo", "tempo", "tid", "tijd"}
 _OTHER_WORDS = ("vel", "disp", "geschw", "verschieb", "rotation", "period", "freq")
+_COUNTS = {"count", "counts", "cnt"}
 _VELOCITIES, _LENGTHS = {"m/s", "cm/s", "mm/s", "in/s", "ft/s"}, {"m", "cm", "mm", "in", "ft"}
 _OTHER_UNITS = {
     *(*_VELOCITIES, *_LENGTHS, "in/s2", "ft/s2"),
     *("rad", "deg", "rad/s", "deg/s", "rad/s2", "deg/s2", "s", "ms", "us", "min", "h", "hz", "khz"),
-    *("v", "mv", "n", "kn", "pa", "kpa", "mpa", "count", "counts", "cnt", "%", "%g", "-", "1"),
+    *("v", "mv", "n", "kn", "pa", "kpa", "mpa", *_COUNTS, "%", "%g", "-", "1"),
 }
 _OF_ANY_CASE = {unit for unit in ACCELERATION_UNITS if unit not in {"g", "mg", "g/10"}}
 _SPELT = {"m/s/s": "m/s2", "cm/s/s": "cm/s2", "mm/s/s": "mm/s2", "m.s-2": "m/s2", "cm.s-2": "cm/s2", "gals": "gal"}
 _UNITS = ", ".join(ACCELERATION_UNITS)
+
+
+OTHERS = {"velocity", "displacement", "count of a recorder"}  # quantities that are taken for accelerations
 
 
 @dataclass(frozen=True)
@@ -91,7 +95,8 @@ def kind_of(unit: str) -> tuple[str | None, str]:
     small = _SPELT.get(behind.lower(), behind.lower())
     if behind in ACCELERATION_UNITS or small in _OF_ANY_CASE:
         return (behind if behind in ACCELERATION_UNITS else small), "acceleration"
-    kinds = ((_VELOCITIES, "velocity"), (_LENGTHS, "displacement"), (_OTHER_UNITS | _SECONDS, "other"))
+    kinds = ((_VELOCITIES, "velocity"), (_LENGTHS, "displacement"), (_COUNTS, "count of a recorder"))
+    kinds = (*kinds, (_OTHER_UNITS | _SECONDS, "other"))
     return None, next((kind for units, kind in kinds if small in units), "")
 
 
@@ -161,7 +166,7 @@ class NamedColumns:
         if len(times) > 1:
             raise source.error(None, f"{_listed(times)} are both called a time; remove all but one")
         if not found:
-            kinds = {kind_of(one.behind)[1] for one in named} & {"velocity", "displacement"}
+            kinds = {kind_of(one.behind)[1] for one in named} & OTHERS
             hold = f", they hold {' and '.join(sorted(kinds))}" if kinds else ""
             raise source.error(
                 None,

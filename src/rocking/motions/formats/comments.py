@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 
 from rocking.motions.formats import headers, numbers
-from rocking.motions.formats.column_text import ColumnName, kind_of, names_on, readable
+from rocking.motions.formats.column_text import OTHERS, ColumnName, kind_of, names_on, readable
 from rocking.motions.formats.record import Source
 
 _NUMBER = r"(\d*\.?\d+(?:[eE][-+]?\d+)?)"
@@ -48,7 +48,7 @@ class Said:
                 step = 1.0 / rate
             for word in (*_UNIT.findall(bare), *_UNIT_OF.findall(bare)):
                 said, kind = kind_of(word.rstrip(".-"))
-                if kind in {"velocity", "displacement"}:
+                if kind in OTHERS:
                     raise source.error(line, f"accelerations are needed, the file states {word}, a {kind}")
                 unit = headers.acceleration_unit(source, unit, said) if said else unit
             called = names_on(bare)

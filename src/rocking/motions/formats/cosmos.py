@@ -24,7 +24,7 @@ _TABLE = re.compile(
 )
 _COMMENTS = re.compile(r"\s*(\d+)\s+Comment line\(?s?\)? follow.*", re.IGNORECASE)
 _DATA = re.compile(
-    r"\s*(\d+)\s+(\w[\w .]*?)\s+pts,\s*approx\s+(\S+)\s+secs?,\s*units\s*=\s*([^,(]+)\(\s*(\d+)\s*\),?\s*"
+    r"\s*(\d+)\s+(\w[\w .]*?)\s+pts,\s*approx\s+(\S+)\s+secs?,\s*units\s*=\s*([^,(]+)\(\s*(\d+)\s*\)\s*,?\s*"
     r"Format\s*=\s*(\(.*?\))\s*",
     re.IGNORECASE,
 )
@@ -95,6 +95,8 @@ def _table(source: Source, line: int, kind: str, least: int) -> tuple[FloatArray
 
 def _channel(source: Source, first: int, units: str | None, time_step: float | None) -> tuple[Channel, int]:
     title = _title(source.lines[first])
+    if "spectr" in source.lines[first][:LONGEST_LINE].lower():
+        raise source.error(first, "the file holds spectra, and accelerations over time are needed")
     texts = whole(source, first, title[1], "number of text lines") if title else 0
     if not 12 <= texts <= _MOST_TEXT or first + texts + 1 >= len(source.lines):
         raise source.error(first, f"12 to {_MOST_TEXT} text lines expected, and as many lines after this one")

@@ -313,7 +313,10 @@ def _recognised(source: Source) -> RecordFormat:
     if last.recognises(source):
         return last
     unknown = f"not recognised as any of {', '.join(_CLASSES)}; damaged, or another format?"
-    raise last.refusal(source) or source.error(None, unknown)
+    top = " ".join(source.lines[:5])[:1000].lower() if source.is_text else ""
+    held = next((word for word in ("spectra", "spectrum", "velocity", "displacement", "counts") if word in top), None)
+    beside = f"; it speaks of {held}, and accelerations over time are needed" if held and "accel" not in top else ""
+    raise last.refusal(source) or source.error(None, unknown + beside)
 
 
 def _chosen(record: Record, what: str, name: str | None, other: Component | None = None) -> Component:

@@ -70,7 +70,8 @@ def side_by_side(
         raise source.error(None, f"the header states {count} samples, the file holds {values.size / across:g}")
     if count < 2:
         raise source.error(None, f"at least 2 samples are needed, found {count}")
-    word = source.lines[first].split()[0] if form is None else source.lines[first][: form[1]]
+    word = next(text.split()[0] for text in source.lines[first:] if text.strip())
+    word = word if form is None else source.lines[first][: form[1]]
     parts = []
     for place, part in enumerate(record.components):
         column, stated = values[place::across].copy(), None

@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking.errors import RecordError
 from rocking.motions.formats import headers, numbers
-from rocking.motions.formats.column_text import kind_of
+from rocking.motions.formats.column_text import OTHERS, kind_of
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
 
 _HEAD = re.compile(
@@ -70,10 +70,10 @@ def _channel(source: Source, first: int, last: int, units: str | None, time_step
     if found is None:
         raise source.error(first, "TIMESERIES code, ... samples, ... sps, time, SLIST or TSPAIR, kind, unit expected")
     network, station, _, code, count, rate, start, layout, kind, word = found.groups()
-    if "count" in word.lower() or kind == "ASCII":
-        raise source.error(first, f"the file holds {word[:20] or 'text'}, no accelerations: remove the response first")
+    if kind == "ASCII":
+        raise source.error(first, "the file holds text, no accelerations")
     said, quantity = kind_of(word)
-    if quantity in {"velocity", "displacement"}:
+    if quantity in OTHERS:
         raise source.error(first, f"accelerations are needed, the file states {word}, a {quantity}")
     unit = headers.acceleration_unit(source, said, units)
     step = headers.step_between_samples(source, 1.0 / float(rate) if float(rate) > 0.0 else 0.0, time_step)
