@@ -168,7 +168,7 @@ def test_a_peak_is_as_sharp_as_its_digits(printed: str, good: bool) -> None:
     if good:
         assert COSMOS.read(source).components[0].stated_peak == 12.345
     else:
-        with pytest.raises(RecordError, match="the data have 12.345"):
+        with pytest.raises(RecordError, match=r"the data have 12.345"):
             COSMOS.read(source)
     rounded = text.replace("-12.34500   2.00000", "-12.34549   2.00000")
     assert COSMOS.read(_source([rounded])).components[0].peak == 12.34549
