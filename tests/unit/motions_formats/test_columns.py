@@ -308,6 +308,40 @@ def test_names_in_a_comment_are_names() -> None:
     assert COLUMNS.read(_source("# t NS EW UD\n" + BBP.split("\n", 1)[1]), "g").components[0].name == "column 2"
 
 
+PLATFORM = """# Station= 2001-SCE
+#    time= 01/17/1994,12:30:55.00 UTC
+#     lon= -118.48130000
+#   units= {0}
+# orientation= 0,90,UP
+#
+# Data fields are TAB-separated
+# Column 1: Time (s)
+# Column 2: North component ground {1} ({0}) (+ is 000)
+# Column 3: East component ground {1} ({0}) (+ is 090)
+# Column 4: Up component ground {1} ({0}) (+ is upward)
+#
+"""
+OLDER = """% synthetic broadband seismogram (Mai&Olsen 2008)
+% N = 8 header lines
+% site: 5017-A-GLP
+% NPTS, DT: 3 0.025
+%
+% time(s)    NS ({0})      EW({0})      UP ({0})
+% --------------------------------------------------
+"""
+
+
+@pytest.mark.parametrize("header", [PLATFORM, OLDER])
+def test_headers_of_the_broadband_platform(header: str) -> None:
+    """The guide to its files has both: accelerations are read, velocities refused whatever the user says."""
+    body = BBP.split("\n", 1)[1]
+    record = COLUMNS.read(_source(header.format("cm/s^2", "acceleration") + body))
+    assert {(part.unit, part.time_step, part.acceleration.size) for part in record.components} == {("cm/s2", 0.025, 3)}
+    for told in (None, "cm/s2", "g"):
+        with pytest.raises(RecordError, match="velocity"):
+            COLUMNS.read(_source(header.format("cm/s", "velocity") + body), told)
+
+
 @pytest.mark.parametrize(
     ("comment", "unit", "step"),
     [
@@ -395,6 +429,11 @@ def test_our_own_tables_read_back_without_options(made_up) -> None:
     record = made_up("N-S", "a [odd], name", unit="g")
     again = COLUMNS.read(_source(COLUMNS.write(record).decode()))
     assert [(part.name, part.unit) for part in again.components] == [("N-S", "g"), ("a odd name", "g")]
+    part = record.components[0]
+    for name in ("#1", "N-S"):
+        twice = Record("", tuple(Component(name, part.acceleration, "g", 0.02) for _ in range(2)))
+        names = [one.name for one in COLUMNS.read(_source(COLUMNS.write(twice).decode())).components]
+        assert names == ["column 2", "column 3"]
     table = (
         "time_s,acceleration_m_s2,velocity_m_s,displacement_m\n0.0,1.0,0.0,0.0\n0.02,2.0,0.03,0.0\n0.04,0.0,0.05,0.1\n"
     )

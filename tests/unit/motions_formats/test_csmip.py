@@ -201,7 +201,9 @@ def test_v1_peak_time_from_the_trigger_is_doubted() -> None:
     text = "\n".join(lines).replace("    -1.235      .060", "    -1.235      .020")
     source = _source([text])
     assert V1.read(source).components[0].acceleration.tolist() == TENTHS
-    assert source.doubts == ["hand.v: the header states the peak at 0.02 s, the data have it at 0.06 s"]
+    assert source.doubts == [
+        "hand.v: the header states the peak at 0.02 s, the data have it at 0.06 s (from the trigger?)"
+    ]
 
 
 def test_v2_velocity_that_was_rounded_is_doubted_only_beyond_its_digits() -> None:

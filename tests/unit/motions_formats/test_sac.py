@@ -149,7 +149,10 @@ def test_what_is_written_is_read_back() -> None:
     """Single precision survives."""
     pytest.importorskip("obspy")
     given = Record("", (Component("HNE", np.sin(np.arange(90.0)), "mg", 0.005),), "", {"station": "ABC"})
-    (part,) = SAC.read(Source("w", SAC.write(given)), units="mg").components
+    (part,) = SAC.read(Source("w", SAC.write(given))).components
+    assert part.unit == "mg"
+    with pytest.raises(RecordError, match="states the unit mg, you say g"):
+        SAC.read(Source("w", SAC.write(given)), units="g")
     np.testing.assert_allclose(part.acceleration, given.components[0].acceleration, rtol=6e-8)
     assert (part.name, part.time_step) == ("HNE", 0.005)
     with pytest.raises(RecordError, match="wrong unit"):

@@ -10,7 +10,15 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
 from rocking.motions.formats import headers
-from rocking.motions.formats.column_text import MARK, MOST_NAMED, ColumnName, ColumnText, NamedColumns, states_sampling
+from rocking.motions.formats.column_text import (
+    MARK,
+    MOST_NAMED,
+    ColumnName,
+    ColumnText,
+    NamedColumns,
+    names_on,
+    states_sampling,
+)
 from rocking.motions.formats.comments import Said, is_understood
 from rocking.motions.formats.headers import in_unit, step_between_samples, step_of_times
 from rocking.motions.formats.numbers import number
@@ -125,7 +133,11 @@ class Columns(RecordFormat):
             raise RecordError("columns holds components of the same length and step; write each to a file of its own")
         named = [re.sub(r"[\[\](),;=]", " ", one_line(part.name, 40)).strip() for part in record.components]
         unit = record.components[0].unit
-        lines = [", ".join(["# time [s]", *(f"{name or 'acceleration'} [{unit}]" for name in named)])]
+        heading = ", ".join(["time [s]", *(f"{name} [{unit}]" for name in named)])
+        # a name that could not be read as one
+        if len({name.casefold() for name in named}) < len(named) or len(names_on(heading) or ()) != len(named) + 1:
+            heading = ", ".join(["time [s]", *(f"column {place + 2} [{unit}]" for place in range(len(named)))])
+        lines = [f"# {heading}"]
         for place, sample in enumerate(np.column_stack(rows)):
             lines.append(" ".join([f"{place * step:.9f}", *(repr(float(value)) for value in sample)]))
         return ("\n".join(lines) + "\n").encode("latin-1")

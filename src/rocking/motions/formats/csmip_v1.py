@@ -36,6 +36,7 @@ class CsmipV1(RecordFormat):
     )
     begins: ClassVar[re.Pattern[str]] = re.compile(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.IGNORECASE)
     _skip: ClassVar[int] = 0  # blanks before the pairs of a line
+    _counts: ClassVar[tuple[int, ...]] = (32, 27)  # where newer files state the number of samples, where older ones
     _has_peak: ClassVar[bool] = True  # whether the numbers of the header end in the peak and its time
     _end: ClassVar[str] = "/&"  # with what the line behind the samples begins
 
@@ -68,8 +69,13 @@ class CsmipV1(RecordFormat):
         # the last line of the reals is written full or not
         last = -(-len(source.lines[after - 1].rstrip()) // 10)
         figures, line = fixed(source, reals, 48 + min(8, max(1, last)), 8, 10)
-        # newer files state the number of samples at place 33, older ones at 28
-        count = whole(source, first + _TEXT_LINES, f"{wholes[32] or wholes[27]:.0f}", "number of samples", 2)
+        count = whole(
+            source,
+            first + _TEXT_LINES,
+            f"{next((wholes[k] for k in self._counts if wholes[k]), 0):.0f}",
+            "number of samples",
+            2,
+        )
         for text in header[:_TEXT_LINES]:
             if points := _POINTS.search(text[:LONGEST_LINE]):
                 check_count(source, int(points[1]), count)
@@ -122,6 +128,7 @@ class Usc(CsmipV1):
         r"\s*FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOL", re.IGNORECASE
     )
     _skip: ClassVar[int] = 1
+    _counts: ClassVar[tuple[int, ...]] = (27,)
     _has_peak: ClassVar[bool] = False
     _end: ClassVar[str] = ""
 

@@ -199,7 +199,9 @@ def check_peak_time(source: Source, stated: float, values: FloatArray, step: flo
     near = largest[max(0, math.ceil(at - 1.01)) : max(0, math.floor(at + 1.01) + 1)] if 0.0 <= at < 1e9 else largest[:0]
     if not near.size or near.max() < largest.max() - rounding:
         found = float(largest.argmax()) * step
-        source.doubt(None, f"the header states the peak at {stated:g} s, the data have it at {found:g} s")
+        source.doubt(
+            None, f"the header states the peak at {stated:g} s, the data have it at {found:g} s (from the trigger?)"
+        )
 
 
 def check_duration(source: Source, stated: float, count: int, step: float, rounding: float) -> None:

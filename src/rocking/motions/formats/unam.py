@@ -39,7 +39,7 @@ class Unam(RecordFormat):
         peaks = _listed(source, head, r"ACEL\. MAX\.\s*\(Gal\)", channels, r"[-+]?\d*\.?\d+")
         if len(set(counts)) > 1 or len({float(one) for one in steps}) > 1:
             raise source.error(None, "channels of different length or step are not read")
-        said(source, head, r"UNIDADES DE LOS DATOS\s*:", r"Gal\b.*")
+        said(source, head, r"UNIDADES DE LOS DATOS\s*:", r"(?:Gal|cm/s/s|cm/s\^?2)\b.*")
         unit = headers.acceleration_unit(source, "gal", units)
         step = headers.step_between_samples(source, float(steps[0]), time_step)
         form = said(source, head, r"FORMATO DATOS[^:]*:", r".*")[0]
