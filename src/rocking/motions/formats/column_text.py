@@ -95,9 +95,8 @@ def kind_of(unit: str) -> tuple[str | None, str]:
     small = _SPELT.get(behind.lower(), behind.lower())
     if behind in ACCELERATION_UNITS or small in _OF_ANY_CASE:
         return (behind if behind in ACCELERATION_UNITS else small), "acceleration"
-    kinds = ((_VELOCITIES, "velocity"), (_LENGTHS, "displacement"), (_COUNTS, "count of a recorder"))
-    kinds = (*kinds, (_OTHER_UNITS | _SECONDS, "other"))
-    return None, next((kind for units, kind in kinds if small in units), "")
+    kinds = {"velocity": _VELOCITIES, "displacement": _LENGTHS, "count of a recorder": _COUNTS, "other": _OTHER_UNITS}
+    return None, next((kind for kind, units in kinds.items() if small in units), "other" if small in _SECONDS else "")
 
 
 @dataclass(frozen=True, slots=True)
