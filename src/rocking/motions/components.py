@@ -1,6 +1,7 @@
 """Components of one motion: joined, turned into other directions, and the largest over all of them."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -63,6 +64,10 @@ class Components:
     def doubts(self) -> tuple[str, ...]:
         """Doubts about any of them."""
         return tuple(doubt for part in self.parts if part is not None for doubt in part.doubts)
+
+    def each(self, change: Callable[[Any], Any]) -> "Components":
+        """Return components, each of which was changed."""
+        return Components(*(None if part is None else change(part) for part in self.parts))
 
     def segments(self) -> "Components":
         """Return itself: the engine of bodies in space lays out its components together."""
@@ -149,7 +154,7 @@ def rotated(first: GroundMotion, second: GroundMotion, angle: float) -> tuple[Gr
     >>> x.peak < 1e-15, y.acceleration.tolist()
     (True, [0.0, -1.0])
     """
-    _matching(first, second)
+    matching(first, second)
     angle = checks.number("angle", angle, "rad")
     c, s = math.cos(angle), math.sin(angle)
     a, b = first.acceleration, second.acceleration
@@ -183,7 +188,7 @@ def rotd_pga(first: GroundMotion, second: GroundMotion, percentile: float) -> fl
     >>> rotd_pga(GroundMotion([0.0, 3.0], 0.1), GroundMotion([0.0, 4.0], 0.1), 100)
     5.0
     """
-    _matching(first, second)
+    matching(first, second)
     percentile = checks.within("percentile", percentile, 0.0, 100.0, unit="%")
     a, b = first.acceleration, second.acceleration
     if percentile == 100.0:
@@ -211,7 +216,7 @@ def _told(horizontal: GroundMotion, vertical: GroundMotion) -> dict[str, str]:
     return {"vertical component": name} | ({} if header is None else {"vertical header": header})
 
 
-def _matching(first: GroundMotion, second: GroundMotion) -> None:
+def matching(first: GroundMotion, second: GroundMotion) -> None:
     checked_motion(first, "first")
     checked_motion(second, "second")
     if len(first) != len(second) or not math.isclose(first.time_step, second.time_step, rel_tol=1e-9):

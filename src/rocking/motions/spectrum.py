@@ -103,6 +103,13 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
     [2.0, 2.0]
     """
     motion = checked_motion(motion)
+    given, damping, rates = oscillators(motion, periods, damping)
+    found = _largest(motion, given, rates)
+    return ResponseSpectrum(given, damping, found[:, 0], found[:, 1], found[:, 2])
+
+
+def oscillators(motion: GroundMotion, periods: ArrayLike, damping: float) -> tuple[FloatArray, float, ComplexArray]:
+    """Return periods [s] and damping of oscillators, checked, and their complex rates."""
     damping = checks.within("damping", damping, 0.0, 1.0, open_high=True, hint="a ratio, not a percentage")
     given = np.atleast_1d(checks.positive_array("periods", periods, "s"))
     if given.ndim != 1 or not given.size:
@@ -110,8 +117,9 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
     shortest = SHORTEST_PERIOD * motion.time_step
     if given.min() < shortest:
         raise InvalidValueError(f"periods must be at least {shortest:g} s for this time step, got {given.min():g}")
-    found = _largest(motion, given, damping)
-    return ResponseSpectrum(given.copy(), damping, found[:, 0], found[:, 1], found[:, 2])
+    # with the complex rate s, the state z = u' - conj(s) u obeys z' = s z - a, and u = Im z / Im s
+    rates = 2.0 * math.pi / given * complex(-damping, math.sqrt(1.0 - damping * damping))  # Eq. 150
+    return given.copy(), damping, np.asarray(rates, dtype=np.complex128)
 
 
 def phi(x: Any) -> tuple[Any, Any]:
@@ -126,10 +134,8 @@ def phi(x: Any) -> tuple[Any, Any]:
     return np.where(near, 1.0 + small * series, first)[()], np.where(near, series, (first - 1.0) / large)[()]
 
 
-def _largest(motion: GroundMotion, periods: FloatArray, damping: float) -> FloatArray:
+def _largest(motion: GroundMotion, periods: FloatArray, rates: ComplexArray) -> FloatArray:
     """Return displacement, velocity and absolute acceleration, one row a period: as many periods at once as fit."""
-    # with the complex rate s, the state z = u' - conj(s) u obeys z' = s z - a, and u = Im z / Im s
-    rates = 2.0 * math.pi / periods * complex(-damping, math.sqrt(1.0 - damping * damping))  # Eq. 150
     parts = np.ceil(POINTS_PER_PERIOD * motion.time_step / periods).astype(np.int64)
     result = np.empty((periods.size, 3))
     size = max(1, TOGETHER // len(motion))
@@ -137,19 +143,19 @@ def _largest(motion: GroundMotion, periods: FloatArray, damping: float) -> Float
         same = np.flatnonzero(parts == number)
         for start in range(0, same.size, size):
             chosen = same[start : start + size]
-            result[chosen] = _peaks(motion, np.asarray(rates[chosen], dtype=np.complex128), number).T
+            result[chosen] = _peaks(motion, rates[chosen], number).T
     return result
 
 
 def _peaks(motion: GroundMotion, rates: ComplexArray, parts: int) -> FloatArray:
-    states = _states(motion, rates)
+    at_samples = states(motion, rates)
     best = np.zeros((3, rates.size))
     swing = np.exp(rates[:, None] * (math.pi / rates.imag[:, None] * np.linspace(0.0, 1.0, FREE_POINTS)))
-    for j, (value, _) in enumerate(_response(states[:, -1:] * swing, np.zeros(swing.shape), rates[:, None])):
+    for j, (value, _) in enumerate(_response(at_samples[:, -1:] * swing, np.zeros(swing.shape), rates[:, None])):
         best[j] = np.abs(value).max(axis=1)
-    which, step = _close_steps(motion, rates, states, best)
+    which, step = _close_steps(motion, rates, at_samples, best)
     h, a = motion.time_step, motion.acceleration
-    rise, rate, start = a[step + 1] - a[step], rates[which], states[which, step]
+    rise, rate, start = a[step + 1] - a[step], rates[which], at_samples[which, step]
     left = _response(start, a[step], rate)
     for j in range(3):
         np.maximum.at(best[j], which, np.abs(left[j][0]))
@@ -165,7 +171,7 @@ def _peaks(motion: GroundMotion, rates: ComplexArray, parts: int) -> FloatArray:
     return best
 
 
-def _states(motion: GroundMotion, rates: ComplexArray) -> ComplexArray:
+def states(motion: GroundMotion, rates: ComplexArray) -> ComplexArray:
     """Return the states at the samples, one row an oscillator, at rest at the first."""
     h, a = motion.time_step, motion.acceleration
     first, second = phi(rates * h)

@@ -187,6 +187,15 @@ def read_motion(
     return with_vertical(_motion(source, record, level), part)
 
 
+def motions_in(
+    path: Path, format: str | None = None, units: str | None = None, time_step: float | None = None
+) -> list[GroundMotion]:
+    """Return every component of a record file as a motion of its own; the rest is as in `read_motion`."""
+    source = Source.of_path(path)
+    record = _read(source, format, units, time_step)
+    return [_motion(source, record, part) for part in record.components]
+
+
 def write_record(record: Record, path: str | PathLike[str], format: str) -> None:
     """Write a record to a file.
 
@@ -282,12 +291,19 @@ def _joined(motion: GroundMotion, upright: GroundMotion, beside: Source, *, same
     name = upright.metadata["component"]
     if same_file and name == motion.metadata["component"]:
         raise InvalidValueError(f"{beside.name} holds the horizontal component {name} and cannot be the vertical one")
-    for key in _STARTS:
-        if key in motion.metadata and key in upright.metadata:
-            late = _seconds(upright.metadata[key]) - _seconds(motion.metadata[key])
-            if abs(late) > 0.5 * motion.time_step:
-                raise beside.error(None, f"it starts {late:g} s after the horizontal component; trim both to one start")
+    if late := delay(motion, upright):
+        raise beside.error(None, f"it starts {late:g} s after the horizontal component; trim both to one start")
     return with_vertical(motion, upright)
+
+
+def delay(motion: GroundMotion, other: GroundMotion) -> float:
+    """Return how much later another motion starts, as far as both state it and beyond half a step; else zero [s]."""
+    for key in _STARTS:
+        if key in motion.metadata and key in other.metadata:
+            late = _seconds(other.metadata[key]) - _seconds(motion.metadata[key])
+            if abs(late) > 0.5 * motion.time_step:
+                return late
+    return 0.0
 
 
 def _seconds(said: str) -> float:

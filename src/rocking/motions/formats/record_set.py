@@ -1,0 +1,411 @@
+"""Sets of records: a folder, a pattern or a list of files, with the components of each station put together."""
+
+import csv
+import re
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from rocking import plausibility
+from rocking.errors import InvalidValueError, RecordError, RockingError
+from rocking.motions.components import Components, with_vertical
+from rocking.motions.formats.reader import delay, motions_in
+from rocking.motions.motion import GroundMotion
+
+PERPENDICULAR = 5.0  # azimuths of two components differ by a right angle, to this [degree]
+FEW = 48  # so few files are read by one process: others take longer to start
+
+_UP = re.compile(r"UP|DO?W?N|V|VER|VERT|VRT|VERTICAL|U|Z|U-?D|[A-Z]{2}Z")
+_DOWN = re.compile(r"DO?W?N")
+_COMPASS = re.compile(r"([NS])\s*(\d{1,2})\s*([EW])")
+_SIDES = {"N": 0.0, "NS": 0.0, "N-S": 0.0, "E": 90.0, "EW": 90.0, "E-W": 90.0, "S": 180.0, "W": 270.0}
+_AT_END = re.compile(r"(?:[-_. ]?(?:\d{3}|UP|DO?WN|VERT?|VRT|[NE]-?[SW]|U-?D|[BHCEL][HNLG][ENZ12])|[-_. ][NEZUVXYLT12])\d?")
+_OF_NAMES = re.compile(r"^(horizontal-1|horizontal-2|vertical) acc\.? filename$")
+_PEER_AXES = {"horizontal-1": "x", "horizontal-2": "y", "vertical": "z"}
+_PEER = "horizontal-1 acc. filename"
+_TITLES = {"motion", "file", "x"}
+_SPECIAL = "*?["
+
+
+@dataclass(frozen=True, eq=False)
+class RecordSet:
+    """Records of several stations or earthquakes, and what was left out.
+
+    Parameters
+    ----------
+    records : tuple of Components
+        One motion a record: two horizontal components x and y, and z, upwards; None where there is none.
+    left_out : tuple of pairs of str
+        File and reason of what could not be read, and of components that could not be put together.
+
+    Examples
+    --------
+    >>> along = GroundMotion([0.0, 1.0, -2.0], 0.1, name="along")
+    >>> both = RecordSet((Components(along, along.scaled(0.5), None),))
+    >>> [motion.peak for motion in both.plane()]
+    [2.0, 1.0]
+    """
+
+    records: tuple[Components, ...]
+    left_out: tuple[tuple[str, str], ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.records)
+
+    def __iter__(self) -> Iterator[Components]:
+        return iter(self.records)
+
+    def __getitem__(self, index: int) -> Components:
+        return self.records[index]
+
+    def plane(self) -> list[GroundMotion]:
+        """Return the motions of plane bodies: every horizontal component with the vertical one of its record.
+
+        Returns
+        -------
+        list of GroundMotion
+            Two a record where it has two horizontal components; none of a vertical one alone.
+        """
+        return [motion for record in self.records for motion in plane_motions(record)]
+
+    def mirrored(self) -> "RecordSet":
+        """Return each record twice: as it is, and with its horizontal components turned round.
+
+        Returns
+        -------
+        RecordSet
+            Of twice the length; the vertical components are as they were.
+        """
+        return replace(self, records=tuple(each for record in self.records for each in (record, turned_round(record))))
+
+
+def plane_motions(record: Components) -> list[GroundMotion]:
+    """Return the horizontal components of a record, each with its vertical one."""
+    level = [part for part in (record.x, record.y) if part is not None]
+    return level if record.z is None else [with_vertical(part, record.z) for part in level]
+
+
+def turned_round(motion: Any) -> Any:
+    """Return a motion whose horizontal components have the other sign."""
+    if isinstance(motion, Components):
+        x, y = (None if part is None else turned_round(part) for part in (motion.x, motion.y))
+        return Components(x, y, motion.z)
+    return motion.changed("turned round", acceleration=-motion.acceleration, name=f"{motion.name}, turned round")
+
+
+def read_records(
+    where: str | PathLike[str],
+    format: str | None = None,
+    units: str | None = None,
+    time_step: float | None = None,
+    *,
+    workers: int = 1,
+    progress: Callable[[int], None] | None = None,
+) -> RecordSet:
+    r"""Return the records of a folder, of a pattern or of a list, the components of each put into one motion.
+
+    Files of one component belong together if their names differ in nothing but the component (``ELC180``,
+    ``ELC270``, ``ELC-UP``; ``.NS``, ``.EW``, ``.UD``), and if their steps, starts, events and azimuths agree; what does not
+    fit stays a motion of its own. Components of different length are cut to the shortest. x is the one from which y
+    is 90 degrees to the left: East and North, where these are stated; a component that points down is turned up.
+
+    A list is a CSV file of PEER's search results, or one with the columns motion (or x, y, z) and, if wanted, scale
+    and name. PEER's scale factors are kept as metadata and not applied.
+
+    Parameters
+    ----------
+    where : path-like
+        Folder, looked through with all that are in it; pattern such as ``records/*.at2``; list of files; or one file.
+    format, units, time_step : optional
+        As in `read_motion`, for all files.
+    workers : int
+        Processes that read many files.
+    progress : callable, optional
+        Called with the number of files that were read since.
+
+    Returns
+    -------
+    RecordSet
+        The records; what could not be read is in its `left_out`.
+
+    Raises
+    ------
+    RecordError
+        If there is no such file, or none could be read.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from rocking.motions.formats import write_motion
+    >>> with TemporaryDirectory() as folder:
+    ...     for end in ("180", "270", "-UP"):
+    ...         write_motion(GroundMotion([0.0, 1.0, 0.0], 0.1), Path(folder, f"ELC{end}.AT2"), "peer")
+    ...     records = read_records(folder)
+    >>> len(records), [part is not None for part in records[0].parts]
+    (1, [True, True, True])
+    """
+    read = partial(_read, format=format, units=units, time_step=time_step)
+    path = Path(where)
+    rows = rows_of_list(path)
+    if rows is not None:
+        names = list(dict.fromkeys(file for row in rows for file in row.files.values()))
+        files = dict(zip(names, mapped(read, [path.parent / name for name in names], workers, progress), strict=True))
+        found = _listed(rows, files)
+    else:
+        paths = paths_of(where)
+        found = paired(zip(paths, mapped(read, paths, workers, progress), strict=True))
+    if not found.records:
+        why = "; ".join(f"{name}: {reason}" for name, reason in found.left_out[:1]) or "it holds no file"
+        raise RecordError(f"{where}: none of {len(found.left_out)} files could be read; {why}")
+    return found
+
+
+def paths_of(where: str | PathLike[str]) -> list[Path]:
+    """Return the files of a folder or a pattern in alphabetic order, without hidden ones; or the one file."""
+    path = Path(where)
+    if path.is_dir():
+        return sorted(one for one in path.rglob("*") if one.is_file() and not _is_hidden(one.relative_to(path)))
+    if path.is_file() or not any(mark in str(where) for mark in _SPECIAL):
+        return [path]
+    root = Path(path.anchor)
+    found = sorted(one for one in root.glob(str(path.relative_to(root))) if one.is_file())
+    if not found:
+        raise RecordError(f"{where}: the pattern finds no file")
+    return found
+
+
+def _is_hidden(path: Path) -> bool:
+    return any(part.startswith((".", "__MACOSX")) for part in path.parts)
+
+
+def mapped(
+    function: Callable[[Any], Any], items: Sequence[Any], workers: int, progress: Callable[[int], None] | None
+) -> Iterator[Any]:
+    """Give a function of every item, in their order, computed by some processes where there are many."""
+    done = progress or (lambda _: None)
+    if workers <= 1 or len(items) < FEW:
+        for item in items:
+            yield function(item)
+            done(1)
+        return
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
+        for each in pool.map(function, items, chunksize=4):
+            yield each
+            done(1)
+
+
+Read = tuple[list[GroundMotion] | str, list[str]]  # the components or why there are none, and doubts
+
+
+def _read(path: Path, **options: Any) -> Read:
+    """Read one file, in whatever process: what it is doubted for is handed back."""
+    with warnings.catch_warnings(record=True) as doubts:
+        warnings.simplefilter("always")
+        try:
+            found: list[GroundMotion] | str = motions_in(path, **options)
+        except RockingError as error:
+            found = str(error).removeprefix(f"{path.name}: ")
+    return found, [str(each.message) for each in doubts]
+
+
+def _motions(path: Path, read: Read, left_out: list[tuple[str, str]]) -> list[GroundMotion]:
+    found, doubts = read
+    plausibility.warn(f"{path.name}: {doubt}" for doubt in doubts)
+    if isinstance(found, str):
+        left_out.append((str(path), found))
+        return []
+    return [replace(each, metadata={**each.metadata, "file": path.name}) for each in found]
+
+
+def paired(files: Iterable[tuple[Path, Read]]) -> RecordSet:
+    """Return the records of files, of which those that belong together by their names are one."""
+    groups: dict[Any, list[GroundMotion]] = {}
+    left_out: list[tuple[str, str]] = []
+    for path, read in files:
+        motions = _motions(path, read, left_out)
+        key, token = ((path.name,), "") if len(motions) > 1 else _key(path, motions)
+        if token and _oriented(motions[0]) is None:  # the header does not say what the name does
+            motions = [replace(motions[0], metadata={**motions[0].metadata, "component": token})]
+        groups.setdefault((path.parent, *key), []).extend(motions)
+    records: list[Components] = []
+    for motions in groups.values():
+        if why := _at_odds(motions):
+            left_out.append((", ".join(dict.fromkeys(each.metadata["file"] for each in motions)), why))
+            records += [_joined([each]) for each in motions]
+        elif motions:
+            records.append(_joined(motions))
+    return RecordSet(tuple(records), tuple(left_out))
+
+
+def _key(path: Path, motions: Sequence[GroundMotion]) -> tuple[tuple[str, ...], str]:
+    """Return the name of a file without that of its component, with its ending; and what it says of the component."""
+    stem, ending = path.stem, path.suffix.casefold()
+    name = motions[0].metadata["component"].split()[0].upper() if motions else ""
+    if name and re.fullmatch(rf"\.{re.escape(name.replace('-', ''))}\d?", ending.upper()):
+        return (stem, ending[-1] if ending[-1].isdigit() else ""), ""  # K-NET, and KiK-net's two instruments
+    for form in (name.zfill(3), name) if name else ():
+        before, mark, after = stem.upper().rpartition(form)
+        if mark and len(form) > 1 and (not after or not (before[-1:] + after[:1]).isalnum()):
+            return (before.rstrip("-_. ") + "|" + after, ending), ""
+    end = re.search(rf"(?:{_AT_END.pattern})$", stem, re.IGNORECASE)
+    if not motions or end is None:
+        return (stem, ending), ""
+    return ((stem[: end.start()] + "|").upper(), ending), end[0].strip("-_. ")
+
+
+def orientation(name: str) -> str | float | None:
+    """Return ``up``, ``down``, or the azimuth of a component by its name [degree]; None if it does not say.
+
+    >>> [orientation(name) for name in ("UP", "HNE", "N-S", "N20W", "090", "T")]
+    ['up', 90.0, 0.0, 340.0, 90.0, None]
+    """
+    word = (name.split() or [""])[0].upper()
+    if _UP.fullmatch(word):
+        return "down" if _DOWN.fullmatch(word) else "up"
+    if word.isdigit():
+        return float(word) % 360.0 if float(word) <= 360.0 else None
+    if compass := _COMPASS.fullmatch(word):
+        north, degrees, east = compass.groups()
+        turned = float(degrees) if (north == "N") == (east == "E") else -float(degrees)
+        return (turned if north == "N" else 180.0 + turned) % 360.0
+    return _SIDES.get(word, _SIDES.get(word[-1:]) if re.fullmatch(r"[BHCEL][HNLG][NE]", word) else None)
+
+
+def _oriented(motion: GroundMotion) -> str | float | None:
+    return orientation(motion.metadata.get("component", ""))
+
+
+def _at_odds(motions: Sequence[GroundMotion]) -> str:
+    """Return why some components are not of one motion; empty if they are."""
+    sides = [_oriented(each) for each in motions]
+    level = [side for side in sides if not isinstance(side, str)]
+    if len(level) > 2 or len(sides) - len(level) > 1:
+        return f"{len(motions)} components of one name: more than two horizontal ones and one upwards"
+    if len(motions) < 2:
+        return ""
+    first, *rest = motions
+    if any(abs(each.time_step - first.time_step) > 1e-9 * first.time_step for each in rest):
+        return "components of different steps between samples"
+    if any(delay(first, each) for each in rest):
+        return "components that start at different times"
+    for key in ("event", "station", "date"):
+        if len({each.metadata[key] for each in motions if key in each.metadata}) > 1:
+            return f"components of different {key}s"
+    azimuths = [side for side in level if isinstance(side, float)]
+    if len(azimuths) == 2 and abs(abs(azimuths[0] - azimuths[1]) % 180.0 - 90.0) > PERPENDICULAR:
+        return f"horizontal components at {azimuths[0]:g} and {azimuths[1]:g} degrees, not at right angles"
+    return ""
+
+
+def _joined(motions: Sequence[GroundMotion]) -> Components:
+    """Return one motion of components that fit."""
+    count = min(map(len, motions))
+    cut = [each if len(each) == count else _cut(each, count) for each in motions]
+    upright = [each for each in cut if isinstance(_oriented(each), str)]
+    level = [each for each in cut if each not in upright]
+    first, second = ([*level, None, None])[:2]
+    if second is not None:
+        a, b = (_oriented(each) for each in level)
+        known = isinstance(a, float) and isinstance(b, float)
+        if known and (float(a) - float(b)) % 360.0 > 180.0:  # type: ignore[arg-type]
+            first, second = second, first
+    up = upright[0] if upright else None
+    if up is not None and _oriented(up) == "down":
+        up = up.changed("turned up: it was positive downwards", acceleration=-up.acceleration)
+    return Components(first, second, up)
+
+
+def _cut(motion: GroundMotion, count: int) -> GroundMotion:
+    return motion.changed(f"cut to the {count} samples of the others", acceleration=motion.acceleration[:count])
+
+
+@dataclass(frozen=True)
+class ListedRecord:
+    """One row of a list of records."""
+
+    files: dict[str, str]  # by axis, or alone by an empty name
+    scale: float  # factor on the acceleration [-]
+    name: str
+    metadata: Mapping[str, str]
+
+
+def rows_of_list(path: Path) -> list[ListedRecord] | None:
+    """Return the rows of a list of records; None of a file that is none."""
+    if path.suffix.lower() not in {".csv", ".tsv"} or not path.is_file() or path.stat().st_size > 1 << 24:
+        return None
+    lines = path.read_bytes().decode("utf-8-sig", "replace").splitlines()
+    top = next((k for k, line in enumerate(lines) if _PEER in line.casefold()), None)
+    of_peer = top is not None
+    if top is None:
+        top = next((k for k, line in enumerate(lines) if line.strip()), 0)
+    mark = next((mark for mark in ",;\t" if mark in "".join(lines[top : top + 1])), ",")
+    table = list(csv.reader(lines[top:], delimiter=mark))
+    titles = [title.strip().casefold() for title in table[0]] if table else []
+    rows = [dict(zip(titles, (cell.strip() for cell in cells), strict=False)) for cells in table[1:]]
+    if of_peer:
+        ends = next((k for k, row in enumerate(rows) if not row.get(_PEER)), len(rows))
+        return [_of_peer(row) for row in rows[:ends]]
+    column = next((title for title in titles if title in _TITLES), None)
+    if column is None or not rows or _is_number(rows[0].get(column, "")):
+        return None
+    return [_row(row, mark, path.name) for row in rows if any(row.values())]
+
+
+def _of_peer(row: Mapping[str, str]) -> ListedRecord:
+    axes = {_PEER_AXES[found[1]]: cell for title, cell in row.items() if (found := _OF_NAMES.match(title))}
+    files = {axis: cell for axis, cell in axes.items() if cell.strip("- ")}
+    told = {f"PEER {title}": cell for title, cell in row.items() if not _OF_NAMES.match(title) and cell.strip("- ")}
+    return ListedRecord(files, 1.0, "", told)
+
+
+def _row(row: Mapping[str, str], mark: str, source: str) -> ListedRecord:
+    axes = {axis: row[axis] for axis in "xyz" if row.get(axis)}
+    alone = row.get("motion") or row.get("file")
+    factor = (row.get("scale") or "1").replace(*(",", ".") if mark == ";" else ("", ""))
+    if not _is_number(factor) or bool(axes) == bool(alone):
+        raise InvalidValueError(
+            f"{source}: a row has a motion, or x with y and z, and its scale is a number; got {dict(row)!r:.120}"
+        )
+    known = {"x", "y", "z", "motion", "file", "scale", "name", ""}
+    told = {title: cell for title, cell in row.items() if title not in known and cell}
+    return ListedRecord({"": alone} if alone else axes, float(factor), row.get("name", ""), told)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return abs(float(text)) < float("inf")
+    except ValueError:
+        return False
+
+
+def _listed(rows: Sequence[ListedRecord], files: Mapping[str, Read]) -> RecordSet:
+    records: list[Components] = []
+    left_out: list[tuple[str, str]] = []
+    for row in rows:
+        parts = {axis: _motions(Path(name), files[name], left_out) for axis, name in row.files.items()}
+        motions = [each for found in parts.values() for each in found]
+        if not all(parts.values()):
+            continue
+        several = any(len(found) > 1 for found in parts.values())
+        why = _at_odds(motions) or (several and len(parts) > 1 and "a file of an axis has one component")
+        if why:
+            left_out.append((", ".join(row.files.values()), str(why)))
+            continue
+        record = _joined(motions)
+        if "" not in parts:  # the list says itself which is which
+            cut = {axis: _cut(found[0], min(map(len, motions))) for axis, found in parts.items()}
+            record = Components(cut.get("x"), cut.get("y"), cut.get("z"))
+        records.append(record.each(partial(_told, row=row)))
+    return RecordSet(tuple(records), tuple(left_out))
+
+
+def _told(motion: GroundMotion, row: ListedRecord) -> GroundMotion:
+    scaled = motion if row.scale == 1.0 else motion.scaled(row.scale)
+    return replace(scaled, name=row.name or motion.name, metadata={**motion.metadata, **row.metadata})
