@@ -104,12 +104,13 @@ def tapered(motion: GroundMotion, fraction: float = 0.05) -> GroundMotion:
     return _each(motion, lambda a: a * window, f"cosine taper over {fraction:g} of each end")
 
 
-def bandpassed(motion: GroundMotion, low: float, high: float, order: int = 4) -> GroundMotion:
+def bandpassed(
+    motion: GroundMotion, low: float, high: float, order: int = 4, pads: Literal["cut", "keep"] = "cut"
+) -> GroundMotion:
     """Return the motion filtered by a Butterworth band pass, forwards and backwards.
 
     Two passes leave no phase shift, and square the response: at both corners it is 1/2. The motion is zero outside
-    the record and is filtered as such, with 1.5 `order` / `low` of zeros at both ends (Converse & Brady 1992); what
-    the filter puts there is cut off again. Use `padded` before to keep it.
+    the record and is filtered as such, with 1.5 `order` / `low` of zeros at both ends (Converse & Brady 1992).
 
     Parameters
     ----------
@@ -119,11 +120,14 @@ def bandpassed(motion: GroundMotion, low: float, high: float, order: int = 4) ->
         Corner frequencies, the second one below half the sampling rate [Hz].
     order : int
         Order of one pass, from 1 to 10 [-].
+    pads : {"cut", "keep"}
+        What becomes of what the filter puts where the zeros were: with it, velocity and displacement end at rest;
+        without it, the motion keeps its length.
 
     Returns
     -------
     GroundMotion
-        The filtered motion, of the same length.
+        The filtered motion.
     """
     motion = checked_motion(motion)
     from scipy.signal import butter, sosfiltfilt
@@ -135,14 +139,16 @@ def bandpassed(motion: GroundMotion, low: float, high: float, order: int = 4) ->
     )
     if isinstance(order, bool) or order not in range(1, 11):
         raise InvalidValueError(f"order must be a whole number from 1 to 10, got {order!r}")
+    keep = checks.one_of("pads", pads, ("cut", "keep")) == "keep"
     sections: Any = butter(int(order), [low, high], btype="bandpass", fs=1.0 / motion.time_step, output="sos")
     pad = math.ceil(1.5 * order / low / motion.time_step)  # Eq. 155
 
     def filtered(samples: FloatArray) -> FloatArray:
         result: Any = sosfiltfilt(sections, np.pad(samples, pad), padtype=None)
-        return np.asarray(result[pad:-pad], dtype=np.float64)
+        return np.asarray(result if keep else result[pad:-pad], dtype=np.float64)
 
     what = f"band-pass {low:g} to {high:g} Hz, Butterworth order {order}, forwards and backwards"
+    what += f", with pads of {pad * motion.time_step:g} s kept at both ends" if keep else ""
     return _each(motion, filtered, what)
 
 
@@ -257,10 +263,17 @@ def trimmed_to_significant(
     GroundMotion
         The part.
     """
+    return trimmed(motion, *significant_bounds(motion, start, end, padding))
+
+
+def significant_bounds(
+    motion: GroundMotion, start: float = 5.0, end: float = 95.0, padding: float = 0.0
+) -> tuple[float, float]:
+    """Return when the part begins and ends that holds most of the Arias intensity [s]."""
     motion = checked_motion(motion)
     padding = checks.within("padding", padding, 0.0, math.inf, unit="s")
     first, last = significant_times(motion, start, end)
-    return trimmed(motion, max(first - padding, 0.0), min(last + padding, motion.duration))
+    return max(first - padding, 0.0), min(last + padding, motion.duration)
 
 
 def padded(motion: GroundMotion, before: float, after: float | None = None) -> GroundMotion:

@@ -1,0 +1,149 @@
+"""One chain of steps that a record goes through, written as words: the same in Python, job files and on the command line."""
+
+import inspect
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from rocking import checks
+from rocking.errors import InvalidValueError, MissingExtraError, RockingError
+from rocking.motions import processing
+from rocking.motions.components import Components, rotated
+from rocking.motions.intensity import MEASURES, measure
+from rocking.motions.motion import GroundMotion, checked_motion
+
+Steps = list[tuple[str, dict[str, Any]]]
+
+
+def _scaled(motion: GroundMotion, factor: float | None = None, **level: float) -> GroundMotion:
+    """Multiply by a factor, or to a measure such as pga=3 [m/s2]."""
+    if (factor is not None) + len(level) != 1:
+        raise InvalidValueError("scale takes factor=2, or one measure such as pga=3 [m/s2]")
+    if factor is not None:
+        return motion.scaled(factor)
+    ((name, target),) = level.items()
+    return processing.scaled_to(motion, name, target)
+
+
+def _without_response(motion: GroundMotion, stations: str, low: float = 0.02, high: float = 40.0) -> GroundMotion:
+    """Remove the response of the instrument by a StationXML file, between two frequencies [Hz]."""
+    from rocking.motions.formats.instrument import without_response
+
+    return without_response(motion, Path(stations), low, high)
+
+
+def _rotated(motion: GroundMotion, angle: float) -> GroundMotion:
+    """Turn both horizontal components, from x towards y [degree]."""
+    raise InvalidValueError(f"rotate is for two horizontal components; {motion.name!r:.60} is one")
+
+
+STEPS: dict[str, Callable[..., GroundMotion]] = {
+    "response": _without_response,
+    "resample": processing.resampled,
+    "mean": processing.demeaned,
+    "baseline": processing.detrended,
+    "taper": processing.tapered,
+    "pad": processing.padded,
+    "bandpass": processing.bandpassed,
+    "trim": processing.trimmed,
+    "significant": processing.trimmed_to_significant,
+    "rotate": _rotated,
+    "scale": _scaled,
+}
+"""What a step does, by its word; keys are the names of its parameters."""
+
+
+def processed(motion: Any, chain: str | Sequence[str]) -> Any:
+    """Return a motion that went through a chain of steps, each of which its provenance names.
+
+    Parameters
+    ----------
+    motion : GroundMotion or Components
+        The motion. Components go through every step together: they are cut at the same times, and scaled by the
+        factor of the stronger horizontal one.
+    chain : str or sequence of str
+        Steps in their order, ``name:key=value,key=value``, with semicolons between: ``mean; bandpass:low=0.1,high=25;
+        taper``. There are response, resample, mean, baseline, taper, pad, bandpass, trim, significant, rotate, scale;
+        keys are the parameters of the functions of `rocking.motions`; ``scale:factor=2`` or ``scale:pga=3`` [m/s2],
+        ``rotate:angle=30`` [degree], ``response:stations=FILE.xml,low=0.02,high=40`` [Hz].
+
+    Returns
+    -------
+    GroundMotion or Components
+        Of the same kind.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such step, or a step refuses its keys or the motion.
+
+    Examples
+    --------
+    >>> processed(GroundMotion([1.0, 3.0], 0.1), "mean; scale:factor=2").acceleration.tolist()
+    [-2.0, 2.0]
+    """
+    if not isinstance(motion, Components):
+        checked_motion(motion)
+    for name, keys in steps_of(chain):
+        try:
+            motion = _together(motion, name, keys) if isinstance(motion, Components) else STEPS[name](motion, **keys)
+        except MissingExtraError:
+            raise
+        except RockingError as error:
+            raise InvalidValueError(f"step {name}: {error}") from error
+    return motion
+
+
+def _together(motion: Components, name: str, keys: dict[str, Any]) -> Components:
+    """Take all components through a step that must treat them alike."""
+    if name == "rotate" and motion.x is not None and motion.y is not None:
+        import math
+
+        return Components(*rotated(motion.x, motion.y, math.radians(keys["angle"])), motion.z)
+    if name == "significant":
+        first, last = processing.significant_bounds(motion.leading, **keys)
+        return motion.each(lambda part: processing.trimmed(part, first, last))
+    if name == "scale" and "factor" not in keys:
+        before, after = motion.leading.peak, _scaled(motion.leading, **keys).peak
+        return motion.each(lambda part: part.scaled(after / before))
+    return motion.each(lambda part: STEPS[name](part, **keys))
+
+
+def steps_of(chain: str | Sequence[str]) -> Steps:
+    """Return the steps of a chain with their keys, checked.
+
+    >>> steps_of("mean; bandpass:low=0.1,high=25")
+    [('mean', {}), ('bandpass', {'low': 0.1, 'high': 25.0})]
+    """
+    parts = chain.split(";") if isinstance(chain, str) else list(chain)
+    return [_step(str(part).strip()) for part in parts if str(part).strip()]
+
+
+def _step(words: str) -> tuple[str, dict[str, Any]]:
+    name, _, tail = words.partition(":")
+    name = checks.one_of("step", name.strip(), STEPS)
+    known = {key: one for key, one in list(inspect.signature(STEPS[name]).parameters.items())[1:] if key != "body"}
+    open_ended = known.pop("level", None) is not None
+    keys: dict[str, Any] = {}
+    for item in filter(None, tail.split(",")):
+        key, equals, value = (part.strip() for part in item.partition("="))
+        if not equals or key in keys or not (key in known or (open_ended and key in MEASURES)):
+            raise InvalidValueError(f"step {name} takes {', '.join(known) or 'no keys'}, got {item!r:.60}")
+        keys[key] = _value(name, key, value, known.get(key))
+    if missing := [key for key, one in known.items() if one.default is one.empty and key not in keys]:
+        raise InvalidValueError(f"step {name} needs {', '.join(missing)}")
+    for key in keys.keys() - known.keys():
+        measure(key).check_grows()
+    return name, keys
+
+
+def _value(name: str, key: str, text: str, parameter: inspect.Parameter | None) -> Any:
+    kind = "float" if parameter is None else str(parameter.annotation)
+    if "float" not in kind and "int" not in kind:
+        return text
+    try:
+        return float(text) if "float" in kind else int(text)
+    except ValueError as error:
+        raise InvalidValueError(
+            f"{key} of step {name} must be a {'whole ' if 'float' not in kind else ''}number, got {text!r:.40}"
+        ) from error

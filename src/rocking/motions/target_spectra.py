@@ -1,0 +1,223 @@
+"""Spectra that records are chosen and scaled for: Eurocode 8, ASCE 7, or a table in a file."""
+
+import csv
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking import checks
+from rocking.conventions import ACCELERATION_UNITS, FloatArray
+from rocking.errors import InvalidValueError
+
+# EN 1998-1:2004, Tables 3.2 and 3.3: S [-], TB, TC, TD [s] by type and ground
+GROUNDS = {
+    1: {"A": (1.0, 0.15, 0.4, 2.0), "B": (1.2, 0.15, 0.5, 2.0), "C": (1.15, 0.2, 0.6, 2.0),
+        "D": (1.35, 0.2, 0.8, 2.0), "E": (1.4, 0.15, 0.5, 2.0)},
+    2: {"A": (1.0, 0.05, 0.25, 1.2), "B": (1.35, 0.05, 0.25, 1.2), "C": (1.5, 0.1, 0.25, 1.2),
+        "D": (1.8, 0.1, 0.3, 1.2), "E": (1.6, 0.05, 0.25, 1.2)},
+}  # fmt: skip
+LONGEST = 4.0  # period to which Eurocode 8 gives the elastic spectrum; its Annex A continues the displacement [s]
+
+_QUANTITY = re.compile(r"\s*((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(\S*)\s*")
+_UNIT = re.compile(r"[\[(_ ](m/s2|m/s\^2|m/s/s|cm/s2|cm/s\^2|gal|g)\s*[\])]?\s*$", re.IGNORECASE)
+_HOW = "eurocode8:ag=0.25g,ground=C,type=1, asce7:sds=1.0g,sd1=0.6g,tl=8, or a CSV file of period and acceleration"
+
+
+@dataclass(frozen=True, eq=False)
+class TargetSpectrum:
+    """A pseudo-acceleration spectrum that records are compared with.
+
+    Parameters
+    ----------
+    name : str
+        What it is.
+    damping : float
+        Its damping ratio [-].
+    longest : float
+        Largest period for which it is defined [s].
+    shortest : float
+        Smallest period for which it is defined [s].
+    of_periods : callable
+        Pseudo-acceleration [m/s2] of an array of periods [s].
+    """
+
+    name: str
+    damping: float
+    longest: float
+    shortest: float
+    of_periods: Callable[[FloatArray], FloatArray]
+
+    def __call__(self, periods: ArrayLike) -> FloatArray:
+        """Return the pseudo-spectral acceleration.
+
+        Parameters
+        ----------
+        periods : array_like
+            Within what the spectrum is defined for [s].
+
+        Returns
+        -------
+        ndarray
+            The spectrum [m/s2].
+        """
+        given = np.atleast_1d(checks.real_array("periods", periods, "s"))
+        checks.all_within(f"periods of {self.name}", given, self.shortest, self.longest, given)
+        return np.asarray(self.of_periods(given), dtype=np.float64)
+
+
+def eurocode8(ag: float, ground: str = "A", type: int = 1, damping: float = 0.05) -> TargetSpectrum:
+    """Return the horizontal elastic response spectrum of Eurocode 8, EN 1998-1:2004, 3.2.2.2.
+
+    Parameters
+    ----------
+    ag : float
+        Design ground acceleration on ground A, with the importance factor [m/s2].
+    ground : str
+        Ground A to E.
+    type : int
+        1, or 2 where earthquakes of up to surface-wave magnitude 5.5 decide.
+    damping : float
+        Damping ratio [-].
+
+    Returns
+    -------
+    TargetSpectrum
+        Up to 4 s.
+
+    Examples
+    --------
+    >>> eurocode8(2.0, "B")([0.3, 1.0]).round(12).tolist()
+    [6.0, 3.0]
+    """
+    ag = checks.positive("ag", ag, "m/s2")
+    kind = int(checks.one_of("type", str(type), ("1", "2")))
+    s, b, c, d = GROUNDS[kind][checks.one_of("ground", str(ground).upper(), GROUNDS[1])]
+    damping = checks.within("damping", damping, 0.0, 1.0, open_high=True, hint="a ratio, not a percentage")
+    eta = max(float(np.sqrt(10.0 / (5.0 + 100.0 * damping))), 0.55)  # Eq. 313
+
+    def spectrum(t: FloatArray) -> FloatArray:
+        top = 2.5 * eta
+        rising, long = 1.0 + t / b * (top - 1.0), np.maximum(t, c)
+        falling = top * c / long * np.minimum(1.0, d / long)
+        return np.asarray(ag * s * np.where(t < b, rising, falling), dtype=np.float64)  # Eq. 312
+
+    name = f"Eurocode 8 type {kind}, ground {str(ground).upper()}, ag {ag:g} m/s2"
+    return TargetSpectrum(name, damping, LONGEST, 0.0, spectrum)
+
+
+def asce7(sds: float, sd1: float, tl: float) -> TargetSpectrum:
+    """Return the design response spectrum of ASCE/SEI 7-16, 11.4.6, for 5 % damping.
+
+    Parameters
+    ----------
+    sds, sd1 : float
+        Design spectral accelerations of short periods and at 1 s [m/s2].
+    tl : float
+        Long-period transition period [s].
+
+    Returns
+    -------
+    TargetSpectrum
+        Of every period.
+
+    Examples
+    --------
+    >>> asce7(10.0, 6.0, 8.0)([0.0, 0.3, 2.0, 16.0]).round(12).tolist()
+    [4.0, 10.0, 3.0, 0.1875]
+    """
+    sds, sd1 = checks.positive("sds", sds, "m/s2"), checks.positive("sd1", sd1, "m/s2")
+    ts, tl = sd1 / sds, checks.positive("tl", tl, "s")
+    if not ts < tl:
+        raise InvalidValueError(f"tl must be above sd1 / sds = {ts:.4g} s, got {tl:g} s; wrong unit?")
+
+    def spectrum(t: FloatArray) -> FloatArray:
+        rising, long = 0.4 + 0.6 * t / (0.2 * ts), np.maximum(t, ts)
+        return np.asarray(sds * np.minimum(rising, ts / long * np.minimum(1.0, tl / long)), dtype=np.float64)  # Eq. 314
+
+    return TargetSpectrum(f"ASCE 7, SDS {sds:g}, SD1 {sd1:g} m/s2, TL {tl:g} s", 0.05, np.inf, 0.0, spectrum)
+
+
+def in_file(path: Path, damping: float = 0.05) -> TargetSpectrum:
+    """Return the spectrum of a CSV file: periods and accelerations, whose heading states the unit, as in ``Sa [g]``."""
+    try:
+        lines = path.read_text("utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InvalidValueError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from error
+    mark = next((mark for mark in ";\t," if mark in "".join(lines[:1])), ",")
+    head, *rows = [row for row in csv.reader(lines, delimiter=mark) if any(row)] or [[]]
+    unit = _UNIT.search(head[1].strip()) if len(head) > 1 else None
+    if unit is None:
+        raise InvalidValueError(f"{path.name}: its first line must name the columns with units, as in T [s], Sa [g]")
+    factor = ACCELERATION_UNITS[re.sub(r"m/s(\^2|/s)", "m/s2", unit[1].lower())]
+    try:
+        t, a = np.array([[float(cell.replace(",", ".")) for cell in row[:2]] for row in rows], dtype=np.float64).T
+    except ValueError as error:
+        raise InvalidValueError(f"{path.name}: every line must be a period and an acceleration ({error})") from error
+    if t.size < 2 or not (np.diff(t) > 0.0).all() or t[0] < 0.0 or not (a > 0.0).all() or not np.isfinite(a).all():
+        raise InvalidValueError(f"{path.name}: periods must rise from 0, and accelerations be finite and above zero")
+
+    def spectrum(wanted: FloatArray) -> FloatArray:
+        return np.asarray(np.exp(np.interp(wanted, t, np.log(factor * a))), dtype=np.float64)
+
+    return TargetSpectrum(path.name, damping, float(t[-1]), float(t[0]), spectrum)
+
+
+def target_spectrum(words: Any, folder: Path | None = None) -> TargetSpectrum:
+    """Return a target spectrum by one word, as the command line and job files take it.
+
+    Parameters
+    ----------
+    words : str or TargetSpectrum
+        ``eurocode8:ag=0.25g,ground=C,type=1``, ``asce7:sds=1.0g,sd1=0.6g,tl=8``, or a CSV file whose heading states the
+        unit, as in ``T [s], Sa [g]``. Accelerations without a unit are in m/s2.
+    folder : Path, optional
+        Where the file is looked for.
+
+    Returns
+    -------
+    TargetSpectrum
+        The spectrum.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such spectrum, or a value is missing or outside of its range.
+
+    Examples
+    --------
+    >>> float(target_spectrum("eurocode8:ag=0.2g,ground=A")([0.2])[0].round(4))
+    4.9033
+    """
+    if isinstance(words, TargetSpectrum):
+        return words
+    checks.of_kind("target", words, str, "text")
+    name, colon, tail = words.partition(":")
+    if name not in _CODES or not colon:
+        if (folder or Path()).joinpath(words).is_file():
+            return in_file((folder or Path()) / words)
+        raise InvalidValueError(f"target must be {_HOW}; got {words!r:.80}")
+    given: dict[str, Any] = {}
+    for item in filter(None, tail.split(",")):
+        key, _, value = (part.strip() for part in item.partition("="))
+        given[key] = value if key in {"ground", "type"} else _acceleration(key, value)
+    try:
+        return _CODES[name](**given)
+    except TypeError as error:
+        raise InvalidValueError(f"target must be {_HOW}; got {words!r:.80}") from error
+
+
+_CODES: dict[str, Callable[..., TargetSpectrum]] = {"eurocode8": eurocode8, "asce7": asce7}
+
+
+def _acceleration(key: str, text: str) -> float:
+    """Return a number, in SI units where it has a unit of acceleration."""
+    found = _QUANTITY.fullmatch(text)
+    unit = (found[2] or "m/s2") if found else ""
+    if found is None or unit not in (ACCELERATION_UNITS if key in {"ag", "sds", "sd1"} else {"m/s2", "s"}):
+        raise InvalidValueError(f"{key} of a target must be a number such as 2.5 or 0.25g, got {text!r:.40}")
+    return float(found[1]) * (ACCELERATION_UNITS[unit] if found[2] and unit != "s" else 1.0)
