@@ -13,7 +13,7 @@ from rocking.version import SOFTWARE
 _MODULES = {"models": "catalogues", "formats": "catalogues"}
 COMMANDS = (
     "cor", "equilibria", "simulate", "predict", "validate", "map", "minimum", "spectrum", "fragility", "inventory",
-    "codes", "paper", "models", "motion", "formats", "serve", "example",
+    "codes", "paper", "models", "motion", "motions", "convert", "formats", "serve", "example",
 )  # fmt: skip
 
 

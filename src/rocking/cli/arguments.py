@@ -15,7 +15,7 @@ from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
 from rocking.errors import BodyFileError, InvalidValueError, RecordError, RockingError
 from rocking.motions.pulses import catalogue
 from rocking.spec.document import OF_FILES
-from rocking.spec.reading import tables_in
+from rocking.spec.reading import is_pattern, tables_in
 
 if TYPE_CHECKING:
     import typer
@@ -37,7 +37,7 @@ _AS_TYPED = (
 _PLACE = re.compile(r"(body|motion|[xyz]|motions(\[\d+\])?|records: .*|restitution|settings|map|map\.[xy]|fragility)")
 _KNOWN = ("mass", "centre", "moment_of_inertia")
 _SIZES = ("width", "height"), ("slenderness_angle", "semi_diagonal")
-_OF_EVERY_FILE = {"format", "units", "time_step"}
+_OF_EVERY_FILE = {"format", "units", "time_step", "process"}
 NO_MOTION = "what moves the ground? Give a record file, or a pulse such as sine:amplitude=3,period=0.8"
 
 
@@ -80,6 +80,16 @@ def is_file(text: str) -> bool:
     try:
         return bool(text) and Path(text).exists()
     except (OSError, ValueError):  # no file can have such a name
+        return False
+
+
+def is_found(pattern: str) -> bool:
+    """Return whether a pattern finds a file."""
+    from rocking.motions.formats.record_set import paths_of
+
+    try:
+        return bool(paths_of(pattern))
+    except (RockingError, OSError, ValueError, NotImplementedError):
         return False
 
 
@@ -290,7 +300,7 @@ def _numbers(name: str, text: str) -> list[float]:
 def _place(word: str) -> Tables:
     """Return where a motion is: a file that is there, with the component behind #, or a pulse."""
     path, mark, component = word.rpartition("#")
-    if is_file(word):
+    if is_file(word) or (is_pattern(word) and is_found(word)):
         return {"record": word}
     if mark and is_file(path):
         return {"record": path, **({"component": component} if component else {})}

@@ -82,14 +82,14 @@ def motion(
         table = checked(OneMotionTable, {**arguments.one_motion(record), **scaled})
         subject = motion_of(table, CommandFiles(Path()))
     subject = subject if table.scale == 1.0 else subject.scaled(table.scale)
-    answer = MotionPage(MotionAnswer.of(subject, _periods(periods), damping), arguments.acceleration or "m/s2")
+    answer = MotionPage(MotionAnswer.of(subject, parsed_periods(periods), damping), arguments.acceleration or "m/s2")
     deliver(answer, exports, as_json=as_json)
 
 
-def _periods(text: str) -> list[float]:
+def parsed_periods(text: str) -> list[float]:
     """Return the periods of a spectrum [s].
 
-    >>> _periods("0.1, 0.5,1")
+    >>> parsed_periods("0.1, 0.5,1")
     [0.1, 0.5, 1.0]
     """
     texts = [part.strip() for part in text.split(",") if part.strip()]

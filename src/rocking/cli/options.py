@@ -129,6 +129,7 @@ _RENAMED = {
     "--surface": "--set body.surface=wrap",
     "--base-tolerance": "--set body.base_tolerance=LENGTH",
     "--record": "--motion FILE",
+    "--records": "--motion FOLDER, a pattern in quotes, or LIST.csv",
     "--model": "--restitution MODEL",
     "--common-dispersion": "--crossing common-dispersion",
     "--to": "--out FILE",

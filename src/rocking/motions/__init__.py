@@ -26,7 +26,10 @@ from rocking.motions.intensity import (
     spectral_acceleration,
     spectral_measure,
 )
+from rocking.motions.flatfile import Flatfile, flatfile
+from rocking.motions.fourier import fourier_amplitudes
 from rocking.motions.motion import GroundMotion
+from rocking.motions.pipeline import processed
 from rocking.motions.processing import (
     bandpassed,
     demeaned,
@@ -39,21 +42,29 @@ from rocking.motions.processing import (
     trimmed_to_significant,
 )
 from rocking.motions.pulse import Pulse
+from rocking.motions.rotd import rotd_spectrum
 from rocking.motions.segments import Segments as Segments  # what engines integrate
+from rocking.motions.selection import Selection, selected
 from rocking.motions.spectrum import ResponseSpectrum, response_spectrum
+from rocking.motions.target_spectra import TargetSpectrum, target_spectrum
 
 __all__ = [
+    "Flatfile",
     "GroundMotion",
     "IntensityMeasure",
     "Measure",
     "Pulse",
     "ResponseSpectrum",
     "RockingScale",
+    "Selection",
+    "TargetSpectrum",
     "arias_intensity",
     "bandpassed",
     "cumulative_absolute_velocity",
     "demeaned",
     "detrended",
+    "flatfile",
+    "fourier_amplitudes",
     "ground_displacement",
     "ground_velocity",
     "housner_intensity",
@@ -66,18 +77,22 @@ __all__ = [
     "peak_ground_acceleration",
     "peak_ground_displacement",
     "peak_ground_velocity",
+    "processed",
     "pulses",
     "resampled",
     "response_spectrum",
     "rotated",
     "rotd_pga",
+    "rotd_spectrum",
     "scaled_to",
+    "selected",
     "significant_duration",
     "significant_times",
     "spectral_acceleration",
     "spectral_measure",
     "synthetic",
     "tapered",
+    "target_spectrum",
     "trimmed",
     "trimmed_to_significant",
     "with_vertical",

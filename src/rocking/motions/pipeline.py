@@ -115,8 +115,8 @@ def steps_of(chain: str | Sequence[str]) -> Steps:
     >>> steps_of("mean; bandpass:low=0.1,high=25")
     [('mean', {}), ('bandpass', {'low': 0.1, 'high': 25.0})]
     """
-    parts = chain.split(";") if isinstance(chain, str) else list(chain)
-    return [_step(str(part).strip()) for part in parts if str(part).strip()]
+    parts = [part.strip() for text in ([chain] if isinstance(chain, str) else chain) for part in str(text).split(";")]
+    return [_step(part) for part in parts if part]
 
 
 def _step(words: str) -> tuple[str, dict[str, Any]]:

@@ -1,6 +1,7 @@
 """Records corrected, resampled, cut and scaled, each step with a line of provenance."""
 
 import math
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -149,7 +150,7 @@ def bandpassed(
 
     what = f"band-pass {low:g} to {high:g} Hz, Butterworth order {order}, forwards and backwards"
     what += f", with pads of {pad * motion.time_step:g} s kept at both ends" if keep else ""
-    return _each(motion, filtered, what)
+    return _moved(_each(motion, filtered, what), -pad * motion.time_step if keep else 0.0)
 
 
 def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
@@ -241,7 +242,7 @@ def trimmed(motion: GroundMotion, start: float, end: float) -> GroundMotion:
     last = min(_whole(end / motion.time_step), len(motion) - 1)
     first = min(first, last - 1)
     what = f"trimmed to {first * motion.time_step:g} to {last * motion.time_step:g} s"
-    return _each(motion, lambda a: a[first : last + 1], what)
+    return _moved(_each(motion, lambda a: a[first : last + 1], what), first * motion.time_step)
 
 
 def trimmed_to_significant(
@@ -305,7 +306,7 @@ def padded(motion: GroundMotion, before: float, after: float | None = None) -> G
         raise InvalidValueError(f"padding must add at most {MOST_SAMPLES:g} samples, got {sum(times):g} s; wrong unit?")
     counts = (_whole(times[0] / motion.time_step), _whole(times[1] / motion.time_step))
     what = f"padded with zeros, {counts[0]} samples before and {counts[1]} after"
-    return _each(motion, lambda a: np.pad(a, counts), what)
+    return _moved(_each(motion, lambda a: np.pad(a, counts), what), -counts[0] * motion.time_step)
 
 
 def scaled_to(motion: GroundMotion, measure: Any, target: float, body: RockingScale | None = None) -> GroundMotion:
@@ -371,6 +372,16 @@ def _trend(samples: FloatArray, time_step: float, order: int, fit: str) -> Float
         )
         last = size
     return trend
+
+
+def begins_at(motion: GroundMotion) -> float:
+    """Return when a motion begins on the clock of the record that it was cut from or padded [s]."""
+    return float(motion.metadata.get("begins at", "0 s").removesuffix(" s"))
+
+
+def _moved(motion: GroundMotion, by: float) -> GroundMotion:
+    told = {**motion.metadata, "begins at": f"{begins_at(motion) + by!r} s"}
+    return motion if by == 0.0 else replace(motion, metadata=told)
 
 
 def _whole(ratio: float) -> int:

@@ -13,7 +13,13 @@ if TYPE_CHECKING:
     from rocking.plots.equilibria import equilibria_picture
     from rocking.plots.falling import falling_picture
     from rocking.plots.fragility import fragility_picture
-    from rocking.plots.ground_motion import ground_motion_picture, record_set_picture
+    from rocking.plots.ground_motion import (
+        ground_motion_picture,
+        processing_picture,
+        record_set_picture,
+        selection_picture,
+        spectra_picture,
+    )
     from rocking.plots.incremental_dynamic_analysis import incremental_dynamic_analysis_picture
     from rocking.plots.inventory import inventory_picture
     from rocking.plots.overturning_map import overturning_map_picture, refined_map_picture
@@ -50,17 +56,20 @@ __all__ = [
     "overturning_map_picture",
     "paper_figure",
     "prediction_picture",
+    "processing_picture",
     "record_set_picture",
     "refined_map_picture",
     "regime_map_picture",
     "regimes_picture",
     "reliability_picture",
+    "selection_picture",
     "response_picture",
     "rocking_spectrum_picture",
     "sensitivity_picture",
     "slices_picture",
     "solid_picture",
     "spatial_picture",
+    "spectra_picture",
     "transitions_of_many_picture",
     "transitions_picture",
     "write",
@@ -78,11 +87,14 @@ _OTHERS = {
     "new_figure": "style",
     "paper_figure": "paper_figures",
     "prediction_picture": "prediction",
+    "processing_picture": "ground_motion",
     "record_set_picture": "ground_motion",
     "refined_map_picture": "overturning_map",
     "reliability_picture": "prediction",
     "regime_map_picture": "regimes",
+    "selection_picture": "ground_motion",
     "slices_picture": "solid",
+    "spectra_picture": "ground_motion",
     "transitions_of_many_picture": "transitions",
     "write": "style",
 }

@@ -9,8 +9,15 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
-from rocking.motions import peak_ground_acceleration, peak_ground_velocity
+from rocking.motions import (
+    fourier_amplitudes,
+    ground_displacement,
+    ground_velocity,
+    peak_ground_acceleration,
+    peak_ground_velocity,
+)
 from rocking.motions.motion import GroundMotion
+from rocking.motions.processing import begins_at
 from rocking.motions.pulse import Pulse
 from rocking.motions.spectrum import response_spectrum
 from rocking.plots.labels import plain, plain_log
@@ -35,6 +42,9 @@ from rocking.plots.traces import Traces, fine_samples, traces
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from rocking.motions.flatfile import Flatfile
+    from rocking.motions.selection import Selection
 
 _DAMPING = 0.05
 _LONGEST_TITLE = 70
@@ -128,6 +138,120 @@ def _spectrum(axes: "Axes", motion: GroundMotion, peak: float) -> None:
     axes.set_xlabel("period T [s]")
     axes.set_ylabel("pseudo-spectral acceleration PSA [g]", color=INK)
     legend_above(axes, 2)
+
+
+@in_journal_style
+def processing_picture(before: GroundMotion, after: GroundMotion) -> "Figure":
+    """Draw a record before and after its processing: histories, and smoothed Fourier amplitudes beside them.
+
+    Parameters
+    ----------
+    before, after : GroundMotion
+        The record as it was read, grey, and as its steps left it.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three stacked panels, and one beside them.
+
+    Examples
+    --------
+    >>> from rocking.motions import demeaned
+    >>> motion = GroundMotion(1.0 + np.sin(np.linspace(0.0, 60.0, 600)), 0.01)
+    >>> len(processing_picture(motion, demeaned(motion)).axes)
+    4
+    """
+    figure, cells = new_figure(DOUBLE, 4.3, rows=3, columns=2, sharex="col", width_ratios=[1.5, 1.0])
+    figure.suptitle(plain(after.name)[:_LONGEST_TITLE], x=0.01, ha="left", fontsize=9)
+    grid: Any = cells[0].get_gridspec()
+    for axes in cells[1::2]:
+        axes.remove()
+    right = figure.add_subplot(grid[:, 1])
+    words = ("acceleration [m/s$^2$]", "velocity [m/s]", "displacement [m]")
+    for motion, how in ((before, {"color": GREY, "label": "before"}), (after, {"color": INK, "label": "after"})):
+        rows = (motion.acceleration, ground_velocity(motion), ground_displacement(motion))
+        for axes, values, name in zip(cells[::2], rows, words, strict=True):
+            axes.plot(motion.time + begins_at(motion), values, linewidth=0.7, **how)
+            axes.set_ylabel(name)
+        places = np.geomspace(2.0 / motion.duration, 0.5 / motion.time_step, 120)
+        right.plot(*fourier_amplitudes(motion, places), linewidth=0.9, **how)
+    cells[4].set_xlabel("time [s]")
+    right.set(xlabel="frequency [Hz]", ylabel="Fourier amplitude [m/s]", xscale="log", yscale="log")
+    legend_above(cells[0], 2)
+    figure.align_ylabels(cells[::2])
+    return figure
+
+
+@in_journal_style
+def selection_picture(selection: "Selection") -> "Figure":
+    """Draw the spectra of records that were scaled to a target, their mean and the target.
+
+    Parameters
+    ----------
+    selection : Selection
+        As `rocking.motions.selected` returns it.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel.
+
+    Examples
+    --------
+    >>> from rocking.motions import selected
+    >>> from rocking.motions.components import Components
+    >>> wave = GroundMotion(np.sin(np.linspace(0.0, 60.0, 600)), 0.01, name="wave")
+    >>> found = selected([Components(wave, None, None)], "eurocode8:ag=2", periods=(0.3, 2.0), most=100.0)
+    >>> len(selection_picture(found).axes[0].lines)
+    3
+    """
+    figure, (axes,) = new_figure(1.4 * SINGLE, 2.9)
+    periods = selection.periods
+    axes.plot(periods, selection.spectra.T / g, color=GREY, linewidth=0.4)
+    axes.plot(periods, selection.mean / g, color=INK, linewidth=1.4, label=f"mean of {len(selection.records)}")
+    axes.plot(periods, selection.target(periods) / g, color=COLORS[0], label=plain(selection.target.name), linestyle=DASHED)
+    axes.set(xlabel="period [s]", ylabel="spectral acceleration [g]")
+    for which in "xy":
+        plain_log(axes, which)
+    legend_above(axes, 1)
+    return figure
+
+
+@in_journal_style
+def spectra_picture(flatfile: "Flatfile") -> "Figure":
+    """Draw the spectra of many records, with their median and where the middle 68 % are.
+
+    Parameters
+    ----------
+    flatfile : Flatfile
+        As `rocking.motions.flatfile` returns it; RotD50 of two components, else the spectrum of the one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel.
+
+    Examples
+    --------
+    >>> from rocking.motions import flatfile
+    >>> from rocking.motions.components import Components
+    >>> wave = GroundMotion(np.sin(np.linspace(0.0, 60.0, 600)), 0.01, name="wave")
+    >>> len(spectra_picture(flatfile([Components(wave, None, None)], [0.1, 0.5, 2.0])).axes)
+    1
+    """
+    figure, (axes,) = new_figure(1.4 * SINGLE, 2.9)
+    both, one = flatfile.spectra["sa_rotd50"], flatfile.spectra["sa_x"]
+    values = np.where(np.isfinite(both), both, one) / g
+    values = values[np.isfinite(values).all(axis=1)]
+    low, middle, high = np.quantile(values, [0.16, 0.5, 0.84], axis=0)
+    axes.plot(flatfile.periods, values.T, color=GREY, linewidth=0.3)
+    axes.fill_between(flatfile.periods, low, high, color=COLORS[0], alpha=0.2, linewidth=0)
+    axes.plot(flatfile.periods, middle, color=INK, linewidth=1.4, label=f"median of {len(values)}")
+    axes.set(xlabel="period [s]", ylabel="spectral acceleration [g]")
+    for which in "xy":
+        plain_log(axes, which)
+    legend_above(axes, 1)
+    return figure
 
 
 @in_journal_style

@@ -15,11 +15,14 @@ from rocking.bodies.solid import Solid
 from rocking.checks import length_unit
 from rocking.conventions import FEET
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
+from rocking.motions.components import Components
 from rocking.motions.formats.reader import read_motion
+from rocking.motions.pipeline import processed
 from rocking.motions.pulses import pulse
 from rocking.restitution import RestitutionModel, model
 from rocking.restitution.from_file import file_of, model_in_file
 from rocking.spec.reading import InputFiles, located, tables_in
+from rocking.spec.record_sets import is_set, motions_of_set, one_record, stations_of, with_files
 from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
 
 if TYPE_CHECKING:
@@ -207,12 +210,13 @@ def _note_outlines(tables: dict[str, Any], folder: str, inputs: InputFiles) -> N
             inputs.file((Path(folder) / name).as_posix())
 
 
-def motions_of(tables: "list[MotionTable]", inputs: InputFiles) -> MotionSet:
+def motions_of(tables: "list[MotionTable]", inputs: InputFiles, *, paired: bool = False) -> MotionSet:
     """Return the motions that tables describe: a `SyntheticSet` of one family alone, otherwise a `MotionList`."""
+    # paired: what is shaken takes both horizontal components of a record at once
     sets: list[list[Motion] | SyntheticSet] = []
     for k, table in enumerate(tables):
         with located(f"motions[{k}]"):
-            sets.append(_motions(table, inputs))
+            sets.append(_motions(table, inputs, paired))
     if len(sets) == 1 and isinstance(sets[0], SyntheticSet):
         return sets[0]
     count = sum(len(each) for each in sets)
@@ -222,12 +226,17 @@ def motions_of(tables: "list[MotionTable]", inputs: InputFiles) -> MotionSet:
         return MotionList([each[k] for each in sets for k in range(len(each))])
 
 
-def _motions(table: "MotionTable", inputs: InputFiles) -> "list[Motion] | SyntheticSet":
+def _motions(table: "MotionTable", inputs: InputFiles, paired: bool) -> "list[Motion] | SyntheticSet":
     if table.synthetic is not None:
         assert table.count is not None  # the table refuses to be without
         return _family(table, table.count)
     if table.components:
         return [components_of(table, inputs, table.scale)]
+    if table.records and (table.target or table.mirrored or any(is_set(one, inputs) for one in table.records)):
+        if not (table.component or table.vertical or table.vertical_file):
+            return motions_of_set(table, inputs, paired=paired)
+        if table.target or table.mirrored:
+            raise InvalidValueError("component, vertical and vertical_file do not go with target or mirrored")
     motions: list[Motion] = [pulse(text) for text in table.pulse or ()] or _records(table, inputs)
     return motions if table.scale == 1.0 else [motion.scaled(table.scale) for motion in motions]
 
@@ -252,6 +261,14 @@ def _records(table: "MotionTable", inputs: InputFiles) -> "list[Motion]":
 
 
 def _record(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion":
+    """Return a record as its steps leave it."""
+    steps = with_files(table, inputs)
+    return processed(_unprocessed(path, table, inputs), steps)  # type: ignore[no-any-return]
+
+
+def _unprocessed(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion":
+    if stations := stations_of(with_files(table, inputs)):
+        return one_record(path, table, stations)  # type: ignore[no-any-return]
     upright = None if table.vertical_file is None else inputs.file(table.vertical_file)
     keys = (table.format, table.units, table.time_step, table.component, table.vertical)
     return read_motion(path, *keys, vertical_path=upright)
@@ -259,21 +276,33 @@ def _record(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion":
 
 def components_of(table: "ComponentsTable | MotionTable", inputs: InputFiles | None, scale: float = 1.0) -> Any:
     """Return the motions along x, y and z by axis, each with its own factor, and one of all."""
-    found = {}
-    for axis, one in table.components.items():
+    found: dict[str, Any] = {}
+    tables = table.components
+    # steps that are those of all components treat them alike
+    chains = {tuple(one.process or ()) for one in tables.values()}
+    together = len(tables) > 1 and len(chains) == 1 and chains != {()}
+    for axis, one in tables.items():
         with located(axis):
-            motion = motion_of(one, inputs)
-            found[axis] = motion if one.scale * scale == 1.0 else motion.scaled(one.scale * scale)
-    return found
+            found[axis] = motion_of(one, inputs, raw=together)
+    if together and inputs is not None:
+        whole = Components(*(found.get(axis) for axis in "xyz"))
+        steps = with_files(next(iter(tables.values())), inputs)
+        found = {axis: part for axis, part in zip("xyz", processed(whole, steps).parts, strict=True) if part is not None}
+    factors = {axis: one.scale * scale for axis, one in tables.items()}
+    return {axis: each if factors[axis] == 1.0 else each.scaled(factors[axis]) for axis, each in found.items()}
 
 
-def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None) -> "Motion":
-    """Return one motion, not scaled by `scale`; scaled to `pga` or `pgv`."""
+def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None, *, raw: bool = False) -> "Motion":
+    """Return one motion, not scaled by `scale`; scaled to `pga` or `pgv`; raw: without its steps."""
     if table.pulse is not None:
         return pulse(table.pulse)
     if table.record is not None:
         if inputs is None:
             raise InvalidValueError("a record is a file; only pulses and synthetic motions are made")
-        return _record(inputs.file(table.record), table, inputs)
+        if (inputs.folder / table.record).is_dir():
+            raise InvalidValueError(
+                f"{table.record} is a folder, and one record is wanted; predict, fragility, inventory and motions take sets"
+            )
+        return (_unprocessed if raw else _record)(inputs.file(table.record), table, inputs)
     member = table.member or 0
     return _family(table, member + 1)[member]

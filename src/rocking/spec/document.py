@@ -37,7 +37,7 @@ _ONLY = {
     "fragility.factor": "cloud",
     "fragility.tolerance": "incremental",
 }
-OF_FILES = {"format", "units", "time_step", "component", "vertical", "vertical_file"}
+OF_FILES = {"format", "units", "time_step", "component", "vertical", "vertical_file", "process"}
 """Keys of a motion that are for record files only."""
 
 
@@ -117,6 +117,7 @@ class MotionKeys(JobTable):
     component: Text | None = _key("horizontal component of the file, by name")
     vertical: Text | None = _key("vertical component, by name")
     vertical_file: Text | None = _key("file of the vertical component, where it has its own")
+    process: Names | None = _key("steps that a record goes through: mean; bandpass:low=0.1,high=25; taper")
     scale: float = _key("factor on the acceleration of the ground [-]", 1.0)
     seed: Seed | None = _key("seed of the synthetic motions")
     pga: Positive | None = _key("peak ground acceleration to which synthetic motions are scaled [m/s2]")
@@ -184,9 +185,16 @@ class ComponentsTable(_Along, OneMotionTable):
 class MotionTable(_Along, MotionKeys):
     """Records, pulses, a family of synthetic motions, or one motion along x, y and z of a body in space; z is up."""
 
-    records: Names | None = _key("record files; a name may be a pattern such as *.at2")
+    records: Names | None = _key("record files, a folder of them, a pattern such as *.at2, or a list in a .csv file")
     pulse: Names | None = _key("pulses such as sine:amplitude=3,period=0.8")
-    count: Annotated[int, Field(ge=1, le=10_000_000)] | None = _key("how many synthetic motions")
+    count: Annotated[int, Field(ge=1, le=10_000_000)] | None = _key(
+        "how many synthetic motions, or records chosen for a target"
+    )
+    target: Text | None = _key("spectrum that records are chosen and scaled for: eurocode8:ag=0.25g,ground=C, or a file")
+    periods: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = _key(
+        "first and last period of a target that count, 0.1 and 2 if not given [s]"
+    )
+    mirrored: bool = _key("every record also with its horizontal components turned round", False)
 
     @model_validator(mode="after")
     def _whole(self) -> "MotionTable":
@@ -194,9 +202,13 @@ class MotionTable(_Along, MotionKeys):
             self._check_components()
             return self
         own = {"count", "seed", "pga", "pgv", "time_step"}
-        source = self._one_source({"records": {*OF_FILES, "scale"}, "pulse": {"scale"}, "synthetic": own})
+        chosen = {"target", "periods", "count"}
+        of_records = {*OF_FILES, *chosen, "scale", "mirrored"}
+        source = self._one_source({"records": of_records, "pulse": {"scale"}, "synthetic": own})
         if source == "synthetic" and self.count is None:
             raise refused("count is missing: how many synthetic motions?")
+        if source == "records" and self.target is None and (odd := sorted(chosen & self.model_fields_set)):
+            raise refused(f"{odd[0]} of records goes with target, the spectrum that they are chosen for")
         return self
 
 

@@ -29,7 +29,7 @@ class PredictionProblem:
             body = any_body_of(document.body, inputs)
         motions: Any
         if document.motion is None:
-            motions = motions_of(document.motions, inputs)
+            motions = motions_of(document.motions, inputs, paired=True)
         else:
             alone = document.motion
             with located("motion"):

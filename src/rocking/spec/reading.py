@@ -60,7 +60,7 @@ class InputFiles:
 
     def named(self, pattern: str) -> list[str]:
         """Return the files that a pattern, such as ``**/*.at2``, finds beside the job file, in alphabetic order."""
-        if not any(mark in pattern for mark in _SPECIAL) or (self.folder / pattern).exists():
+        if not is_pattern(pattern) or (self.folder / pattern).exists():
             return [pattern]
         root, rest = (Path(Path(pattern).anchor), Path(pattern).parts[1:]) if Path(pattern).is_absolute() else (
             self.folder, Path(pattern).parts,
@@ -83,6 +83,11 @@ class CommandFiles(InputFiles):
 
     def file(self, name: str) -> Path:
         return self.folder / name
+
+
+def is_pattern(name: str) -> bool:
+    """Return whether a name is a pattern of files."""
+    return any(mark in name for mark in _SPECIAL)
 
 
 def refuse_changes(before: list[dict[str, Any]], now: list[dict[str, Any]]) -> None:

@@ -48,7 +48,7 @@ class StudyProblem:
             if len(kinds) > 1:
                 raise InvalidValueError("bodies of a study are all plane or all in space")
             settings = settings_of(stated.pop("gravity", g), stated, next(iter(bodies), None))
-        motions = motions_of(document.motions, inputs)
+        motions = motions_of(document.motions, inputs, paired=bool(bodies) and kinds == {False})
         seed, friction = document.campaign.seed, settings.friction
         restitutions = restitutions_of(document.restitution, seed, bodies, inputs, friction=friction)
         return cls(document, bodies, motions, restitutions, settings, inputs)

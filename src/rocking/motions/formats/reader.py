@@ -188,11 +188,20 @@ def read_motion(
 
 
 def motions_in(
-    path: Path, format: str | None = None, units: str | None = None, time_step: float | None = None
+    path: Path,
+    format: str | None = None,
+    units: str | None = None,
+    time_step: float | None = None,
+    stations: Path | None = None,
 ) -> list[GroundMotion]:
-    """Return every component of a record file as a motion of its own; the rest is as in `read_motion`."""
+    """Return every component of a record file as a motion of its own; stations: StationXML, which counts need."""
     source = Source.of_path(path)
-    record = _read(source, format, units, time_step)
+    if stations is None:
+        record = _read(source, format, units, time_step)
+    else:
+        from rocking.motions.formats.miniseed import MiniSeed
+
+        record = MiniSeed.with_response(stations).read(source)
     return [_motion(source, record, part) for part in record.components]
 
 

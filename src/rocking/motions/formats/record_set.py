@@ -86,6 +86,8 @@ class RecordSet:
 def plane_motions(record: Components) -> list[GroundMotion]:
     """Return the horizontal components of a record, each with its vertical one."""
     level = [part for part in (record.x, record.y) if part is not None]
+    if len({part.name for part in level}) < len(level):  # what tells them apart
+        level = [replace(part, name=f"{part.name} {part.metadata.get('component', '')}".strip()) for part in level]
     return level if record.z is None else [with_vertical(part, record.z) for part in level]
 
 
@@ -193,12 +195,17 @@ def mapped(
             done(1)
         return
     from concurrent.futures import ProcessPoolExecutor
+    from concurrent.futures.process import BrokenProcessPool
     from multiprocessing import get_context
 
-    with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
-        for each in pool.map(function, items, chunksize=4):
-            yield each
-            done(1)
+    try:
+        with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
+            for each in pool.map(function, items, chunksize=4):
+                yield each
+                done(1)
+    except BrokenProcessPool as error:
+        why = 'a script that starts processes needs if __name__ == "__main__": around its calls, or workers=1'
+        raise InvalidValueError(f"{workers} workers could not be started, or one died; {why}") from error
 
 
 Read = tuple[list[GroundMotion] | str, list[str]]  # the components or why there are none, and doubts
@@ -288,13 +295,8 @@ def _at_odds(motions: Sequence[GroundMotion]) -> str:
     level = [side for side in sides if not isinstance(side, str)]
     if len(level) > 2 or len(sides) - len(level) > 1:
         return f"{len(motions)} components of one name: more than two horizontal ones and one upwards"
-    if len(motions) < 2:
-        return ""
-    first, *rest = motions
-    if any(abs(each.time_step - first.time_step) > 1e-9 * first.time_step for each in rest):
-        return "components of different steps between samples"
-    if any(delay(first, each) for each in rest):
-        return "components that start at different times"
+    if why := _at_other_times(motions):
+        return why
     for key in ("event", "station", "date"):
         if len({each.metadata[key] for each in motions if key in each.metadata}) > 1:
             return f"components of different {key}s"
@@ -304,10 +306,17 @@ def _at_odds(motions: Sequence[GroundMotion]) -> str:
     return ""
 
 
+def _at_other_times(motions: Sequence[GroundMotion]) -> str:
+    first = motions[0] if motions else None
+    if first is not None and any(abs(each.time_step - first.time_step) > 1e-9 * first.time_step for each in motions):
+        return "components of different steps between samples"
+    return "components that start at different times" if first and any(delay(first, each) for each in motions) else ""
+
+
 def _joined(motions: Sequence[GroundMotion]) -> Components:
     """Return one motion of components that fit."""
     count = min(map(len, motions))
-    cut = [each if len(each) == count else _cut(each, count) for each in motions]
+    cut = [_cut(each, count) for each in motions]
     upright = [each for each in cut if isinstance(_oriented(each), str)]
     level = [each for each in cut if each not in upright]
     first, second = ([*level, None, None])[:2]
@@ -323,6 +332,8 @@ def _joined(motions: Sequence[GroundMotion]) -> Components:
 
 
 def _cut(motion: GroundMotion, count: int) -> GroundMotion:
+    if len(motion) == count:
+        return motion
     return motion.changed(f"cut to the {count} samples of the others", acceleration=motion.acceleration[:count])
 
 
@@ -393,15 +404,18 @@ def _listed(rows: Sequence[ListedRecord], files: Mapping[str, Read]) -> RecordSe
         motions = [each for found in parts.values() for each in found]
         if not all(parts.values()):
             continue
-        several = any(len(found) > 1 for found in parts.values())
-        why = _at_odds(motions) or (several and len(parts) > 1 and "a file of an axis has one component")
+        # with axes the list says itself which is which
+        why = _at_odds(motions) if "" in parts else _at_other_times(motions)
+        if "" not in parts and len(motions) > len(parts):
+            why = "a file of one axis has several components"
         if why:
-            left_out.append((", ".join(row.files.values()), str(why)))
+            left_out.append((", ".join(row.files.values()), why))
             continue
-        record = _joined(motions)
-        if "" not in parts:  # the list says itself which is which
-            cut = {axis: _cut(found[0], min(map(len, motions))) for axis, found in parts.items()}
-            record = Components(cut.get("x"), cut.get("y"), cut.get("z"))
+        if "" in parts:
+            record = _joined(motions)
+        else:
+            count = min(map(len, motions))
+            record = Components(*(_cut(parts[axis][0], count) if axis in parts else None for axis in "xyz"))
         records.append(record.each(partial(_told, row=row)))
     return RecordSet(tuple(records), tuple(left_out))
 

@@ -1,0 +1,121 @@
+"""`rocking convert`: a record, put through its steps where there are any, in another format."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rocking.cli import options
+from rocking.cli.exports import PICTURES, Export, Exports, draw
+from rocking.cli.page import Page, deliver
+from rocking.conventions import g
+from rocking.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from rocking.motions.motion import GroundMotion
+
+
+def _as(form: str) -> Any:
+    def write(answer: "Conversion", path: Path) -> None:
+        from rocking.motions.formats import write_motion
+
+        write_motion(answer.after, path, form, answer.units)
+
+    return write
+
+
+def _provenance(answer: "Conversion", path: Path) -> None:
+    path.write_text(json.dumps(answer.facts(), indent=1) + "\n", encoding="utf-8")
+
+
+_ENDINGS = {
+    "peer": (".at2",), "esm": (".asc",), "cosmos": (".v1c", ".v2c", ".v1", ".v2"), "csmip-v1": (".v1", ".raw"),
+    "csmip-v2": (".v2",), "smc-usgs": (".smc",), "smc-boore": (".smc",), "knet": (".ns", ".ew", ".ud"),
+    "cwa": (".dat", ".txt"), "geonet-v2a": (".v2a",), "bhrc": (".v1",), "miniseed": (".mseed",), "sac": (".sac",),
+}  # fmt: skip
+EXPORTS = {
+    "columns": Export((".csv", ".txt", ".dat"), _as("columns")),
+    **{form: Export(endings, _as(form)) for form, endings in _ENDINGS.items()},
+    "picture": Export(PICTURES, draw, "matplotlib"),
+    "provenance": Export((".json",), _provenance),
+}
+
+
+def convert(
+    context: typer.Context,
+    record: Annotated[list[str], typer.Argument(help="Record file, file#COMPONENT; with its vertical part x=FILE z=FILE.")],
+    units: options.RecordUnits = None,
+    scale: Annotated[float | None, options.key(options.tables.MotionKeys, "scale")] = None,
+    sets: options.Set = None,
+    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    as_json: options.AsJson = False,
+) -> None:
+    """Write a record in another format, corrected by --set "motion.process=mean; bandpass:low=0.1,high=25; taper"."""
+    from rocking.cli.arguments import Arguments, hinted
+    from rocking.motions.motion import GroundMotion
+    from rocking.spec.construction import motion_of
+    from rocking.spec.document import OneMotionTable
+    from rocking.spec.reading import CommandFiles, checked
+
+    exports = Exports.of(out, EXPORTS)
+    arguments = Arguments(context, "motion")
+    upright = next((word.rpartition("#")[2] for word in record if word.startswith("z=")), "")
+    with hinted(None, record[0].removeprefix("x="), upright):
+        scaled = arguments.table("motion", {"scale": scale}, keys={"scale"})
+        table = checked(OneMotionTable, {**arguments.one_motion(record), **scaled})
+        before = motion_of(table, CommandFiles(Path()), raw=True)
+        after = motion_of(table, CommandFiles(Path()))
+    if not isinstance(before, GroundMotion) or not isinstance(after, GroundMotion):
+        raise InvalidValueError(f"a record file is converted, got the pulse {record[0]!r:.80}")
+    after = after if table.scale == 1.0 else after.scaled(table.scale)
+    # a format without a unit of its own keeps that of the file
+    unit = before.metadata.get("unit", "m/s2")
+    deliver(Conversion(before, after, unit, tuple(map(str, (path for _, path in exports.files)))), exports, as_json=as_json)
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """A record before and after its steps."""
+
+    before: "GroundMotion"
+    after: "GroundMotion"
+    units: str  # of formats that state none
+    files: tuple[str, ...]
+
+    def draw(self) -> Any:
+        from rocking.plots import processing_picture
+
+        return processing_picture(self.before, self.after)
+
+    def facts(self) -> dict[str, Any]:
+        told = {name: _facts(motion) for name, motion in (("before", self.before), ("after", self.after))}
+        return {"name": self.after.name, **told, "provenance": list(self.after.provenance), "files": list(self.files)}
+
+    def show(self, page: Page) -> None:
+        page.line(self.after.name, "bold")
+        for line in self.after.provenance:
+            page.line(f"  {line}", "dim")
+        page.line()
+        rows = [
+            (name, *(f"{value:.6g}" for value in _facts(motion).values()), f"{motion.peak / g:.4g}")
+            for name, motion in (("before", self.before), ("after", self.after))
+        ]
+        head = ("", "samples", "step [s]", "PGA [m/s2]", "PGV [m/s]", "PGD [m]", "v at end [m/s]", "PGA [g]")
+        page.table(head, rows, ("",))
+        if not self.files:
+            page.line("Nothing was written: --out FILE.at2 writes it, --out FILE.png draws it before and after.")
+
+
+def _facts(motion: "GroundMotion") -> dict[str, float]:
+    from rocking.motions import ground_velocity, peak_ground_displacement, peak_ground_velocity
+
+    return {
+        "samples": len(motion),
+        "time_step_s": motion.time_step,
+        "pga_m_s2": motion.peak,
+        "pgv_m_s": peak_ground_velocity(motion),
+        "pgd_m": peak_ground_displacement(motion),
+        "end_velocity_m_s": float(ground_velocity(motion)[-1]),
+    }

@@ -1,0 +1,144 @@
+"""`rocking motions`: a folder of records in one table, and which of them come close to a target spectrum."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rocking import checks
+from rocking.cli import options
+from rocking.cli.exports import PICTURES, Export, Exports, draw
+from rocking.cli.numbers import beside_g
+from rocking.cli.page import Page, bar, deliver
+from rocking.conventions import ACCELERATION_UNITS
+from rocking.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from rocking.motions.flatfile import Flatfile
+    from rocking.motions.selection import Selection
+
+_MOST_PROCESSES = 8  # that are started where nobody says how many
+
+
+def _csv(answer: "SetAnswer", path: Path) -> None:
+    from rocking.tables import to_csv
+
+    to_csv(answer.flatfile.flat(), path)
+
+
+def _excel(answer: "SetAnswer", path: Path) -> None:
+    from rocking.tables import Table, to_excel
+
+    left_out = Table.of_rows("file", ("file", "why it was left out"), answer.left_out)
+    to_excel([("records", answer.flatfile.flat()), ("left out", left_out)], path)
+
+
+def _netcdf(answer: "SetAnswer", path: Path) -> None:
+    from rocking.tables import to_netcdf
+
+    to_netcdf(answer.flatfile.to_xarray(), path)
+
+
+EXPORTS = {
+    "csv": Export((".csv",), _csv),
+    "excel": Export((".xlsx",), _excel, "openpyxl"),
+    "netcdf": Export((".nc",), _netcdf, "h5netcdf"),
+    "picture": Export(PICTURES, draw, "matplotlib"),
+}
+
+
+def motions(
+    context: typer.Context,
+    record: Annotated[
+        list[str],
+        typer.Argument(help="Folder, pattern in quotes, or list of records in a .csv file; or several files."),
+    ],
+    units: options.RecordUnits = None,
+    damping: Annotated[float, typer.Option(help="Damping ratio of the spectra.")] = 0.05,
+    periods: Annotated[
+        str | None,
+        typer.Option(help=r"Periods of the spectra, with commas between \[s]; 30 from 0.02 to 10 if not given."),
+    ] = None,
+    sets: options.Set = None,
+    threads: Annotated[
+        int | None, typer.Option(help="Processes that read and measure; as many as processors if not given.")
+    ] = None,
+    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    as_json: options.AsJson = False,
+) -> None:
+    """Print the intensity measures of many records and write them with RotD spectra; choose and scale to a target."""
+    from rocking.cli.arguments import Arguments, as_typed, is_file, is_pattern
+    from rocking.cli.motion import parsed_periods
+    from rocking.dynamics.settings import processors
+    from rocking.motions.flatfile import PERIODS, flatfile
+    from rocking.spec.document import MotionTable
+    from rocking.spec.reading import CommandFiles, checked
+    from rocking.spec.record_sets import record_set
+
+    exports = Exports.of(out, EXPORTS)
+    arguments = Arguments(context, "motion")
+    if missing := [word for word in record if not is_file(word) and not is_pattern(word)]:
+        raise InvalidValueError(f"{missing[0]:.200}: no such file or folder")
+    damping = checks.within("--damping", damping, 0.0, 1.0, open_high=True, hint="a ratio, not a percentage")
+    wanted = PERIODS if periods is None else parsed_periods(periods)
+    workers = min(processors(), _MOST_PROCESSES) if threads is None else checks.whole("--threads", threads, 1, 256)
+    with as_typed():
+        values = {"records": list(record), "units": arguments.acceleration}
+        table = checked(MotionTable, arguments.table("motion", values, {"records": record[0]}))
+        with bar("files", quiet=as_json) as progress:
+            found, chosen = record_set(table, CommandFiles(Path()), workers, progress)
+        with bar("records", len(found), quiet=as_json) as progress:
+            measured = flatfile(found, wanted, damping, workers=workers, progress=progress)
+    left_out = (*found.left_out, *measured.left_out)
+    deliver(SetAnswer(measured, chosen, left_out, arguments.acceleration or "m/s2"), exports, as_json=as_json)
+
+
+@dataclass(frozen=True)
+class SetAnswer:
+    """Records, their measures, and how they were chosen."""
+
+    flatfile: "Flatfile"
+    chosen: "Selection | None"
+    left_out: tuple[tuple[str, str], ...]
+    acceleration: str
+
+    def draw(self) -> Any:
+        from rocking.plots import selection_picture, spectra_picture
+
+        return spectra_picture(self.flatfile) if self.chosen is None else selection_picture(self.chosen)
+
+    def facts(self) -> dict[str, Any]:
+        table, spectra = self.flatfile.table, self.flatfile.spectra
+        rows = [dict(zip(table.columns, row, strict=True)) for row in table.rows]
+        for k, row in enumerate(rows):
+            row["spectra_m_s2"] = {name: values[k] for name, values in spectra.items()}
+        facts: dict[str, Any] = {"damping_ratio": self.flatfile.damping, "period_s": self.flatfile.periods}
+        if (chosen := self.chosen) is not None:
+            told = {"factor": chosen.factors, "misfit": chosen.misfits, "period_s": chosen.periods}
+            told |= {"mean_m_s2": chosen.mean, "target_m_s2": chosen.target(chosen.periods)}
+            facts["selection"] = {
+                "target": chosen.target.name, **told, "misfit_of_mean": chosen.misfit, "least_ratio": chosen.least
+            }  # fmt: skip
+        return {**facts, "records": rows, "left_out": [{"file": name, "why": why} for name, why in self.left_out]}
+
+    def show(self, page: Page) -> None:
+        columns, unit = self.flatfile.table.columns, beside_g(self.acceleration)
+        head = ["record", "components", f"PGA [{unit}]", "PGV [m/s]", "Arias [m/s]", "D5-95 [s]"]
+        rows = []
+        for k, name in enumerate(columns["record"].values.tolist()):
+            seen = [axis for axis in "xyz" if columns[f"pga_{axis}"].values[k] == columns[f"pga_{axis}"].values[k]]
+            lead = max(seen, key=lambda axis: (axis != "z", columns[f"pga_{axis}"].values[k]))
+            pga, *more = (float(columns[f"{one}_{lead}"].values[k]) for one in ("pga", "pgv", "arias", "d5_95"))
+            cells = [name, " ".join(seen), f"{pga / ACCELERATION_UNITS[unit]:.4g}", *(f"{each:.4g}" for each in more)]
+            if self.chosen is not None and len(self.chosen.factors) == len(self.flatfile.table):
+                cells += [f"{self.chosen.factors[k]:.3g}", f"{self.chosen.misfits[k]:.2f}"]
+            rows.append(cells)
+        if rows and len(rows[0]) > len(head):
+            head += ["factor", "misfit"]
+        page.table(head, rows, ("record", "components"))
+        page.line()
+        page.line(f"{len(rows)} records; the component with the largest peak is shown, files have all of them.")
+        if self.chosen is not None:
+            page.line(self.chosen.sentence)
+        page.warn(f"left out: {name}: {why}" for name, why in self.left_out)

@@ -1,0 +1,123 @@
+"""Sets of records that a table of motions names: read, put through their steps, chosen, scaled and turned round."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rocking import plausibility
+from rocking.errors import InvalidValueError
+from rocking.motions.components import Components
+from rocking.motions.formats.reader import motions_in
+from rocking.motions.formats.record_set import RecordSet, paths_of, plane_motions, read_records, rows_of_list
+from rocking.motions.pipeline import processed, steps_of
+from rocking.motions.selection import Selection, selected
+from rocking.motions.target_spectra import target_spectrum
+from rocking.spec.reading import InputFiles, is_pattern, located
+
+if TYPE_CHECKING:
+    from rocking.spec.document import MotionKeys, MotionTable
+
+PERIODS = (0.1, 2.0)  # that count where records are compared with a target and nobody says otherwise [s]
+MOST_NAMED = 5  # files that were left out and are named one by one
+
+
+def is_set(name: str, inputs: InputFiles) -> bool:
+    """Return whether a name is that of a folder, a pattern or a list of records rather than of one file."""
+    path = inputs.folder / name
+    return path.is_dir() or (is_pattern(name) and not path.exists()) or rows_of_list(path) is not None
+
+
+def record_set(
+    table: "MotionTable", inputs: InputFiles, workers: int = 1, progress: Callable[[int], None] | None = None
+) -> tuple[RecordSet, Selection | None]:
+    """Return the records of a table, and how they were chosen where it has a target."""
+    records: list[Components] = []
+    left_out: list[tuple[str, str]] = []
+    for name in table.records or []:
+        with located(f"records: {name}"):
+            _note(name, inputs)
+            keys = (table.format, table.units, table.time_step)
+            found = read_records(inputs.folder / name, *keys, workers=workers, progress=progress)
+            if is_pattern(name) and found.left_out:  # these files were named
+                raise InvalidValueError(": ".join(found.left_out[0]))
+        records += found.records
+        left_out += found.left_out
+    steps = with_files(table, inputs)
+    with located("process"):
+        made = [processed(each, steps).each(lambda part: _scaled(part, table.scale)) for each in records]
+    kept = RecordSet(tuple(made), tuple(left_out))
+    chosen = None
+    if table.target is not None:
+        if (inputs.folder / table.target).is_file():
+            inputs.file(table.target)
+        with located("target"):
+            target = target_spectrum(table.target, inputs.folder)
+            chosen = selected(kept, target, table.count, table.periods or PERIODS, workers=workers, progress=progress)
+        told = chosen.sentence
+        kept = replace(chosen.records, records=tuple(each.each(partial(_told, told)) for each in chosen.records))
+        chosen = replace(chosen, records=kept)
+    return kept.mirrored() if table.mirrored else kept, chosen
+
+
+def motions_of_set(table: "MotionTable", inputs: InputFiles, *, paired: bool) -> list[Any]:
+    """Return the motions of a study; paired: two horizontal components are one motion, which plane bodies cannot take."""
+    found, _ = record_set(table, inputs)
+    plausibility.warn(f"left out: {name}: {why}" for name, why in found.left_out[:MOST_NAMED])
+    if (more := len(found.left_out) - MOST_NAMED) > 0:
+        plausibility.warn([f"{more} more files were left out; rocking motions lists them"])
+    motions: list[Any] = []
+    for record in found:
+        motions += [record] if paired and record.y is not None else plane_motions(record)
+    if not motions:
+        raise InvalidValueError("no record has a horizontal component")
+    return motions
+
+
+def one_record(path: Path, table: "MotionKeys", stations: Path) -> Any:
+    """Return one component of a file of counts, turned into accelerations by a StationXML file."""
+    found = motions_in(path, stations=stations)
+    named = [each for each in found if table.component in {None, each.metadata["component"]}]
+    if len(named) != 1:
+        names = ", ".join(each.metadata["component"] for each in found)
+        raise InvalidValueError(f"the file has the components {names}; say component= one of these")
+    return named[0]
+
+
+def with_files(table: "MotionKeys", inputs: InputFiles) -> Sequence[str]:
+    """Return the steps of a table, whose files are looked for beside the document."""
+    words = []
+    for step in (part for text in table.process or () for part in text.split(";")):
+        before, mark, after = step.partition("stations=")
+        file, comma, rest = after.partition(",")
+        words.append(f"{before}{mark}{inputs.file(file.strip())}{comma}{rest}" if mark else step)
+    return words
+
+
+def stations_of(steps: Sequence[str]) -> Path | None:
+    """Return the StationXML file that steps name; none if they name none."""
+    return next((Path(keys["stations"]) for _, keys in steps_of(steps) if "stations" in keys), None)
+
+
+def _note(name: str, inputs: InputFiles) -> None:
+    """Note the hash of every file that a name stands for."""
+    path = inputs.folder / name
+    rows = rows_of_list(path)
+    if rows is not None:
+        inputs.file(name)
+        files = [path.parent / file for row in rows for file in row.files.values()]
+        paths = [each for each in files if each.is_file()]
+    else:
+        paths = paths_of(path)
+    absolute = Path(name).is_absolute()
+    for each in paths:
+        inputs.file((each if absolute else each.relative_to(inputs.folder)).as_posix())
+
+
+def _scaled(part: Any, factor: float) -> Any:
+    return part if factor == 1.0 else part.scaled(factor)
+
+
+def _told(sentence: str, part: Any) -> Any:
+    return replace(part, provenance=(*part.provenance, sentence))

@@ -1,0 +1,94 @@
+"""A chain of steps is its functions one after the other, and refuses what none of them takes."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rocking import motions
+from rocking.errors import InvalidValueError
+from rocking.motions import GroundMotion, processed
+from rocking.motions.components import Components
+from rocking.motions.pipeline import STEPS, steps_of
+
+pytestmark = pytest.mark.verifies(room="motions and records")
+
+RNG = np.random.default_rng(5)
+X, Y, Z = (GroundMotion(np.sin(np.arange(800) * f) * np.hanning(800) + 0.02, 0.01, name=n) for f, n in ((0.3, "x"), (0.2, "y"), (0.5, "z")))
+ALL = Components(X, Y, Z)
+
+
+@pytest.mark.verifies("invariant", "the functions one by one", within="every digit", control="within")
+def test_a_chain_is_its_functions():
+    """Mean, baseline, band pass, taper, resampling and scaling by words are the functions, each with its sentence."""
+    words = "mean; baseline:order=2; bandpass:low=0.5,high=20; taper:fraction=0.1; resample:time_step=0.005; scale:pga=3"
+    found = processed(X, words)
+    one = motions.demeaned(X)
+    one = motions.detrended(one, 2)
+    one = motions.tapered(motions.bandpassed(one, 0.5, 20.0), 0.1)
+    expected = motions.scaled_to(motions.resampled(one, 0.005), "pga", 3.0)
+    assert found.acceleration.tolist() == expected.acceleration.tolist()
+    assert found.provenance == expected.provenance
+    assert len(found.provenance) == 6
+    # negative control: the order of the steps matters
+    assert processed(X, words.split(";")[::-1]).acceleration.tolist() != found.acceleration.tolist()
+    assert processed(X, words.split(";")).acceleration.tolist() == found.acceleration.tolist()
+
+
+@pytest.mark.verifies("closed form", "a filtered motion that ends at rest", within="1e-6", control="within")
+def test_pads_that_are_kept_end_at_rest():
+    """With its pads a band-passed motion ends at rest, to 1e-6 of its largest velocity; without them it does not."""
+    for pads, still in (("keep", True), ("cut", False)):
+        found = processed(X, f"bandpass:low=0.3,high=20,pads={pads}")
+        velocity = motions.ground_velocity(found)
+        assert (abs(velocity[-1]) < 1e-6 * np.abs(velocity).max()) is still
+    kept = processed(X, "bandpass:low=0.3,high=20,pads=keep")
+    count = math.ceil(1.5 * 4 / 0.3 / 0.01)
+    assert len(kept) == len(X) + 2 * count
+    assert kept.metadata["begins at"] == f"{-count * 0.01!r} s"
+    assert kept.acceleration[count:-count].tolist() == motions.bandpassed(X, 0.3, 20.0).acceleration.tolist()
+
+
+def test_components_are_treated_alike():
+    """All three are cut at one time and scaled by one factor; turning by 90 degrees gives y and -x."""
+    found = processed(ALL, "significant; scale:pga=3")
+    assert len({len(part) for part in found.parts}) == 1
+    assert found.peak == pytest.approx(3.0, rel=1e-12)
+    alone = processed(found.x, "scale:pga=3").peak / found.y.peak
+    assert alone != pytest.approx(3.0 / found.y.peak * found.x.peak / 3.0, rel=1e-3) or found.leading is found.x
+    turned = processed(ALL, "rotate:angle=90")
+    assert turned.x.acceleration == pytest.approx(Y.acceleration, abs=1e-15)
+    assert turned.y.acceleration == pytest.approx(-X.acceleration, abs=1e-15)
+    assert turned.z is Z
+    with pytest.raises(InvalidValueError, match="two horizontal components"):
+        processed(X, "rotate:angle=90")
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("smooth", "step must be one of"),
+        ("bandpass:low=1", "needs high"),
+        ("bandpass:low=1,high=2,hgih=3", "takes low, high, order, pads"),
+        ("bandpass:low=1,high=two", "must be a number"),
+        ("bandpass:low=1,high=20,order=2.5", "must be a whole number"),
+        ("bandpass:low=1,high=20,pads=some", "pads must be"),
+        ("bandpass:low=1,high=80", "step bandpass: high must be"),
+        ("trim:start=1,end=90", "step trim: end"),
+        ("scale:factor=2,pga=3", "scale takes"),
+        ("scale:d5_95=3", "no factor changes"),
+        ("taper:fraction=0.1,fraction=0.2", "takes fraction"),
+        ("response:stations=missing.xml", "step response"),
+    ],
+)
+def test_chains_that_make_no_sense_are_refused(words, message):
+    """Steps, keys and values that are none are refused with the step's name."""
+    with pytest.raises(InvalidValueError, match=message):
+        processed(X, words)
+
+
+def test_every_step_has_its_words():
+    """Every step can be written, with its needed keys, and an empty chain changes nothing."""
+    assert [name for name in STEPS if not STEPS[name].__doc__] == []
+    assert processed(X, "") is X
+    assert steps_of(["mean; taper", "pad:before=1"]) == [("mean", {}), ("taper", {}), ("pad", {"before": 1.0})]

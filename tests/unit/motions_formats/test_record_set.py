@@ -1,0 +1,145 @@
+"""Sets of records: which files are one motion, what is left out, and lists."""
+
+import numpy as np
+import pytest
+
+from rocking.errors import InvalidValueError, RecordError
+from rocking.motions import GroundMotion
+from rocking.motions.formats import read_records, write_motion
+from rocking.motions.formats.record_set import orientation
+
+pytestmark = pytest.mark.verifies(room="motions and records")
+
+
+@pytest.fixture
+def write(tmp_path):
+    """Return what writes a small PEER file: its name, component, peak, number of samples and step."""
+
+    def call(name, component="", peak=1.0, samples=50, step=0.01, event="Shake", folder=tmp_path):
+        folder.mkdir(exist_ok=True)
+        values = peak * np.sin(np.arange(samples) * 0.2)
+        told = {"component": component} if component else {}
+        write_motion(GroundMotion(values, step, None, event, {"station": "Cellar", **told}), folder / name, "peer")
+
+    return call
+
+
+def _seen(records):
+    return [[None if part is None else part.metadata["file"] for part in record.parts] for record in records]
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        (("RSN8_EV_ELC180.AT2", "RSN8_EV_ELC270.AT2", "RSN8_EV_ELC-UP.AT2"), ["RSN8_EV_ELC270.AT2", "RSN8_EV_ELC180.AT2", "RSN8_EV_ELC-UP.AT2"]),
+        (("ABC.NS", "ABC.EW", "ABC.UD"), ["ABC.EW", "ABC.NS", "ABC.UD"]),
+        (("IV.MRN..HNE.D.1.ASC", "IV.MRN..HNN.D.1.ASC", "IV.MRN..HNZ.D.1.ASC"), ["IV.MRN..HNE.D.1.ASC", "IV.MRN..HNN.D.1.ASC", "IV.MRN..HNZ.D.1.ASC"]),
+        (("kobe_x.at2", "kobe_y.at2", "kobe_z.at2"), ["kobe_x.at2", "kobe_y.at2", "kobe_z.at2"]),
+    ],
+)  # fmt: skip
+def test_components_by_their_names(write, tmp_path, names, expected):
+    """Names that differ in the component alone are one motion, x to the right of y, z upwards."""
+    said = {"NS": "N-S", "EW": "E-W", "UD": "U-D"}
+    for name in names:
+        end = name.rpartition(".")[2]
+        write(name, said.get(end) or next((code for code in ("HNE", "HNN", "HNZ") if code in name), ""))
+    assert _seen(read_records(tmp_path)) == [expected]
+
+
+def test_what_does_not_fit_stands_alone(write, tmp_path):
+    """Numbered files, other steps, other events and azimuths without a right angle are no pairs, and it is said."""
+    for name in ("run100.at2", "run200.at2", "a_000.at2", "b_000.at2", "c_000.at2"):
+        write(name)
+    write("a_090.at2", step=0.02)
+    write("b_090.at2", event="Another")
+    write("c_090.at2")
+    found = read_records(tmp_path)
+    assert sorted(map(str, _seen(found))) == sorted(
+        map(str, [["run100.at2", None, None], ["run200.at2", None, None], ["a_000.at2", None, None],
+                  ["a_090.at2", None, None], ["b_000.at2", None, None], ["b_090.at2", None, None],
+                  ["c_090.at2", "c_000.at2", None]])
+    )  # fmt: skip
+    reasons = {name: why for name, why in found.left_out}
+    assert "not at right angles" in reasons["run100.at2, run200.at2"]
+    assert "steps" in reasons["a_000.at2, a_090.at2"]
+    assert "events" in reasons["b_000.at2, b_090.at2"]
+
+
+def test_lengths_and_signs(write, tmp_path):
+    """Components are cut to the shortest; one that points down is turned up."""
+    write("A_000.at2", samples=50)
+    write("A_090.at2", samples=40)
+    write("A_DWN.at2", samples=60, peak=2.0)
+    (record,) = read_records(tmp_path)
+    assert {len(part) for part in record.parts} == {40}
+    assert record.z.acceleration[1] == pytest.approx(-2.0 * np.sin(0.2), rel=1e-6)
+    assert "positive downwards" in record.z.provenance[-1]
+    level = read_records(tmp_path).plane()
+    assert [motion.vertical is not None for motion in level] == [True, True]
+    mirrored = read_records(tmp_path).mirrored()
+    assert len(mirrored) == 2
+    assert mirrored[1].x.acceleration.tolist() == (-record.x.acceleration).tolist()
+    assert mirrored[1].z.acceleration.tolist() == record.z.acceleration.tolist()
+
+
+@pytest.mark.verifies("damage", "damaged files among good ones")
+def test_damaged_files_are_listed(write, tmp_path):
+    """A folder gives what can be read, and the reason of what cannot; one of damaged files alone is refused."""
+    write("good.at2", "N")
+    text = (tmp_path / "good.at2").read_text("latin-1")
+    (tmp_path / "cut.at2").write_text(text[: len(text) // 2], "latin-1")
+    (tmp_path / "notes.md").write_text("nothing", "utf-8")
+    (tmp_path / ".hidden.at2").write_text("nothing", "utf-8")
+    found = read_records(tmp_path)
+    assert _seen(found) == [["good.at2", None, None]]
+    assert [name.rpartition("/")[2] for name, _ in found.left_out] == ["cut.at2", "notes.md"]
+    (tmp_path / "good.at2").unlink()
+    with pytest.raises(RecordError, match="none of 2 files"):
+        read_records(tmp_path)
+    with pytest.raises(RecordError, match="no such file"):
+        read_records(tmp_path / "nowhere")
+    with pytest.raises(RecordError, match="finds no file"):
+        read_records(tmp_path / "*.smc")
+
+
+def test_a_list(write, tmp_path):
+    """Rows name files, or one along each axis, with a factor and a name; rows that make no sense are refused."""
+    for name in ("one.at2", "two.at2", "three.at2"):
+        write(name)
+    path = tmp_path / "list.csv"
+    path.write_text("x;y;z;scale;name\none.at2;two.at2;three.at2;1,5;Mine\none.at2;;;;\ngone.at2;;;;\n", "utf-8")
+    found = read_records(path)
+    assert _seen(found) == [["one.at2", "two.at2", "three.at2"], ["one.at2", None, None]]
+    assert (found[0].x.name, found[1].x.name) == ("Mine", "Shake Cellar")
+    assert found[0].x.peak == pytest.approx(1.5 * found[1].x.peak)
+    assert "no such file" in found.left_out[0][1]
+    path.write_text("motion,scale\none.at2,much\n", "utf-8")
+    with pytest.raises(InvalidValueError, match="its scale is a number"):
+        read_records(path)
+
+
+def test_results_of_a_search_at_peer(write, tmp_path):
+    """PEER's list of what was found: the files of a row are one motion, what it says is kept, its factor not applied."""
+    for name in ("RSN1_A000.AT2", "RSN1_A090.AT2", "RSN1_A-UP.AT2", "RSN2_B000.AT2", "RSN2_B090.AT2"):
+        write(name)
+    path = tmp_path / "_SearchResults.csv"
+    path.write_text(
+        "PEER Ground Motion Database\n\n -- Summary of Metadata of Selected Records --\n"
+        "Result ID, Record Sequence Number, Scale Factor, Magnitude, Horizontal-1 Acc. Filename,"
+        " Horizontal-2 Acc. Filename, Vertical Acc. Filename\n"
+        "1, 1, 2.5, 6.5, RSN1_A000.AT2, RSN1_A090.AT2, RSN1_A-UP.AT2\n"
+        "2, 2, 1.5, 7.0, RSN2_B000.AT2, RSN2_B090.AT2, -----\n"
+        "\n -- Scaled Spectra used in Search & Scaling --\nPeriod (sec),RSN-1\n0.01,0.5\n",
+        "utf-8",
+    )
+    found = read_records(path)
+    assert _seen(found) == [["RSN1_A000.AT2", "RSN1_A090.AT2", "RSN1_A-UP.AT2"], ["RSN2_B000.AT2", "RSN2_B090.AT2", None]]
+    assert found[0].x.metadata["PEER scale factor"] == "2.5"
+    assert found[0].x.peak == pytest.approx(1.0, rel=0.01)  # the largest sample of the sine is 0.4 % below its peak
+    assert found.left_out == ()
+
+
+def test_names_of_components():
+    """Azimuths by number, compass and side; codes of SEED; up and down; what says nothing is None."""
+    said = {"360": 0.0, "90": 90.0, "S45W": 225.0, "EW": 90.0, "HNN": 0.0, "BHZ": "up", "Dwn": "down", "L (STA)": None, "777": None}
+    assert {name: orientation(name) for name in said} == said
