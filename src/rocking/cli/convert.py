@@ -45,7 +45,9 @@ EXPORTS = {
 
 def convert(
     context: typer.Context,
-    record: Annotated[list[str], typer.Argument(help="Record file, file#COMPONENT; with its vertical part x=FILE z=FILE.")],
+    record: Annotated[
+        list[str], typer.Argument(help="Record file, file#COMPONENT; with its vertical part x=FILE z=FILE.")
+    ],
     units: options.RecordUnits = None,
     scale: Annotated[float | None, options.key(options.tables.MotionKeys, "scale")] = None,
     sets: options.Set = None,
@@ -72,7 +74,8 @@ def convert(
     after = after if table.scale == 1.0 else after.scaled(table.scale)
     # a format without a unit of its own keeps that of the file
     unit = before.metadata.get("unit", "m/s2")
-    deliver(Conversion(before, after, unit, tuple(map(str, (path for _, path in exports.files)))), exports, as_json=as_json)
+    files = tuple(str(path) for _, path in exports.files)
+    deliver(Conversion(before, after, unit, files), exports, as_json=as_json)
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,8 @@
 
 from rocking.motions import pulses, synthetic
 from rocking.motions.components import rotated, rotd_pga, with_vertical
+from rocking.motions.flatfile import Flatfile, flatfile
+from rocking.motions.fourier import fourier_amplitudes
 from rocking.motions.integrals import (
     arias_intensity,
     ground_displacement,
@@ -26,8 +28,6 @@ from rocking.motions.intensity import (
     spectral_acceleration,
     spectral_measure,
 )
-from rocking.motions.flatfile import Flatfile, flatfile
-from rocking.motions.fourier import fourier_amplitudes
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pipeline import processed
 from rocking.motions.processing import (

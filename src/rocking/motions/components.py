@@ -217,6 +217,7 @@ def _told(horizontal: GroundMotion, vertical: GroundMotion) -> dict[str, str]:
 
 
 def matching(first: GroundMotion, second: GroundMotion) -> None:
+    """Refuse components that are no records of one step and length."""
     checked_motion(first, "first")
     checked_motion(second, "second")
     if len(first) != len(second) or not math.isclose(first.time_step, second.time_step, rel_tol=1e-9):

@@ -130,7 +130,7 @@ def flatfile(
         values = [str(one.metadata.get(key, "")) for one, _ in kept]
         columns[key.replace(" ", "_")] = Column(text_array(values), "", "as the file says it")
     columns["files"] = Column(text_array([_files(one) for one, _ in kept]), "", "record files")
-    parts = [[part for part in one.parts if part is not None][0] for one, _ in kept]
+    parts = [next(part for part in one.parts if part is not None) for one, _ in kept]
     columns["time_step"] = Column(np.array([part.time_step for part in parts]), "s", "step between samples")
     columns["samples"] = Column(np.array([len(part) for part in parts], dtype=np.int64), "1", "number of samples")
     for name, (unit, words) in _columns().items():
@@ -174,8 +174,8 @@ def _measured(
                     found[f"{one.name}_{axis}"] = one.of(part)
         level: Sequence[Any] = [part for part in (record.x, record.y) if part is not None]
         if len(level) < 2:
-            spectra = {"sa_x": response_spectrum(part, periods, damping).pseudo_acceleration for part in level}
-            return found, spectra
+            alone = [response_spectrum(part, periods, damping).pseudo_acceleration for part in level]
+            return found, dict(zip(["sa_x"], alone, strict=False))
         found |= {f"pga_rotd{percent}": rotd_pga(*level, percent) for percent in (50, 100)}
         every = directional_spectra(*level, periods, damping)
         half, full = np.percentile(every, (50.0, 100.0), axis=1)

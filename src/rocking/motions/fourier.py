@@ -18,8 +18,8 @@ def fourier_amplitudes(
     motion : GroundMotion
         The motion; its horizontal part counts.
     frequencies : array_like, optional
-        Where the amplitudes are wanted, smoothed over their neighbours by the window of Konno & Ohmachi (1998); those of
-        the transform as they are if not given [Hz].
+        Where the amplitudes are wanted, smoothed over their neighbours by the window of Konno & Ohmachi (1998); those
+        of the transform as they are if not given [Hz].
     bandwidth : float
         b of the window: the larger, the narrower [-].
 

@@ -1,4 +1,4 @@
-"""One chain of steps that a record goes through, written as words: the same in Python, job files and on the command line."""
+"""One chain of steps that a record goes through, in words: the same in Python, job files and on the command line."""
 
 import inspect
 from collections.abc import Callable, Sequence

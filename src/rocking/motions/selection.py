@@ -69,7 +69,7 @@ class Selection:
         return (
             f"{len(self.records)} records scaled by {self.factors.min():.3g} to {self.factors.max():.3g} to "
             f"{self.target.name}, {low:g} to {high:g} s: misfit of each {self.misfits.min():.2f} to "
-            f"{self.misfits.max():.2f}, of their mean {self.misfit:.2f} (ln); mean over target at least {self.least:.2f}"
+            f"{self.misfits.max():.2f}, of their mean {self.misfit:.2f} (ln); mean/target {self.least:.2f} at least"
         )
 
 
@@ -119,7 +119,8 @@ def selected(
     --------
     >>> from rocking.motions.motion import GroundMotion
     >>> wave = GroundMotion(np.sin(np.linspace(0.0, 60.0, 600)), 0.01, name="wave")
-    >>> found = selected([Components(wave.scaled(f), None, None) for f in (1.0, 2.0)], "eurocode8:ag=2", periods=(0.3, 2))
+    >>> pair = [Components(wave.scaled(factor), None, None) for factor in (1.0, 2.0)]
+    >>> found = selected(pair, "eurocode8:ag=2", periods=(0.3, 2.0))
     >>> [round(float(ratio), 9) for ratio in found.factors / found.factors[0]]
     [1.0, 0.5]
     """
@@ -130,7 +131,8 @@ def selected(
     most = checks.within("most", most, 1.0, np.inf)
     grid = np.geomspace(low, high, POINTS)
     level, given = wanted(grid), [one for one in records if one.x is not None or one.y is not None]
-    spectra = np.array(list(mapped(partial(spectrum_of, periods=grid, damping=wanted.damping), given, workers, progress)))
+    spectrum = partial(spectrum_of, periods=grid, damping=wanted.damping)
+    spectra = np.array(list(mapped(spectrum, given, workers, progress)))
     with np.errstate(divide="ignore"):
         apart = np.log(spectra.reshape(-1, POINTS) / level)
     factors = np.exp(-apart.mean(axis=1))  # Eq. 315
@@ -139,8 +141,8 @@ def selected(
     number = allowed.size if count is None else checks.whole("count", count, 1)
     if allowed.size < max(number, 1):
         raise InvalidValueError(
-            f"{number or 1} of {len(given)} records are wanted, and {allowed.size} come to {wanted.name} with factors of "
-            f"{1.0 / most:g} to {most:g}; allow larger ones, or give more records"
+            f"{number or 1} of {len(given)} records are wanted, and {allowed.size} come to {wanted.name} with factors "
+            f"of {1.0 / most:g} to {most:g}; allow larger ones, or give more records"
         )
     best = allowed[np.argsort(misfits[allowed], kind="stable")][:number]
     scaled = tuple(_scaled(given[k], float(factors[k]), wanted.name) for k in best)

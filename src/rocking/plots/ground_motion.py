@@ -209,7 +209,8 @@ def selection_picture(selection: "Selection") -> "Figure":
     periods = selection.periods
     axes.plot(periods, selection.spectra.T / g, color=GREY, linewidth=0.4)
     axes.plot(periods, selection.mean / g, color=INK, linewidth=1.4, label=f"mean of {len(selection.records)}")
-    axes.plot(periods, selection.target(periods) / g, color=COLORS[0], label=plain(selection.target.name), linestyle=DASHED)
+    how: dict[str, Any] = {"color": COLORS[0], "linestyle": DASHED, "label": plain(selection.target.name)}
+    axes.plot(periods, selection.target(periods) / g, **how)
     axes.set(xlabel="period [s]", ylabel="spectral acceleration [g]")
     for which in "xy":
         plain_log(axes, which)

@@ -287,7 +287,8 @@ def components_of(table: "ComponentsTable | MotionTable", inputs: InputFiles | N
     if together and inputs is not None:
         whole = Components(*(found.get(axis) for axis in "xyz"))
         steps = with_files(next(iter(tables.values())), inputs)
-        found = {axis: part for axis, part in zip("xyz", processed(whole, steps).parts, strict=True) if part is not None}
+        made = zip("xyz", processed(whole, steps).parts, strict=True)
+        found = {axis: part for axis, part in made if part is not None}
     factors = {axis: one.scale * scale for axis, one in tables.items()}
     return {axis: each if factors[axis] == 1.0 else each.scaled(factors[axis]) for axis, each in found.items()}
 
@@ -301,7 +302,7 @@ def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None, *, raw:
             raise InvalidValueError("a record is a file; only pulses and synthetic motions are made")
         if (inputs.folder / table.record).is_dir():
             raise InvalidValueError(
-                f"{table.record} is a folder, and one record is wanted; predict, fragility, inventory and motions take sets"
+                f"{table.record} is a folder, and one record is wanted; predict, fragility and inventory take sets"
             )
         return (_unprocessed if raw else _record)(inputs.file(table.record), table, inputs)
     member = table.member or 0

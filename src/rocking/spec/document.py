@@ -190,7 +190,9 @@ class MotionTable(_Along, MotionKeys):
     count: Annotated[int, Field(ge=1, le=10_000_000)] | None = _key(
         "how many synthetic motions, or records chosen for a target"
     )
-    target: Text | None = _key("spectrum that records are chosen and scaled for: eurocode8:ag=0.25g,ground=C, or a file")
+    target: Text | None = _key(
+        "spectrum that records are scaled to: eurocode8:ag=0.25g,ground=C,type=1, asce7:sds=1g,sd1=0.6g,tl=8, a file"
+    )
     periods: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = _key(
         "first and last period of a target that count, 0.1 and 2 if not given [s]"
     )

@@ -62,7 +62,7 @@ def record_set(
 
 
 def motions_of_set(table: "MotionTable", inputs: InputFiles, *, paired: bool) -> list[Any]:
-    """Return the motions of a study; paired: two horizontal components are one motion, which plane bodies cannot take."""
+    """Return the motions of a study; paired: two horizontal components are one motion, which no plane body takes."""
     found, _ = record_set(table, inputs)
     plausibility.warn(f"left out: {name}: {why}" for name, why in found.left_out[:MOST_NAMED])
     if (more := len(found.left_out) - MOST_NAMED) > 0:

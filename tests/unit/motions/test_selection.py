@@ -12,10 +12,8 @@ pytestmark = pytest.mark.verifies(room="motions and records")
 
 RNG = np.random.default_rng(3)
 RECORDS = [
-    Components(
-        *(GroundMotion(np.convolve(RNG.standard_normal(600), np.hanning(9), "same"), 0.02, name=f"{k}") for _ in "xy"), None
-    )
-    for k in range(6)
+    Components(*(GroundMotion(np.convolve(row, np.hanning(9), "same"), 0.02, name=f"{k}") for row in pair), None)
+    for k, pair in enumerate(RNG.standard_normal((6, 2, 600)))
 ]
 
 
@@ -36,7 +34,8 @@ def test_eurocode_8():
 @pytest.mark.verifies("invariant", "branches that meet", within="1e-6", control="within")
 def test_spectra_have_no_jumps():
     """The branches of every target meet at their corners, and not a tenth of a second beside them."""
-    corners = [(eurocode8(1.0, ground, kind), [b, c, d]) for kind in GROUNDS for ground, (_, b, c, d) in GROUNDS[kind].items()]
+    every = [(kind, ground, corners) for kind, grounds in GROUNDS.items() for ground, (_, *corners) in grounds.items()]
+    corners = [(eurocode8(1.0, ground, kind), places) for kind, ground, places in every]
     corners.append((asce7(10.0, 6.0, 8.0), [0.12, 0.6, 8.0]))
     for target, places in corners:
         for place in places:
@@ -48,7 +47,8 @@ def test_spectra_have_no_jumps():
 @pytest.mark.verifies("closed form", "ASCE/SEI 7-16, 11.4.6", within="1e-12", control="within")
 def test_asce_7():
     """0.4 SDS at zero, SDS from 0.2 SD1/SDS to SD1/SDS, SD1/T, and SD1 TL/T^2 from TL on."""
-    assert asce7(10.0, 6.0, 8.0)([0.0, 0.06, 0.12, 0.6, 3.0, 16.0]) == pytest.approx([4.0, 7.0, 10.0, 10.0, 2.0, 0.1875])
+    found = asce7(10.0, 6.0, 8.0)([0.0, 0.06, 0.12, 0.6, 3.0, 16.0])
+    assert found == pytest.approx([4.0, 7.0, 10.0, 10.0, 2.0, 0.1875], rel=1e-12)
     assert target_spectrum("asce7:sds=1g,sd1=0.6g,tl=8")([0.3]) == pytest.approx([9.80665], rel=1e-12)
 
 
@@ -58,7 +58,7 @@ def test_a_target_in_a_file(tmp_path):
     path.write_text("T [s];Sa [g]\n0,1;0,4\n1,0;0,1\n", encoding="utf-8")
     target = target_spectrum("uhs.csv", tmp_path)
     assert target([0.1, 0.55]) == pytest.approx([0.4 * 9.80665, 0.2 * 9.80665], rel=1e-12)
-    with pytest.raises(InvalidValueError, match="periods of uhs.csv"):
+    with pytest.raises(InvalidValueError, match="periods of uhs"):
         target([2.0])
     for text, message in (("T,Sa\n0.1,0.4\n1,0.1\n", "with units"), ("T [s],Sa [g]\n1,0.4\n0.1,0.1\n", "must rise")):
         path.write_text(text, encoding="utf-8")
@@ -87,7 +87,8 @@ def test_factors_undo_what_was_multiplied():
     assert found.factors[order] / found.factors.min() == pytest.approx([1.0, 2.0, 6.0], rel=1e-9)
     assert found.misfits == pytest.approx(np.full(3, found.misfit), rel=1e-9)
     assert np.log(found.mean / found.target(found.periods)).mean() == pytest.approx(0.0, abs=1e-9)
-    assert found.misfits != pytest.approx(np.full(3, selected(RECORDS[1:2], "eurocode8:ag=2.0", most=100.0).misfit), rel=1e-9)
+    another = selected(RECORDS[1:2], "eurocode8:ag=2.0", most=100.0)
+    assert found.misfits[0] != pytest.approx(another.misfit, rel=1e-9)
 
 
 def test_the_closest_are_chosen(tmp_path):
@@ -128,7 +129,8 @@ def test_fourier_amplitude_of_a_sine():
 def test_flatfile():
     """Both components and all directions stand in one row; one component has no RotD; one that is zero is left out."""
     still = GroundMotion(np.zeros(600), 0.02, name="still")
-    found = flatfile([RECORDS[0], Components(RECORDS[1].x, None, RECORDS[1].y), Components(still, None, None)], [0.2, 1.0])
+    upright = Components(RECORDS[1].x, None, RECORDS[1].y)
+    found = flatfile([RECORDS[0], upright, Components(still, None, None)], [0.2, 1.0])
     columns = found.table.columns
     assert columns["record"].values.tolist() == ["0", "1"]
     assert found.left_out[0][0] == "still"

@@ -29,20 +29,21 @@ def _seen(records):
 
 
 @pytest.mark.parametrize(
-    ("names", "expected"),
+    ("name", "ends"),
     [
-        (("RSN8_EV_ELC180.AT2", "RSN8_EV_ELC270.AT2", "RSN8_EV_ELC-UP.AT2"), ["RSN8_EV_ELC270.AT2", "RSN8_EV_ELC180.AT2", "RSN8_EV_ELC-UP.AT2"]),
-        (("ABC.NS", "ABC.EW", "ABC.UD"), ["ABC.EW", "ABC.NS", "ABC.UD"]),
-        (("IV.MRN..HNE.D.1.ASC", "IV.MRN..HNN.D.1.ASC", "IV.MRN..HNZ.D.1.ASC"), ["IV.MRN..HNE.D.1.ASC", "IV.MRN..HNN.D.1.ASC", "IV.MRN..HNZ.D.1.ASC"]),
-        (("kobe_x.at2", "kobe_y.at2", "kobe_z.at2"), ["kobe_x.at2", "kobe_y.at2", "kobe_z.at2"]),
+        ("RSN8_EV_ELC{}.AT2", ("270", "180", "-UP")),
+        ("ABC.{}", ("EW", "NS", "UD")),
+        ("IV.MRN..{}.D.1.ASC", ("HNE", "HNN", "HNZ")),
+        ("kobe_{}.at2", ("x", "y", "z")),
     ],
-)  # fmt: skip
-def test_components_by_their_names(write, tmp_path, names, expected):
+)
+def test_components_by_their_names(write, tmp_path, name, ends):
     """Names that differ in the component alone are one motion, x to the right of y, z upwards."""
     said = {"NS": "N-S", "EW": "E-W", "UD": "U-D"}
-    for name in names:
-        end = name.rpartition(".")[2]
-        write(name, said.get(end) or next((code for code in ("HNE", "HNN", "HNZ") if code in name), ""))
+    expected = [name.format(end) for end in ends]
+    for file in expected:
+        end = file.rpartition(".")[2]
+        write(file, said.get(end) or next((code for code in ("HNE", "HNN", "HNZ") if code in file), ""))
     assert _seen(read_records(tmp_path)) == [expected]
 
 
@@ -59,7 +60,7 @@ def test_what_does_not_fit_stands_alone(write, tmp_path):
                   ["a_090.at2", None, None], ["b_000.at2", None, None], ["b_090.at2", None, None],
                   ["c_090.at2", "c_000.at2", None]])
     )  # fmt: skip
-    reasons = {name: why for name, why in found.left_out}
+    reasons = dict(found.left_out)
     assert "not at right angles" in reasons["run100.at2, run200.at2"]
     assert "steps" in reasons["a_000.at2, a_090.at2"]
     assert "events" in reasons["b_000.at2, b_090.at2"]
@@ -119,7 +120,7 @@ def test_a_list(write, tmp_path):
 
 
 def test_results_of_a_search_at_peer(write, tmp_path):
-    """PEER's list of what was found: the files of a row are one motion, what it says is kept, its factor not applied."""
+    """PEER's list of what was found: the files of a row are one motion; its factor is kept and not applied."""
     for name in ("RSN1_A000.AT2", "RSN1_A090.AT2", "RSN1_A-UP.AT2", "RSN2_B000.AT2", "RSN2_B090.AT2"):
         write(name)
     path = tmp_path / "_SearchResults.csv"
@@ -133,7 +134,8 @@ def test_results_of_a_search_at_peer(write, tmp_path):
         "utf-8",
     )
     found = read_records(path)
-    assert _seen(found) == [["RSN1_A000.AT2", "RSN1_A090.AT2", "RSN1_A-UP.AT2"], ["RSN2_B000.AT2", "RSN2_B090.AT2", None]]
+    expected = [["RSN1_A000.AT2", "RSN1_A090.AT2", "RSN1_A-UP.AT2"], ["RSN2_B000.AT2", "RSN2_B090.AT2", None]]
+    assert _seen(found) == expected
     assert found[0].x.metadata["PEER scale factor"] == "2.5"
     assert found[0].x.peak == pytest.approx(1.0, rel=0.01)  # the largest sample of the sine is 0.4 % below its peak
     assert found.left_out == ()
@@ -141,5 +143,5 @@ def test_results_of_a_search_at_peer(write, tmp_path):
 
 def test_names_of_components():
     """Azimuths by number, compass and side; codes of SEED; up and down; what says nothing is None."""
-    said = {"360": 0.0, "90": 90.0, "S45W": 225.0, "EW": 90.0, "HNN": 0.0, "BHZ": "up", "Dwn": "down", "L (STA)": None, "777": None}
+    said = {"360": 0.0, "90": 90.0, "S45W": 225.0, "EW": 90.0, "HNN": 0.0, "BHZ": "up", "Dwn": "down", "L (A)": None}
     assert {name: orientation(name) for name in said} == said

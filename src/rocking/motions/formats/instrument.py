@@ -23,7 +23,7 @@ def without_response(motion: GroundMotion, stations: Path, low: float, high: flo
     """
     motion = checked_motion(motion)
     if "sensitivity" not in motion.metadata:
-        raise InvalidValueError(f"response is for counts of a recorder, which a miniSEED file holds, got {motion!r:.100}")
+        raise InvalidValueError(f"response is for counts of a recorder, as miniSEED files hold, got {motion!r:.100}")
     nyquist = 0.5 / motion.time_step
     low = checks.within("low", low, 0.0, nyquist, unit="Hz", open_low=True, open_high=True)
     high = checks.within("high", high, low, nyquist / ABOVE, unit="Hz", open_low=True, hint="1.25 of it below Nyquist")
@@ -34,7 +34,8 @@ def without_response(motion: GroundMotion, stations: Path, low: float, high: flo
     request = {"channel": channel, "start": motion.metadata["starttime"], "step": motion.time_step, "count": count}
     found, arrays = _OBSPY.answer(source, request, source.content)
     if not arrays:
-        raise source.error(None, f"it must describe {channel['channel']} once, with its response, found {found['channels']}")
+        what = f"it must describe {channel['channel']} once, with its response, found {found['channels']}"
+        raise source.error(None, what)
     frequencies = np.fft.rfftfreq(count, motion.time_step)
     edge = _edge((frequencies - 0.5 * low) / (0.5 * low)) * _edge((ABOVE * high - frequencies) / ((ABOVE - 1.0) * high))
     gain = np.where(edge > 0.0, edge / np.where(edge > 0.0, arrays[0], 1.0), 0.0)  # Eq. 317

@@ -23,7 +23,10 @@ _UP = re.compile(r"UP|DO?W?N|V|VER|VERT|VRT|VERTICAL|U|Z|U-?D|[A-Z]{2}Z")
 _DOWN = re.compile(r"DO?W?N")
 _COMPASS = re.compile(r"([NS])\s*(\d{1,2})\s*([EW])")
 _SIDES = {"N": 0.0, "NS": 0.0, "N-S": 0.0, "E": 90.0, "EW": 90.0, "E-W": 90.0, "S": 180.0, "W": 270.0}
-_AT_END = re.compile(r"(?:[-_. ]?(?:\d{3}|UP|DO?WN|VERT?|VRT|[NE]-?[SW]|U-?D|[BHCEL][HNLG][ENZ12])|[-_. ][NEZUVXYLT12])\d?")
+_AT_END = re.compile(
+    r"(?:[-_. ]?(?:\d{3}|UP|DO?WN|VERT?|VRT|[NE]-?[SW]|U-?D|[BHCEL][HNLG][ENZ12])|[-_. ][NEZUVXYLT12])\d?$",
+    re.IGNORECASE,
+)
 _OF_NAMES = re.compile(r"^(horizontal-1|horizontal-2|vertical) acc\.? filename$")
 _PEER_AXES = {"horizontal-1": "x", "horizontal-2": "y", "vertical": "z"}
 _PEER = "horizontal-1 acc. filename"
@@ -111,9 +114,9 @@ def read_records(
     r"""Return the records of a folder, of a pattern or of a list, the components of each put into one motion.
 
     Files of one component belong together if their names differ in nothing but the component (``ELC180``,
-    ``ELC270``, ``ELC-UP``; ``.NS``, ``.EW``, ``.UD``), and if their steps, starts, events and azimuths agree; what does not
-    fit stays a motion of its own. Components of different length are cut to the shortest. x is the one from which y
-    is 90 degrees to the left: East and North, where these are stated; a component that points down is turned up.
+    ``ELC270``, ``ELC-UP``; ``.NS``, ``.EW``, ``.UD``), and if their steps, starts, events and azimuths agree; what does
+    not fit stays a motion of its own. Components of different length are cut to the shortest. x is the one from which
+    y is 90 degrees to the left: East and North, where these are stated; a component that points down is turned up.
 
     A list is a CSV file of PEER's search results, or one with the columns motion (or x, y, z) and, if wanted, scale
     and name. PEER's scale factors are kept as metadata and not applied.
@@ -224,7 +227,7 @@ def _read(path: Path, **options: Any) -> Read:
 
 def _motions(path: Path, read: Read, left_out: list[tuple[str, str]]) -> list[GroundMotion]:
     found, doubts = read
-    plausibility.warn(f"{path.name}: {doubt}" for doubt in doubts)
+    plausibility.warn(f"{path.name}: {doubt.removeprefix('check the input: ')}" for doubt in doubts)
     if isinstance(found, str):
         left_out.append((str(path), found))
         return []
@@ -261,7 +264,7 @@ def _key(path: Path, motions: Sequence[GroundMotion]) -> tuple[tuple[str, ...], 
         before, mark, after = stem.upper().rpartition(form)
         if mark and len(form) > 1 and (not after or not (before[-1:] + after[:1]).isalnum()):
             return (before.rstrip("-_. ") + "|" + after, ending), ""
-    end = re.search(rf"(?:{_AT_END.pattern})$", stem, re.IGNORECASE)
+    end = _AT_END.search(stem)
     if not motions or end is None:
         return (stem, ending), ""
     return ((stem[: end.start()] + "|").upper(), ending), end[0].strip("-_. ")

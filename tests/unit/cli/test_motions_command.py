@@ -1,0 +1,105 @@
+"""`rocking motions` and `rocking convert`, and what other commands make of a folder of records."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from rocking.motions import GroundMotion, processed
+from rocking.motions.formats import read_motion, write_motion
+
+BLOCK = ["--width", "0.4", "--height", "1.6"]
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Return a folder of three pairs of records and a damaged one."""
+    rng = np.random.default_rng(2)
+    place = tmp_path / "records"
+    place.mkdir()
+    for k in range(3):
+        for azimuth in ("000", "090"):
+            values = np.convolve(rng.standard_normal(400), np.hanning(9), "same") * np.hanning(400)
+            motion = GroundMotion(values, 0.02, None, f"Shake{k}", {"component": azimuth, "station": "Cellar"})
+            write_motion(motion, place / f"RSN{k}_A{azimuth}.AT2", "peer")
+    (place / "damaged.at2").write_text("A\nB\nC\nNPTS= 9, DT= .01 SEC\n1 2 3\n", encoding="utf-8")
+    return place
+
+
+def test_a_folder_becomes_a_flatfile(run, folder, tmp_path):
+    """One row a record in CSV, Excel and netCDF; the damaged file is named on the page, and in the workbook."""
+    files = [tmp_path / f"flat{ending}" for ending in (".csv", ".xlsx", ".nc", ".png")]
+    options = [word for file in files for word in ("--out", str(file))]
+    code, out, err = run("motions", folder, "--periods", "0.2,1", "--threads", 1, *options)
+    assert (code, err) == (0, "")
+    assert "left out" in out
+    assert "damaged.at2" in out
+    rows = list(csv.DictReader(files[0].read_text("utf-8").splitlines()))
+    assert [row["event"] for row in rows] == ["Shake0", "Shake1", "Shake2"]
+    for row in rows:
+        half, full = float(row["sa_rotd50(1) [m/s2]"]), float(row["sa_rotd100(1) [m/s2]"])
+        assert 0.0 < half < full
+        assert full >= max(float(row["sa_x(1) [m/s2]"]), float(row["sa_y(1) [m/s2]"])) * (1.0 - 1e-12)
+    openpyxl = pytest.importorskip("openpyxl")
+    assert openpyxl.load_workbook(files[1]).sheetnames == ["records", "left out"]
+    xarray = pytest.importorskip("xarray")
+    with xarray.open_dataset(files[2], engine="h5netcdf") as dataset:
+        assert dataset["sa_rotd50"].shape == (3, 2)
+    assert files[3].stat().st_size > 1000
+
+
+def test_a_target_chooses_and_scales(run, folder):
+    """Two of three records come with their factors and misfits, and the sentence of the set."""
+    words = ["--set", "motion.target=eurocode8:ag=0.3g,ground=B", "--set", "motion.count=2", "--periods", "1"]
+    code, out, _ = run("motions", folder, *words, "--json")
+    found = json.loads(out)
+    assert code == 0
+    assert (len(found["records"]), len(found["selection"]["factor"])) == (2, 2)
+    assert found["selection"]["misfit"] == sorted(found["selection"]["misfit"])
+    code, out, _ = run("motions", folder, *words)
+    assert "misfit of each" in out
+
+
+def test_other_commands_take_sets(run, folder, tmp_path):
+    """Predict takes pairs as one motion, fragility each component, doubled by mirrors; a job file says the same."""
+    few = ["--set", "predict.count=4", "--set", "predict.shares=false"]
+    code, out, _ = run("predict", *BLOCK, folder, *few, "--json")
+    assert code == 0
+    assert len(json.loads(out)["motions"]) == 3
+    pattern = str(folder / "RSN*.AT2")
+    words = ["--motion", pattern, "--set", "motion.mirrored=true", "--levels", "2,4"]
+    code, out, _ = run("fragility", *BLOCK, *words)
+    assert (code, "12 records" in out) == (0, True)
+    job = tmp_path / "job.toml"
+    job.write_text(
+        '[campaign]\nname = "a"\nkind = "stripes"\n[body]\nunits = "m"\nwidth = 0.4\nheight = 1.6\n'
+        f'[fragility]\nlevels = [2.0, 4.0]\n[[motions]]\nrecords = "{folder.name}/RSN*.AT2"\nmirrored = true\n',
+        encoding="utf-8",
+    )
+    assert "12 records" in run("fragility", job)[1]
+
+
+def test_what_is_no_set_is_refused(refuses, folder):
+    """One record is wanted, a pattern with a damaged file, a target without records, and options of earlier."""
+    refuses(["simulate", *BLOCK, folder], "is a folder, and one record is wanted")
+    refuses(["fragility", *BLOCK, str(folder / "*.at2")], "damaged.at2")
+    refuses(["motions", folder / "nothing"], "no such file or folder")
+    refuses(["motions", folder, "--set", "motion.count=2"], "goes with target")
+    refuses(["motions", folder, "--set", "motion.target=eurocode9:ag=1"], "target must be")
+    refuses(["fragility", *BLOCK, "--records", folder], "is now --motion FOLDER")
+
+
+def test_convert(run, folder, tmp_path):
+    """A record goes through its steps into another format, drawn before and after, with what was done to it."""
+    source, made = folder / "RSN0_A000.AT2", [tmp_path / name for name in ("new.at2", "new.png", "new.json")]
+    options = [word for file in made for word in ("--out", str(file))]
+    words = "mean; bandpass:low=0.2,high=20; taper"
+    code, out, err = run("convert", source, "--set", f"motion.process={words}", *options)
+    assert (code, err) == (0, "")
+    expected = processed(read_motion(source), words)
+    found = read_motion(made[0])
+    assert found.acceleration == pytest.approx(expected.acceleration, abs=1e-6 * expected.peak)
+    assert json.loads(made[2].read_text("utf-8"))["provenance"] == list(expected.provenance)
+    assert "band-pass 0.2 to 20 Hz" in out
+    assert run("convert", source, "--set", "motion.process=polish")[0] == 2
