@@ -51,7 +51,14 @@ def convert(
     units: options.RecordUnits = None,
     scale: Annotated[float | None, options.key(options.tables.MotionKeys, "scale")] = None,
     sets: options.Set = None,
-    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    out: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Write a file, again for more: in a format by its ending, or NAME=FILE with a name of rocking formats; "
+            ".png, .svg and .pdf draw it before and after, .json keeps what was done.",
+            rich_help_panel=options.OUTPUT,
+        ),
+    ] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Write a record in another format, corrected by --set "motion.process=mean; bandpass:low=0.1,high=25; taper"."""

@@ -68,12 +68,12 @@ def motions(
     as_json: options.AsJson = False,
 ) -> None:
     """Print the intensity measures of many records and write them with RotD spectra; choose and scale to a target."""
-    from rocking.cli.arguments import Arguments, as_typed, is_file, is_pattern
+    from rocking.cli.arguments import Arguments, as_typed, is_file
     from rocking.cli.motion import parsed_periods
     from rocking.dynamics.settings import processors
     from rocking.motions.flatfile import PERIODS, flatfile
     from rocking.spec.document import MotionTable
-    from rocking.spec.reading import CommandFiles, checked
+    from rocking.spec.reading import CommandFiles, checked, is_pattern
     from rocking.spec.record_sets import record_set
 
     exports = Exports.of(out, EXPORTS)

@@ -1,9 +1,9 @@
 """The measures of many records in one table, with their spectra in all directions."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -172,12 +172,14 @@ def _measured(
             for one in MEASURES.values() if part is not None else ():
                 if one.is_listed and not one.needs_body:
                     found[f"{one.name}_{axis}"] = one.of(part)
-        level: Sequence[Any] = [part for part in (record.x, record.y) if part is not None]
-        if len(level) < 2:
-            alone = [response_spectrum(part, periods, damping).pseudo_acceleration for part in level]
-            return found, dict(zip(["sa_x"], alone, strict=False))
-        found |= {f"pga_rotd{percent}": rotd_pga(*level, percent) for percent in (50, 100)}
-        every = directional_spectra(*level, periods, damping)
+        if record.x is None or record.y is None:
+            only = {"sa_x": record.x, "sa_y": record.y}
+            alone = {name: part for name, part in only.items() if part is not None}
+            return found, {
+                k: response_spectrum(part, periods, damping).pseudo_acceleration for k, part in alone.items()
+            }
+        found |= {f"pga_rotd{percent}": rotd_pga(record.x, record.y, percent) for percent in (50, 100)}
+        every = directional_spectra(record.x, record.y, periods, damping)
         half, full = np.percentile(every, (50.0, 100.0), axis=1)
         return found, {"sa_x": every[:, 0], "sa_y": every[:, 90], "sa_rotd50": half, "sa_rotd100": full}
     except RockingError as error:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking import checks
-from rocking.conventions import FloatArray
+from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.motions.components import ANGLES, matching
 from rocking.motions.motion import GroundMotion
 from rocking.motions.spectrum import FREE_POINTS, POINTS_PER_PERIOD, TOGETHER, ComplexArray, oscillators, phi, states
@@ -141,19 +141,19 @@ class _Path:
         """Return how far the outline that has these peaks is from the middle, in every direction."""
         return np.asarray((self.best * _OVER_COSINE).min(axis=1), dtype=np.float64)
 
-    def _close_steps(self) -> np.ndarray:
+    def _close_steps(self) -> IntArray:
         """Return the steps within which the path may leave the outline."""
         # within a step a state changes by no more than the push of the ground, seen from either of its ends
         size = np.hypot(*np.abs(self.states))
         push = self.step * np.hypot(*np.maximum(np.abs(self.ground[:, :-1]), np.abs(self.ground[:, 1:])))
         bound = size[:-1] + math.exp(-self.rate.real * self.step) * (size[1:] + push)
-        return np.flatnonzero(bound >= 2.0 * self.rate.imag * float(self.best.min()))
+        return np.asarray(np.flatnonzero(bound >= 2.0 * self.rate.imag * float(self.best.min())), np.int64)
 
 
-def _is_outside(places: FloatArray, radius: FloatArray) -> np.ndarray:
+def _is_outside(places: FloatArray, radius: FloatArray) -> BoolArray:
     """Return which places lie beyond an outline given by its radius at every degree of half a turn."""
     size = np.hypot(places[0], places[1])
-    beyond = size > _SLACK * radius.min()
+    beyond: BoolArray = size > _SLACK * radius.min()
     near = np.flatnonzero(beyond)
     direction = np.degrees(np.arctan2(places[1, near], places[0, near])) % 180.0
     low = direction.astype(np.int64) % len(radius)

@@ -168,13 +168,13 @@ def processing_picture(before: GroundMotion, after: GroundMotion) -> "Figure":
         axes.remove()
     right = figure.add_subplot(grid[:, 1])
     words = ("acceleration [m/s$^2$]", "velocity [m/s]", "displacement [m]")
-    for motion, how in ((before, {"color": GREY, "label": "before"}), (after, {"color": INK, "label": "after"})):
+    for motion, color, when in ((before, GREY, "before"), (after, INK, "after")):
         rows = (motion.acceleration, ground_velocity(motion), ground_displacement(motion))
         for axes, values, name in zip(cells[::2], rows, words, strict=True):
-            axes.plot(motion.time + begins_at(motion), values, linewidth=0.7, **how)
+            axes.plot(motion.time + begins_at(motion), values, linewidth=0.7, color=color, label=when)
             axes.set_ylabel(name)
-        places = np.geomspace(2.0 / motion.duration, 0.5 / motion.time_step, 120)
-        right.plot(*fourier_amplitudes(motion, places), linewidth=0.9, **how)
+        places = np.geomspace(2.0 / motion.duration, 0.49 / motion.time_step, 120)
+        right.plot(*fourier_amplitudes(motion, places), linewidth=0.9, color=color)
     cells[4].set_xlabel("time [s]")
     right.set(xlabel="frequency [Hz]", ylabel="Fourier amplitude [m/s]", xscale="log", yscale="log")
     legend_above(cells[0], 2)

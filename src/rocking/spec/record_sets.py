@@ -54,7 +54,8 @@ def record_set(
             inputs.file(table.target)
         with located("target"):
             target = target_spectrum(table.target, inputs.folder)
-            chosen = selected(kept, target, table.count, table.periods or PERIODS, workers=workers, progress=progress)
+            low, high = table.periods or PERIODS
+            chosen = selected(kept, target, table.count, (low, high), workers=workers, progress=progress)
         told = chosen.sentence
         kept = replace(chosen.records, records=tuple(each.each(partial(_told, told)) for each in chosen.records))
         chosen = replace(chosen, records=kept)

@@ -36,7 +36,7 @@ def without_response(motion: GroundMotion, stations: Path, low: float, high: flo
     if not arrays:
         what = f"it must describe {channel['channel']} once, with its response, found {found['channels']}"
         raise source.error(None, what)
-    frequencies = np.fft.rfftfreq(count, motion.time_step)
+    frequencies = np.asarray(np.fft.rfftfreq(count, motion.time_step), dtype=np.float64)
     edge = _edge((frequencies - 0.5 * low) / (0.5 * low)) * _edge((ABOVE * high - frequencies) / ((ABOVE - 1.0) * high))
     gain = np.where(edge > 0.0, edge / np.where(edge > 0.0, arrays[0], 1.0), 0.0)  # Eq. 317
     samples = np.fft.irfft(np.fft.rfft(motion.acceleration, count) * gain, count)[: len(motion)]
@@ -45,4 +45,5 @@ def without_response(motion: GroundMotion, stations: Path, low: float, high: flo
 
 
 def _edge(place: FloatArray) -> FloatArray:
-    return 0.5 * (1.0 - cosine_sine(np.pi * np.clip(place, 0.0, 1.0))[0])  # Eq. 154
+    cosine = cosine_sine(np.asarray(np.pi * np.clip(place, 0.0, 1.0), dtype=np.float64))[0]
+    return np.asarray(0.5 * (1.0 - cosine), dtype=np.float64)  # Eq. 154
