@@ -54,7 +54,7 @@ def convert(
     out: Annotated[
         list[str] | None,
         typer.Option(
-            help="Write a file, again for more: in a format by its ending, or NAME=FILE with a name of rocking formats; "
+            help="Write a file, again for more: in a format by its ending, or NAME=FILE as rocking formats names it; "
             ".png, .svg and .pdf draw it before and after, .json keeps what was done.",
             rich_help_panel=options.OUTPUT,
         ),

@@ -71,26 +71,10 @@ class TargetSpectrum:
 
 
 def eurocode8(ag: float, ground: str = "A", type: int = 1, damping: float = 0.05) -> TargetSpectrum:
-    """Return the horizontal elastic response spectrum of Eurocode 8, EN 1998-1:2004, 3.2.2.2.
+    """Return the horizontal elastic response spectrum of Eurocode 8, EN 1998-1:2004, 3.2.2.2, up to 4 s.
 
-    Parameters
-    ----------
-    ag : float
-        Design ground acceleration on ground A, with the importance factor [m/s2].
-    ground : str
-        Ground A to E.
-    type : int
-        1, or 2 where earthquakes of up to surface-wave magnitude 5.5 decide.
-    damping : float
-        Damping ratio [-].
+    ag: of ground A, with the importance factor [m/s2]; type 2 where earthquakes up to magnitude Ms 5.5 decide.
 
-    Returns
-    -------
-    TargetSpectrum
-        Up to 4 s.
-
-    Examples
-    --------
     >>> eurocode8(2.0, "B")([0.3, 1.0]).round(12).tolist()
     [6.0, 3.0]
     """
@@ -111,22 +95,8 @@ def eurocode8(ag: float, ground: str = "A", type: int = 1, damping: float = 0.05
 
 
 def asce7(sds: float, sd1: float, tl: float) -> TargetSpectrum:
-    """Return the design response spectrum of ASCE/SEI 7-16, 11.4.6, for 5 % damping.
+    """Return the design response spectrum of ASCE/SEI 7-16, 11.4.6, for 5 % damping [m/s2, m/s2, s].
 
-    Parameters
-    ----------
-    sds, sd1 : float
-        Design spectral accelerations of short periods and at 1 s [m/s2].
-    tl : float
-        Long-period transition period [s].
-
-    Returns
-    -------
-    TargetSpectrum
-        Of every period.
-
-    Examples
-    --------
     >>> asce7(10.0, 6.0, 8.0)([0.0, 0.3, 2.0, 16.0]).round(12).tolist()
     [4.0, 10.0, 3.0, 0.1875]
     """
