@@ -31,6 +31,8 @@ _OF_NAMES = re.compile(r"^(horizontal-1|horizontal-2|vertical) acc\.? filename$"
 _PEER_AXES = {"horizontal-1": "x", "horizontal-2": "y", "vertical": "z"}
 _PEER = "horizontal-1 acc. filename"
 _TITLES = {"motion", "file", "x"}
+LARGEST_LIST = 1 << 24  # no list of records is larger [bytes]
+_TOP = 500  # lines within which PEER's list of files begins
 _SPECIAL = "*?["
 
 
@@ -352,24 +354,31 @@ class ListedRecord:
 
 def rows_of_list(path: Path) -> list[ListedRecord] | None:
     """Return the rows of a list of records; None of a file that is none."""
-    if path.suffix.lower() not in {".csv", ".tsv"} or not path.is_file() or path.stat().st_size > 1 << 24:
+    try:
+        if path.suffix.lower() not in {".csv", ".tsv"} or not path.is_file() or path.stat().st_size > LARGEST_LIST:
+            return None
+        return _rows(path.read_bytes().decode("utf-8-sig", "replace").splitlines(), path.name)
+    except (OSError, csv.Error):  # whoever reads it as a record says what is wrong
         return None
-    lines = path.read_bytes().decode("utf-8-sig", "replace").splitlines()
-    top = next((k for k, line in enumerate(lines) if _PEER in line.casefold()), None)
-    of_peer = top is not None
-    if top is None:
-        top = next((k for k, line in enumerate(lines) if line.strip()), 0)
-    mark = next((mark for mark in ",;\t" if mark in "".join(lines[top : top + 1])), ",")
-    table = list(csv.reader(lines[top:], delimiter=mark))
-    titles = [title.strip().casefold() for title in table[0]] if table else []
-    rows = [dict(zip(titles, (cell.strip() for cell in cells), strict=False)) for cells in table[1:]]
-    if of_peer:
+
+
+def _rows(lines: Sequence[str], source: str) -> list[ListedRecord] | None:
+    of_peer = next((k for k, line in enumerate(lines[:_TOP]) if _PEER in line.casefold()), None)
+    top = of_peer if of_peer is not None else next((k for k, line in enumerate(lines) if line.strip()), 0)
+    head = "".join(lines[top : top + 1])
+    mark = next((mark for mark in ",;\t" if mark in head), ",")
+    titles = [title.strip().casefold() for title in next(csv.reader([head], delimiter=mark), [])]
+    if of_peer is None and not _TITLES & set(titles):
+        return None
+    table = csv.reader(lines[top + 1 :], delimiter=mark)
+    rows = [dict(zip(titles, (cell.strip() for cell in cells), strict=False)) for cells in table]
+    if of_peer is not None:
         ends = next((k for k, row in enumerate(rows) if not row.get(_PEER)), len(rows))
         return [_of_peer(row) for row in rows[:ends]]
-    column = next((title for title in titles if title in _TITLES), None)
-    if column is None or not rows or _is_number(rows[0].get(column, "")):
+    column = next(title for title in titles if title in _TITLES)
+    if not rows or _is_number(rows[0].get(column, "")):  # a record, with a column along x
         return None
-    return [_row(row, mark, path.name) for row in rows if any(row.values())]
+    return [_row(row, mark, source) for row in rows if any(row.values())]
 
 
 def _of_peer(row: Mapping[str, str]) -> ListedRecord:
