@@ -85,6 +85,8 @@ presenters.update({
     "picture of ContactResponse": "rocking.plots:regimes_picture",
     "picture of HullResponse": "rocking.plots:spatial_picture",
     "picture of SpatialResponse": "rocking.plots:spatial_picture",
+    "picture of Identification": "rocking.plots:identification_picture",
+    "report of Identification": "rocking.reports:identification_report",
     "writer of pictures": "rocking.plots:write",
     "animation as .html": "rocking.plots:animate_html",
     "animation as .gif": "rocking.plots:animate_gif",

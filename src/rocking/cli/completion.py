@@ -47,6 +47,8 @@ def keys(context: typer.Context, incomplete: str) -> list[str]:
     from rocking.spec.reference import keys_of
 
     command = context.info_name or ""
-    own = ("response", "restitution") if command == "simulate" else (command,)
-    every = [f"{table}.{key}=" for table in (*own, *_TABLES_OF_ALL) for key in keys_of(table)]
+    tables = {"simulate": ("response", "restitution"), "identify": ("identify", "measurement")}.get(command, (command,))
+    if command != "identify":
+        tables = (*tables, *_TABLES_OF_ALL)
+    every = [f"{table}.{key}=" for table in tables for key in keys_of(table)]
     return [key for key in every if key.startswith(incomplete)]

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from rocking.identification.results import (
     compared,
     estimated,
     impulses,
-    next_impact,
+    quantiles_of,
 )
 from rocking.identification.series import fit_series
 from rocking.identification.state_space import DAMPING, FREQUENCY, HALF, MEAN, SHARED, TILT, TREND
@@ -110,7 +111,7 @@ def _of_times(measurement: ImpactTimes, known: Knowledge) -> Identification:
         doubts.append(f"{extra} times between the impacts are none, {bounces} of them bounces or echoes.")
     if known.asymmetry and known.tilt_error:
         doubts.append("Times alone do not tell a tilted floor from sides that differ: intervals by side include both.")
-    return _result(
+    result = _result(
         measurement,
         known,
         found.posterior,
@@ -120,6 +121,7 @@ def _of_times(measurement: ImpactTimes, known: Knowledge) -> Identification:
         independent=float(times.size),
         advantage=advantage,
     )
+    return replace(result, residual_times=times)
 
 
 def _of_series(measurement: RotationSeries, known: Knowledge) -> Identification:
@@ -138,9 +140,10 @@ def _of_series(measurement: RotationSeries, known: Knowledge) -> Identification:
         refused.append(f"rocking explains {100.0 * (1.0 - total):.0f} % of the motion only")
     first: Foot = "right" if found.posterior.model.sides[0] == 0 else "left"
     doubts = list(measurement.doubts)
-    return _result(
+    result = _result(
         measurement, known, found.posterior, first, refused, doubts, independent=found.independent, advantage=math.nan
     )
+    return replace(result, residual_times=np.concatenate([row.time for row in found.rows]))
 
 
 def _nothing(measurement: ImpactTimes | RotationSeries, why: str) -> Identification:
@@ -148,7 +151,7 @@ def _nothing(measurement: ImpactTimes | RotationSeries, why: str) -> Identificat
     sides: dict[Foot, IntervalEstimate] = dict.fromkeys(FEET, none)
     return Identification(
         measurement.source, (why,), measurement.doubts, none, sides, none, none, none, None, None, (), np.zeros(0),
-        none, 0.0, math.nan, math.nan, False, {}, (), (), {},
+        np.zeros(0), none, 0.0, math.nan, math.nan, False, {}, (), (), measurement, np.zeros(0), {},
     )  # fmt: skip
 
 
@@ -193,11 +196,12 @@ def _result(
         tilt=estimated(found.shared((TILT, 1.0))),
         trend=estimated(found.shared((TREND, 1.0))) if known.trend else None,
         damping=estimated(found.shared((DAMPING, 1.0))) if known.damping else None,
-        impacts=_impacts(found, first), residuals=found.average(found.residuals),
+        impacts=_impacts(found, first), residuals=found.average(found.residuals), residual_times=np.zeros(0),
         noise=_of_grid(found, found.noise), independent=independent, p_value=p_value, advantage=advantage,
         converged=found.converged, impulse=impulses(body, coefficients) if body is not None and not refused else {},
         models=compared(body, r) if body is not None and not refused else (), designs=experiments,
-        _next={foot: next_impact(each, found.scatter) for foot, each in by_side.items()},
+        measurement=measurement, quantiles=quantiles_of(mean),
+        _next={foot: quantiles_of(each, found.scatter) for foot, each in by_side.items()},
     )  # fmt: skip
 
 

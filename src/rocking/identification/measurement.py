@@ -27,6 +27,8 @@ class ImpactTimes:
         Where they come from.
     doubts : tuple of str
         What the reader has to say against them.
+    loudness : ndarray, optional
+        Of a sound, for pictures: times [s] in its first column, amplitudes in its second [-].
 
     Raises
     ------
@@ -44,6 +46,7 @@ class ImpactTimes:
     probabilities: FloatArray | None = None
     source: str = ""
     doubts: tuple[str, ...] = ()
+    loudness: FloatArray | None = None
 
     def __post_init__(self) -> None:
         """Check the times."""

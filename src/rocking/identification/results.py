@@ -2,7 +2,8 @@
 
 import math
 from dataclasses import asdict, dataclass
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,11 +12,21 @@ from rocking.conventions import FEET, FloatArray, Foot
 from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError, RockingError
 from rocking.identification.design import Design
+from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.posterior import Mixture
+from rocking.lazy import presenter
 from rocking.restitution import RestitutionModel, implied, models
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from rocking.tables import Table
 
 LEVELS = (0.5, 0.025, 0.975)
 """Of an estimate and its interval."""
+
+_ENDS = (("value", "", ""), ("low", "_low", ", 2.5 % of it"), ("high", "_high", ", 97.5 % of it"))
 
 
 @dataclass(frozen=True)
@@ -118,6 +129,8 @@ class Identification:
         What each impact took.
     residuals : ndarray
         Measured less computed values [s, rad or rad/s].
+    residual_times : ndarray
+        When these were measured [s].
     noise : IntervalEstimate
         Standard deviation of these.
     independent : float
@@ -134,6 +147,10 @@ class Identification:
         Every model of restitution beside it, the closest first; empty without a body.
     designs : tuple of Design
         Experiments with this body, the most telling first.
+    measurement : ImpactTimes or RotationSeries
+        What was measured.
+    quantiles : ndarray
+        Quantiles of the mean coefficient of restitution, at equal steps of its probability [-].
     _next : dict of str to ndarray
         Quantiles of what the next impact takes, by foot, for `law` [-].
     """
@@ -150,6 +167,7 @@ class Identification:
     damping: IntervalEstimate | None
     impacts: tuple[Impact, ...]
     residuals: FloatArray
+    residual_times: FloatArray
     noise: IntervalEstimate
     independent: float
     p_value: float
@@ -158,6 +176,8 @@ class Identification:
     impulse: dict[Foot, IntervalEstimate]
     models: tuple[ModelComparison, ...]
     designs: tuple[Design, ...]
+    measurement: ImpactTimes | RotationSeries
+    quantiles: FloatArray
     _next: dict[Foot, FloatArray]
 
     @property
@@ -205,10 +225,16 @@ class Identification:
         Returns
         -------
         dict
-            By the names of the attributes; NaN where something does not exist.
+            By the names of the attributes; NaN where something does not exist. Of a measurement that was refused there
+            is why, and no number.
         """
-        found = {name: value for name, value in vars(self).items() if not name.startswith("_")}
-        found |= {"verdict": self.verdict, "residuals": self.residuals.tolist()}
+        words = {"source": self.source, "verdict": self.verdict, "refused": self.refused, "doubts": self.doubts}
+        if self.refused:
+            return words
+        found = {name: value for name, value in vars(self).items() if not name.startswith("_")} | words
+        del found["measurement"]
+        for name in ("residuals", "residual_times", "quantiles"):
+            found[name] = found[name].tolist()
         for name in ("mean", "scatter", "frequency_parameter", "tilt", "trend", "damping", "noise"):
             found[name] = None if found[name] is None else asdict(found[name])
         for name in ("coefficients", "impulse"):
@@ -216,6 +242,112 @@ class Identification:
         for name in ("impacts", "models", "designs"):
             found[name] = [asdict(each) for each in found[name]]
         return found
+
+    def plot(self, path: str | Path | None = None) -> "Figure":
+        """Draw what was measured, the fit, what is left over, and the coefficient with the models beside it.
+
+        Parameters
+        ----------
+        path : str or Path, optional
+            Where to write the picture, too: .png, .svg or .pdf.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The picture.
+
+        Raises
+        ------
+        MissingExtraError
+            If matplotlib is not installed.
+        """
+        figure: Figure = presenter("picture of Identification")(self)
+        if path is not None:
+            presenter("writer of pictures")(figure, Path(path))
+        return figure
+
+    def report(self, path: str | Path, *, name: str = "", date: str = "") -> Path:
+        """Write a report: verdict, picture, what each impact took, the models, and how it was found.
+
+        Parameters
+        ----------
+        path : str or Path
+            A document (.pdf), or a web page of one file (.html).
+        name : str
+            What the body is called.
+        date : str
+            Day of the report, as it should be printed.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        written: Path = presenter("report of Identification")(self, path, name=name, date=date)
+        return written
+
+    def exported(self) -> "Table":
+        """Return what files of it hold.
+
+        Returns
+        -------
+        Table
+            One row an impact, the models and what is left over beside them, with units.
+        """
+        from rocking.tables import Column, Table, text_array
+
+        of = self.impacts
+        columns = {
+            "time": Column(np.array([each.time for each in of]), "s", "when it was, as computed"),
+            "onto": Column(text_array([each.onto for each in of]), "", "foot on which the body lands"),
+            "speed": Column(np.array([each.speed for each in of]), "rad/s", "angular velocity before it"),
+        }
+        for key, end, meaning in _ENDS:
+            values = np.array([getattr(each.coefficient, key) for each in of])
+            columns[f"coefficient{end}"] = Column(values, "1", f"coefficient of restitution{meaning}")
+        compared = {
+            "model": Column(text_array([each.model for each in self.models]), "", "model of restitution"),
+            "model_coefficient": Column(np.array([each.coefficient for each in self.models]), "1", "by the model"),
+        }
+        unit = "s" if isinstance(self.measurement, ImpactTimes) else ""
+        left = {
+            "measured_at": Column(self.residual_times, "s", "when it was measured"),
+            "left_over": Column(self.residuals, unit, "measured less computed"),
+        }
+        provenance: dict[str, Any] = {"source": self.source, "verdict": self.verdict, "doubts": "; ".join(self.doubts)}
+        for name in ("mean", "scatter", "frequency_parameter", "tilt"):
+            provenance |= {f"{name}{end}": getattr(getattr(self, name), key) for key, end, _ in _ENDS}
+        beside = {"model": Table("model", compared), "sample": Table("sample", left)}
+        return Table("impact", columns, provenance, beside)
+
+    def to_xarray(self) -> "xr.Dataset":
+        """Return what each impact took as a labelled dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over `impact`, the models over `model`, what is left over over `sample`; the mean is an attribute.
+        """
+        from rocking.tables import to_dataset
+
+        return to_dataset(self.exported())
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write what each impact took as comma-separated values.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        from rocking.tables import target_of, to_csv
+
+        return to_csv(self.exported(), target_of(path))
 
 
 def impulses(body: Body, coefficients: dict[Foot, IntervalEstimate]) -> dict[Foot, IntervalEstimate]:
@@ -241,8 +373,8 @@ def compared(body: Body, mean: IntervalEstimate) -> tuple[ModelComparison, ...]:
     return tuple(sorted(found, key=lambda each: abs(each.error)))
 
 
-def next_impact(mean: Mixture, scatter: FloatArray) -> FloatArray:
-    """Quantiles of the coefficient of another impact."""
+def quantiles_of(mean: Mixture, scatter: FloatArray | float = 0.0) -> FloatArray:
+    """Quantiles of the mean coefficient, or with the scatter of that of another impact."""
     spread = Mixture(mean.weights, mean.means, np.hypot(mean.deviations, scatter))
     levels = (np.arange(65) + 0.5) / 65.0
     return np.exp(np.minimum(spread.quantiles(*levels), math.log(10.0)))  # Eq. 274

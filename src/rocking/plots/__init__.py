@@ -20,6 +20,7 @@ if TYPE_CHECKING:
         selection_picture,
         spectra_picture,
     )
+    from rocking.plots.identification import identification_picture
     from rocking.plots.incremental_dynamic_analysis import incremental_dynamic_analysis_picture
     from rocking.plots.inventory import inventory_picture
     from rocking.plots.overturning_map import overturning_map_picture, refined_map_picture
@@ -48,6 +49,7 @@ __all__ = [
     "falling_picture",
     "fragility_picture",
     "ground_motion_picture",
+    "identification_picture",
     "incremental_dynamic_analysis_picture",
     "inventory_picture",
     "journal_style",

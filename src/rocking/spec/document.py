@@ -329,6 +329,31 @@ class PredictTable(JobTable):
     seed: Seed = _key("seed of the draws", 0)
 
 
+class MeasurementTable(JobTable):
+    """What was measured of a body that rocks freely: a file, or a folder in which every file is a trial."""
+
+    file: Text = Field(description="sound, table of times or rotations, or a folder of them")
+    kind: str | None = _key("sound, times, rotation, displacement, angular velocity or acceleration")
+    column: str | None = _key("name of the column, where a table has several")
+    unit: str | None = _key("unit of the column, where the table states none")
+    time_column: str | None = _key("name of the column of times; that called time if not given")
+    time_unit: str | None = _key("unit of the times, s or ms, where the table states none")
+    height: Positive | None = _key("height of the sensor above the base, for a displacement or an acceleration [m]")
+
+
+class IdentifyTable(JobTable):
+    """What is known beside a measurement; everything that is left out has its usual value."""
+
+    size_error: float | None = _key("standard deviation of a length of the body, relative; 0.01 if not given [-]")
+    tilt: float | list[float] | None = _key(
+        "standard deviation of the tilt of the floor, or [tilt, deviation], clockwise; 0.0052 if not given [rad]"
+    )
+    asymmetry: float | None = _key("standard deviation of ln r landing right less left; 0.06 if not given [-]")
+    trend: bool | None = _key("fit a change of r with the speed")
+    damping: bool | None = _key("fit damping between impacts")
+    first: Literal["left", "right"] | None = _key("foot on which it stands after the first impact, of times")
+
+
 class SettingsTable(JobTable):
     """How to integrate: what is left out has its usual value."""
 
@@ -519,4 +544,18 @@ class ValidationDocument(PredictedBody):
         known = OF_FILES - {"vertical_file"}
         if odd := sorted(self.motion.model_fields_set - known):
             raise refused(f"[motion] takes {', '.join(sorted(known))} here, got {odd[0]}; outcomes name the rest")
+        return self
+
+
+class IdentificationDocument(JobTable):
+    """A file that asks what a measurement says of the coefficient of restitution."""
+
+    body: dict[str, Any] | None = None
+    measurement: MeasurementTable
+    identify: IdentifyTable = Field(default_factory=IdentifyTable)
+
+    @model_validator(mode="after")
+    def _a_pair(self) -> "IdentificationDocument":
+        if isinstance(self.identify.tilt, list) and len(self.identify.tilt) != 2:
+            raise refused(f"identify.tilt is one number, or [tilt, deviation], got {self.identify.tilt}")
         return self

@@ -29,6 +29,8 @@ _TABLES: dict[str, tuple[type[JobTable], str]] = {
     "inventory": (document.InventoryTable, "`rocking inventory`"),
     "inventory.thresholds": (document.ThresholdsTable, "`rocking inventory`"),
     "predict": (document.PredictTable, "`rocking predict` and `rocking validate`"),
+    "measurement": (document.MeasurementTable, "`rocking identify`"),
+    "identify": (document.IdentifyTable, "`rocking identify`"),
     "histories": (document.HistoriesTable, "campaigns of kind histories"),
     "campaign": (document.CampaignTable, "`rocking campaign`"),
     "export": (document.ExportTable, "`rocking campaign export`"),

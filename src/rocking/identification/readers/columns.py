@@ -118,10 +118,12 @@ def impact_list(source: Source, asked: Asked) -> ImpactTimes:
     return ImpactTimes(_increasing(table, place, factor), source=source.name)
 
 
-def motion_series(source: Source, asked: Asked) -> RotationSeries:
-    """Return how a body turned, by one column against the times."""
+def motion_series(source: Source, asked: Asked) -> RotationSeries | ImpactTimes:
+    """Return how a body turned, by one column against the times; times alone can be those of impacts only."""
     table = MeasuredTable.of(source)
     at = table.times(asked)
+    if at is not None and len(table.names) == 1 and asked.kind is None:
+        return impact_list(source, asked)
     if at is None:
         raise source.error(None, f"which column is the time? Call it time [s], or say time_column= of {table.listed()}")
     factor = TIME_UNITS[checks.one_of("unit of the times", table.unit(at, asked.time_unit, "time_unit"), TIME_UNITS)]

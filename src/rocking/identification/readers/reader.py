@@ -18,6 +18,10 @@ _NOT_DECODED = (".m4a", ".mp4", ".aac", ".3gp", ".amr", ".wma")
 
 _TABLES = (".csv", ".tsv", ".txt", ".dat", ".xlsx")
 
+SOUNDS = (".wav", *COMPRESSED, *_NOT_DECODED)
+ENDINGS = (*SOUNDS, *_TABLES)
+"""Of files that hold a sound, or any measurement, or seem to."""
+
 KINDS = ("sound", "times", "rotation", "displacement", "angular velocity", "acceleration")
 """What a file may hold."""
 

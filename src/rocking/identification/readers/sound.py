@@ -10,10 +10,13 @@ from rocking.identification.readers.onsets import onsets
 from rocking.identification.readers.recording import Recording
 from rocking.identification.readers.rocking_sequence import RockingSequence, find_sequence, why_no_rocking
 
+_PIECES = 2000
+
 
 def impacts_heard(recording: Recording) -> ImpactTimes:
     """Return when a rocking body struck, or refuse a sound that is no rocking."""
-    clicks = find_clicks(recording.channel, recording.rate)
+    channel = recording.channel
+    clicks = find_clicks(channel, recording.rate)
     length = recording.samples.shape[0] / recording.rate
     found = find_sequence(clicks.times, _evidence(clicks.contrasts), np.maximum(clicks.strengths, 0.3), length)
     if found is None:
@@ -25,7 +28,15 @@ def impacts_heard(recording: Recording) -> ImpactTimes:
     if why:
         raise recording.error(f"this is no sound of a rocking body: {why}")
     sure = 1.0 / (1.0 + np.exp(-_evidence(clicks.contrasts)[found.members] - 2.0))
-    return ImpactTimes(times, None, np.clip(sure, 0.01, 1.0), recording.name, _doubts(recording, clicks, found, times))
+    doubts, loudness = _doubts(recording, clicks, found, times), _loudness(channel, recording.rate)
+    return ImpactTimes(times, None, np.clip(sure, 0.01, 1.0), recording.name, doubts, loudness)
+
+
+def _loudness(channel: FloatArray, rate: float) -> FloatArray:
+    """Return times and largest amplitudes of pieces of a sound, as many as a picture shows."""
+    step = max(1, channel.size // _PIECES)
+    loud = np.abs(channel[: channel.size // step * step]).reshape(-1, step).max(axis=1)
+    return np.column_stack([(np.arange(loud.size) + 0.5) * step / rate, loud])
 
 
 def _evidence(contrasts: FloatArray) -> FloatArray:

@@ -1,0 +1,234 @@
+"""`rocking identify`: the coefficient of restitution from a sound or another measurement, or from a folder of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rocking.cli import options
+from rocking.cli.exports import Export, Exports, draw
+from rocking.cli.page import Page, bar, deliver
+from rocking.conventions import FEET
+from rocking.errors import InvalidValueError, MeasurementError
+
+if TYPE_CHECKING:
+    from rocking.identification import Identification, ModelComparison
+    from rocking.spec.document import IdentificationDocument
+    from rocking.spec.identification import IdentifiedTrials
+    from rocking.spec.reading import InputFiles
+
+TABLES = ("body", "measurement", "identify")
+_TELLING = 3
+"""Experiments that are told."""
+
+
+def _csv(answer: Any, path: Path) -> None:
+    from rocking.tables import to_csv
+
+    to_csv(answer.found.exported(), path)
+
+
+def _netcdf(answer: Any, path: Path) -> None:
+    from rocking.tables import to_dataset, to_netcdf
+
+    to_netcdf(to_dataset(answer.found.exported()), path)
+
+
+def _excel(answer: Any, path: Path) -> None:
+    from rocking.tables import to_excel
+
+    table = answer.found.exported()
+    sheets = [(f"{table.row}s", table), *((f"{name}s", each) for name, each in table.beside.items())]
+    to_excel(sheets, path, table.provenance, dressed=True)
+
+
+EXPORTS = {
+    "picture": Export((".png", ".svg"), draw, "matplotlib"),
+    "report": Export((".pdf", ".html"), lambda answer, path: answer.report(path), "matplotlib"),
+    "csv": Export((".csv",), _csv),
+    "netcdf": Export((".nc",), _netcdf, "h5netcdf"),
+    "excel": Export((".xlsx",), _excel, "openpyxl"),
+}
+
+
+def identify(
+    context: typer.Context,
+    body: Annotated[
+        str | None, typer.Argument(help="Body file, or a question's file; left out with --width, or if unknown.")
+    ] = None,
+    record: Annotated[
+        str | None,
+        typer.Argument(help="What was measured: sound (.wav, .flac), table (.csv, .txt, .xlsx), or a folder."),
+    ] = None,
+    width: options.Width = None,
+    height: options.Height = None,
+    depth: options.Depth = None,
+    density: options.Density = None,
+    mass: options.Mass = None,
+    centre: options.Centre = None,
+    moment_of_inertia: options.Moment = None,
+    units: options.Units = None,
+    sets: options.Set = None,
+    workers: Annotated[int | None, typer.Option(min=1, max=4096, help="Processes, for a folder.")] = None,
+    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    as_json: options.AsJson = False,
+) -> None:
+    """Print the coefficient of restitution that a measurement of free rocking says, with its interval."""
+    from rocking.cli.arguments import as_typed
+    from rocking.spec.identification import IdentificationProblem
+
+    exports = Exports.of(out, EXPORTS)
+    with as_typed():
+        problem = IdentificationProblem.of(*_question(context, [each for each in (body, record) if each is not None]))
+        if problem.path.is_dir():
+            table = next((path for name, path in exports.files if name == "csv"), None)
+            with bar("trials", len(problem.trials), quiet=as_json) as progress:
+                trials = problem.answers(table, workers, progress)
+            deliver(TrialsAnswer(trials), exports, as_json=as_json)
+            return
+        found = problem.answer()
+    answer = IdentifiedAnswer(found, Path(body or "").stem if record else "")
+    if found.refused:
+        written = exports.write(answer)
+        raise MeasurementError(f"{found.source}: {found.verdict}{f' See {written[0]}.' if written else ''}")
+    deliver(answer, exports, as_json=as_json)
+
+
+def _question(context: typer.Context, words: list[str]) -> "tuple[IdentificationDocument, InputFiles]":
+    """Return what was asked; a body file and a measurement may stand in either order."""
+    from rocking.cli.arguments import Arguments, document_file, is_body, with_sets
+    from rocking.spec.document import IdentificationDocument
+    from rocking.spec.identification import bodies_in
+    from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
+
+    arguments = Arguments(context, *TABLES)
+    bodies, measured = [w for w in words if is_body(w)], [w for w in words if not is_body(w)]
+    if len(bodies) > 1 or len(measured) > 1:
+        raise InvalidValueError(f"one body and one measurement, please: got {' and '.join(words)}")
+    if measured and Path(measured[0]).is_dir() and not bodies and not arguments.sizes:
+        bodies = [str(path) for path in bodies_in(Path(measured[0]))]
+        if len(bodies) > 1:
+            raise InvalidValueError(f"{measured[0]}: several body files, {', '.join(bodies)}; name one before it")
+    file = document_file(context, bodies[0] if bodies else None, ("measurement", "identify"), ("record", "workers"))
+    if file is not None:
+        tables = with_sets(dict(tables_in(file) or {}), arguments.sets)
+        if measured:
+            at = {"file": str(Path(measured[0]).absolute())}
+            tables["measurement"] = {**tables.get("measurement", {}), **at}
+        with located(str(file)):
+            return checked(IdentificationDocument, tables), InputFiles(file.parent)
+    if not measured:
+        raise InvalidValueError("what was measured? Give a sound, a table of times or rotations, or a folder of trials")
+    document: dict[str, Any] = {
+        "measurement": arguments.table("measurement", {"file": measured[0]}),
+        "identify": arguments.table("identify", {}),
+    }
+    if bodies or arguments.sizes or arguments.sets.get("body"):
+        document["body"] = arguments.body_table(bodies[0] if bodies else None)
+    return checked(IdentificationDocument, document), CommandFiles(Path())
+
+
+def _compared(page: Page, models: "Sequence[ModelComparison]") -> None:
+    if models:
+        page.line()
+        rows = [(m.model, f"{m.coefficient:.4f}", f"{m.error:+.4f}", "yes" if m.within else "no") for m in models]
+        page.table(("model", "r", "less measured", "within the interval"), rows, ("model",))
+
+
+@dataclass(frozen=True)
+class IdentifiedAnswer:
+    """What a measurement says."""
+
+    found: "Identification"
+    name: str = ""  # of the body
+
+    def facts(self) -> dict[str, Any]:
+        return self.found.to_dict()
+
+    def draw(self) -> Any:
+        return self.found.plot()
+
+    def report(self, path: Path) -> None:
+        self.found.report(path, name=self.name)
+
+    def show(self, page: Page) -> None:
+        found = self.found
+        page.line(found.verdict, style="bold")
+        for foot in FEET:
+            page.line(f"Landing {foot}: {found.coefficients[foot]}.")
+        page.line()
+        rows = [
+            (str(i.number), f"{i.time:.4f}", i.onto, f"{i.speed:.4g}", f"{i.coefficient.value:.4f}",
+             f"{i.coefficient.low:.4f} to {i.coefficient.high:.4f}")
+            for i in found.impacts
+        ]  # fmt: skip
+        page.table(("impact", "time [s]", "onto", "speed [rad/s]", "r", "95 %"), rows, ("onto",))
+        _compared(page, found.models)
+        page.line()
+        page.facts(_facts(found), width=20)
+        page.line()
+        for each in found.designs[:_TELLING]:
+            page.line(
+                f"Let go from {each.peak:g} of its slenderness angle, {each.impacts} impacts timed to "
+                f"{1e3 * each.noise:.2g} ms: r to +- {1.96 * each.deviation:.2g}."
+            )
+        page.warn(found.doubts)
+
+
+def _facts(found: "Identification") -> list[tuple[str, str]]:
+    """Return what else was found, in words."""
+    p, tilt, noise = found.frequency_parameter, found.tilt, found.noise
+    unit = "ms" if found.advantage == found.advantage else "mrad, or mrad/s"
+    lines = [
+        ("scatter of ln r", str(found.scatter)),
+        ("p", f"{p} rad/s"),
+        ("tilt of the floor", f"{1e3 * tilt.value:.3g} ({1e3 * tilt.low:.3g} to {1e3 * tilt.high:.3g}) mrad"),
+        ("noise", f"{1e3 * noise.value:.3g} {unit}"),
+        ("steadiness", f"p = {found.p_value:.2g} that impacts change with their number by chance alone"),
+    ]
+    lines += [(f"impulse, {foot}", f"k = {each}") for foot, each in found.impulse.items()]
+    return lines + [(name, str(getattr(found, name))) for name in ("trend", "damping") if getattr(found, name)]
+
+
+@dataclass(frozen=True)
+class TrialsAnswer:
+    """What the trials of a folder say."""
+
+    found: "IdentifiedTrials"
+
+    def facts(self) -> dict[str, Any]:
+        return self.found.as_dict()
+
+    def draw(self) -> Any:
+        from rocking.plots.identification import trials_picture
+
+        return trials_picture(self.found)
+
+    def report(self, path: Path) -> None:
+        from rocking.reports._identification import trials_report
+
+        trials_report(self.found, path)
+
+    def show(self, page: Page) -> None:
+        from rocking.cli.arguments import as_options
+
+        found = self.found
+        page.line(found.verdict, style="bold")
+        if found.mean is not None:
+            page.line(
+                "The interval is from how trials differ; an error of the size of the body, common to all, is not in it."
+            )
+        page.line()
+        rows = [
+            (row["trial"], f"{row['r']:.4f}", f"{row['r_low']:.4f} to {row['r_high']:.4f}", f"{row['scatter']:.4f}",
+             str(row["impacts"]))
+            for row in found.rows if not row["refused"]
+        ]  # fmt: skip
+        page.table(("trial", "r", "95 %", "scatter", "impacts"), rows, ("trial",))
+        _compared(page, found.models)
+        kept = len(found.rows) - found.computed
+        if kept:
+            page.line(f"{kept} of {len(found.rows)} were there already, and were not computed again.")
+        page.warn(f"{row['trial']}: {as_options(row['refused'])}" for row in found.rows if row["refused"])

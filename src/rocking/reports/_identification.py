@@ -1,0 +1,146 @@
+"""The reports of a measurement and of a folder of trials: verdict, picture, what impacts took, models, how it was."""
+
+from pathlib import Path
+
+from rocking import checks
+from rocking.conventions import FEET
+from rocking.identification import Identification, ModelComparison
+from rocking.plots.identification import identification_picture, trials_picture
+from rocking.reports.document import Document, Paragraph, Picture, ReportSection, ReportTable, table
+from rocking.reports.render import write_report
+from rocking.spec.identification import IdentifiedTrials
+from rocking.tables import target_of
+from rocking.version import SOFTWARE
+
+_HOW = (
+    "Between two impacts the body rocks freely, which has a closed form. At every impact the coefficient is drawn "
+    "about a mean of its side, with a scatter that is fitted too; so are the noise of the measurement, the "
+    "tilt of the floor and the frequency parameter, within what is known of the body. Intervals are of 95 %, of the "
+    "posterior."
+)
+_TRIALS = (
+    "Each trial is looked at by itself. The mean is that of the logarithms, with Student's t interval from how trials "
+    "differ; what is common to all, such as an error of the size of the body, is not in it."
+)
+
+
+def identification_report(found: Identification, path: str | Path, *, name: str = "", date: str = "") -> Path:
+    """Write the report of a measurement: verdict, picture, what each impact took, the models, and how it was found.
+
+    Parameters
+    ----------
+    found : Identification
+        Of `rocking.identification.identify`.
+    path : str or Path
+        A document (.pdf), or a web page of one file (.html).
+    name : str
+        What the body is called.
+    date : str
+        Day of the report, as it should be printed.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no identification, or the ending of the path is another.
+    MissingExtraError
+        If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
+    """
+    checks.of_kind("found", found, Identification, "an Identification")
+    target = target_of(path)
+    write_report(_document_of(found, name, date), {"measured": lambda: identification_picture(found)}, target)
+    return target
+
+
+def trials_report(found: IdentifiedTrials, path: Path) -> None:
+    """Write the report of a folder of trials."""
+    rows = [
+        (row["trial"], f"{row['r']:.4f}", f"{row['r_low']:.4f} to {row['r_high']:.4f}", f"{row['scatter']:.4f}",
+         row["impacts"])
+        for row in found.rows if not row["refused"]
+    ]  # fmt: skip
+    refused = [(row["trial"], row["refused"]) for row in found.rows if row["refused"]]
+    sections = [
+        ReportSection("The trials", [
+            Picture("trials", "The coefficient of every trial with its interval, and that of the mean", 70),
+            table("", ["trial", "r [-]", "95 %", "scatter of ln r [-]", "impacts"], rows),
+            *([table("Trials without a coefficient", ["trial", "why"], refused)] if refused else []),
+        ]),
+        *_compared(found.models),
+        ReportSection("How it was found", [Paragraph(_HOW), Paragraph(_TRIALS)]),
+    ]  # fmt: skip
+    mark = "bad" if found.mean is None else "fair" if refused else "good"
+    document = Document(
+        f"Coefficient of restitution: {found.name}", f"{len(found.rows)} trials", sections,
+        verdict=[Paragraph(found.verdict, "", mark)], footer=SOFTWARE,
+    )  # fmt: skip
+    write_report(document, {"trials": lambda: trials_picture(found)}, path)
+
+
+def _document_of(found: Identification, name: str, date: str) -> Document:
+    picture = Picture(
+        "measured",
+        "Above: what was measured, and the mean coefficient with the models beside it. Below: what the fit leaves "
+        "over, and what each impact took",
+    )
+    doubts = [ReportSection("What there is to say against it", [*map(Paragraph, found.doubts)])] if found.doubts else []
+    sections = [ReportSection("What was measured", [picture]), *doubts]
+    if not found.refused:
+        sections = [
+            ReportSection("What was found", [picture, _found(found)]),
+            *doubts,
+            *_compared(found.models),
+            ReportSection("What each impact took", [_impacts(found)]),
+            ReportSection("What experiment would tell more", [_designs(found)]),
+        ]
+    sections.append(ReportSection("How it was found", [Paragraph(_HOW)]))
+    subtitle = ". ".join(each for each in (found.source, date) if each)
+    mark = "bad" if found.refused else "fair" if found.doubts else "good"
+    return Document(
+        f"Coefficient of restitution{f': {name}' if name else ''}", subtitle, sections,
+        verdict=[Paragraph(found.verdict, "", mark)], footer=SOFTWARE,
+    )  # fmt: skip
+
+
+def _found(found: Identification) -> ReportTable:
+    rows = [("mean coefficient of restitution r [-]", found.mean)]
+    rows += [(f"r landing {foot} [-]", found.coefficients[foot]) for foot in FEET]
+    rows += [
+        ("scatter of ln r from impact to impact [-]", found.scatter),
+        ("frequency parameter p [rad/s]", found.frequency_parameter),
+        ("tilt of the floor, clockwise [rad]", found.tilt),
+    ]
+    rows += [(f"position k of the impulse, landing {foot} [-]", each) for foot, each in found.impulse.items()]
+    rows += [(f"{name} [-]", each) for name in ("trend", "damping") if (each := getattr(found, name)) is not None]
+    return table("", ["what", "value and 95 % interval"], rows)
+
+
+def _compared(models: tuple[ModelComparison, ...]) -> list[ReportSection]:
+    if not models:
+        return []
+    rows = [(m.model, f"{m.coefficient:.4f}", f"{m.error:+.4f}", "yes" if m.within else "no") for m in models]
+    head = ["model", "r [-]", "less measured [-]", "within the interval of the mean"]
+    return [ReportSection("Models of restitution beside it", [table("", head, rows)])]
+
+
+def _impacts(found: Identification) -> ReportTable:
+    rows = [
+        (i.number, f"{i.time:.4f}", i.onto, f"{i.speed:.4g}", f"{i.coefficient.value:.4f}",
+         f"{i.coefficient.low:.4f} to {i.coefficient.high:.4f}")
+        for i in found.impacts
+    ]  # fmt: skip
+    note = "Of the first impact and of the last nothing is known."
+    return table("", ["impact", "time [s]", "onto", "speed before [rad/s]", "r [-]", "95 %"], rows, note)
+
+
+def _designs(found: Identification) -> ReportTable:
+    rows = [
+        (f"{each.peak:g}", each.impacts, f"{1e3 * each.noise:.2g}", f"{1.96 * each.deviation:.2g}")
+        for each in found.designs
+    ]
+    head = ["let go from, over the slenderness angle [-]", "impacts", "times to [ms]", "r to +- [-]"]
+    return table("", head, rows, "Bounds: no method does better with the same scatter from impact to impact.")

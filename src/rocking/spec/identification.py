@@ -1,0 +1,281 @@
+"""A measurement of a body that rocks freely, or a folder of trials: what each says, and all of them together."""
+
+import csv
+import hashlib
+import json
+import math
+import os
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from multiprocessing import get_context
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.special import stdtrit
+
+from rocking.bodies import Body
+from rocking.bodies.formats import FORMATS
+from rocking.conventions import FEET
+from rocking.errors import InvalidValueError, RockingError
+from rocking.identification import Identification, IntervalEstimate, ModelComparison, identify, read_measurement
+from rocking.identification.readers.reader import ENDINGS, SOUNDS
+from rocking.identification.results import compared
+from rocking.spec.construction import body_of
+from rocking.spec.reading import InputFiles, located
+from rocking.tables import Column, Table, text_array, to_csv
+from rocking.version import SOFTWARE
+
+if TYPE_CHECKING:
+    from rocking.spec.document import IdentificationDocument
+
+Row = dict[str, Any]
+
+_NUMBERS = {
+    "r": ("1", "coefficient of restitution, geometric mean of both sides"),
+    "r_left": ("1", "coefficient of restitution landing left"),
+    "r_right": ("1", "coefficient of restitution landing right"),
+    "scatter": ("1", "standard deviation of ln r from impact to impact"),
+    "frequency_parameter": ("rad/s", "p, mean of both sides"),
+    "tilt": ("rad", "tilt of the floor, clockwise"),
+}
+_ENDS = {"": "", "_low": ", 2.5 % of it", "_high": ", 97.5 % of it"}
+_TEXTS = {
+    "trial": "file",
+    "refused": "why there is no coefficient; empty if there is one",
+    "doubts": "what else there is to say against it",
+    "question": "hash of the file and of what was asked of it",
+}
+_FEW, _EVERY = 12, 1.0  # trials for which no process is started; seconds after which the table is written again
+
+
+@dataclass(frozen=True)
+class IdentificationProblem:
+    """What was measured, of which body, and what else is known."""
+
+    path: Path  # a file, or a folder of trials
+    body: Body | None
+    reading: dict[str, Any]  # as `read_measurement` takes it
+    options: dict[str, Any]  # as `identify` takes it
+
+    @classmethod
+    def of(cls, document: "IdentificationDocument", inputs: InputFiles) -> "IdentificationProblem":
+        """Return what a file describes; inputs: files that it may name."""
+        body = None
+        if document.body is not None:
+            with located("body"):
+                body = body_of(document.body, inputs)
+        reading = document.measurement.model_dump(exclude_none=True, exclude={"file"})
+        path = inputs.folder / document.measurement.file
+        return cls(path, body, reading, document.identify.model_dump(exclude_none=True))
+
+    @property
+    def trials(self) -> list[Path]:
+        """The files of a folder that hold a measurement, or seem to, without tables of what was identified."""
+        try:
+            there = sorted(path for path in self.path.iterdir() if path.suffix.lower() in ENDINGS)
+        except OSError as error:
+            raise InvalidValueError(f"{self.path}: {error.strerror or error}") from error
+        found = [path for path in there if path.is_file() and path.name[:1] != "." and not is_table(path)]
+        if not found:
+            raise InvalidValueError(f"{self.path}: no trials; their names end in {', '.join(ENDINGS)}")
+        return found
+
+    def answer(self, path: Path | None = None) -> Identification:
+        """Return what one measurement says."""
+        # in a folder, what is said of tables is not of sounds
+        reading = {} if path is not None and path.suffix.lower() in SOUNDS else self.reading
+        return identify(read_measurement(path or self.path, **reading), self.body, **self.options)
+
+    def answers(
+        self, keep: Path | None = None, workers: int | None = None, progress: Callable[[int], None] | None = None
+    ) -> "IdentifiedTrials":
+        """Return what every trial of the folder says; keep: a table, gone on with, and written on the way."""
+        trials = self.trials
+        if keep is not None and keep.exists() and keep.resolve() in {path.resolve() for path in trials}:
+            raise InvalidValueError(f"{keep}: is one of the trials, and would be written over; take another name")
+        hashes = {path: self._question(path) for path in trials}
+        known = {row["question"]: row for row in _rows_in(keep) if not row["refused"]} if keep is not None else {}
+        rows = {path: known[each] | {"trial": path.name} for path, each in hashes.items() if each in known}
+        if progress is not None:
+            progress(len(rows))
+        missing = [path for path in trials if path not in rows]
+        with _kept(keep, rows):
+            written = time.monotonic()
+            for path, row in self._each(missing, workers):
+                rows[path] = row | {"trial": path.name, "question": hashes[path]}
+                if keep is not None and time.monotonic() - written > _EVERY:
+                    _write(rows, keep)
+                    written = time.monotonic()
+                if progress is not None:
+                    progress(1)
+        return IdentifiedTrials(self.path.name, self.body, tuple(rows[path] for path in trials), len(missing))
+
+    def _each(self, paths: list[Path], workers: int | None) -> Iterator[tuple[Path, Row]]:
+        count = min(workers or os.cpu_count() or 1, len(paths))
+        if count < 2 or len(paths) <= _FEW:
+            yield from ((path, self._row(path)) for path in paths)
+            return
+        with ProcessPoolExecutor(count, get_context("spawn")) as pool:
+            waiting = {pool.submit(self._row, path): path for path in paths}
+            try:
+                for done in as_completed(waiting):
+                    yield waiting[done], done.result()
+            finally:
+                pool.shutdown(cancel_futures=True)
+
+    def _row(self, path: Path) -> Row:
+        """Return what one trial says; one that cannot be read touches no other."""
+        try:
+            found = self.answer(path)
+        except RockingError as error:
+            return _row_of(str(error).removeprefix(f"{path.name}: "), (), 0, {})
+        if found.refused:
+            return _row_of("; ".join(found.refused), found.doubts, 0, {})
+        numbers = {"r": found.mean, **{f"r_{foot}": found.coefficients[foot] for foot in FEET}}
+        numbers |= {name: getattr(found, name) for name in ("scatter", "frequency_parameter", "tilt")}
+        return _row_of("", found.doubts, len(found.impacts), numbers)
+
+    def _question(self, path: Path) -> str:
+        """Return a hash of everything that a row hangs on."""
+        sides = [self.body.side(foot) for foot in FEET] if self.body is not None else []
+        body = [(each.slenderness_angle, each.frequency_parameter) for each in sides]
+        asked = json.dumps([SOFTWARE, body, self.reading, self.options], sort_keys=True)
+        return hashlib.sha256(asked.encode() + path.suffix.lower().encode() + path.read_bytes()).hexdigest()[:32]
+
+
+@dataclass(frozen=True, eq=False)
+class IdentifiedTrials:
+    """What the trials of a folder say."""
+
+    name: str  # of the folder
+    body: Body | None
+    rows: tuple[Row, ...]  # by the names of the columns
+    computed: int  # how many were, and not taken from a table
+
+    @property
+    def good(self) -> int:
+        """How many have a coefficient."""
+        return sum(not row["refused"] for row in self.rows)
+
+    @cached_property
+    def mean(self) -> IntervalEstimate | None:
+        """Geometric mean of all trials and its interval, from how they differ, by Student's t; None of fewer than two.
+
+        What is common to all trials, such as an error of the size of the body, is not in it.
+        """
+        ln = np.log([row["r"] for row in self.rows if not row["refused"]])
+        if ln.size < 2:
+            return None
+        reach = float(stdtrit(ln.size - 1, 0.975)) * float(ln.std(ddof=1)) / math.sqrt(ln.size)
+        middle = float(ln.mean())
+        return IntervalEstimate(*(math.exp(middle + each) for each in (0.0, -reach, reach)))
+
+    @cached_property
+    def models(self) -> tuple[ModelComparison, ...]:
+        """Models of restitution beside the mean."""
+        return compared(self.body, self.mean) if self.body is not None and self.mean is not None else ()
+
+    @property
+    def verdict(self) -> str:
+        """What was found, in a sentence."""
+        count = f"{self.good} of {len(self.rows)} trials"
+        if self.mean is None:
+            return f"{count} have a coefficient of restitution; the mean needs two or more."
+        spread = float(np.log([row["r"] for row in self.rows if not row["refused"]]).std(ddof=1))
+        return (
+            f"The coefficient of restitution is {self.mean}, the mean of {count}; from trial to trial it scatters by "
+            f"{100.0 * spread:.2g} %."
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return everything as plain values."""
+        return {
+            "verdict": self.verdict,
+            "mean": None if self.mean is None else vars(self.mean),
+            "models": [vars(each) for each in self.models],
+            "trials": self.rows,
+        }
+
+    def exported(self) -> Table:
+        """Return what files of it hold: one row a trial."""
+        return _table(self.rows, {"verdict": self.verdict, "software": SOFTWARE})
+
+
+def is_table(path: Path) -> bool:
+    """Return whether a file is a table of trials. Never raises."""
+    return path.suffix.lower() == ".csv" and _header_of(path) == _table(()).header
+
+
+def bodies_in(folder: Path) -> list[Path]:
+    """Return the files of a folder that hold a body, or seem to."""
+    return sorted(path for path in folder.iterdir() if path.suffix.lower() in FORMATS and path.is_file())
+
+
+def _row_of(refused: str, doubts: Iterable[str], impacts: int, numbers: Mapping[str, IntervalEstimate]) -> Row:
+    none = IntervalEstimate(math.nan, math.nan, math.nan)
+    row: Row = {"refused": refused, "doubts": " ".join(doubts), "impacts": impacts}
+    for name in _NUMBERS:
+        each = numbers.get(name, none)
+        row |= {name: each.value, f"{name}_low": each.low, f"{name}_high": each.high}
+    return row
+
+
+def _table(rows: Iterable[Row], provenance: Mapping[str, Any] | None = None) -> Table:
+    listed = list(rows)
+    columns = {"trial": Column(text_array([row["trial"] for row in listed]), "", _TEXTS["trial"])}
+    columns["impacts"] = Column(np.array([row["impacts"] for row in listed], dtype=np.int64), "1", "that count")
+    for name, (unit, meaning) in _NUMBERS.items():
+        for end, more in _ENDS.items():
+            values = np.array([row[f"{name}{end}"] for row in listed], dtype=np.float64)
+            columns[f"{name}{end}"] = Column(values, unit, f"{meaning}{more}")
+    for name in ("refused", "doubts", "question"):
+        columns[name] = Column(text_array([row[name] for row in listed]), "", _TEXTS[name])
+    return Table("trial", columns, provenance or {})
+
+
+def _header_of(path: Path) -> list[str]:
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            return next(csv.reader(file), [])
+    except (OSError, UnicodeDecodeError, csv.Error):
+        return []
+
+
+def _rows_in(path: Path) -> list[Row]:
+    """Return the rows of a table of trials, none of a file that is not such a table or of a line that was cut off."""
+    table = _table(())
+    if not is_table(path):
+        return []
+    rows = []
+    with path.open(newline="", encoding="utf-8") as file:
+        for cells in list(csv.reader(file))[1:]:
+            try:
+                row: Row = dict(zip(table.columns, cells, strict=True))
+                row["impacts"] = int(row["impacts"])
+                numbers = (name for name, each in table.columns.items() if each.values.dtype == np.float64)
+                rows.append(row | {name: float(row[name] or "nan") for name in numbers})
+            except ValueError:
+                continue
+    return rows
+
+
+@contextmanager
+def _kept(path: Path | None, rows: dict[Path, Row]) -> Iterator[None]:
+    """Write what there is, however it ends."""
+    try:
+        yield
+    finally:
+        if path is not None:
+            _write(rows, path)
+
+
+def _write(rows: dict[Path, Row], path: Path) -> None:
+    """Write a table in one go, so that it is whole at any instant."""
+    part = path.with_name(f".{path.name}.part")
+    to_csv(_table(rows[each] for each in sorted(rows)), part)
+    part.replace(path)
