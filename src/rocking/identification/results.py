@@ -37,6 +37,11 @@ class IntervalEstimate:
     ----------
     value, low, high : float
         Median, 2.5 and 97.5 % of its posterior, in the unit of the number.
+
+    Examples
+    --------
+    >>> print(IntervalEstimate(0.91171, 0.91154, 0.91186))
+    0.91171 (0.91154 to 0.91186)
     """
 
     value: float
@@ -44,8 +49,10 @@ class IntervalEstimate:
     high: float
 
     def __str__(self) -> str:
-        """Return value and interval."""
-        return f"{self.value:.4g} ({self.low:.4g} to {self.high:.4g})"
+        """Return value and interval, in as many digits as its width asks for."""
+        width = self.high - self.low
+        how = f".{max(0, 1 - math.floor(math.log10(width)))}f" if 0.0 < width < math.inf else ".4g"
+        return f"{self.value:{how}} ({self.low:{how}} to {self.high:{how}})"
 
 
 def estimated(mixture: Mixture, factor: float | None = None) -> IntervalEstimate:

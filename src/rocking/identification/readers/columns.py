@@ -122,7 +122,7 @@ def motion_series(source: Source, asked: Asked) -> RotationSeries | ImpactTimes:
     """Return how a body turned, by one column against the times; times alone can be those of impacts only."""
     table = MeasuredTable.of(source)
     at = table.times(asked)
-    if at is not None and len(table.names) == 1 and asked.kind is None:
+    if len(table.names) == 1 and asked.kind is None and (at is not None or table.units[0] in TIME_UNITS):
         return impact_list(source, asked)
     if at is None:
         raise source.error(None, f"which column is the time? Call it time [s], or say time_column= of {table.listed()}")

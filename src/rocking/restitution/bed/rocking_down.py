@@ -29,6 +29,8 @@ class BedRocking:
         Rotation, without its sign, at the start and at each peak [rad].
     times : ndarray
         When they are reached [s].
+    touches : ndarray
+        When the impacts between them begin: the base touches beyond the old foot [s].
     coefficients : ndarray
         Ratio of the velocities at which rigid rocking would leave and reach theta = 0; above one where the energy
         of a hop comes back [-].
@@ -36,6 +38,7 @@ class BedRocking:
 
     rotations: FloatArray
     times: FloatArray
+    touches: FloatArray
     coefficients: FloatArray
 
 
@@ -85,7 +88,7 @@ def bed_free_rocking(
     if setup.law.kind is LawKind.PLASTIC:
         raise InvalidValueError("plastic points remember their past, which is lost from peak to peak; use another law")
     rigid = setup.rigid
-    angles, times, now, lingers = [float(rotation)], [0.0], 0.0, False
+    angles, times, touches, now, lingers = [float(rotation)], [0.0], list[float](), 0.0, False
     for _ in range(_MOST_RUNS * int(peaks)):
         row = (fast.one(setup) if fast.available() else reference.one(setup))[0]
         now += row["time"]
@@ -96,12 +99,13 @@ def bed_free_rocking(
         if row["rotation"] > 0.0 and not lingers:
             angles.append(row["rotation"])
             times.append(now)
+            touches.append(now - row["time"] + row["touch"])
         elif row["rotation"] > angles[-1]:  # vibration made the peak a double one
             angles[-1], times[-1] = row["rotation"], now
         lingers = row["rotation"] <= 0.0
         setup = _turned(setup, row)
     speeds = [_velocity(rigid, angle if k % 2 else -angle) for k, angle in enumerate(angles)]
-    return BedRocking(np.array(angles), np.array(times), np.array(speeds[1:]) / np.array(speeds[:-1]))
+    return BedRocking(np.array(angles), np.array(times), np.array(touches), np.array(speeds[1:]) / np.array(speeds[:-1]))
 
 
 def _velocity(rigid: RigidRocking, rotation: float) -> float:

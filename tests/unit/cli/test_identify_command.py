@@ -1,0 +1,246 @@
+"""`rocking identify`: a student with a phone, tables of every kind, folders with bad files, resumed, and refusals."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+import rocking_sounds
+from rocking_sounds import RATE, wav
+
+import rocking as rk
+from rocking.cli.page import plain
+from rocking.identification import identify, read_measurement
+from rocking.restitution.bed import ContactBed, KelvinVoigt, bed_free_rocking
+from rocking.spec import identification
+
+COMMAND = "identify"
+SIZE = ("--width", 10, "--height", 40, "--units", "cm")
+BLOCK = rk.Block(width=0.1, height=0.4)
+
+
+@pytest.fixture(scope="module")
+def rocked():
+    """A block on a contact bed: touches of the ground, speeds, and the mean of its coefficients."""
+    law = KelvinVoigt(BLOCK.mass * (2.0 * np.pi * 1500.0) ** 2, damping_ratio=1.0)
+    bed = ContactBed.uniform(BLOCK, 2, law)
+    found = bed_free_rocking(BLOCK, bed, rotation=0.6 * BLOCK.slenderness_angle, peaks=12)
+    return found.touches, np.cumprod(found.coefficients), float(np.exp(np.log(found.coefficients[1:]).mean()))
+
+
+@pytest.fixture(scope="module")
+def phone(rocked, tmp_path_factory):
+    """What a phone recorded of it in a room: reverberation, hum and noise."""
+    times, speeds, _ = rocked
+    random = np.random.default_rng(5)
+    size = int((times[-1] + 2.0) * RATE)
+    direct, peaks = rocking_sounds.Clicks(random).at(times + 1.0, speeds, size)
+    path = tmp_path_factory.mktemp("phone") / "phone.wav"
+    path.write_bytes(wav(rocking_sounds.recorded(random, direct, peaks.min(), 25.0)))
+    return path
+
+
+def times_file(path, times, jitter=1e-4, seed=1):
+    """A table of times with jitter."""
+    noisy = np.sort(times + jitter * np.random.default_rng(seed).normal(size=times.size))
+    path.write_text("impact [s]\n" + "\n".join(f"{time:.6f}" for time in noisy), "utf-8")
+    return path
+
+
+@pytest.mark.verifies("behaviour", room="doors")
+def test_a_student_with_a_phone(printed, phone, rocked, tmp_path, monkeypatch):
+    """One command, one picture, one number whose interval has the coefficient with which the block rocked."""
+    monkeypatch.chdir(tmp_path)
+    page = printed(phone, *SIZE, "--out", "phone.png")
+    said = page.splitlines()[0]
+    assert said.startswith("The coefficient of restitution is 0.91")
+    low, high = (float(word) for word in said.partition("(")[2].partition(")")[0].split(" to "))
+    assert low < rocked[2] < high < low + 0.01
+    assert "Landing left" in page
+    assert "housner" in page
+    assert (tmp_path / "phone.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_json_is_the_python_call(answered, rocked, tmp_path):
+    """By sizes, by a body file before or after it, and by a question's file: the same as in Python."""
+    times = times_file(tmp_path / "times.csv", rocked[0])
+    body, question = tmp_path / "body.toml", tmp_path / "question.toml"
+    body.write_text('units = "cm"\n[block]\nwidth = 10\nheight = 40\n', "utf-8")
+    question.write_text(
+        f'[body]\nunits = "m"\nwidth = 0.1\nheight = 0.4\n[measurement]\nfile = "times.csv"\n[identify]\ntilt = [0, 0.001]\n',
+        "utf-8",
+    )
+    found = plain(identify(read_measurement(times), BLOCK, tilt=(0.0, 0.001)).to_dict())
+    known = ("--set", "identify.tilt=[0,0.001]")
+    for words in ((times, *SIZE, *known), (body, times, *known), (times, body, *known), (question,)):
+        assert answered(*words) == json.loads(json.dumps(found))
+    assert answered(times)["models"] == []
+    assert answered(question, "--set", "identify.tilt=0")["tilt"]["high"] == 0.0
+
+
+def test_every_file_says_the_same(run, rocked, tmp_path):
+    """Tables, pictures and reports, of times of impacts; the report names models and doubts."""
+    path = times_file(tmp_path / "times.csv", rocked[0])
+    files = [tmp_path / f"found.{ending}" for ending in ("csv", "nc", "xlsx", "png", "html")]
+    code, out, err = run(path, *SIZE, *(f"--out={file}" for file in files))
+    assert (code, err) == (0, "")
+    with files[0].open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 10
+    assert {row["onto"] for row in rows} == {"left", "right"}
+    xarray = pytest.importorskip("xarray")
+    with xarray.open_dataset(files[1], engine="h5netcdf") as dataset:
+        assert out.splitlines()[0] == dataset.attrs["verdict"]
+        assert dataset.sizes == {"impact": 10, "model": 7, "sample": 12}
+    text = files[4].read_text("utf-8")
+    assert out.splitlines()[0] in text
+    assert "horizontal-momentum" in text
+    assert "What experiment would tell more" in text
+
+
+def test_rotations_need_what_they_say(printed, refuses, tmp_path):
+    """A laser at a height: columns and units are asked for as the command calls them, and then taken."""
+    response = rk.free_rocking(BLOCK, 0.5 * BLOCK.slenderness_angle, restitution=0.9)
+    time = np.arange(0.0, 2.5, 0.002)
+    noise = np.random.default_rng(2).normal(size=time.size)
+    moved = 300.0 * np.sin(np.interp(time, response.time, response.rotation)) + noise
+    path = tmp_path / "laser.csv"
+    lines = (f"{t:.4f},{u:.4f},1" for t, u in zip(time, moved, strict=True))
+    path.write_text("\n".join(["time [s],top,other", *lines]), "utf-8")
+    column = ("--set", "measurement.column=top")
+    refuses((path, *SIZE), "Say --set measurement.column= one of")
+    refuses((path, *SIZE, *column), "or give --set measurement.unit=")
+    unit = (*column, "--set", "measurement.unit=mm")
+    refuses((path, *SIZE, *unit), "give --set measurement.height= of the sensor [m]")
+    page = printed(path, *SIZE, *unit, "--set", "measurement.height=0.3", "--out", tmp_path / "laser.png")
+    low, high = (float(word) for word in page.partition("(")[2].partition(")")[0].split(" to "))
+    assert low < 0.9 < high < low + 0.01
+    assert (tmp_path / "laser.png").stat().st_size > 10_000
+
+
+@pytest.fixture
+def folder(phone, rocked, tmp_path):
+    """Four good trials, clapping, a damaged file, a body, and what is no trial."""
+    path = tmp_path / "trials"
+    path.mkdir()
+    for k in range(3):
+        times_file(path / f"times_{k}.csv", rocked[0], seed=k)
+    (path / "phone.wav").write_bytes(phone.read_bytes())
+    (path / "clapping.wav").write_bytes(wav(rocking_sounds.no_rocking("clapping", 1)))
+    (path / "damaged.wav").write_bytes(phone.read_bytes()[:-500])
+    (path / "body.toml").write_text('units = "cm"\n[block]\nwidth = 10\nheight = 40\n', "utf-8")
+    (path / "notes.md").write_text("let go by hand", "utf-8")
+    return path
+
+
+@pytest.mark.verifies("damage", "a trial that claps and one that is cut off", room="doors")
+def test_a_bad_file_touches_no_other(answered, printed, folder, rocked):
+    """Every trial is what it is alone; two are told why not; the mean of the others has the true coefficient."""
+    found = answered(folder)
+    by_name = {row["trial"]: row for row in found["trials"]}
+    assert list(by_name) == ["clapping.wav", "damaged.wav", "phone.wav", *(f"times_{k}.csv" for k in range(3))]
+    assert "this is no sound of a rocking body" in by_name["clapping.wav"]["refused"]
+    assert "its header states" in by_name["damaged.wav"]["refused"]
+    assert by_name["damaged.wav"]["r"] is None
+    alone = identify(read_measurement(folder / "times_1.csv"), BLOCK)
+    assert by_name["times_1.csv"]["r_high"] == alone.mean.high
+    assert found["mean"]["low"] < rocked[2] < found["mean"]["high"] < found["mean"]["low"] + 0.01
+    assert found["verdict"].endswith("%.")
+    page = printed(folder)
+    assert "4 of 6 trials" in page
+    assert "! clapping.wav: this is no sound" in page
+
+
+@pytest.mark.verifies("damage", "a run that is interrupted, and a table that is cut off", room="doors")
+def test_a_folder_is_resumed(run, folder, tmp_path, monkeypatch):
+    """What was finished is kept as it is and not computed again; what changed is, and so is all of another question."""
+    table, done, stopped = tmp_path / "all.csv", [], []
+    answer = identification.IdentificationProblem.answer
+
+    def interrupted(problem, path=None):
+        done.append(path.name)
+        if len(done) == 5 and not stopped:
+            stopped.append(path)
+            raise KeyboardInterrupt
+        return answer(problem, path)
+
+    monkeypatch.setattr(identification.IdentificationProblem, "answer", interrupted)
+    assert run(folder, "--out", table)[0] == 130
+    assert len(table.read_text("utf-8").splitlines()) == 5  # a header, two good trials, two refused
+    code, out, _ = run(folder, "--out", table)
+    assert code == 0
+    assert done[5:] == ["clapping.wav", "damaged.wav", "times_1.csv", "times_2.csv"]
+    assert "2 of 6 were there already" in out
+    whole = table.read_bytes()
+    done.clear()
+    table.write_bytes(whole[:-20])  # cut off in the last line
+    run(folder, "--out", table)
+    assert done == ["clapping.wav", "damaged.wav", "times_2.csv"]
+    assert table.read_bytes() == whole
+    done.clear()
+    run(folder, "--out", table, "--set", "identify.tilt=0")
+    assert len(done) == 6
+    refused = run(folder, "--out", folder / "times_0.csv")
+    assert "is one of the trials" in refused[2]
+    (folder / "all.csv").write_bytes(whole)  # a table of trials is no trial
+    assert "4 of 6 trials" in run(folder)[1]
+
+
+def test_processes_change_nothing(answered, rocked, tmp_path, monkeypatch):
+    """Trials in two processes, as one after the other."""
+    monkeypatch.setattr(identification, "_FEW", 1)
+    for k in range(3):
+        times_file(tmp_path / f"{k:02d}.csv", rocked[0][: 6 if k else 3], seed=k)
+    one, two = (answered(tmp_path, *SIZE, "--workers", count) for count in (1, 2))
+    assert one == two
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        ((), "what was measured?"),
+        (("nothing.wav",), "nothing.wav"),
+        (("one.wav", "two.wav"), "one body and one measurement"),
+        (("TIMES", *SIZE, "--set", "identify.first=both"), "identify.first"),
+        (("TIMES", *SIZE, "--set", "identify.tilt=[1]"), "identify.tilt is one number, or [tilt, deviation]"),
+        (("TIMES", *SIZE, "--set", "identify.tlt=0"), "did you mean tilt"),
+        (("TIMES", *SIZE, "--set", "measurement.kind=smell"), "kind must be"),
+        (("TIMES", "--width", 1), "a body is a file"),
+        (("TIMES", *SIZE, "--out", "found.docx"), "by its ending a file is"),
+        (("EMPTY",), "no trials; their names end in"),
+    ],
+)
+def test_refusals(refuses, rocked, tmp_path, words, why):
+    (tmp_path / "empty").mkdir()
+    there = {"TIMES": times_file(tmp_path / "times.csv", rocked[0]), "EMPTY": tmp_path / "empty"}
+    refuses([there.get(word, word) for word in words], why)
+
+
+def test_what_is_no_rocking_gives_no_number(run, tmp_path):
+    """A metronome: exit code 2, why, and if asked for a picture of what was measured."""
+    path, picture = tmp_path / "metronome.csv", tmp_path / "metronome.png"
+    path.write_text("\n".join(["time [s]", *(f"{0.5 * k:.4f}" for k in range(1, 15))]), "utf-8")
+    code, out, err = run(path, *SIZE, "--out", picture)
+    assert (code, out) == (2, "")
+    assert "No coefficient of restitution" in err
+    assert str(picture) in err
+    assert picture.stat().st_size > 10_000
+    found = identify(read_measurement(path), BLOCK)
+    assert set(found.to_dict()) == {"source", "verdict", "refused", "doubts"}
+
+
+@pytest.mark.timed
+@pytest.mark.verifies("behaviour", "a minute of sound at 44.1 kHz", within="2 s of CPU", room="doors")
+def test_a_minute_takes_seconds(answered, phone, tmp_path):
+    """From file to answer, with a rocking body in the middle."""
+    import time
+
+    from rocking.identification.readers.wav import read_wav
+
+    samples = read_wav(phone.read_bytes(), "phone").samples[:, 0]
+    quiet = np.random.default_rng(1).normal(0.0, samples[: RATE // 4].std(), (2, 27 * RATE))
+    path = tmp_path / "minute.wav"
+    path.write_bytes(wav(np.concatenate([quiet[0], samples, quiet[1]])[: 60 * RATE].clip(-1.0, 1.0)))
+    begun = time.process_time()
+    answered(path, *SIZE)
+    assert time.process_time() - begun < 2.0
