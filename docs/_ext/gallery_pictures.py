@@ -25,6 +25,7 @@ SECTIONS = {
         "own_model",
         "league_with_own_model",
         "impact_laboratory",
+        "coefficient_from_a_sound",
     ],
     "motions": [
         "pulses_of_every_kind",

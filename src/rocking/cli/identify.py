@@ -154,6 +154,8 @@ class IdentifiedAnswer:
         self.found.report(path, name=self.name)
 
     def show(self, page: Page) -> None:
+        from rocking.cli.arguments import as_options
+
         found = self.found
         page.line(found.verdict, style="bold")
         for foot in FEET:
@@ -174,7 +176,7 @@ class IdentifiedAnswer:
                 f"Let go from {each.peak:g} of its slenderness angle, {each.impacts} impacts timed to "
                 f"{1e3 * each.noise:.2g} ms: r to +- {1.96 * each.deviation:.2g}."
             )
-        page.warn(found.doubts)
+        page.warn(map(as_options, found.doubts))
 
 
 def _facts(found: "Identification") -> list[tuple[str, str]]:

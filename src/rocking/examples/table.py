@@ -180,6 +180,13 @@ _ALL = (
     ),
     _question("block-under-a-pulse", "a cabinet under one sine, where the model of the impact decides"),
     _question("statue-let-go", "a statue that stands off its middle, let go to the left"),
+    Example(
+        "block-heard",
+        "question",
+        "when a block that was let go was heard, and what that says of its coefficient",
+        ("rocking identify block-heard.toml --out block-heard.png",),
+        ("questions/block-heard.toml", "questions/block-heard.csv"),
+    ),
     _job("overturning-map", "map", "which sine pulses overturn a block, and how: 60 x 60 pulses"),
     _campaign("refined-map", "png", "the same, refined along the boundaries, which come as polylines"),
     _campaign("minimum-acceleration", "png", "every amplitude at which motions begin or cease to overturn two blocks"),

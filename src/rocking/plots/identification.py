@@ -129,6 +129,8 @@ def _posterior(axes: "Axes", found: Identification) -> None:
     density = np.diff(q).min() / np.diff(q)
     axes.axvspan(r.low, r.high, color=PALE, linewidth=0.0)
     axes.fill_between(0.5 * (q[1:] + q[:-1]), 0.5, 0.5 - 1.4 * density, color=INK, alpha=0.6, linewidth=0.0)
+    axes.axvline(r.value, color=INK, linewidth=0.6)
+    axes.plot(r.value, 0, "o", color=INK)
     names = ["measured"]
     for foot in FEET:
         color, mark = _LOOKS[foot]
