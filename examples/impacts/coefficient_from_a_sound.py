@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.io import wavfile
+from scipy.signal import fftconvolve
 
 import rocking as rk
 from rocking.identification import identify, read_measurement
@@ -39,7 +40,7 @@ for touch, loud in zip(rocked.touches + 1.0, np.cumprod(rocked.coefficients), st
         sound += loud * np.exp(-decay * since) * np.sin(2.0 * np.pi * frequency * since)
 echoes = random.normal(size=RATE // 4) * np.exp(-25.0 * np.arange(RATE // 4) / RATE) * 0.02
 echoes[0] = 1.0
-sound = np.convolve(sound, echoes)[: time.size]
+sound = fftconvolve(sound, echoes)[: time.size]
 sound += 0.01 * random.normal(size=time.size) + 0.02 * np.sin(2.0 * np.pi * 50.0 * time)
 wavfile.write("block.wav", RATE, (32000.0 * sound / np.abs(sound).max()).astype(np.int16))
 

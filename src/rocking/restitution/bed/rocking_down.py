@@ -105,7 +105,9 @@ def bed_free_rocking(
         lingers = row["rotation"] <= 0.0
         setup = _turned(setup, row)
     speeds = [_velocity(rigid, angle if k % 2 else -angle) for k, angle in enumerate(angles)]
-    return BedRocking(np.array(angles), np.array(times), np.array(touches), np.array(speeds[1:]) / np.array(speeds[:-1]))
+    return BedRocking(
+        np.array(angles), np.array(times), np.array(touches), np.array(speeds[1:]) / np.array(speeds[:-1])
+    )
 
 
 def _velocity(rigid: RigidRocking, rotation: float) -> float:
