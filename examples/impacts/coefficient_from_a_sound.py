@@ -45,8 +45,8 @@ sound += 0.01 * random.normal(size=time.size) + 0.02 * np.sin(2.0 * np.pi * 50.0
 wavfile.write("block.wav", RATE, (32000.0 * sound / np.abs(sound).max()).astype(np.int16))
 
 # %%
-# What a phone would have recorded is read, and identified. The body is known within 1 % of its sizes, the floor is level
-# within 0.3 degrees, and so nearly all of the width of "landing left" and "landing right" is the floor's.
+# What a phone would have recorded is read, and identified. The body is known within 1 % of its sizes, the floor is
+# level within 0.3 degrees, and so nearly all of the width of "landing left" and "landing right" is the floor's.
 
 found = identify(read_measurement("block.wav"), block)
 print(found)
@@ -55,8 +55,8 @@ assert len(found.impacts) == rocked.touches.size - 2
 found.plot("coefficient_from_a_sound.png")
 
 # %%
-# Housner's model, which puts the impulse at the edge, is closest here: no wonder, with two points. What the next impacts
-# take is a law for simulations, with the scatter and with what the measurement leaves open.
+# Housner's model, which puts the impulse at the edge, is closest here: no wonder, with two points. What the next
+# impacts take is a law for simulations, with the scatter and with what the measurement leaves open.
 
 print("closest model", found.models[0].model, round(found.models[0].coefficient, 4))
 assert found.models[0].model == "housner"

@@ -10,7 +10,7 @@ from rocking.motions.intensity import MEASURES
 from rocking.motions.pulses import catalogue
 from rocking.motions.synthetic import families
 from rocking.spec import construction
-from rocking.spec.document import CampaignDocument, ResponseDocument
+from rocking.spec.document import CampaignDocument, IdentificationDocument, ResponseDocument
 from rocking.spec.reading import checked
 from rocking.spec.reference import reference
 from rocking.studies import axes
@@ -35,15 +35,17 @@ def test_the_keys_of_a_body_are_documented():
 
 
 def test_the_files_on_the_page_are_questions():
-    """Both files that docs/questions.md shows are what they say, and neither is of the other kind."""
+    """The files that docs/questions.md shows are what they say, and none is of another kind."""
     page = (ROOT / "docs" / "questions.md").read_text(encoding="utf-8")
-    response, study = (tomllib.loads(block.partition("```")[0]) for block in page.split("```toml")[1:])
+    response, study, measured = (tomllib.loads(block.partition("```")[0]) for block in page.split("```toml")[1:])
     study["campaign"] = {"name": "map", "kind": "overturning-map"}
     assert checked(ResponseDocument, response).restitution.models == ["ked", "housner"]
     assert checked(CampaignDocument, study).map.x.count == 60
-    for tables in (response, study):
+    assert checked(IdentificationDocument, measured).identify.tilt == [0.0, 0.001]
+    for tables in (response, study, measured):
         construction.any_body_of(tables["body"], None)
-    for kind, tables in ((ResponseDocument, study), (CampaignDocument, response)):
+    others = (ResponseDocument, study), (CampaignDocument, response), (IdentificationDocument, response)
+    for kind, tables in others:
         with pytest.raises(InvalidValueError):
             checked(kind, tables)
 

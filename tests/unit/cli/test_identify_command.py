@@ -67,7 +67,8 @@ def test_json_is_the_python_call(answered, rocked, tmp_path):
     body, question = tmp_path / "body.toml", tmp_path / "question.toml"
     body.write_text('units = "cm"\n[block]\nwidth = 10\nheight = 40\n', "utf-8")
     question.write_text(
-        f'[body]\nunits = "m"\nwidth = 0.1\nheight = 0.4\n[measurement]\nfile = "times.csv"\n[identify]\ntilt = [0, 0.001]\n',
+        '[body]\nunits = "m"\nwidth = 0.1\nheight = 0.4\n'
+        '[measurement]\nfile = "times.csv"\n[identify]\ntilt = [0, 0.001]\n',
         "utf-8",
     )
     found = plain(identify(read_measurement(times), BLOCK, tilt=(0.0, 0.001)).to_dict())
