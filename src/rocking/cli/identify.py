@@ -23,6 +23,9 @@ TABLES = ("body", "measurement", "identify")
 _TELLING = 3
 """Experiments that are told."""
 
+_NOISES = {"times": "ms", "rotation": "mrad", "angular_velocity": "mrad/s"}
+"""Units of what a measurement leaves over."""
+
 
 def _csv(answer: Any, path: Path) -> None:
     from rocking.tables import to_csv
@@ -182,7 +185,7 @@ class IdentifiedAnswer:
 def _facts(found: "Identification") -> list[tuple[str, str]]:
     """Return what else was found, in words."""
     p, tilt, noise = found.frequency_parameter, found.tilt, found.noise
-    unit = "ms" if found.advantage == found.advantage else "mrad, or mrad/s"
+    unit = next(unit for name, unit in _NOISES.items() if getattr(found.measurement, name, None) is not None)
     lines = [
         ("scatter of ln r", str(found.scatter)),
         ("p", f"{p} rad/s"),

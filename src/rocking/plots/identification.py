@@ -104,7 +104,7 @@ def _heard(axes: "Axes", found: Identification, measurement: ImpactTimes) -> Non
 
 
 def _turned(axes: "Axes", found: Identification) -> None:
-    name = next(each for each in _UNITS if getattr(found.measurement, each) is not None)
+    name = _quantity(found)
     time, values = found.measurement.time, getattr(found.measurement, name)  # type: ignore[union-attr]
     axes.plot(time, values, ".", color=GREY, markersize=2.0)
     # of two quantities, that which is drawn comes first
@@ -114,13 +114,19 @@ def _turned(axes: "Axes", found: Identification) -> None:
     axes.set_ylabel(f"{name.replace('_', ' ')} [{_UNITS[name]}]")
 
 
+def _quantity(found: Identification) -> str:
+    """Return which quantity of a series is drawn, the first of both where there are both."""
+    return next(each for each in _UNITS if getattr(found.measurement, each) is not None)
+
+
 def _residuals(axes: "Axes", found: Identification) -> None:
     heard = isinstance(found.measurement, ImpactTimes)
+    unit = "s" if heard else _UNITS[_quantity(found)]
     noise = 1.96e3 * found.noise.value
     axes.axhspan(-noise, noise, color=PALE, linewidth=0.0)
     axes.axhline(0.0, color=INK, linewidth=0.6)
     axes.plot(found.residual_times, 1e3 * found.residuals, "o" if heard else ".", color=GREY, markersize=2.5)
-    axes.set_ylabel(f"left over [{'ms' if heard else 'mrad, mrad/s'}]")
+    axes.set_ylabel(f"left over [m{unit}]")
 
 
 def _posterior(axes: "Axes", found: Identification) -> None:
