@@ -21,7 +21,7 @@ from rocking.identification.results import (
     compared,
     estimated,
     impulses,
-    quantiles_of,
+    next_impact,
 )
 from rocking.identification.series import fit_series
 from rocking.identification.state_space import DAMPING, FREQUENCY, HALF, MEAN, SHARED, TILT, TREND
@@ -151,7 +151,7 @@ def _nothing(measurement: ImpactTimes | RotationSeries, why: str) -> Identificat
     sides: dict[Foot, IntervalEstimate] = dict.fromkeys(FEET, none)
     return Identification(
         measurement.source, (why,), measurement.doubts, none, sides, none, none, none, None, None, (), np.zeros(0),
-        np.zeros(0), none, 0.0, math.nan, math.nan, False, {}, (), (), measurement, np.zeros(0), {},
+        none, 0.0, math.nan, math.nan, False, {}, (), (), {}, measurement,
     )  # fmt: skip
 
 
@@ -196,12 +196,12 @@ def _result(
         tilt=estimated(found.shared((TILT, 1.0))),
         trend=estimated(found.shared((TREND, 1.0))) if known.trend else None,
         damping=estimated(found.shared((DAMPING, 1.0))) if known.damping else None,
-        impacts=_impacts(found, first), residuals=found.average(found.residuals), residual_times=np.zeros(0),
+        impacts=_impacts(found, first), residuals=found.average(found.residuals),
         noise=_of_grid(found, found.noise), independent=independent, p_value=p_value, advantage=advantage,
         converged=found.converged, impulse=impulses(body, coefficients) if body is not None and not refused else {},
         models=compared(body, r) if body is not None and not refused else (), designs=experiments,
-        measurement=measurement, quantiles=quantiles_of(mean),
-        _next={foot: quantiles_of(each, found.scatter) for foot, each in by_side.items()},
+        measurement=measurement, quantiles=next_impact(mean, 0.0),
+        _next={foot: next_impact(each, found.scatter) for foot, each in by_side.items()},
     )  # fmt: skip
 
 

@@ -1,7 +1,7 @@
 """What a measurement says: coefficients with intervals, what each impact took, what it agrees with, how sure it is."""
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -136,8 +136,6 @@ class Identification:
         What each impact took.
     residuals : ndarray
         Measured less computed values [s, rad or rad/s].
-    residual_times : ndarray
-        When these were measured [s].
     noise : IntervalEstimate
         Standard deviation of these.
     independent : float
@@ -154,12 +152,14 @@ class Identification:
         Every model of restitution beside it, the closest first; empty without a body.
     designs : tuple of Design
         Experiments with this body, the most telling first.
-    measurement : ImpactTimes or RotationSeries
-        What was measured.
-    quantiles : ndarray
-        Quantiles of the mean coefficient of restitution, at equal steps of its probability [-].
     _next : dict of str to ndarray
         Quantiles of what the next impact takes, by foot, for `law` [-].
+    measurement : ImpactTimes or RotationSeries
+        What was measured.
+    residual_times : ndarray
+        When what `residuals` are of was measured [s].
+    quantiles : ndarray
+        Quantiles of the mean coefficient of restitution, at equal steps of its probability [-].
     """
 
     source: str
@@ -174,7 +174,6 @@ class Identification:
     damping: IntervalEstimate | None
     impacts: tuple[Impact, ...]
     residuals: FloatArray
-    residual_times: FloatArray
     noise: IntervalEstimate
     independent: float
     p_value: float
@@ -183,9 +182,10 @@ class Identification:
     impulse: dict[Foot, IntervalEstimate]
     models: tuple[ModelComparison, ...]
     designs: tuple[Design, ...]
-    measurement: ImpactTimes | RotationSeries
-    quantiles: FloatArray
     _next: dict[Foot, FloatArray]
+    measurement: ImpactTimes | RotationSeries | None = None
+    residual_times: FloatArray = field(default_factory=lambda: np.zeros(0))
+    quantiles: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     @property
     def verdict(self) -> str:
@@ -380,8 +380,8 @@ def compared(body: Body, mean: IntervalEstimate) -> tuple[ModelComparison, ...]:
     return tuple(sorted(found, key=lambda each: abs(each.error)))
 
 
-def quantiles_of(mean: Mixture, scatter: FloatArray | float = 0.0) -> FloatArray:
-    """Quantiles of the mean coefficient, or with the scatter of that of another impact."""
+def next_impact(mean: Mixture, scatter: FloatArray | float) -> FloatArray:
+    """Quantiles of the coefficient of another impact; without scatter, of the mean."""
     spread = Mixture(mean.weights, mean.means, np.hypot(mean.deviations, scatter))
     levels = (np.arange(65) + 0.5) / 65.0
     return np.exp(np.minimum(spread.quantiles(*levels), math.log(10.0)))  # Eq. 274
