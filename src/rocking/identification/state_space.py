@@ -110,6 +110,23 @@ class Model:
         )
         return Path(times=times, time_slopes=slopes, p_slopes=unit[FREQUENCY], feasible=feasible, **kept_of)
 
+    def reached(self, u: FloatArray, scatter: FloatArray, times: FloatArray) -> FloatArray:
+        """Return unknowns with which impacts come at such times, what all impacts share being that of u."""
+        z, found = self.shared(u), u.copy()
+        sign = 1.0 - 2.0 * self.sides
+        alone = np.array(self.alpha)[self.sides] * np.exp(z[:, SLENDERNESS, None])
+        alpha = np.clip(alone - sign * z[:, TILT, None], 1e-3, _STEEPEST)
+        p = np.array(self.p)[self.sides] * np.exp(z[:, FREQUENCY, None])
+        y = half_cycles.speed(p * np.maximum(np.diff(times), 1e-6), alpha)
+        loss = z[:, DAMPING, None] * half_cycles.viscous_loss(y)[0]
+        speeds = np.log(y * p * half_cycles.overturning_speed(alpha)) + 0.5 * loss
+        mean = z[:, MEAN, None] - sign[:-1] * z[:, HALF, None] + z[:, TREND, None] * (speeds[:, :-1] - self.middle)
+        draws = np.diff(speeds) - mean + loss[:, :-1]
+        found[:, len(SHARED) :] = draws / np.maximum(scatter, 1e-300)[:, None]
+        found[:, START] = (times[:, 0] - self.mean[START]) / self.deviation[START]
+        found[:, SPEED] = (speeds[:, 0] - self.mean[SPEED]) / self.deviation[SPEED]
+        return found
+
 
 def _damped(
     y: FloatArray, dy: FloatArray, ratio: FloatArray, unit: FloatArray
@@ -172,25 +189,30 @@ def laplace(
     damping, active = np.zeros(len(u)), np.arange(len(u))
     eye = np.eye(model.size)
     for _ in range(steps):
-        value, residual, slopes = (each[active] for each in best)
+        value, residual, slopes, times, time_slopes = (each[active] for each in best)
         turned = slopes.transpose(0, 2, 1)
         hessian = eye + turned @ slopes  # Eq. 271
-        gradient = (turned @ residual[..., None])[..., 0] - u[active]
-        damped = hessian + (damping[active, None, None] + _ROUNDING) * eye * np.einsum("gii->gi", hessian)[:, None, :]
-        trial = u[active] + np.linalg.solve(damped, gradient[..., None])[..., 0]
-        found = _objective(model, observer, scatter[active], noise[active], trial)
-        better = found[0] <= value
+        gradient = turned @ residual[..., None] - u[active, :, None]
+        scale = damping[active, None, None] * eye + _ROUNDING * eye * np.einsum("gii->gi", hessian)[:, None, :]
+        step = np.linalg.solve(hessian + scale, gradient)
+        straight = u[active] + step[..., 0]
+        # times are known far better than speeds: what changes along the step is either linear in u or in them
+        bent = model.reached(straight, scatter[active], times + (time_slopes @ step)[..., 0])
+        tried = np.concatenate([straight, bent])
+        found = _objective(model, observer, np.tile(scatter[active], 2), np.tile(noise[active], 2), tried)
+        pick = np.arange(active.size) + active.size * (found[0][active.size :] < found[0][: active.size])
+        better = found[0][pick] <= value
         for kept, new in zip(best, found, strict=True):
-            kept[active[better]] = new[better]
-        u[active[better]] = trial[better]
+            kept[active[better]] = new[pick[better]]
+        u[active[better]] = tried[pick[better]]
         # a damped step hardly moves what the prior alone determines
-        done = (np.abs(value - found[0]) < _CLOSE * (1.0 + _CLOSE * value)) & (damping[active] == 0.0)
-        eased = np.where(damping[active] > 1e-3, 0.1 * damping[active], 0.0)
-        damping[active] = np.where(better, eased, np.maximum(10.0 * damping[active], 1e-3))
+        done = (np.abs(value - found[0][pick]) < _CLOSE * (1.0 + _CLOSE * value)) & (damping[active] == 0.0)
+        eased = np.where(damping[active] > 0.1, 0.1 * damping[active], 0.0)
+        damping[active] = np.where(better, eased, np.maximum(10.0 * damping[active], 0.1))
         active = active[~done]
         if not active.size:
             break
-    value, residual, slopes = best
+    value, residual, slopes, *_ = best
     # of the matrix whose square the Hessian is: what the prior alone determines keeps its digits
     root = np.linalg.qr(np.concatenate([slopes, np.broadcast_to(eye, (len(u), *eye.shape))], axis=1), mode="r")
     half = np.log(np.abs(np.einsum("gii->gi", root))).sum(axis=1)
@@ -202,8 +224,8 @@ def laplace(
 
 def _objective(
     model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Minus twice ln of the posterior, residuals and slopes over the noise."""
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Minus twice ln of the posterior, residuals and slopes over the noise, times of impacts and their slopes."""
     with np.errstate(
         over="ignore", invalid="ignore", divide="ignore"
     ):  # far from the maximum; such a step is not taken
@@ -213,4 +235,7 @@ def _objective(
         value = (u * u).sum(axis=1) + (residual * residual).sum(axis=1)  # Eq. 270
         slopes = slopes / noise[:, None, None]
     feasible = path.feasible & np.isfinite(value)
-    return np.where(feasible, value, np.inf), np.where(feasible[:, None], residual, 0.0), np.nan_to_num(slopes)
+    return (
+        np.where(feasible, value, np.inf), np.where(feasible[:, None], residual, 0.0), np.nan_to_num(slopes),
+        path.times, path.time_slopes,
+    )  # fmt: skip
