@@ -1,65 +1,102 @@
 """When exactly impacts began: clicks of one foot are alike, so they are laid over each other and their mean is picked.
 
 A faint click alone would be picked late, once it has grown beyond the noise; the mean of all clicks on a foot stands
-out more, and the lags between them come from cross-correlation, to a part of a sample.
+out more, and the lags between them come from cross-correlation, to a part of a sample. Clicks of the two feet are not
+alike, but the same modes of the body ring in both, with real factors: see `_between`.
 """
 
 import numpy as np
-from scipy.signal import butter, oaconvolve, sosfilt
+from scipy.fft import next_fast_len, rfft
+from scipy.signal import oaconvolve
 
 from rocking.conventions import FloatArray, IntArray
 from rocking.identification.readers.clicks import causal, spectra
 
-_BEFORE, _AFTER, _REACH = 0.004, 0.010, 0.004
-_PICK_BEFORE, _PICK_AFTER = 0.006, 0.002
-_PAD = 0.05
+_BEFORE, _AFTER, _REACH = 0.004, 0.030, 0.008
+_QUIET, _RINGING = 0.012, 0.060
+_PICK_BEFORE, _PICK_AFTER = 0.008, 0.004
 _ROUNDS = 4
 _EQUALISED = 0.1
-_LOWEST = 100.0
+_FARTHEST, _STEP, _PULL = 0.004, 1e-5, 0.05
+_BAND = (150.0, 9_000.0)
 
 
 def onsets(sound: FloatArray, rate: float, times: FloatArray, feet: IntArray) -> FloatArray:
     """Return when the clicks at about some times began [s]; clicks on the same of two feet are taken for alike."""
-    found = times.copy()
-    # of what no filter has dispersed save a gentle one against rumble
-    plain = sosfilt(butter(1, _LOWEST, "high", fs=rate, output="sos"), sound)
-    for foot in (0, 1):
-        here = np.flatnonzero(feet == foot)
-        if here.size:
-            sharp = _equalised(sound, rate, times[here])
-            places, parts = _aligned(sharp, rate, times[here])
-            rough = _first(_mean(sharp, rate, places, _BEFORE, 0.004)) - int(_BEFORE * rate)
-            mean = _mean(plain, rate, places + rough, _PICK_BEFORE, _PICK_AFTER)
-            found[here] = (places + parts + rough + _first(mean) - int(_PICK_BEFORE * rate)) / rate
-    return found
-
-
-def _equalised(sound: FloatArray, rate: float, times: FloatArray) -> FloatArray:
-    """Return a sound in which clicks at some times are short: their mean spectrum is made flat where it can be."""
     size, noise, power = spectra(sound, rate)
     frames = np.clip(np.rint((times * rate - 0.3 * size) / (size // 2)).astype(int), 0, power.shape[0] - 1)
     clicks = np.maximum(power[frames].mean(axis=0) - noise, 0.0)
-    gain = np.sqrt(clicks) / (noise + _EQUALISED * clicks)
-    return np.asarray(oaconvolve(sound, causal(gain, rate, size))[: sound.size])
+    # filters of minimum phase: nothing comes before its cause; the mean spectrum of clicks is made flat where it can be
+    gains = (np.sqrt(clicks) / (noise + _EQUALISED * clicks), 1.0 / np.sqrt(noise))
+    sharp, white = (oaconvolve(sound, causal(gain, rate, size))[: sound.size] for gain in gains)
+    found, picks, means = times.copy(), [], []
+    groups = [here for foot in (0, 1) if (here := np.flatnonzero(feet == foot)).size]
+    for here in groups:
+        places, parts = _aligned(sharp, rate, times[here])
+        pick = _first(_mean(white, rate, places, _PICK_BEFORE, _PICK_AFTER)) / rate - _PICK_BEFORE
+        found[here] = (places + parts) / rate + pick
+        picks.append(pick)
+        means.append(_mean(sharp, rate, places, _QUIET, _RINGING))
+    if len(groups) == 2:
+        off = _between(means[0], means[1], rate, picks[1] - picks[0]) - picks[1] + picks[0]
+        found[groups[0]] -= 0.5 * off
+        found[groups[1]] += 0.5 * off
+    return found
+
+
+def _between(one: FloatArray, two: FloatArray, rate: float, guess: float) -> float:
+    """Return how much later the second of two clicks begins, each of modes m with factors of its own.
+
+    The factors a_m, b_m are real, so near a mode the cross-spectrum has the phase of a_m b_m exp(-i w d), and its
+    square that of exp(-2 i w d) whatever their signs: of all lags d only the true one suits all modes.
+    """
+    size = next_fast_len(2 * one.size, real=True)
+    quiet = int(0.75 * _QUIET * rate)
+    cross, weight = np.ones(size // 2 + 1, dtype=np.complex128), np.ones(size // 2 + 1)
+    for each in (one, two):
+        spectrum = rfft(each, size)
+        cross = spectrum * np.conj(cross)
+        noise = float((each[:quiet] ** 2).mean()) * each.size
+        weight *= np.maximum(np.abs(spectrum) ** 2 - 2.0 * noise, 0.0)
+    frequency = np.arange(cross.size) * rate / size
+    inside = (frequency > _BAND[0]) & (frequency < _BAND[1]) & (weight > 0.0)
+    lags = np.arange(-_FARTHEST, _FARTHEST, _STEP)
+    if not inside.any():
+        return guess
+    phase = 2.0 * np.angle(cross[inside]) + 4.0 * np.pi * np.outer(lags, frequency[inside])
+    weight = weight[inside] ** 0.25
+    agree = np.cos(phase) @ (weight / weight.sum())
+    return float(lags[np.argmax(agree - _PULL * ((lags - guess) / 1e-3) ** 2)])
 
 
 def _aligned(sound: FloatArray, rate: float, times: FloatArray) -> tuple[IntArray, FloatArray]:
-    """Return the samples at which clicks match the mean of the others best, and the rest to a part of a sample."""
+    """Return the samples at which clicks match the mean of the others best, and the rest to a part of a sample.
+
+    The loudest begins, and each finds its place by the sum of those that are louder; then by all the others.
+    """
     start = np.rint(times * rate).astype(np.int64)
-    places, parts = start, np.zeros(times.size)
+    places, parts = start.copy(), np.zeros(times.size)
     reach = int(_REACH * rate)
-    for _ in range(_ROUNDS if times.size > 1 else 0):
-        cuts = _cuts(sound, rate, places, _BEFORE, _AFTER)
-        wide = _cuts(sound, rate, start, _BEFORE + _REACH, _AFTER + _REACH)
-        moved = places.copy()
-        for row in range(times.size):
-            match = np.correlate(wide[row], cuts.sum(axis=0) - cuts[row], "valid")
-            peak = int(match.argmax())
-            moved[row] = start[row] + peak - reach
-            parts[row] = _vertex(match, peak)
-        if np.array_equal(moved, places):
+    wide = _cuts(sound, rate, start, _BEFORE + _REACH, _AFTER + _REACH)
+    size = int(_AFTER * rate) + int(_BEFORE * rate)
+    order = np.argsort(-np.abs(wide).max(axis=1))
+    # far from where the click was heard noise may look like it
+    likely = np.exp(-0.5 * ((np.arange(wide.shape[1] - size + 1) - reach) / reach) ** 2)
+    total = wide[order[0], reach : reach + size].copy()
+    cut = np.zeros((times.size, size))
+    cut[order[0]] = total
+    for turn in range(_ROUNDS):
+        moved = False
+        for row in order[1:] if turn == 0 else order:
+            match = np.correlate(wide[row], total - cut[row], "valid")
+            peak = int((match * likely).argmax())
+            moved |= places[row] != start[row] + peak - reach
+            places[row], parts[row] = start[row] + peak - reach, _vertex(match, peak)
+            total -= cut[row]
+            cut[row] = wide[row, peak : peak + size]
+            total += cut[row]
+        if times.size == 1 or not moved:
             break
-        places = moved
     return places, parts
 
 
