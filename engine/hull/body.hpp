@@ -50,6 +50,14 @@ struct Body {
         }
     }
 
+    // Acceleration of a vertex by a force at a point.
+    Mat yielding(int i, Vec by) const {
+        const Vec at = points[i];
+        const auto answer = [&](Vec f) { return 1.0 / mass * f + cross(inverse * cross(by, f), at); };
+        const Vec x = answer({1.0, 0.0, 0.0}), y = answer({0.0, 1.0, 0.0}), z = answer({0.0, 0.0, 1.0});
+        return {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}};
+    }
+
     // The facet through which the vertical through the centre leaves, downward: from a facet to better neighbours.
     int under(Vec up, int from) const {
         for (double least = dot(facets[from], up);;) {

@@ -231,8 +231,67 @@ inline bool solved(int n, double t[][kCorners + 1]) {
     return true;
 }
 
+// What forces on up to three vertices, one of which may stick, do to their rates: all that directions of sliding ask for.
+class Rubbing {
+  public:
+    Rubbing(const Problem& p, const Solution& s) : p_(p), n_(s.contact.members.size()) {
+        const Points &members = s.contact.members, &stuck = s.contact.stuck;
+        small_ = n_ <= 3 && stuck.size() < 2;
+        if (!small_) return;
+        for (std::size_t j = 0; j < n_; ++j) {
+            if (!stuck.empty() && members[j] == stuck[0]) one_ = static_cast<int>(j);
+            free_[j] = p.rate(members[j], p.linear, p.angular);
+            for (std::size_t k = 0; k < n_; ++k) yields_[j][k] = p.body->yielding(members[j], p.place(members[k])), lifts_[j][k] = row_times(p.axes.c, yields_[j][k]);
+        }
+        size_ = n_ + (one_ < 0 ? 0 : 2);
+    }
+
+    // Normal forces and rates for the directions of s.
+    bool act(Solution& s) {
+        if (!small_) return solve(p_, s);
+        const Vec axis[2] = {p_.axes.a, p_.axes.b};
+        double t[5][6], sizes[5], x[5];
+        Vec push[5];
+        std::size_t by[5];
+        for (std::size_t k = 0; k < size_; ++k)
+            by[k] = k < n_ ? k : one_, push[k] = k < n_ ? p_.axes.c - p_.friction * s.directions[k] : axis[k - n_];
+        for (std::size_t j = 0; j < size_; ++j) {
+            for (std::size_t k = 0; k < size_; ++k) t[j][k] = j < n_ ? dot(lifts_[j][by[k]], push[k]) : dot(axis[j - n_], yields_[one_][by[k]] * push[k]);
+            t[j][size_] = -dot(j < n_ ? p_.axes.c : axis[j - n_], free_[j < n_ ? j : one_]), sizes[j] = kSingular * t[j][j];
+        }
+        for (std::size_t k = 0; k < size_; ++k) {
+            if (!(t[k][k] > sizes[k])) return false;
+            for (std::size_t j = k + 1; j < size_; ++j) {
+                const double factor = t[j][k] / t[k][k];
+                for (std::size_t c = k + 1; c <= size_; ++c) t[j][c] -= factor * t[k][c];
+            }
+        }
+        for (std::size_t k = size_; k-- > 0;) {
+            double total = t[k][size_];
+            for (std::size_t c = k + 1; c < size_; ++c) total -= t[k][c] * x[c];
+            x[k] = total / t[k][k];
+        }
+        s.normals.assign(x, x + n_);
+        for (std::size_t j = 0; j < n_; ++j) {
+            rates_[j] = free_[j];
+            for (std::size_t k = 0; k < size_; ++k) rates_[j] = rates_[j] + x[k] * (yields_[j][by[k]] * push[k]);
+        }
+        return true;
+    }
+    Vec rate(const Solution& s, int k) const { return small_ ? rates_[k] : p_.rate(s.contact.members[k], s.linear, s.angular); }
+    bool all(Solution& s) const { return small_ ? solve(p_, s) : true; }  // the rest of the solution, after `act`
+
+  private:
+    const Problem& p_;
+    std::size_t n_, size_ = 0;
+    int one_ = -1;
+    bool small_;
+    Vec free_[3], rates_[3], lifts_[3][3];
+    Mat yields_[3][3];
+};
+
 // Turns the directions of vertices that start to slide into those of their accelerations (Newton).
-inline bool turned(const Problem& p, const Points& free, const Numbers& soft, Solution& s) {
+inline bool turned(const Problem& p, const Points& free, const Numbers& soft, Rubbing& rub, Solution& s) {
     const int n = static_cast<int>(free.size());
     const Vec up = p.axes.c;
     Vec d[kCorners], from[kCorners];
@@ -240,10 +299,10 @@ inline bool turned(const Problem& p, const Points& free, const Numbers& soft, So
     for (int j = 0; j < n; ++j) d[j] = s.directions[free[j]];
     const auto across = [&](double* r) {  // accelerations across the directions, over the most that friction moves
         for (int j = 0; j < n; ++j) s.directions[free[j]] = d[j];
-        if (!solve(p, s)) return false;
+        if (!rub.act(s)) return false;
         size = 0.0;
         for (int j = 0; j < n; ++j) {
-            const Vec rate = p.rate(s.contact.members[free[j]], s.linear, s.angular);
+            const Vec rate = rub.rate(s, free[j]);
             const double most = greater(soft[j] * std::fabs(s.normals[free[j]]) + norm(rate), 1e-300);
             r[j] = dot(cross(up, d[j]), rate) / most, along[j] = dot(d[j], rate) / most;
             size = greater(size, std::fabs(r[j]));
@@ -257,7 +316,7 @@ inline bool turned(const Problem& p, const Points& free, const Numbers& soft, So
             bool with = true;
             for (int j = 0; j < n; ++j)
                 if (along[j] < -kStraight) d[j] = -1.0 * d[j], with = false;
-            if (with) return true;
+            if (with) return rub.all(s);
             continue;
         }
         const double before = size;
@@ -303,22 +362,23 @@ inline bool sliding(const Problem& p, double still, Solution& s) {
         soft.push_back(greater(dot(p.axes.a, w * p.axes.a), dot(p.axes.b, w * p.axes.b)) * p.friction * static_cast<double>(n));
     }
     const Vecs begun = s.directions;
-    if (n <= 2 && turned(p, free, soft, s)) return true;
+    Rubbing rub(p, s);
+    if (n <= 2 && turned(p, free, soft, rub, s)) return true;
     s.directions = begun;
     Vecs after(n), moved(n), last(n);
     for (int turn = 0; turn < kTurns; ++turn) {
-        if (!solve(p, s)) return false;
+        if (!rub.act(s)) return false;
         double change = 0.0, along = 0.0, square = 0.0;
         for (std::size_t j = 0; j < n; ++j) {
             const int k = free[j];
-            const Vec rate = p.rate(members[k], s.linear, s.angular), slip = rate - dot(rate, p.axes.c) * p.axes.c, before = s.directions[k];
+            const Vec rate = rub.rate(s, k), slip = rate - dot(rate, p.axes.c) * p.axes.c, before = s.directions[k];
             const bool only_starts = norm(slip) <= still && dot(before, before) > 0.0;
             after[j] = only_starts ? before : unit(slip + soft[j] * greater(s.normals[k], 0.0) * before);  // Eq. 257
             moved[j] = after[j] - before;
             change = greater(change, norm(moved[j]));
             along += dot(moved[j], last[j]), square += dot(last[j], last[j]);
         }
-        if (change <= kStraight) return true;
+        if (change <= kStraight) return rub.all(s);
         // every third turn goes where the last two, as a geometric series, lead to (Aitken)
         const double ratio = turn % 3 == 2 && square > 0.0 ? along / square : 0.0;
         const double further = std::fabs(ratio) < 0.98 ? ratio / (1.0 - ratio) : 0.0;
@@ -326,7 +386,7 @@ inline bool sliding(const Problem& p, double still, Solution& s) {
         last = moved;
     }
     s.directions = begun;
-    return s.exists = n > 2 && n <= kCorners && turned(p, free, soft, s);
+    return s.exists = n > 2 && n <= kCorners && turned(p, free, soft, rub, s);
 }
 
 // The vertices of the convex polygon of points on the ground, in order (Andrew's monotone chain).

@@ -51,7 +51,7 @@ class Flow {
         }
         if (kind_ == kSliding)
             for (std::size_t j = 0; j < n; ++j)
-                for (std::size_t k = 0; k < n; ++k) yields_[j][k] = yielding(b_.points[c.members[j]], b_.points[c.members[k]]);
+                for (std::size_t k = 0; k < n; ++k) yields_[j][k] = b_.yielding(c.members[j], b_.points[c.members[k]]);
         solution_.contact = c, known_ = false;
     }
 
@@ -224,13 +224,6 @@ class Flow {
             }
         }
         linear = centre, angular = turn;
-    }
-
-    // Acceleration of one point by a force at another: columns of the matrix become its rows, to be multiplied from the left.
-    Mat yielding(Vec at, Vec by) const {
-        const auto answer = [&](Vec f) { return 1.0 / b_.mass * f + cross(b_.inverse * cross(by, f), at); };
-        const Vec x = answer({1.0, 0.0, 0.0}), y = answer({0.0, 1.0, 0.0}), z = answer({0.0, 0.0, 1.0});
-        return {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}};
     }
 
     // Two or three vertices that all slide: Eq. 252 for their normal forces.
