@@ -5,7 +5,8 @@
 namespace rocking::hull {
 
 constexpr double kSingular = 1e-12, kStraight = 1e-12;
-constexpr int kTurns = 300, kNewton = 20, kTries = 6;
+constexpr int kTurns = 60, kNewton = 20, kTries = 6;
+constexpr double kNearly = 1e-2;  // change of directions from which Newton goes on
 constexpr double kSwing = 1e-7;  // by which a direction is turned for the slope
 constexpr std::size_t kCorners = 8;  // of a facet with more no single one sticks
 
@@ -49,7 +50,7 @@ struct Solution {
     Vec linear, angular;
     Numbers normals;
     Vecs directions, pulls;  // of those that slide, of those that stick; zero for the others
-    bool exists = false;
+    bool exists = false, doomed = false;  // doomed: it breaks a law, and the rest of it was not asked for
 };
 
 struct Wrench {
@@ -58,17 +59,9 @@ struct Wrench {
 
 // Gauss without exchange; false where a pivot is not positive, so that no force answers a motion.
 template <int n>
-bool eliminated(const Problem& p, const Wrench* columns, const Wrench* rows, const double* known, double* answer) {
-    double t[n][n + 1], sizes[n];
-    Wrench soft[n];
-    for (int c = 0; c < n; ++c) soft[c] = {1.0 / p.body->mass * columns[c].f, p.body->inverse * columns[c].m};
-    for (int r = 0; r < n; ++r) {
-        for (int c = 0; c < n; ++c) t[r][c] = dot(rows[r].f, soft[c].f) + dot(rows[r].m, soft[c].m);
-        t[r][n] = -(dot(rows[r].f, p.linear) + dot(rows[r].m, p.angular) + known[r]);  // Eq. 252
-        sizes[r] = kSingular * t[r][r];
-    }
+bool eliminated(double (&t)[n][n + 1], const double* least, double* answer) {
     for (int k = 0; k < n; ++k) {
-        if (!(t[k][k] > sizes[k])) return false;
+        if (!(t[k][k] > least[k])) return false;
         for (int j = k + 1; j < n; ++j) {
             const double factor = t[j][k] / t[k][k];
             if (factor != 0.0)
@@ -81,6 +74,19 @@ bool eliminated(const Problem& p, const Wrench* columns, const Wrench* rows, con
         answer[k] = total / t[k][k];
     }
     return true;
+}
+
+template <int n>
+bool answered(const Problem& p, const Wrench* columns, const Wrench* rows, const double* known, double* answer) {
+    double t[n][n + 1], sizes[n];
+    Wrench soft[n];
+    for (int c = 0; c < n; ++c) soft[c] = {1.0 / p.body->mass * columns[c].f, p.body->inverse * columns[c].m};
+    for (int r = 0; r < n; ++r) {
+        for (int c = 0; c < n; ++c) t[r][c] = dot(rows[r].f, soft[c].f) + dot(rows[r].m, soft[c].m);
+        t[r][n] = -(dot(rows[r].f, p.linear) + dot(rows[r].m, p.angular) + known[r]);  // Eq. 252
+        sizes[r] = kSingular * t[r][r];
+    }
+    return eliminated<n>(t, sizes, answer);
 }
 
 // Shares what holds the sticking vertices as their normal forces are shared, and as these would resist turning.
@@ -167,7 +173,7 @@ bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
             known[at++] = p.forces ? dot(across, p.bias(other) - p.bias(one)) / dot(across, across) : 0.0;
         }
     }
-    if (!eliminated<size>(p, columns, rows, known, answer)) return false;
+    if (!answered<size>(p, columns, rows, known, answer)) return false;
     Vec force, moment;
     for (int k = 0; k < size; ++k) force = force + answer[k] * columns[k].f, moment = moment + answer[k] * columns[k].m;
     s.linear = p.linear + 1.0 / body.mass * force;
@@ -231,67 +237,96 @@ inline bool solved(int n, double t[][kCorners + 1]) {
     return true;
 }
 
-// What forces on up to three vertices, one of which may stick, do to their rates: all that directions of sliding ask for.
+// What forces on a few vertices do to their rates.
+struct Table {
+    static constexpr std::size_t kMost = 4;
+    Points at;
+    Vec free[kMost], lifts[kMost][kMost];
+    Mat yields[kMost][kMost];
+
+    Table(const Problem& p, const Points& vertices) : at(vertices) {
+        for (std::size_t j = 0; j < at.size(); ++j) {
+            free[j] = p.rate(at[j], p.linear, p.angular);
+            for (std::size_t k = 0; k < at.size(); ++k) yields[j][k] = p.body->yielding(at[j], p.place(at[k])), lifts[j][k] = row_times(p.axes.c, yields[j][k]);
+        }
+    }
+    int slot(int i) const { return static_cast<int>(std::find(at.begin(), at.end(), i) - at.begin()); }
+};
+
+// What spares a candidate work: forces on those that touch, what it does without sliding, and the violation from which it is out.
+struct Aid {
+    const Table* table = nullptr;
+    const Solution* holding = nullptr;  // null: to be found
+    double limit = kInfinite;
+};
+
+// A contact of up to three vertices, one of which may stick, as directions of sliding see it; of more the whole solution.
 class Rubbing {
   public:
-    Rubbing(const Problem& p, const Solution& s) : p_(p), n_(s.contact.members.size()) {
+    Rubbing(const Problem& p, const Solution& s, const Table* table) : p_(p), table_(table), n_(s.contact.members.size()) {
         const Points &members = s.contact.members, &stuck = s.contact.stuck;
-        small_ = n_ <= 3 && stuck.size() < 2;
-        if (!small_) return;
+        if (n_ > 3 || stuck.size() > 1) table_ = nullptr;
+        if (!table_) return;
         for (std::size_t j = 0; j < n_; ++j) {
-            if (!stuck.empty() && members[j] == stuck[0]) one_ = static_cast<int>(j);
-            free_[j] = p.rate(members[j], p.linear, p.angular);
-            for (std::size_t k = 0; k < n_; ++k) yields_[j][k] = p.body->yielding(members[j], p.place(members[k])), lifts_[j][k] = row_times(p.axes.c, yields_[j][k]);
+            by_[j] = table_->slot(members[j]);
+            if (!stuck.empty() && members[j] == stuck[0]) one_ = by_[j];
         }
-        size_ = n_ + (one_ < 0 ? 0 : 2);
+        size_ = n_;
+        if (one_ >= 0) by_[size_] = by_[size_ + 1] = one_, push_[size_++] = p.axes.a, push_[size_++] = p.axes.b;
     }
 
     // Normal forces and rates for the directions of s.
     bool act(Solution& s) {
-        if (!small_) return solve(p_, s);
-        const Vec axis[2] = {p_.axes.a, p_.axes.b};
-        double t[5][6], sizes[5], x[5];
-        Vec push[5];
-        std::size_t by[5];
-        for (std::size_t k = 0; k < size_; ++k)
-            by[k] = k < n_ ? k : one_, push[k] = k < n_ ? p_.axes.c - p_.friction * s.directions[k] : axis[k - n_];
-        for (std::size_t j = 0; j < size_; ++j) {
-            for (std::size_t k = 0; k < size_; ++k) t[j][k] = j < n_ ? dot(lifts_[j][by[k]], push[k]) : dot(axis[j - n_], yields_[one_][by[k]] * push[k]);
-            t[j][size_] = -dot(j < n_ ? p_.axes.c : axis[j - n_], free_[j < n_ ? j : one_]), sizes[j] = kSingular * t[j][j];
-        }
-        for (std::size_t k = 0; k < size_; ++k) {
-            if (!(t[k][k] > sizes[k])) return false;
-            for (std::size_t j = k + 1; j < size_; ++j) {
-                const double factor = t[j][k] / t[k][k];
-                for (std::size_t c = k + 1; c <= size_; ++c) t[j][c] -= factor * t[k][c];
-            }
-        }
-        for (std::size_t k = size_; k-- > 0;) {
-            double total = t[k][size_];
-            for (std::size_t c = k + 1; c < size_; ++c) total -= t[k][c] * x[c];
-            x[k] = total / t[k][k];
-        }
-        s.normals.assign(x, x + n_);
-        for (std::size_t j = 0; j < n_; ++j) {
-            rates_[j] = free_[j];
-            for (std::size_t k = 0; k < size_; ++k) rates_[j] = rates_[j] + x[k] * (yields_[j][by[k]] * push[k]);
-        }
-        return true;
+        if (!table_) return solve(p_, s);
+        for (std::size_t k = 0; k < n_; ++k) push_[k] = p_.axes.c - p_.friction * s.directions[k];
+        const bool found = size_ == 1 ? answered<1>() : size_ == 2 ? answered<2>() : size_ == 3 ? answered<3>() : size_ == 4 ? answered<4>() : answered<5>();
+        if (found) s.normals.assign(x_, x_ + n_);
+        return found;
     }
-    Vec rate(const Solution& s, int k) const { return small_ ? rates_[k] : p_.rate(s.contact.members[k], s.linear, s.angular); }
-    bool all(Solution& s) const { return small_ ? solve(p_, s) : true; }  // the rest of the solution, after `act`
+    // Of a member, after `act`.
+    Vec rate(const Solution& s, int k) const {
+        if (!table_) return p_.rate(s.contact.members[k], s.linear, s.angular);
+        Vec made = table_->free[by_[k]];
+        for (std::size_t j = 0; j < size_; ++j) made = made + x_[j] * (table_->yields[by_[k]][by_[j]] * push_[j]);
+        return made;
+    }
+    // The rest of the solution after `act`, unless it clearly breaks a law.
+    bool all(Solution& s, double limit) const { return !table_ || (s.doomed = breaks(limit)) || solve(p_, s); }
 
   private:
+    template <int size>
+    bool answered() {
+        double t[size][size + 1], least[size];
+        for (int j = 0; j < size; ++j) {
+            const bool up = j < static_cast<int>(n_);
+            for (int k = 0; k < size; ++k) t[j][k] = up ? dot(table_->lifts[by_[j]][by_[k]], push_[k]) : dot(push_[j], table_->yields[by_[j]][by_[k]] * push_[k]);
+            t[j][size] = -dot(up ? p_.axes.c : push_[j], table_->free[by_[j]]), least[j] = kSingular * t[j][j];
+        }
+        return eliminated<size>(t, least, x_);
+    }
+
+    bool breaks(double limit) const {
+        const double slack = limit * p_.body->mass;
+        for (std::size_t k = 0; k < n_; ++k)
+            if (x_[k] < -slack || (by_[k] == one_ && std::hypot(x_[n_], x_[n_ + 1]) > p_.friction * x_[k] + slack * (1.0 + p_.friction))) return true;
+        for (int i = 0; i < static_cast<int>(table_->at.size()); ++i) {
+            double rate = dot(p_.axes.c, table_->free[i]);
+            for (std::size_t j = 0; j < size_; ++j) rate += x_[j] * dot(table_->lifts[i][by_[j]], push_[j]);
+            if (rate < -limit) return true;  // those of the contact stay
+        }
+        return false;
+    }
+
     const Problem& p_;
+    const Table* table_;
     std::size_t n_, size_ = 0;
-    int one_ = -1;
-    bool small_;
-    Vec free_[3], rates_[3], lifts_[3][3];
-    Mat yields_[3][3];
+    int one_ = -1, by_[5];
+    double x_[5];
+    Vec push_[5];
 };
 
 // Turns the directions of vertices that start to slide into those of their accelerations (Newton).
-inline bool turned(const Problem& p, const Points& free, const Numbers& soft, Rubbing& rub, Solution& s) {
+inline bool turned(const Problem& p, const Points& free, const Numbers& soft, double limit, Rubbing& rub, Solution& s) {
     const int n = static_cast<int>(free.size());
     const Vec up = p.axes.c;
     Vec d[kCorners], from[kCorners];
@@ -310,19 +345,20 @@ inline bool turned(const Problem& p, const Points& free, const Numbers& soft, Ru
         return true;
     };
     const auto turn = [&](Vec a, double angle) { return std::cos(angle) * a + std::sin(angle) * cross(up, a); };
+    if (!across(r)) return false;
     for (int k = 0; k < kNewton; ++k) {
-        if (!across(r)) return false;
         if (size <= kStraight) {
             bool with = true;
             for (int j = 0; j < n; ++j)
                 if (along[j] < -kStraight) d[j] = -1.0 * d[j], with = false;
-            if (with) return rub.all(s);
+            if (with) return rub.all(s, limit);
+            if (!across(r)) return false;
             continue;
         }
         const double before = size;
         for (int j = 0; j < n; ++j) from[j] = d[j], table[j][n] = -r[j];
         for (int j = 0; j < n; ++j) {
-            d[j] = turn(from[j], kSwing);
+            d[j] = from[j] + kSwing * cross(up, from[j]);
             if (!across(other)) return false;
             d[j] = from[j];
             for (int i = 0; i < n; ++i) table[i][j] = (other[i] - r[i]) / kSwing;
@@ -333,7 +369,7 @@ inline bool turned(const Problem& p, const Points& free, const Numbers& soft, Ru
         double share = lesser(1.0, 0.5 / greater(most, 1e-300));
         for (int tries = 0; tries < kTries; ++tries, share *= 0.5) {
             for (int j = 0; j < n; ++j) d[j] = turn(from[j], share * table[j][n]);
-            if (!across(other)) return false;
+            if (!across(r)) return false;
             if (size < before) break;
         }
     }
@@ -342,19 +378,15 @@ inline bool turned(const Problem& p, const Points& free, const Numbers& soft, Ru
 
 // The same with the directions in which free vertices start to slide, by iteration. s.directions: of those that slide
 // already; still: rate below which friction alone has the direction.
-inline bool sliding(const Problem& p, double still, Solution& s) {
+inline bool sliding(const Problem& p, double still, const Aid& aid, Solution& s) {
     const Points& members = s.contact.members;
     Points free, others;
     for (std::size_t k = 0; k < members.size(); ++k)
         if (dot(s.directions[k], s.directions[k]) > 0.0) others.push_back(members[k]);
         else if (!has(s.contact.stuck, members[k])) free.push_back(static_cast<int>(k));
     if (free.empty() || p.friction == 0.0) return solve(p, s);
-    Solution holding = s;
-    holding.contact.stuck.clear();
-    for (int i : members)
-        if (!has(others, i)) holding.contact.stuck.push_back(i);
-    if (solve(p, holding))
-        for (int k : free) s.directions[k] = unit(-1.0 * holding.pulls[k]);
+    if (aid.holding->exists)
+        for (int k : free) s.directions[k] = unit(-1.0 * aid.holding->pulls[k]);
     const std::size_t n = free.size();
     Numbers soft;
     for (int k : free) {
@@ -362,10 +394,11 @@ inline bool sliding(const Problem& p, double still, Solution& s) {
         soft.push_back(greater(dot(p.axes.a, w * p.axes.a), dot(p.axes.b, w * p.axes.b)) * p.friction * static_cast<double>(n));
     }
     const Vecs begun = s.directions;
-    Rubbing rub(p, s);
-    if (n <= 2 && turned(p, free, soft, rub, s)) return true;
+    Rubbing rub(p, s, aid.table);
+    if (n <= 2 && turned(p, free, soft, aid.limit, rub, s)) return true;
     s.directions = begun;
     Vecs after(n), moved(n), last(n);
+    double nearly = kNearly;
     for (int turn = 0; turn < kTurns; ++turn) {
         if (!rub.act(s)) return false;
         double change = 0.0, along = 0.0, square = 0.0;
@@ -378,7 +411,13 @@ inline bool sliding(const Problem& p, double still, Solution& s) {
             change = greater(change, norm(moved[j]));
             along += dot(moved[j], last[j]), square += dot(last[j], last[j]);
         }
-        if (change <= kStraight) return rub.all(s);
+        if (change <= kStraight) return rub.all(s, aid.limit);
+        if (change <= nearly && n <= kCorners) {
+            const Vecs reached = s.directions;
+            for (std::size_t j = 0; j < n; ++j) s.directions[free[j]] = after[j];
+            if (turned(p, free, soft, aid.limit, rub, s)) return true;
+            s.directions = reached, nearly = 0.0;
+        }
         // every third turn goes where the last two, as a geometric series, lead to (Aitken)
         const double ratio = turn % 3 == 2 && square > 0.0 ? along / square : 0.0;
         const double further = std::fabs(ratio) < 0.98 ? ratio / (1.0 - ratio) : 0.0;
@@ -386,7 +425,7 @@ inline bool sliding(const Problem& p, double still, Solution& s) {
         last = moved;
     }
     s.directions = begun;
-    return s.exists = n > 2 && n <= kCorners && turned(p, free, soft, rub, s);
+    return s.exists = n > 2 && n <= kCorners && turned(p, free, soft, aid.limit, rub, s);
 }
 
 // The vertices of the convex polygon of points on the ground, in order (Andrew's monotone chain).
@@ -395,7 +434,7 @@ inline Points outline(const Problem& p, const Points& touching) {
         double x, y;
         int i;
     };
-    std::vector<At> places, kept;
+    Few<At> places, kept;
     for (int i : touching) places.push_back({dot(p.axes.a, p.body->points[i]), dot(p.axes.b, p.body->points[i]), i});
     std::sort(places.begin(), places.end(), [](const At& a, const At& b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.i < b.i; });
     Points made;
@@ -425,19 +464,12 @@ inline std::vector<Points> faces(const Problem& p, const Points& touching) {
     const Points border = outline(p, touching);
     std::vector<Points> made;
     const std::size_t n = border.size();
+    made.reserve(2 * n + 1);
     if (n > 2) made.push_back(border);
     if (n > 1)
         for (std::size_t k = 0; k < (n > 2 ? n : 1); ++k) made.push_back({border[k], border[(k + 1) % n]});
     for (int i : border) made.push_back({i});
     return made;
-}
-
-// Which of the vertices that do not slide yet stick: all, all but one, one, none.
-inline void friction_states(const Points& members, const Points& still, std::vector<Contact>& made) {
-    if (still.size() == members.size() || still.size() < 2) made.push_back({members, still});
-    if (still.size() > 1 && members.size() <= kCorners)  // two sticking vertices of a facet make it rest; of an edge that leaves single ones
-        for (int i : still) made.push_back({members, {i}});
-    if (!still.empty()) made.push_back({members, {}});
 }
 
 // Whether no gap closes.

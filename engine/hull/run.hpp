@@ -1,6 +1,7 @@
 // One history: steps, events to rounding, changes of contact, impacts, rest.
 #pragma once
 #include <array>
+#include <optional>
 
 #include "flow.hpp"
 #include "law.hpp"
@@ -10,7 +11,7 @@ namespace rocking::hull {
 // gaps over the size: of vertices that land together, and at which one lands
 constexpr double kClosed = 1e-11, kGrazed = 1e-14, kForce = 1e-11;
 // speeds over sqrt(g size): at which sliding stops, below which a vertex may stick, or still slides as it started
-constexpr double kSlip = 5e-6, kStill = 5e-6, kSlides = 1e-4;
+constexpr double kSlip = 5e-6, kSlides = 1e-4;
 constexpr std::array<double, 4> kLadder{1e-11, 1e-9, 1e-7, 1e-5};
 constexpr double kAhead = 1e-6, kCrowded = 1e-2, kGathered = 1e-7, kGathering = 1e-4, kPatience = 100.0, kMargin = 0.1, kAfter = 0.1;
 constexpr int kPiled = 30, kMany = 200, kCrowd = 12, kHalvings = 80;
@@ -40,6 +41,7 @@ class Run {
         pace_ = std::sqrt(g_.gravity / b_.size), speed_ = g_.gravity / pace_;
         slow_ = set_.rest_speed * speed_, slack_ = kForce * g_.gravity;
         weak_ = set_.rest_speed * set_.rest_speed * b_.mass * g_.gravity * b_.size;
+        stop_ = greater(kSlip, std::sqrt(set_.tolerance)) * speed_, slides_at_ = greater(kSlides, 2.0 * std::sqrt(set_.tolerance)) * speed_;
         length_ = span_ = 0.1 / pace_;
     }
 
@@ -206,7 +208,7 @@ class Run {
                 const Vec v = point_velocity(b_, flow_.samples[3], frame(flow_.samples[3].q), mode_.contact.members[k]);
                 most = greater(most, std::sqrt(v.x * v.x + v.y * v.y));
             }
-        return most / (kSlides * speed_);
+        return most / slides_at_;
     }
 
     void step() {
@@ -274,7 +276,7 @@ class Run {
 
     void finish(Kind kind) {
         for (std::size_t k = 0; k < mode_.starting.size(); ++k)
-            if (mode_.starting[k] && slip(mode_.contact.members[k]) > kSlides * speed_) mode_.starting[k] = 0;
+            if (mode_.starting[k] && slip(mode_.contact.members[k]) > slides_at_) mode_.starting[k] = 0;
         if (kind == kGap) return impact();
         if (kind == kNone && !mode_.pulled) return;
         touch(touching_);
@@ -350,7 +352,7 @@ class Run {
     // has it, then by secants on steps of that length.
     double located(const Fall& f, double low, double high) {
         const Watch& w = f.what;
-        const double close = w.kind == kGap ? 0.5 * kGrazed * b_.size : w.kind == kShelf ? kClosed * b_.size : w.kind == kSlipping ? 1e-3 * kSlip * speed_ : slack_;
+        const double close = w.kind == kGap ? 0.5 * kGrazed * b_.size : w.kind == kShelf ? kClosed * b_.size : w.kind == kSlipping ? 1e-3 * stop_ : slack_;
         if (part_ == high && at(w, high) >= -close) return high;
         double slope = 0.0, from = guessed(f, low, high, 0.5 * close, slope);
         for (int k = 0; k < 5 && slope < 0.0; ++k) {
@@ -475,7 +477,7 @@ class Run {
         if (w.kind == kNormal) return f.normals[w.slot] / b_.mass + slack_;
         if (w.kind == kSticking) return (mu_ * f.normals[w.slot] - f.pulls[w.slot]) / b_.mass + slack_ * (1.0 + mu_);
         const double speed = dot(slides_[w.slot], point_velocity(b_, s, frame(s.q), w.i));
-        return speed + (mode_.starting[w.slot] ? 2.0 * kStill : -kSlip) * speed_;
+        return speed + (mode_.starting[w.slot] ? 2.0 : -1.0) * stop_;
     }
 
     double at(const Watch& w, double part) {
@@ -537,48 +539,99 @@ class Run {
     // What may stay, solved when asked for: first what sticks wherever it does not slide yet, larger faces first; flight last.
     class Candidates {
       public:
-        Candidates(const Problem& p, const Points& near, const Moving& moving, double still) : p_(p), moving_(moving), still_(still) {
-            std::vector<std::pair<std::size_t, Contact>> ways;
-            std::vector<Contact> states;
-            for (const Points& members : faces(p, near)) {
+        // limit: violation of a law from which a candidate is of no use
+        Candidates(const Problem& p, const Points& near, const Moving& moving, double still, double limit)
+            : p_(p), near_(near), moving_(moving), still_(still), limit_(limit), faces_(faces(p, near)), holding_(faces_.size()) {
+            Few<Way> ways;
+            for (std::size_t f = 0; f < faces_.size(); ++f) {
+                const Points& members = faces_[f];
                 Points free;
                 for (int i : members)
                     if (!moving_of(moving, i)) free.push_back(i);
-                states.clear();
-                friction_states(members, free, states);
-                for (Contact& way : states)
-                    if (p.friction < kInfinite || way.stuck == members) {
-                        // a facet that slides as a whole comes before what edges and single vertices do
-                        const std::size_t slides = free.size() - way.stuck.size();
-                        ways.push_back({slides == 0 ? 0 : members.size() > 2 && way.stuck.empty() ? 1 : slides + 1, std::move(way)});
-                    }
+                const std::size_t n = free.size();
+                const auto add = [&](int stuck, std::size_t sticks) {
+                    // a facet that slides as a whole comes before what edges and single vertices do
+                    if (p.friction < kInfinite || sticks == members.size())
+                        ways.push_back({sticks == n ? 0 : members.size() > 2 && !sticks ? 1 : n - sticks + 1, ways.size(), static_cast<int>(f), stuck});
+                };
+                if (n == members.size() || n < 2) add(kAll, n);
+                if (n > 1 && members.size() <= kCorners)  // two sticking vertices of a facet make it rest; of an edge that leaves single ones
+                    for (int i : free) add(i, 1);
+                if (n > 0) add(kNobody, 0);
             }
-            std::stable_sort(ways.begin(), ways.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-            for (auto& way : ways) order_.push_back(std::move(way.second));
-            order_.push_back({});
+            std::sort(ways.begin(), ways.end(), [](const Way& a, const Way& b) { return a.rank != b.rank ? a.rank < b.rank : a.order < b.order; });
+            ways_ = std::move(ways), made_.reserve(ways_.size() + 1);
         }
 
         // Null after the last one.
         const Solution* operator[](std::size_t k) {
-            while (made_.size() <= k && next_ < order_.size()) {
-                Solution s;
-                s.contact = order_[next_++];
-                s.directions.assign(s.contact.members.size(), Vec{});
-                for (std::size_t j = 0; j < s.contact.members.size(); ++j) {
-                    const Vec* d = moving_of(moving_, s.contact.members[j]);
-                    if (d && !has(s.contact.stuck, s.contact.members[j])) s.directions[j] = *d;
-                }
-                if (sliding(p_, still_, s)) made_.push_back(std::move(s));
-            }
+            while (made_.size() <= k && next_ <= ways_.size()) add();
             return k < made_.size() ? &made_[k] : nullptr;
         }
 
+        // Finds also what is of no use, from the beginning.
+        void all() { limit_ = kInfinite, next_ = 0, made_.clear(); }
+
       private:
+        enum : int { kAll = -2, kNobody = -1 };
+        struct Way {
+            std::size_t rank, order;
+            int face, stuck;
+        };
+
+        void add() {
+            if (next_++ == ways_.size()) return begin({}, {}), finish(solve(p_, made_.back()));
+            const Way& way = ways_[next_ - 1];
+            const Points& members = faces_[way.face];
+            if (way.stuck == kAll) {
+                if (hold(way.face).exists) made_.push_back(hold(way.face));
+                return;
+            }
+            begin(members, way.stuck == kNobody ? Points{} : Points{way.stuck});
+            if (near_.size() <= Table::kMost && !table_) table_.emplace(p_, near_);
+            finish(sliding(p_, still_, {table_ ? &*table_ : nullptr, &hold(way.face), limit_}, made_.back()));
+        }
+
+        void begin(const Points& members, const Points& stuck) { made_.emplace_back(), prepare(members, stuck, made_.back()); }
+        void finish(bool exists) {
+            if (!exists || made_.back().doomed) made_.pop_back();
+        }
+
+        void prepare(const Points& members, const Points& stuck, Solution& s) const {
+            s.contact = {members, stuck};
+            s.directions.assign(members.size(), Vec{});
+            for (std::size_t j = 0; j < members.size(); ++j) {
+                const Vec* d = moving_of(moving_, members[j]);
+                if (d && !has(stuck, members[j])) s.directions[j] = *d;
+            }
+        }
+
+        // A face whose vertices stick where they do not slide already.
+        const Solution& hold(int face) {
+            Held& held = holding_[face];
+            if (!held.known) {
+                Points free;
+                for (int i : faces_[face])
+                    if (!moving_of(moving_, i)) free.push_back(i);
+                prepare(faces_[face], free, held.solution);
+                held.known = true, solve(p_, held.solution);
+            }
+            return held.solution;
+        }
+        struct Held {
+            bool known = false;
+            Solution solution;
+        };
+
         const Problem& p_;
+        const Points& near_;
         const Moving& moving_;
-        double still_;
-        std::vector<Contact> order_;
+        double still_, limit_;
+        std::vector<Points> faces_;
+        std::vector<Held> holding_;
+        Few<Way> ways_;
         std::vector<Solution> made_;
+        std::optional<Table> table_;
         std::size_t next_ = 0;
     };
 
@@ -588,6 +641,7 @@ class Run {
         const Solution* best = nullptr;
         double most = -kInfinite;
         const Solution* pushed = nullptr;
+        all.all();
         for (std::size_t k = 0; const Solution* c = all[k]; ++k) {
             if (!fits(*c) || c->contact.members.empty() || !clear(p, *c, touching, slack)) continue;
             const double least = *std::min_element(c->normals.begin(), c->normals.end());
@@ -624,11 +678,11 @@ class Run {
         Moving moving;
         if (mu_ < kInfinite)
             for (int i : near)
-                if (slip(i) > 3.0 * kStill * speed_) {
+                if (slip(i) > 3.0 * stop_) {
                     const Vec v = velocity(i);
                     moving.push_back({i, row_times(unit({v.x, v.y, 0.0}), p.axes)});
                 }
-        Candidates candidates(p, near, moving, 1e-5 * g_.gravity);
+        Candidates candidates(p, near, moving, 1e-5 * g_.gravity, 2.0 * kLadder.back() * g_.gravity);
         // what has ended may have to go on if nothing else is possible
         for (int pass = crowd ? 3 : 0; pass < (mu_ < kInfinite ? 3 : 1); ++pass) {
             if (pass && over_.empty()) break;
@@ -678,7 +732,7 @@ class Run {
         for (std::size_t k = 0; k < n; ++k) {
             const bool moves = moving_of(moving, c.members[k]);
             if (!moves) still.push_back(c.members[k]);
-            if (has(c.stuck, c.members[k]) || (moves && slip(c.members[k]) > kSlides * speed_)) continue;
+            if (has(c.stuck, c.members[k]) || (moves && slip(c.members[k]) > slides_at_)) continue;
             mode.starting[k] = 1, mode.starts[k] = p.axes * found.directions[k];
         }
         mode_ = mode, bordered_ = false;
@@ -775,7 +829,7 @@ class Run {
                     const Vec at = law_.place(b_, nearest(b_, old, b_.points[i]), b_.points[i]), off = at - b_.points[i];
                     if (dot(off, off) > 0.0) now.places.push_back({i, at});
                 }
-            tried.emplace_back(now, touching, none, 0.0);
+            tried.emplace_back(now, touching, none, 0.0, 2.0 * kLadder.back() * fastest);
             Candidates& all = tried.back();
             for (int l = 0; l < 3 && !found; ++l)
                 for (std::size_t k = 0; const Solution* c = all[k]; ++k)
@@ -819,7 +873,7 @@ class Run {
             if (std::fabs(velocity(i).z) <= kGathering * speed_) near.push_back(i);
         const Points border = outline(velocities(mu_), near);
         for (int i : border)
-            if (slip(i) <= kSlides * speed_) still.push_back(i);
+            if (slip(i) <= slides_at_) still.push_back(i);
         settle_on({border, {}}, still);
         r_.lost += before - energy();
         choose(near, nullptr, &near);
@@ -874,7 +928,7 @@ class Run {
     const double mu_;
     const Settings& set_;
     Flow flow_;
-    double pace_, speed_, slow_, slack_, weak_, length_, span_, until_ = 0.0, time_ = 0.0, part_ = -1.0;
+    double pace_, speed_, slow_, stop_, slides_at_, slack_, weak_, length_, span_, until_ = 0.0, time_ = 0.0, part_ = -1.0;
     std::int64_t stretch_ = 0;
     State s_, start_;
     Mode mode_;
