@@ -6,6 +6,7 @@ namespace rocking::hull {
 
 constexpr double kSingular = 1e-12, kStraight = 1e-12;
 constexpr int kTurns = 60, kNewton = 20, kTries = 6;
+constexpr double kAlmost = 1e-3, kAmple = 1e3;  // what is left of a direction, and the violation, that decide before its end
 constexpr double kNearly = 1e-2;  // change of directions from which Newton goes on
 constexpr double kSwing = 1e-7;  // by which a direction is turned for the slope
 constexpr std::size_t kCorners = 8;  // of a facet with more no single one sticks
@@ -237,17 +238,24 @@ inline bool solved(int n, double t[][kCorners + 1]) {
     return true;
 }
 
-// What forces on a few vertices do to their rates.
+// What forces on a few vertices do to their rates, in axes of the ground.
 struct Table {
     static constexpr std::size_t kMost = 4;
     Points at;
-    Vec free[kMost], lifts[kMost][kMost];
-    Mat yields[kMost][kMost];
+    Vec free[kMost];
+    Mat yields[kMost][kMost];  // columns: rate of one by a unit of force at another
 
     Table(const Problem& p, const Points& vertices) : at(vertices) {
-        for (std::size_t j = 0; j < at.size(); ++j) {
-            free[j] = p.rate(at[j], p.linear, p.angular);
-            for (std::size_t k = 0; k < at.size(); ++k) yields[j][k] = p.body->yielding(at[j], p.place(at[k])), lifts[j][k] = row_times(p.axes.c, yields[j][k]);
+        const Mat &axes = p.axes, &soft = p.body->inverse, turns{axes * (soft * axes.a), axes * (soft * axes.b), axes * (soft * axes.c)};
+        const double light = 1.0 / p.body->mass;
+        Vec arms[kMost];
+        for (std::size_t j = 0; j < at.size(); ++j) free[j] = axes * p.rate(at[j], p.linear, p.angular), arms[j] = axes * p.body->points[at[j]];
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            const Vec s = axes * p.place(at[k]), x = turns * Vec{0.0, s.z, -s.y}, y = turns * Vec{-s.z, 0.0, s.x}, z = turns * Vec{s.y, -s.x, 0.0};
+            for (std::size_t j = 0; j < at.size(); ++j) {
+                Mat& made = yields[j][k] = {cross(x, arms[j]), cross(y, arms[j]), cross(z, arms[j])};
+                made.a.x += light, made.b.y += light, made.c.z += light;
+            }
         }
     }
     int slot(int i) const { return static_cast<int>(std::find(at.begin(), at.end(), i) - at.begin()); }
@@ -255,112 +263,139 @@ struct Table {
 
 // What spares a candidate work: forces on those that touch, what it does without sliding, and the violation from which it is out.
 struct Aid {
-    const Table* table = nullptr;
-    const Solution* holding = nullptr;  // null: to be found
-    double limit = kInfinite;
+    const Table* table;
+    const Solution* holding;
+    double limit;
 };
 
-// A contact of up to three vertices, one of which may stick, as directions of sliding see it; of more the whole solution.
+struct Flat {
+    double x = 0.0, y = 0.0;
+};
+
+inline Flat unit(Flat a) {
+    const double size = std::sqrt(a.x * a.x + a.y * a.y);
+    return size > 0.0 ? Flat{a.x / size, a.y / size} : Flat{};
+}
+
+// A contact as directions of sliding see it: of up to three vertices, one of which may stick, without the rest of the solution.
 class Rubbing {
   public:
-    Rubbing(const Problem& p, const Solution& s, const Table* table) : p_(p), table_(table), n_(s.contact.members.size()) {
+    Few<Flat> ways;  // by member, in axes of the ground
+
+    Rubbing(const Problem& p, const Aid& aid, Solution& s) : p_(p), s_(s), table_(aid.table), limit_(aid.limit), n_(s.contact.members.size()) {
         const Points &members = s.contact.members, &stuck = s.contact.stuck;
+        for (const Vec& d : s.directions) ways.push_back({dot(d, p.axes.a), dot(d, p.axes.b)});
         if (n_ > 3 || stuck.size() > 1) table_ = nullptr;
-        if (!table_) return;
-        for (std::size_t j = 0; j < n_; ++j) {
+        for (std::size_t j = 0; table_ && j < n_; ++j) {
             by_[j] = table_->slot(members[j]);
             if (!stuck.empty() && members[j] == stuck[0]) one_ = by_[j];
         }
-        size_ = n_;
-        if (one_ >= 0) by_[size_] = by_[size_ + 1] = one_, push_[size_++] = p.axes.a, push_[size_++] = p.axes.b;
     }
 
-    // Normal forces and rates for the directions of s.
-    bool act(Solution& s) {
-        if (!table_) return solve(p_, s);
-        for (std::size_t k = 0; k < n_; ++k) push_[k] = p_.axes.c - p_.friction * s.directions[k];
-        const bool found = size_ == 1 ? answered<1>() : size_ == 2 ? answered<2>() : size_ == 3 ? answered<3>() : size_ == 4 ? answered<4>() : answered<5>();
-        if (found) s.normals.assign(x_, x_ + n_);
-        return found;
+    // Normal forces and rates for `ways`.
+    bool act() {
+        if (!table_) return write(), solve(p_, s_);
+        if (one_ >= 0) return n_ == 2 ? answered<2, 2>() : answered<3, 2>();
+        return n_ == 1 ? answered<1, 0>() : n_ == 2 ? answered<2, 0>() : answered<3, 0>();
     }
-    // Of a member, after `act`.
-    Vec rate(const Solution& s, int k) const {
-        if (!table_) return p_.rate(s.contact.members[k], s.linear, s.angular);
-        Vec made = table_->free[by_[k]];
-        for (std::size_t j = 0; j < size_; ++j) made = made + x_[j] * (table_->yields[by_[k]][by_[j]] * push_[j]);
-        return made;
-    }
+    double normal(int k) const { return table_ ? x_[k] : s_.normals[k]; }
+    Vec rate(int k) const { return table_ ? rate_of(by_[k]) : p_.axes * p_.rate(s_.contact.members[k], s_.linear, s_.angular); }
+
     // The rest of the solution after `act`, unless it clearly breaks a law.
-    bool all(Solution& s, double limit) const { return !table_ || (s.doomed = breaks(limit)) || solve(p_, s); }
+    bool all() { return doomed(1.0) || (write(), solve(p_, s_)); }
+    // Whether a law is broken by so many times what is of no use.
+    bool doomed(double times) { return s_.doomed = table_ && breaks(times * limit_); }
 
   private:
-    template <int size>
+    void write() {
+        for (std::size_t k = 0; k < n_; ++k) s_.directions[k] = p_.ground(ways[k].x, ways[k].y);
+    }
+
+    template <int n, int rest>
     bool answered() {
-        double t[size][size + 1], least[size];
-        for (int j = 0; j < size; ++j) {
-            const bool up = j < static_cast<int>(n_);
-            for (int k = 0; k < size; ++k) t[j][k] = up ? dot(table_->lifts[by_[j]][by_[k]], push_[k]) : dot(push_[j], table_->yields[by_[j]][by_[k]] * push_[k]);
-            t[j][size] = -dot(up ? p_.axes.c : push_[j], table_->free[by_[j]]), least[j] = kSingular * t[j][j];
+        double t[n + rest][n + rest + 1], least[n + rest];
+        for (int k = 0; k < n; ++k) pushes_[k] = {-p_.friction * ways[k].x, -p_.friction * ways[k].y};
+        for (int j = 0; j < n; ++j) {
+            const Mat* yields = table_->yields[by_[j]];
+            for (int k = 0; k < n; ++k) {
+                const Mat& by = yields[by_[k]];
+                t[j][k] = pushes_[k].x * by.a.z + pushes_[k].y * by.b.z + by.c.z;
+            }
+            if (rest) t[j][n] = yields[one_].a.z, t[j][n + 1] = yields[one_].b.z;
+            t[j][n + rest] = -table_->free[by_[j]].z;
         }
-        return eliminated<size>(t, least, x_);
+        if (rest) {
+            const Mat* yields = table_->yields[one_];
+            for (int k = 0; k < n; ++k) {
+                const Mat& by = yields[by_[k]];
+                t[n][k] = pushes_[k].x * by.a.x + pushes_[k].y * by.b.x + by.c.x, t[n + 1][k] = pushes_[k].x * by.a.y + pushes_[k].y * by.b.y + by.c.y;
+            }
+            t[n][n] = yields[one_].a.x, t[n][n + 1] = yields[one_].b.x, t[n + 1][n] = yields[one_].a.y, t[n + 1][n + 1] = yields[one_].b.y;
+            t[n][n + 2] = -table_->free[one_].x, t[n + 1][n + 2] = -table_->free[one_].y;
+        }
+        for (int j = 0; j < n + rest; ++j) least[j] = kSingular * t[j][j];
+        return eliminated<n + rest>(t, least, x_);
+    }
+
+    Vec rate_of(int i) const {
+        Vec made = table_->free[i];
+        for (std::size_t k = 0; k < n_; ++k) made = made + x_[k] * row_times({pushes_[k].x, pushes_[k].y, 1.0}, table_->yields[i][by_[k]]);
+        if (one_ >= 0) made = made + x_[n_] * table_->yields[i][one_].a + x_[n_ + 1] * table_->yields[i][one_].b;
+        return made;
     }
 
     bool breaks(double limit) const {
         const double slack = limit * p_.body->mass;
         for (std::size_t k = 0; k < n_; ++k)
             if (x_[k] < -slack || (by_[k] == one_ && std::hypot(x_[n_], x_[n_ + 1]) > p_.friction * x_[k] + slack * (1.0 + p_.friction))) return true;
-        for (int i = 0; i < static_cast<int>(table_->at.size()); ++i) {
-            double rate = dot(p_.axes.c, table_->free[i]);
-            for (std::size_t j = 0; j < size_; ++j) rate += x_[j] * dot(table_->lifts[i][by_[j]], push_[j]);
-            if (rate < -limit) return true;  // those of the contact stay
-        }
+        for (int i = 0; i < static_cast<int>(table_->at.size()); ++i)
+            if (rate_of(i).z < -limit) return true;
         return false;
     }
 
     const Problem& p_;
+    Solution& s_;
     const Table* table_;
-    std::size_t n_, size_ = 0;
-    int one_ = -1, by_[5];
-    double x_[5];
-    Vec push_[5];
+    double limit_, x_[5];
+    std::size_t n_;
+    int one_ = -1, by_[3];
+    Flat pushes_[3];
 };
 
 // Turns the directions of vertices that start to slide into those of their accelerations (Newton).
-inline bool turned(const Problem& p, const Points& free, const Numbers& soft, double limit, Rubbing& rub, Solution& s) {
+inline bool turned(const Points& free, const Numbers& soft, Rubbing& rub) {
     const int n = static_cast<int>(free.size());
-    const Vec up = p.axes.c;
-    Vec d[kCorners], from[kCorners];
+    Flat from[kCorners];
     double along[kCorners], r[kCorners], other[kCorners], table[kCorners][kCorners + 1], size = 0.0;
-    for (int j = 0; j < n; ++j) d[j] = s.directions[free[j]];
     const auto across = [&](double* r) {  // accelerations across the directions, over the most that friction moves
-        for (int j = 0; j < n; ++j) s.directions[free[j]] = d[j];
-        if (!rub.act(s)) return false;
+        if (!rub.act()) return false;
         size = 0.0;
         for (int j = 0; j < n; ++j) {
-            const Vec rate = rub.rate(s, free[j]);
-            const double most = greater(soft[j] * std::fabs(s.normals[free[j]]) + norm(rate), 1e-300);
-            r[j] = dot(cross(up, d[j]), rate) / most, along[j] = dot(d[j], rate) / most;
+            const Vec rate = rub.rate(free[j]);
+            const Flat d = rub.ways[free[j]];
+            const double over = 1.0 / greater(soft[j] * std::fabs(rub.normal(free[j])) + norm(rate), 1e-300);
+            r[j] = (d.x * rate.y - d.y * rate.x) * over, along[j] = (d.x * rate.x + d.y * rate.y) * over;
             size = greater(size, std::fabs(r[j]));
         }
         return true;
     };
-    const auto turn = [&](Vec a, double angle) { return std::cos(angle) * a + std::sin(angle) * cross(up, a); };
     if (!across(r)) return false;
     for (int k = 0; k < kNewton; ++k) {
         if (size <= kStraight) {
             bool with = true;
             for (int j = 0; j < n; ++j)
-                if (along[j] < -kStraight) d[j] = -1.0 * d[j], with = false;
-            if (with) return rub.all(s, limit);
+                if (along[j] < -kStraight) rub.ways[free[j]] = {-rub.ways[free[j]].x, -rub.ways[free[j]].y}, with = false;
+            if (with) return rub.all();
             if (!across(r)) return false;
             continue;
         }
+        if (size <= kAlmost && rub.doomed(kAmple)) return true;
         const double before = size;
-        for (int j = 0; j < n; ++j) from[j] = d[j], table[j][n] = -r[j];
+        for (int j = 0; j < n; ++j) from[j] = rub.ways[free[j]], table[j][n] = -r[j];
         for (int j = 0; j < n; ++j) {
-            d[j] = from[j] + kSwing * cross(up, from[j]);
+            rub.ways[free[j]] = {from[j].x - kSwing * from[j].y, from[j].y + kSwing * from[j].x};
             if (!across(other)) return false;
-            d[j] = from[j];
+            rub.ways[free[j]] = from[j];
             for (int i = 0; i < n; ++i) table[i][j] = (other[i] - r[i]) / kSwing;
         }
         if (!solved(n, table)) return false;
@@ -368,7 +403,10 @@ inline bool turned(const Problem& p, const Points& free, const Numbers& soft, do
         for (int j = 0; j < n; ++j) most = greater(most, std::fabs(table[j][n]));
         double share = lesser(1.0, 0.5 / greater(most, 1e-300));
         for (int tries = 0; tries < kTries; ++tries, share *= 0.5) {
-            for (int j = 0; j < n; ++j) d[j] = turn(from[j], share * table[j][n]);
+            for (int j = 0; j < n; ++j) {
+                const double c = std::cos(share * table[j][n]), s = std::sin(share * table[j][n]);
+                rub.ways[free[j]] = {c * from[j].x - s * from[j].y, c * from[j].y + s * from[j].x};
+            }
             if (!across(r)) return false;
             if (size < before) break;
         }
@@ -380,10 +418,9 @@ inline bool turned(const Problem& p, const Points& free, const Numbers& soft, do
 // already; still: rate below which friction alone has the direction.
 inline bool sliding(const Problem& p, double still, const Aid& aid, Solution& s) {
     const Points& members = s.contact.members;
-    Points free, others;
+    Points free;
     for (std::size_t k = 0; k < members.size(); ++k)
-        if (dot(s.directions[k], s.directions[k]) > 0.0) others.push_back(members[k]);
-        else if (!has(s.contact.stuck, members[k])) free.push_back(static_cast<int>(k));
+        if (!(dot(s.directions[k], s.directions[k]) > 0.0) && !has(s.contact.stuck, members[k])) free.push_back(static_cast<int>(k));
     if (free.empty() || p.friction == 0.0) return solve(p, s);
     if (aid.holding->exists)
         for (int k : free) s.directions[k] = unit(-1.0 * aid.holding->pulls[k]);
@@ -393,39 +430,41 @@ inline bool sliding(const Problem& p, double still, const Aid& aid, Solution& s)
         const Mat& w = p.body->soft[members[k]];
         soft.push_back(greater(dot(p.axes.a, w * p.axes.a), dot(p.axes.b, w * p.axes.b)) * p.friction * static_cast<double>(n));
     }
-    const Vecs begun = s.directions;
-    Rubbing rub(p, s, aid.table);
-    if (n <= 2 && turned(p, free, soft, aid.limit, rub, s)) return true;
-    s.directions = begun;
-    Vecs after(n), moved(n), last(n);
+    Rubbing rub(p, aid, s);
+    const Few<Flat> begun = rub.ways;
+    if (n <= 2 && turned(free, soft, rub)) return true;
+    rub.ways = begun;
+    Few<Flat> after(n), moved(n), last(n);
     double nearly = kNearly;
     for (int turn = 0; turn < kTurns; ++turn) {
-        if (!rub.act(s)) return false;
+        if (!rub.act()) return false;
         double change = 0.0, along = 0.0, square = 0.0;
         for (std::size_t j = 0; j < n; ++j) {
-            const int k = free[j];
-            const Vec rate = rub.rate(s, k), slip = rate - dot(rate, p.axes.c) * p.axes.c, before = s.directions[k];
-            const bool only_starts = norm(slip) <= still && dot(before, before) > 0.0;
-            after[j] = only_starts ? before : unit(slip + soft[j] * greater(s.normals[k], 0.0) * before);  // Eq. 257
-            moved[j] = after[j] - before;
-            change = greater(change, norm(moved[j]));
-            along += dot(moved[j], last[j]), square += dot(last[j], last[j]);
+            const Vec slip = rub.rate(free[j]);
+            const Flat before = rub.ways[free[j]];
+            const bool only_starts = std::sqrt(slip.x * slip.x + slip.y * slip.y) <= still && before.x * before.x + before.y * before.y > 0.0;
+            const double push = soft[j] * greater(rub.normal(free[j]), 0.0);
+            after[j] = only_starts ? before : unit(Flat{slip.x + push * before.x, slip.y + push * before.y});  // Eq. 257
+            moved[j] = {after[j].x - before.x, after[j].y - before.y};
+            change = greater(change, std::sqrt(moved[j].x * moved[j].x + moved[j].y * moved[j].y));
+            along += moved[j].x * last[j].x + moved[j].y * last[j].y, square += last[j].x * last[j].x + last[j].y * last[j].y;
         }
-        if (change <= kStraight) return rub.all(s, aid.limit);
+        if (change <= kStraight) return rub.all();
         if (change <= nearly && n <= kCorners) {
-            const Vecs reached = s.directions;
-            for (std::size_t j = 0; j < n; ++j) s.directions[free[j]] = after[j];
-            if (turned(p, free, soft, aid.limit, rub, s)) return true;
-            s.directions = reached, nearly = 0.0;
+            const Few<Flat> reached = rub.ways;
+            for (std::size_t j = 0; j < n; ++j) rub.ways[free[j]] = after[j];
+            if (turned(free, soft, rub)) return true;
+            rub.ways = reached, nearly = 0.0;
         }
         // every third turn goes where the last two, as a geometric series, lead to (Aitken)
         const double ratio = turn % 3 == 2 && square > 0.0 ? along / square : 0.0;
         const double further = std::fabs(ratio) < 0.98 ? ratio / (1.0 - ratio) : 0.0;
-        for (std::size_t j = 0; j < n; ++j) s.directions[free[j]] = further != 0.0 ? unit(after[j] + further * moved[j]) : after[j];
+        for (std::size_t j = 0; j < n; ++j)
+            rub.ways[free[j]] = further != 0.0 ? unit(Flat{after[j].x + further * moved[j].x, after[j].y + further * moved[j].y}) : after[j];
         last = moved;
     }
-    s.directions = begun;
-    return s.exists = n > 2 && n <= kCorners && turned(p, free, soft, aid.limit, rub, s);
+    rub.ways = begun;
+    return s.exists = n > 2 && n <= kCorners && turned(free, soft, rub);
 }
 
 // The vertices of the convex polygon of points on the ground, in order (Andrew's monotone chain).
