@@ -16,10 +16,13 @@ struct Mode {
     bool resting() const { return contact.members.size() > 2 && contact.stuck.size() == contact.members.size(); }
 };
 
-struct Rates {
-    Vec place, velocity, spin;
+struct Rates {  // of a state, in its order
+    Vec place;
     double q[4];
+    Vec velocity, spin;
 };
+constexpr int kNumbersOfState = 13;
+static_assert(sizeof(State) == kNumbersOfState * sizeof(double) && sizeof(Rates) == sizeof(State), "states are added number by number");
 
 struct Forces {
     bool found = true;
@@ -56,8 +59,9 @@ class Flow {
     }
 
     // f: where the forces go, if they are asked for.
-    void rates(const State& s, Vec field, Rates& r, Forces* f) {
+    void rates(const State& s, Vec field, Rates& r, Forces* f, Mat* kept = nullptr) {
         const Mat axes = frame(s.q);
+        if (kept) *kept = axes;
         const Vec w = s.spin;
         Vec linear = row_times(field, axes), angular = b_.inverse * cross(b_.inertia * w, w);
         const bool found = act(s, axes, linear, angular, f);
@@ -75,6 +79,7 @@ class Flow {
     static constexpr double nodes[kSamples] = {0.0, 0.3, 0.8, 1.0};
     State samples[kSamples];  // at the start, two stages and the end
     Forces forces[kSamples];
+    Mat axes[kSamples];
     double error = 0.0;
     bool found() const { return found_; }
 
@@ -96,14 +101,18 @@ class Flow {
         Rates* const k = rates_;
         State at = state;
         found_ = true;
-        // the first stage is known from a longer step from the same state
-        const int first = known_ && std::memcmp(&samples[0], &state, sizeof state) == 0 && std::memcmp(&first_, &field.power[0], sizeof first_) == 0;
-        known_ = true, first_ = field.power[0];
+        // the first stage is known from a longer step from the same state, or from the last one
+        bool first = known_ && std::memcmp(&samples[0], &state, sizeof state) == 0 && std::memcmp(&first_, &field.power[0], sizeof first_) == 0;
+        if (!first && known_ && std::memcmp(&samples[3], &state, sizeof state) == 0 && largest(last_ - field.power[0]) <= 1e-13 * largest(last_)) {
+            k[0] = k[6], samples[0] = state, forces[0] = forces[3], axes[0] = axes[3];
+            first = forces[0].found;
+        }
+        known_ = true, first_ = field.power[0], last_ = field.at(part);
         for (int n = first; n < 7; ++n) {
             if (n) at = moved(state, k, a[n], n, h);
             const int keep = sample[n];
             if (keep >= 0) samples[keep] = at;
-            rates(at, field.at(part * node[n]), k[n], keep >= 0 ? &forces[keep] : nullptr);
+            rates(at, field.at(part * node[n]), k[n], keep >= 0 ? &forces[keep] : nullptr, keep >= 0 ? &axes[keep] : nullptr);
         }
         const State none{{}, {0.0}, {}, {}}, wrong = moved(none, k, off, 7, h);
         double turned = 0.0;
@@ -116,7 +125,11 @@ class Flow {
     }
 
     // Keeps the motion over the step that was just made whole, for `along`.
-    void keep(double whole) {
+    void keep(double whole) { whole_ = whole, kept_ = false; }
+    void interpolate() {
+        if (kept_) return;
+        kept_ = true;
+        const double whole = whole_;
         static constexpr double weight[7] = {-12715105075.0 / 11282082432.0, 0.0, 87487479700.0 / 32700410799.0, -10690763975.0 / 1880347072.0,
                                              701980252875.0 / 199316789632.0, -1453857185.0 / 822651844.0, 69997945.0 / 29380423.0};
         const State none{{}, {0.0}, {}, {}};
@@ -129,12 +142,27 @@ class Flow {
     }
 
     // The motion at a part of that step, to the fourth order (Hairer, Norsett & Wanner 1993, II.6).
-    State along(double part) const {
+    State along(double part) {
+        interpolate();
         const double left = 1.0 - part;
         State made = added(course_[3], left, course_[4]);
         made = added(course_[2], part, made), made = added(course_[1], left, made), made = added(course_[0], part, made);
         normalise(made.q);
         return made;
+    }
+
+    // The height of a point then.
+    double height(double part, Vec point) {
+        interpolate();
+        const double left = 1.0 - part;
+        const auto mixed = [&](const double* a, const double* b, const double* c, const double* d, const double* e) {
+            return *a + part * (*b + left * (*c + part * (*d + left * *e)));
+        };
+        const State* c = course_;
+        double q[4];
+        for (int i = 0; i < 4; ++i) q[i] = mixed(c[0].q + i, c[1].q + i, c[2].q + i, c[3].q + i, c[4].q + i);
+        const double size = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+        return mixed(&c[0].place.z, &c[1].place.z, &c[2].place.z, &c[3].place.z, &c[4].place.z) + dot(frame(q).c, point) / size;
     }
 
     const Forces& forces_at(const State& s, Vec field) {
@@ -153,14 +181,17 @@ class Flow {
     enum Kind { kFlight, kStuckVertex, kSlidingVertex, kEdge, kSliding, kAny };
 
     static State moved(const State& s, const Rates* k, const double* weights, int n, double h) {
-        State made = s;
+        double made[kNumbersOfState], rate[kNumbersOfState];
+        std::memcpy(made, &s, sizeof made);
         for (int j = 0; j < n; ++j) {
             const double c = h * weights[j];
             if (c == 0.0) continue;
-            made.place = made.place + c * k[j].place, made.velocity = made.velocity + c * k[j].velocity, made.spin = made.spin + c * k[j].spin;
-            for (int i = 0; i < 4; ++i) made.q[i] += c * k[j].q[i];
+            std::memcpy(rate, k + j, sizeof rate);
+            for (int i = 0; i < kNumbersOfState; ++i) made[i] += c * rate[i];
         }
-        return made;
+        State moved;
+        std::memcpy(&moved, made, sizeof made);
+        return moved;
     }
 
     void set(Forces* f, double normal, double pull) const {
@@ -285,8 +316,9 @@ class Flow {
     Mat yields_[3][3];
     const Mode* mode_ = nullptr;
     Kind kind_ = kFlight;
-    bool found_ = true, known_ = false;
-    Vec first_;
+    bool found_ = true, known_ = false, kept_ = false;
+    double whole_ = 0.0;
+    Vec first_, last_;
     Rates rates_[7];
     State course_[5];
     Forces between_;

@@ -13,7 +13,7 @@ constexpr double kClosed = 1e-11, kGrazed = 1e-14, kForce = 1e-11;
 // speeds over sqrt(g size): at which sliding stops, below which a vertex may stick, or still slides as it started
 constexpr double kSlip = 5e-6, kSlides = 1e-4;
 constexpr std::array<double, 4> kLadder{1e-11, 1e-9, 1e-7, 1e-5};
-constexpr double kAhead = 1e-6, kCrowded = 1e-2, kGathered = 1e-7, kGathering = 1e-4, kPatience = 100.0, kMargin = 0.1, kAfter = 0.1;
+constexpr double kAhead = 1e-6, kCrowded = 1e-2, kGathered = 1e-7, kGathering = 1e-4, kPatience = 100.0, kMargin = 0.1, kAfter = 0.1, kDrift = 1e-2;
 constexpr int kPiled = 30, kMany = 200, kCrowd = 12, kHalvings = 80;
 
 // Codes of `rocking.outcome`.
@@ -196,7 +196,10 @@ class Run {
     // ---- a step ----
 
     const State& to(double part) {
-        if (part != part_) flow_.step(start_, field_, span_, part, pace_), part_ = part;
+        if (part != part_) {
+            if (part != 1.0) flow_.interpolate();  // before the whole step is lost
+            flow_.step(start_, field_, span_, part, pace_), part_ = part;
+        }
         return flow_.samples[3];
     }
 
@@ -205,7 +208,7 @@ class Run {
         double most = 0.0;
         for (std::size_t k = 0; k < mode_.starting.size(); ++k)
             if (mode_.starting[k]) {
-                const Vec v = point_velocity(b_, flow_.samples[3], frame(flow_.samples[3].q), mode_.contact.members[k]);
+                const Vec v = point_velocity(b_, flow_.samples[3], flow_.axes[3], mode_.contact.members[k]);
                 most = greater(most, std::sqrt(v.x * v.x + v.y * v.y));
             }
         return most / slides_at_;
@@ -218,8 +221,8 @@ class Run {
         double whole = lesser(length_, left);
         if (whole < left && left < 2.0 * whole) whole = 0.5 * left;
         g_.field(stretch_, time_, whole, field_);
-        start_ = s_, span_ = whole, part_ = -1.0;
-        to(1.0);
+        start_ = s_, span_ = whole;
+        flow_.step(start_, field_, span_, part_ = 1.0, pace_);
         const double error = flow_.error;
         if (!std::isfinite(error)) return end_with(kNotFinite);
         for (const Forces& f : flow_.forces)
@@ -237,7 +240,8 @@ class Run {
             length_ = whole * greater(1.5 / fast, 0.1);
             return;
         }
-        const double growth = 0.9 * std::pow(set_.tolerance / greater(error, 1e-300), 0.2);
+        // above 4 all are one
+        const double growth = error < 5e-4 * set_.tolerance ? 4.0 : 0.9 * std::pow(set_.tolerance / error, 0.2);
         if (error > set_.tolerance && whole * pace_ > 1e-10) {
             length_ = whole * greater(0.1, growth);
             return;
@@ -251,9 +255,20 @@ class Run {
         time_ += part * whole;
         if (kind == kNone && whole == left) ++stretch_, time_ = g_.time(stretch_);
         s_ = flow_.samples[3];
-        settle_on(mode_.contact, {});
+        if (kind != kNone || mode_.pulled || drifted()) settle_on(mode_.contact, {});
         keep();
         finish(kind);
+    }
+
+    // Whether the step has left the contact by more than a small part of its error.
+    bool drifted() const {
+        const double most = kDrift * set_.tolerance;
+        for (int i : mode_.contact.members) {
+            const Vec v = point_velocity(b_, s_, flow_.axes[3], i);
+            if (std::fabs(s_.place.z + dot(flow_.axes[3].c, b_.points[i])) > most * b_.size || std::fabs(v.z) > most * speed_) return true;
+            if (has(mode_.contact.stuck, i) && largest(v) > most * speed_) return true;
+        }
+        return false;
     }
 
     // Path of the vertex that slides most: exact for cubics at the four stages.
@@ -266,7 +281,7 @@ class Run {
             if (mode_.stuck(k)) continue;
             double path = 0.0;
             for (int j = 0; j < 4; ++j) {
-                const Vec v = point_velocity(b_, flow_.samples[j], frame(flow_.samples[j].q), members[k]);
+                const Vec v = point_velocity(b_, flow_.samples[j], flow_.axes[j], members[k]);
                 path += weight[j] * std::sqrt(v.x * v.x + v.y * v.y);
             }
             most = greater(most, path);
@@ -324,7 +339,7 @@ class Run {
         dips_.clear();
         for (const Watch& w : watched_) {
             double v[4];
-            for (int k = 0; k < 4; ++k) v[k] = margin(w, flow_.samples[k], flow_.forces[k]);
+            for (int k = 0; k < 4; ++k) v[k] = margin(w, flow_.samples[k], flow_.axes[k], flow_.forces[k]);
             if (v[0] < 0.0) {
                 // a vertex that has just left is on the ground but for rounding
                 if (w.kind != kGap || !(velocity(w.i).z >= -1e-12 * speed_)) {
@@ -339,7 +354,7 @@ class Run {
                 const double a = v[below - 1], b = v[below], low = Flow::nodes[below - 1], high = Flow::nodes[below];
                 falls_.push_back({low + (high - low) * a / (a - b), low, high, w, {v[0], v[1], v[2], v[3]}});
             } else if (w.kind == kGap) {
-                const double a = velocity(w.i).z, b = point_velocity(b_, flow_.samples[3], frame(flow_.samples[3].q), w.i).z;
+                const double a = velocity(w.i).z, b = point_velocity(b_, flow_.samples[3], flow_.axes[3], w.i).z;
                 const double least = lesser(lesser(v[0], v[1]), lesser(v[2], v[3]));
                 if (a < 0.0 && b > 0.0 && least < b_.size * 1e-3) dips_.push_back({0.9 * a / (a - b), 0.0, a / (a - b), w, {v[0], v[1], v[2], v[3]}});
             }
@@ -449,7 +464,7 @@ class Run {
         const Mat axes = frame(s_.q);
         for (std::size_t k = 0; k < members.size(); ++k) slides_.push_back(mode_.stuck(k) ? Vec{} : slip_direction(b_, s_, axes, mode_, k));
         const State& end = flow_.samples[3];
-        const Vec up = axes.c, after = frame(end.q).c;
+        const Vec up = axes.c, after = flow_.axes[3].c;
         const double fastest = greater(norm(s_.velocity) + b_.size * norm(s_.spin), norm(end.velocity) + b_.size * norm(end.spin));
         const double reach = fastest * span_, high = s_.place.z, later = end.place.z;
         // the vertices that are near keep being the same ones until the body has moved through their margin
@@ -465,9 +480,8 @@ class Run {
     }
 
     // What must not fall below zero: a height, an acceleration or a speed.
-    double margin(const Watch& w, const State& s, const Forces& f) const {
+    double margin(const Watch& w, const State& s, const Mat& axes, const Forces& f) const {
         if (w.kind == kGap || w.kind == kShelf) {
-            const Mat axes = frame(s.q);
             const Vec p = b_.points[w.i];
             if (w.kind == kShelf) return g_.inside(s.place + axes * p);
             const double height = s.place.z + dot(axes.c, p) + kGrazed * b_.size;
@@ -476,20 +490,21 @@ class Run {
         if (!f.found) return -1.0;
         if (w.kind == kNormal) return f.normals[w.slot] / b_.mass + slack_;
         if (w.kind == kSticking) return (mu_ * f.normals[w.slot] - f.pulls[w.slot]) / b_.mass + slack_ * (1.0 + mu_);
-        const double speed = dot(slides_[w.slot], point_velocity(b_, s, frame(s.q), w.i));
+        const double speed = dot(slides_[w.slot], point_velocity(b_, s, axes, w.i));
         return speed + (mode_.starting[w.slot] ? 2.0 : -1.0) * stop_;
     }
 
     double at(const Watch& w, double part) {
         const State& s = to(part);
-        return margin(w, s, flow_.forces[3]);
+        return margin(w, s, flow_.axes[3], flow_.forces[3]);
     }
 
     // The same by interpolation.
     double near(const Watch& w, double part) {
         static const Forces none;
+        if (w.kind == kGap && !g_.ends()) return flow_.height(part, b_.points[w.i]) + kGrazed * b_.size;
         const State s = flow_.along(part);
-        return margin(w, s, w.kind == kNormal || w.kind == kSticking ? flow_.forces_at(s, field_.at(part)) : none);
+        return margin(w, s, frame(s.q), w.kind == kNormal || w.kind == kSticking ? flow_.forces_at(s, field_.at(part)) : none);
     }
 
     // ---- contact ----
