@@ -11,7 +11,7 @@ namespace rocking::hull {
 // gaps over the size: of vertices that land together, and at which one lands
 constexpr double kClosed = 1e-11, kGrazed = 1e-14, kForce = 1e-11;
 // speeds over sqrt(g size): at which sliding stops, below which a vertex may stick, or still slides as it started
-constexpr double kSlip = 5e-6, kSlides = 1e-4;
+constexpr double kSlip = 5e-6, kSlides = 1e-4, kStrikes = 5e-10;
 constexpr std::array<double, 4> kLadder{1e-11, 1e-9, 1e-7, 1e-5};
 constexpr double kAhead = 1e-6, kCrowded = 1e-2, kGathered = 1e-7, kGathering = 1e-4, kPatience = 100.0, kMargin = 0.1, kAfter = 0.1, kDrift = 1e-2;
 constexpr int kPiled = 30, kMany = 200, kCrowd = 12, kHalvings = 80;
@@ -56,7 +56,7 @@ class Run {
         flow_.start(mode_);
         touch(touching_);
         bool strikes = false;
-        for (int i : touching_) strikes |= velocity(i).z < -kSlip * 1e-4 * speed_;
+        for (int i : touching_) strikes |= velocity(i).z < -kStrikes * speed_;
         if (strikes) impact();
         else choose(touching_);
         keep();

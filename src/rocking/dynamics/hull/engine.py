@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from rocking.dynamics.hull import contact_problem as contacts
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.contact_problem import FLIGHT, HullContact, Problem, Solution
-from rocking.dynamics.hull.event_functions import CLOSED, HALVINGS, SLIP, STILL, EventFunctions
+from rocking.dynamics.hull.event_functions import CLOSED, HALVINGS, EventFunctions, stops_at
 from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.history import HullEvent, HullEventKind, HullHistory, HullSettings
 from rocking.dynamics.hull.motion import (
@@ -42,7 +42,8 @@ from rocking.dynamics.hull.vectors import (
 )
 from rocking.outcome import Outcome, Status
 
-_SLIDES = 1e-4  # speed over sqrt(g size) below which a vertex still slides as it started
+_SLIDES = 1e-4  # speed over sqrt(g size) below which a vertex still slides as it started, if not below twice a stop
+_STRIKES = 5e-10  # speed over sqrt(g size) from which a history begins with an impact
 _LADDER = (1e-11, 1e-9, 1e-7, 1e-5)
 _AHEAD = 1e-6  # how much later, over sqrt(size / g), the ground decides which mode starts
 _PILED, _STUCK = 30, 200
@@ -101,6 +102,8 @@ class HullEngine:
         self.pace = math.sqrt(ground.gravity / body.size)
         self.speed = ground.gravity / self.pace  # sqrt(g size)
         self.slow = self.settings.rest_speed * self.speed
+        stop = stops_at(self.settings.tolerance)
+        self.stop, self.slides = stop * self.speed, max(_SLIDES, 2.0 * stop) * self.speed
         self.weak = self.settings.rest_speed**2 * body.mass * ground.gravity * body.size
         self.time, self.stretch = 0.0, 0
         self.length = 0.1 / self.pace  # of the next step
@@ -136,7 +139,7 @@ class HullEngine:
         self.upright = scaled(-1.0, unit(self.body.facets[self.stood]))
         self.watched: _Watched | None = None
         self.law = law_of(self.restitution, self.body, self.stood)
-        if any(point_velocity(self.body, state, i)[2] < -SLIP * 1e-4 * self.speed for i in self._touching()):
+        if any(point_velocity(self.body, state, i)[2] < -_STRIKES * self.speed for i in self._touching()):
             self._impact()
         else:
             self._choose(self._touching())
@@ -300,7 +303,7 @@ class HullEngine:
             else:
                 self._shocked(self._touching())
             return
-        fast = max((slip_speed(body, result.state, i) for i in self.mode.starts), default=0.0) / (_SLIDES * self.speed)
+        fast = max((slip_speed(body, result.state, i) for i in self.mode.starts), default=0.0) / self.slides
         if fast > 2.0 and whole * self.pace > 2e-3:
             # the direction of what only starts to slide is that of its start
             self.length = whole * max(1.5 / fast, 0.1)
@@ -310,7 +313,7 @@ class HullEngine:
             self.length = whole * max(0.1, growth)
             return
         self._pace_on(whole, growth, cut=whole == left)
-        part, kind = EventFunctions(body, self.ground, self.mode, start, whole).first(result, to)
+        part, kind = EventFunctions(body, self.ground, self.mode, start, whole, self.stop).first(result, to)
         if kind:
             result = to(part)
         self._slide(result, part * whole)
@@ -330,8 +333,8 @@ class HullEngine:
 
     def _end(self, kind: str) -> None:
         """Let the mode go on, or end by what has fallen below zero."""
-        if any(self._slip(i) > _SLIDES * self.speed for i in self.mode.starts):
-            slow = {i: d for i, d in self.mode.starts.items() if self._slip(i) <= _SLIDES * self.speed}
+        if any(self._slip(i) > self.slides for i in self.mode.starts):
+            slow = {i: d for i, d in self.mode.starts.items() if self._slip(i) <= self.slides}
             self.mode = replace(self.mode, starts=slow)
         if kind == "gap":
             self._impact()
@@ -393,7 +396,7 @@ class HullEngine:
         problem.bias = {i: cross(state.spin, cross(state.spin, p)) for i, p in enumerate(body.points)}
         moving = {}
         for i in near if self.friction < math.inf else ():
-            if self._slip(i) > 3.0 * STILL * self.speed:
+            if self._slip(i) > 3.0 * self.stop:
                 x, y, _ = point_velocity(body, state, i)
                 moving[i] = back(problem.axes, unit((x, y, 0.0)))
         candidates = list(self._candidates(problem, near, moving))
@@ -448,7 +451,7 @@ class HullEngine:
         slow = _GATHERING * self.speed
         near = tuple(i for i in touching if abs(point_velocity(self.body, self.state, i)[2]) <= slow)
         border = contacts.outline(problem_of(self.body, self.state, ZERO, 0.0), near)
-        still = tuple(i for i in border if self._slip(i) <= _SLIDES * self.speed)
+        still = tuple(i for i in border if self._slip(i) <= self.slides)
         self._settle_on(HullContact(border), still)
         self.history.lost += before - sum(energies(self.body, self.state, self.ground.weight))
         self._choose(near, closed=near)
@@ -475,7 +478,7 @@ class HullEngine:
         yield flight
 
     def _take(self, problem: Problem, found: Solution, moving: dict[int, Vector]) -> None:
-        slow = [i for i in found.directions if i not in moving or self._slip(i) <= _SLIDES * self.speed]
+        slow = [i for i in found.directions if i not in moving or self._slip(i) <= self.slides]
         starts = {i: applied(problem.axes, found.directions[i]) for i in slow}
         made, axes = self.history, problem.axes
         if len(self.mode.contact.members) > 2 > len(found.contact.members) - 1:

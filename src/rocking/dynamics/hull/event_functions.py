@@ -11,8 +11,20 @@ from rocking.dynamics.hull.vectors import added, applied, dot, frame, length
 
 CLOSED, _GRAZED = 1e-11, 1e-14  # gaps over the size: of vertices that land together, and at which one lands
 _FORCE = 1e-11  # acceleration over gravity below which a force counts as zero
-SLIP, STILL = 5e-6, 5e-6  # speeds over sqrt(g size): at which sliding stops, below which a vertex may stick
+_SLIP = 5e-6
 HALVINGS = 80
+
+
+def stops_at(tolerance: float) -> float:
+    """Return the speed over sqrt(g size) at which sliding stops, and below which a vertex may stick.
+
+    Its square is what a stop costs over m g size.
+
+    >>> stops_at(1e-12), stops_at(1e-6)
+    (5e-06, 0.001)
+    """
+    return max(_SLIP, math.sqrt(tolerance))
+
 
 Step = Callable[[float], StepResult]
 """The step up to a part of it."""
@@ -27,6 +39,7 @@ class EventFunctions:
     mode: HullMode
     start: State
     span: float  # of the whole step [s]
+    stop: float  # speed at which sliding stops [m/s]
 
     @property
     def speed(self) -> float:
@@ -73,7 +86,7 @@ class EventFunctions:
         """Return the zero of a margin that is below zero at the end of a bracket, by regula falsi (Illinois)."""
         low, high = bracket
         sizes = {"gap": 0.5 * _GRAZED * self.body.size, "shelf": CLOSED * self.body.size}
-        close = sizes.get(kind, 1e-3 * SLIP * self.speed if kind == "slip" else self.slack)
+        close = sizes.get(kind, 1e-3 * self.stop if kind == "slip" else self.slack)
         at_low, at_high = self._at(kind, i, to(low)), self._at(kind, i, to(high))
         if at_low < 0.0 < low:
             low, high, at_high = 0.0, low, at_low
@@ -137,7 +150,7 @@ class EventFunctions:
             free = self.mode.friction * rates.found.normals[i] - length(rates.found.pulls[i])
             return free / self.body.mass + self.slack * (1.0 + self.mode.friction)
         speed = dot(slip_direction(self.body, self.start, self.mode, i), point_velocity(self.body, state, i))
-        return speed + (2.0 * STILL if i in self.mode.starts else -SLIP) * self.speed
+        return speed + (2.0 if i in self.mode.starts else -1.0) * self.stop
 
     def _at(self, kind: str, i: int, result: StepResult) -> float:
         return self._value(kind, i, result.state, result.samples[-1][2])
