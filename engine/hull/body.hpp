@@ -11,7 +11,7 @@
 namespace rocking::hull {
 using namespace rocking::spatial::ROCKING_ISA;
 
-constexpr int kInterval = 35, kPowers = 8;
+constexpr int kInterval = 35, kPowers = 8, kAcross = 8;
 constexpr double kInfinite = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
 
 using Points = Few<int>;
@@ -135,6 +135,44 @@ struct Ground {
             made.power[k] = k ? a : weight + a;
         }
         made.degree = n;
+    }
+
+    // The same over several stretches of lines: the cubic with the moments of the motion, which are what the end of a step knows of it
+    // (Eq. 259). Returns how far it lies beside the samples within.
+    double across(std::int64_t stretch, double start, double span, Field& made) const {
+        const double end = start + span;
+        const std::int64_t first = stretch;
+        Vec moments[4], at[kAcross];
+        double shares[kAcross], from = 0.0;
+        int inner = 0;
+        for (; stretch < motion->count && from < 1.0; ++stretch) {
+            const double* t = motion->times + stretch;
+            const double* row = motion->rows + stretch * 6;
+            const double to = t[1] < end && inner < kAcross ? (t[1] - start) / span : 1.0, pace = span / (t[1] - t[0]);
+            const Vec rise = pace * Vec{row[3], row[4], row[5]}, base = Vec{row[0], row[1], row[2]} + (start - t[0]) / span * rise;
+            double low = from, high = to;
+            for (int k = 0; k < 4; ++k, low *= from, high *= to) {
+                const double one = (high - low) / (k + 1), two = (high * to - low * from) / (k + 2);
+                moments[k] = moments[k] + one * base + two * rise;
+            }
+            if (to < 1.0) shares[inner] = to, at[inner++] = base + to * rise;
+            from = to;
+        }
+        static constexpr double inverse[4][4] = {  // of Hilbert's matrix
+            {16.0, -120.0, 240.0, -140.0}, {-120.0, 1200.0, -2700.0, 1680.0}, {240.0, -2700.0, 6480.0, -4200.0}, {-140.0, 1680.0, -4200.0, 2800.0}};
+        Vec powers[4];
+        for (int k = 0; k < 4; ++k)
+            for (int j = 0; j < 4; ++j) powers[k] = powers[k] + inverse[k][j] * moments[j];
+        double beside = 0.0;
+        for (int k = 0; k < inner; ++k) {
+            const double s = shares[k];
+            beside = greater(beside, largest(powers[0] + s * (powers[1] + s * (powers[2] + s * powers[3])) - at[k]));
+        }
+        if (!inner) return field(first, start, span, made), 0.0;
+        made.degree = 3;
+        for (int k = 0; k < 4; ++k) made.power[k] = -scale * (level * powers[k]);
+        made.power[0] = made.power[0] + weight;
+        return scale * beside;
     }
 
     double inside(Vec place) const { return lesser(shelf[0] - std::fabs(place.x), shelf[1] - std::fabs(place.y)); }

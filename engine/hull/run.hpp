@@ -198,7 +198,14 @@ class Run {
     const State& to(double part) {
         if (part != part_) {
             if (part != 1.0) flow_.interpolate();  // before the whole step is lost
-            flow_.step(start_, field_, span_, part, pace_), part_ = part;
+            if (across_) {
+                Field sooner;
+                g_.across(stretch_, time_, part * span_, sooner);
+                flow_.step(start_, sooner, part * span_, 1.0, pace_);
+            } else {
+                flow_.step(start_, field_, span_, part, pace_);
+            }
+            part_ = part;
         }
         return flow_.samples[3];
     }
@@ -220,7 +227,8 @@ class Run {
         const double left = (moving ? g_.time(stretch_ + 1) : kInfinite) - time_;
         double whole = lesser(length_, left);
         if (whole < left && left < 2.0 * whole) whole = 0.5 * left;
-        g_.field(stretch_, time_, whole, field_);
+        across_ = moving && crosses(whole);
+        if (!across_) g_.field(stretch_, time_, whole, field_);
         start_ = s_, span_ = whole;
         flow_.step(start_, field_, span_, part_ = 1.0, pace_);
         const double error = flow_.error;
@@ -246,7 +254,7 @@ class Run {
             length_ = whole * greater(0.1, growth);
             return;
         }
-        const double base = growth > 1.0 && whole == left ? greater(whole, length_) : whole;
+        const double base = growth > 1.0 && (whole == left || across_) ? greater(whole, length_) : whole;
         length_ = lesser(base * lesser(greater(growth, 0.3), 4.0), 0.2 / pace_);
         double part = 1.0;
         const Kind kind = first_event(part);
@@ -254,10 +262,24 @@ class Run {
         slide(part * whole);
         time_ += part * whole;
         if (kind == kNone && whole == left) ++stretch_, time_ = g_.time(stretch_);
+        if (across_)
+            while (stretch_ < g_.motion->count && g_.time(stretch_ + 1) <= time_) ++stretch_;
         s_ = flow_.samples[3];
         if (kind != kNone || mode_.pulled || drifted()) settle_on(mode_.contact, {});
         keep();
         finish(kind);
+    }
+
+    // Whether the step may go on to a later sample, and then how long it is.
+    bool crosses(double& whole) {
+        std::int64_t last = stretch_ + 1;
+        if (g_.motion->degree != 1 || last < smooth_) return false;
+        while (last - stretch_ < kAcross && last < g_.motion->count && g_.time(last + 1) - time_ <= length_) ++last;
+        if (last == stretch_ + 1) return false;
+        const double span = g_.time(last) - time_;
+        if (!(g_.across(stretch_, time_, span, field_) <= std::sqrt(set_.tolerance) * g_.gravity)) return smooth_ = last + kAcross, false;
+        whole = span;
+        return true;
     }
 
     // Whether the step has left the contact by more than a small part of its error.
@@ -944,14 +966,14 @@ class Run {
     const Settings& set_;
     Flow flow_;
     double pace_, speed_, slow_, stop_, slides_at_, slack_, weak_, length_, span_, until_ = 0.0, time_ = 0.0, part_ = -1.0;
-    std::int64_t stretch_ = 0;
+    std::int64_t stretch_ = 0, smooth_ = 0;
     State s_, start_;
     Mode mode_;
     Vec anchor_, first_, upright_, up_;
     Field field_;
     int stood_ = 0, under_ = 0, at_once_ = 0, changes_ = 0;
     double moment_ = -1.0, since_ = 0.0, gathered_ = -kInfinite, tilt_ = 1.0, tilting_ = 0.0, kept_ = 0.0, peak_ = 1.0, margin_ = -1.0, travelled_ = 0.0;
-    bool bordered_ = false, fell_ = false, flew_ = false, slid_ = false, rocked_ = false;
+    bool across_ = false, bordered_ = false, fell_ = false, flew_ = false, slid_ = false, rocked_ = false;
     Status ended_ = kGood;
     std::vector<Over> over_;
     Few<Side> sides_;
