@@ -306,7 +306,83 @@ class Rubbing {
     // Whether a law is broken by so many times what is of no use.
     bool doomed(double times) { return s_.doomed = table_ && breaks(times * limit_); }
 
+    // Turns the direction of the only vertex that starts to slide: the other forces follow from its own, and leave one equation
+    // for its angle (Newton). False where that fails, or there is no table.
+    bool alone(int slot, double soft) {
+        if (!table_ || !(ways[slot].x != 0.0 || ways[slot].y != 0.0)) return false;
+        if (one_ >= 0) return n_ == 2 ? turned_alone<2, 2>(slot, soft) : turned_alone<3, 2>(slot, soft);
+        return n_ == 1 ? turned_alone<1, 0>(slot, soft) : n_ == 2 ? turned_alone<2, 0>(slot, soft) : turned_alone<3, 0>(slot, soft);
+    }
+
   private:
+    template <int n, int rest>
+    bool turned_alone(int slot, double soft) {
+        constexpr int m = n - 1 + rest, room = m ? m : 1;
+        const auto part = [](Vec v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
+        int from[room], axis[room], row[room];  // of the other forces: where, along what; and the rates that they hold
+        Flat pushes[room];
+        int count = 0;
+        for (int k = 0; k < n; ++k)
+            if (k != slot) from[count] = by_[k], axis[count] = 2, row[count] = 2, pushes[count++] = {-p_.friction * ways[k].x, -p_.friction * ways[k].y};
+        for (int k = 0; k < rest; ++k) from[count] = one_, axis[count] = row[count] = k, ++count;
+        const auto answer = [&](int i, int k) {  // rate of vertex i by one force
+            const Mat& by = table_->yields[i][from[k]];
+            return axis[k] == 0 ? by.a : axis[k] == 1 ? by.b : row_times({pushes[k].x, pushes[k].y, 1.0}, by);
+        };
+        const int here = by_[slot];
+        double t[room][room + 4];
+        for (int j = 0; j < m; ++j) {
+            for (int k = 0; k < m; ++k) t[j][k] = part(answer(from[j], k), row[j]);
+            const Mat& by = table_->yields[from[j]][here];
+            t[j][m] = -part(table_->free[from[j]], row[j]), t[j][m + 1] = -part(by.a, row[j]), t[j][m + 2] = -part(by.b, row[j]), t[j][m + 3] = -part(by.c, row[j]);
+        }
+        for (int k = 0; k < m; ++k) {
+            if (!(t[k][k] > 0.0)) return false;
+            const double over = 1.0 / t[k][k];
+            for (int c = k + 1; c < m + 4; ++c) t[k][c] *= over;
+            for (int j = 0; j < m; ++j)
+                if (j != k)
+                    for (int c = k + 1; c < m + 4; ++c) t[j][c] -= t[j][k] * t[k][c];
+        }
+        Vec u = table_->free[here];
+        Mat w = table_->yields[here][here];
+        for (int k = 0; k < m; ++k) {
+            const Vec moved = answer(here, k);
+            u = u + t[k][m] * moved, w.a = w.a + t[k][m + 1] * moved, w.b = w.b + t[k][m + 2] * moved, w.c = w.c + t[k][m + 3] * moved;
+        }
+        const double mu = p_.friction;
+        double r = 0.0, slope = 0.0, along = 0.0;
+        const auto across = [&](Flat d) {
+            const Vec by = w.c - mu * (d.x * w.a + d.y * w.b), turn = -mu * (d.x * w.b - d.y * w.a);  // rate by a unit of normal force; its slope
+            const double normal = -u.z / by.z, change = -normal * turn.z / by.z;
+            const Vec slip = u + normal * by, slips = change * by + normal * turn;
+            const double over = 1.0 / greater(soft * std::fabs(normal) + norm(slip), 1e-300);
+            along = (d.x * slip.x + d.y * slip.y) * over, r = (d.x * slip.y - d.y * slip.x) * over;
+            slope = (d.x * slips.y - d.y * slips.x) * over - along;
+            return by.z > 0.0;
+        };
+        Flat d = ways[slot];
+        if (!across(d)) return false;
+        for (int k = 0; k < kNewton; ++k) {
+            if (std::fabs(r) <= kStraight) {
+                if (!(along < -kStraight)) return ways[slot] = d, act();
+                d = {-d.x, -d.y};
+                if (!across(d)) return false;
+                continue;
+            }
+            const double before = std::fabs(r);
+            double step = lesser(greater(-r / slope, -0.5), 0.5);
+            if (!std::isfinite(step)) return false;
+            const Flat begun = d;
+            for (int tries = 0; tries < kTries; ++tries, step *= 0.5) {
+                d = unit(Flat{begun.x - step * begun.y, begun.y + step * begun.x});
+                if (!across(d)) return false;
+                if (std::fabs(r) < before) break;
+            }
+        }
+        return false;
+    }
+
     void write() {
         for (std::size_t k = 0; k < n_; ++k) s_.directions[k] = p_.ground(ways[k].x, ways[k].y);
     }
@@ -432,6 +508,7 @@ inline bool sliding(const Problem& p, double still, const Aid& aid, Solution& s)
     }
     Rubbing rub(p, aid, s);
     const Few<Flat> begun = rub.ways;
+    if (n == 1 && rub.alone(free[0], soft[0])) return rub.all();
     if (n <= 2 && turned(free, soft, rub)) return true;
     rub.ways = begun;
     Few<Flat> after(n), moved(n), last(n);
