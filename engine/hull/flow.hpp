@@ -165,6 +165,13 @@ class Flow {
         return mixed(&c[0].place.z, &c[1].place.z, &c[2].place.z, &c[3].place.z, &c[4].place.z) + dot(frame(q).c, point) / size;
     }
 
+    // Moves the end of the step a little.
+    void nudge(double time) {
+        static constexpr double one = 1.0;
+        samples[3] = moved(samples[3], rates_ + 6, &one, 1, time);
+        normalise(samples[3].q), axes[3] = frame(samples[3].q);
+    }
+
     const Forces& forces_at(const State& s, Vec field) {
         Rates none;
         rates(s, field, none, &between_);

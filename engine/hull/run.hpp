@@ -13,7 +13,7 @@ constexpr double kClosed = 1e-11, kGrazed = 1e-14, kForce = 1e-11;
 // speeds over sqrt(g size): at which sliding stops, below which a vertex may stick, or still slides as it started
 constexpr double kSlip = 5e-6, kSlides = 1e-4, kStrikes = 5e-10;
 constexpr std::array<double, 4> kLadder{1e-11, 1e-9, 1e-7, 1e-5};
-constexpr double kAhead = 1e-6, kCrowded = 1e-2, kGathered = 1e-7, kGathering = 1e-4, kPatience = 100.0, kMargin = 0.1, kAfter = 0.1, kDrift = 1e-2;
+constexpr double kAhead = 1e-6, kCrowded = 1e-2, kGathered = 1e-7, kGathering = 1e-4, kPatience = 100.0, kMargin = 0.1, kAfter = 0.1, kDrift = 1e-2, kNudge = 0.1;
 constexpr int kPiled = 30, kMany = 200, kCrowd = 12, kHalvings = 80;
 
 // Codes of `rocking.outcome`.
@@ -395,11 +395,27 @@ class Run {
         for (int k = 0; k < 5 && slope < 0.0; ++k) {
             const double value = at(w, from);
             if (value < 0.0 && value >= -close) return from;
+            if ((w.kind == kGap || w.kind == kSlipping) && nudged(w, value, slope, close)) return part_;
             const double to = from - (value + 0.5 * close) / slope;
             if (!(0.0 < to && to < high)) break;
             from = to;
         }
         return searched(f, low, high, close);
+    }
+
+    // Goes on to the zero along the last derivative, if that is so near that its error, of the second order, is none.
+    bool nudged(const Watch& w, double value, double slope, double close) {
+        const double part = part_;
+        for (int k = 0; k < 4; ++k) {
+            const double by = -(value + 0.5 * close) / slope;
+            part_ += by;
+            if (!(std::fabs(part_ - part) * span_ * pace_ < kNudge * std::sqrt(set_.tolerance))) break;
+            flow_.nudge(by * span_);
+            value = margin(w, flow_.samples[3], flow_.axes[3], flow_.forces[3]);
+            if (value < 0.0 && value >= -close) return true;
+        }
+        part_ = -1.0;
+        return false;
     }
 
     // Where the interpolated motion has a margin at -aim, and how steep it is there; slope 0 if nowhere.
