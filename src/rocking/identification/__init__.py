@@ -9,10 +9,11 @@ if TYPE_CHECKING:
     from rocking.identification.design import Design
     from rocking.identification.measurement import ImpactTimes, RotationSeries
     from rocking.identification.readers.reader import read_measurement
-    from rocking.identification.results import Identification, Impact, IntervalEstimate, ModelComparison
+    from rocking.identification.results import ForcedRocking, Identification, Impact, IntervalEstimate, ModelComparison
 
 __all__ = [
     "Design",
+    "ForcedRocking",
     "Identification",
     "Impact",
     "ImpactTimes",
@@ -28,7 +29,7 @@ _HOMES = {
     "design": ("Design",),
     "measurement": ("ImpactTimes", "RotationSeries"),
     "readers.reader": ("read_measurement",),
-    "results": ("IntervalEstimate", "Identification", "Impact", "ModelComparison"),
+    "results": ("ForcedRocking", "IntervalEstimate", "Identification", "Impact", "ModelComparison"),
 }
 __getattr__, __dir__ = exports(
     __name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}

@@ -11,6 +11,7 @@ from scipy.special import logsumexp, stdtr
 from rocking.conventions import FEET, FloatArray, Foot, opposite
 from rocking.errors import InvalidValueError
 from rocking.identification.design import Design, designs
+from rocking.identification.forced import identify_forced
 from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.posterior import Posterior
 from rocking.identification.prior import LEVEL, Knowledge
@@ -26,6 +27,7 @@ from rocking.identification.results import (
 from rocking.identification.series import fit_series
 from rocking.identification.state_space import DAMPING, FREQUENCY, HALF, MEAN, SHARED, TILT, TREND
 from rocking.identification.times import fit_times
+from rocking.motions.pulse import Motion
 
 _SHARE, _OF_ALL, _AFTER = 0.66, 0.5, 1.0  # of times; seconds, after which nobody hears the last impacts any more
 _ADVANTAGE, _MOST_SCATTER, _UNLIKELY, _EXPLAINED = 5.0, 0.12, 1e-4, 0.9
@@ -41,8 +43,10 @@ def identify(
     trend: bool = False,
     damping: bool = False,
     first: Foot = "right",
+    motion: Motion | None = None,
+    clock: float | Sequence[float] = 0.02,
 ) -> Identification:
-    """Return what a measurement of free rocking says about restitution.
+    """Return what a measurement of rocking says about restitution: of free rocking, or under a known ground motion.
 
     Parameters
     ----------
@@ -61,6 +65,11 @@ def identify(
         Whether r may change with the speed, and whether damping between impacts is fitted.
     first : {"left", "right"}
         Foot on which the body stands after the first impact, of times, which do not tell.
+    motion : GroundMotion or Pulse, optional
+        How the ground moved under a body that stood at rest before; rotations are relative to the ground.
+    clock : float or (float, float)
+        Standard deviation of by how much the clock of the measurement is ahead of that of the motion, or that and
+        its standard deviation [s].
 
     Returns
     -------
@@ -81,6 +90,10 @@ def identify(
     ((), True)
     """
     known = Knowledge.of(body, size_error, tilt, asymmetry, trend=bool(trend), damping=bool(damping), first=first)
+    if motion is not None:
+        return identify_forced(measurement, known, motion, clock) or _nothing(
+            measurement, "fewer than three impacts stand out of the noise"
+        )
     if isinstance(measurement, ImpactTimes):
         return _of_times(measurement, known)
     if isinstance(measurement, RotationSeries):

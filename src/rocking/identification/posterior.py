@@ -121,6 +121,12 @@ def posterior(
     return _on_grid(model, observer, noise, _grid(fine, known, _FINE), near)
 
 
+def ln_scatter_density(scatters: FloatArray) -> FloatArray:
+    """Return ln of the density of ln of the scatter: flat in the scatter where it is small, in its logarithm where not."""
+    low, high = (np.log(each + _SMALL_SCATTER) for each in SCATTERS)
+    return np.asarray(np.log(scatters / (scatters + _SMALL_SCATTER) / (high - low)))  # Eq. 273
+
+
 def _grid(
     ranges: list[FloatArray | None], known: tuple[float, float], sizes: tuple[int, int]
 ) -> tuple[FloatArray, FloatArray, float]:
@@ -159,10 +165,7 @@ def _on_grid(
         z = np.log(noises / noise.median) / noise.dispersion
         ln = ln - 0.5 * z * z - np.log(noise.dispersion * np.sqrt(2.0 * np.pi))
     if np.ptp(scatters) > 0.0:
-        # flat in the scatter where it is small, in its logarithm where it is large
-        density = scatters / (scatters + _SMALL_SCATTER)
-        low, high = (np.log(each + _SMALL_SCATTER) for each in SCATTERS)
-        ln = ln + np.log(density / (high - low))  # Eq. 273
+        ln = ln + ln_scatter_density(scatters)
     top = ln.max()
     weights = np.exp(ln - top)
     total = weights.sum()

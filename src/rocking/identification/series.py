@@ -137,7 +137,7 @@ def fit_series(series: RotationSeries, known: Knowledge, scatter: float | None) 
         begin = partial(_rescaled, u, at)
         impacts = model.path(found.u, found.scatter).times[0]
         parts = np.split(found.residuals[0], np.cumsum([row.values.size for row in used])[:-1])
-        each = [_correlation(part) for part in parts]
+        each = [correlation(part) for part in parts]
         spread = np.array([
             row.scale * np.sqrt(one * (part @ part) / max(part.size - model.size, 1))
             for row, part, one in zip(used, parts, each, strict=True)
@@ -213,7 +213,7 @@ def _rescaled(u: FloatArray, at: float, scatters: FloatArray) -> FloatArray:
     return found
 
 
-def _correlation(residual: FloatArray) -> float:
+def correlation(residual: FloatArray) -> float:
     """Return the number of samples that count as one, from the correlation of neighbours."""
     centred = residual - residual.mean()
     total = float(centred @ centred)

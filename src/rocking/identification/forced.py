@@ -1,0 +1,228 @@
+"""What a rotation under a known ground motion says of a body: the answer of `identify` for forced records."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FEET, FloatArray, Foot
+from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.plane.fast_engine import run
+from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError
+from rocking.identification import forced_start
+from rocking.identification.forced_model import CLOCK, FREQUENCY, GAIN, HALF, MEAN, SAME_TIME, SIZE, SLENDERNESS, TILT, TREND
+from rocking.identification.forced_model import Fit, Forced, fitted
+from rocking.identification.measurement import RotationSeries
+from rocking.identification.posterior import SCATTERS, Mixture, ln_scatter_density
+from rocking.identification.prior import Knowledge
+from rocking.identification.results import (
+    ForcedRocking,
+    Identification,
+    Impact,
+    IntervalEstimate,
+    compared,
+    estimated,
+    impulses,
+    next_impact,
+)
+from rocking.motions.motion import checked_motion
+from rocking.motions.pulse import Pulse
+
+_GRID = 61
+_OF_PULSE = 400
+_GUESS = 0.02  # of the scatter
+_MOST_SCATTER, _ADVANTAGE = 0.12, 5.0
+_FRICTIONS, _SLID = np.geomspace(0.05, 2.0, 40), 10.0
+_CLOSE, _DIFFERENCE = 0.1, 1e-4
+
+
+class ForcedPosterior:
+    """Normal distributions of the unknowns, one for each scatter, with weights: all about one linearisation."""
+
+    def __init__(self, problem: Forced, fit: Fit, noise: FloatArray) -> None:
+        self.problem, self.fit = problem, fit
+        self.free = np.isfinite(problem.precision)
+        self.scatter = np.geomspace(*SCATTERS, _GRID)
+        prior = np.concatenate([problem.mean, np.zeros(fit.x.size - SIZE)])
+        fixed, pull = fit.terms.normal(noise, 1.0, SAME_TIME)
+        drawn, by = fit.terms.draws
+        fixed, pull = fixed - by.T @ by, pull - by.T @ drawn
+        precision, free = np.where(self.free, problem.precision, 0.0), np.ix_(self.free, self.free)
+        fixed, pull = fixed + np.diag(precision), pull - precision * (fit.x - prior)
+        self.steps, self.roots, ln = [], [], []
+        for s in self.scatter:
+            hessian = (fixed + by.T @ by / s**2)[free]
+            scale = 1.0 / np.sqrt(np.diag(hessian))
+            root = np.linalg.inv(np.linalg.cholesky(hessian * scale[:, None] * scale)) * scale
+            across = root @ (pull + by.T @ drawn / s**2)[self.free]
+            self.steps.append(root.T @ across)
+            self.roots.append(root)
+            value = float(drawn @ drawn) / s**2 - float(across @ across)
+            ln.append(-0.5 * value + np.log(np.abs(np.diag(root))).sum() - drawn.size * math.log(s))  # Eq. 285
+        weights = np.array(ln) + ln_scatter_density(self.scatter)
+        weights = np.exp(weights - weights.max())
+        self.weights = weights / weights.sum()
+
+    def of(self, slopes: FloatArray, value: float) -> Mixture:
+        """Return the distribution of what has a value at the linearisation, and slopes by the unknowns."""
+        by = slopes[self.free]
+        means = value + np.array([by @ step for step in self.steps])
+        return Mixture(self.weights, means, np.array([float(np.linalg.norm(root @ by)) for root in self.roots]))
+
+    def shared(self, *terms: tuple[int, float]) -> Mixture:
+        """Return the distribution of a sum of what all half cycles share, each times a factor."""
+        slopes = np.zeros(self.fit.x.size)
+        for which, factor in terms:
+            slopes[which] = factor
+        return self.of(slopes, float(slopes @ self.fit.x))
+
+    @property
+    def likely_scatter(self) -> IntervalEstimate:
+        """The scatter."""
+        middle = np.cumsum(self.weights) - 0.5 * self.weights
+        return IntervalEstimate(*(float(np.exp(np.interp(q, middle, np.log(self.scatter)))) for q in (0.5, 0.025, 0.975)))
+
+
+def identify_forced(measurement: Any, known: Knowledge, motion: Any, clock: Any) -> Identification | None:
+    """Return what a series says, or None if fewer than three impacts are seen."""
+    if not isinstance(measurement, RotationSeries):
+        raise InvalidValueError(f"under a motion the measurement must be a RotationSeries, got {measurement!r:.60}")
+    if known.body is None:
+        raise InvalidValueError("under a motion the body must be given: what lifts it is its slenderness angle")
+    if known.damping:
+        raise InvalidValueError("damping must be False under a motion: it is fitted to free rocking only")
+    if isinstance(motion, Pulse):
+        motion = motion.sampled(motion.duration / _OF_PULSE)
+    checked_motion(motion)
+    shift, error = (0.0, clock) if np.ndim(clock) == 0 else clock
+    clock = checks.number("clock", shift, "s"), checks.within("standard deviation of clock", error, 0.0, 60.0, unit="s")
+    series = measurement
+    problem = forced_start.problem_of(series, known, motion, clock)
+    if clock[1] > forced_start.SURE:
+        near = forced_start.sought(problem, clock), forced_start.SURE / 3.0
+        problem = forced_start.problem_of(series, known, motion, near)
+    shared = problem.mean
+    for _ in range(2):  # the second one knows offset and drift
+        first = forced_start.first_fit(problem, shared)
+        if first is None:
+            return None
+        problem, fit, noise = first
+        shared = fit.x[:SIZE]
+    guess = _GUESS
+    for _ in range(2):
+        fit = fitted(problem, fit.x, noise, guess, SAME_TIME)
+        noise = forced_start.deviations(problem, fit)
+        found = ForcedPosterior(problem, fit, noise)
+        guess = max(found.likely_scatter.value, 1e-3)
+    return _answer(problem, fit, noise, found)
+
+
+def _answer(problem: Forced, fit: Fit, noise: FloatArray, found: ForcedPosterior) -> Identification:
+    known, body, series = problem.known, problem.known.body, problem.series
+    assert body is not None
+    by_side = {foot: found.shared((MEAN, 1.0), (HALF, 1.0 if foot == "right" else -1.0)) for foot in FEET}
+    mean = found.shared((MEAN, 1.0))
+    r, scatter = estimated(mean, 1.0), found.likely_scatter
+    coefficients = {foot: estimated(each, 1.0) for foot, each in by_side.items()}
+    still = fitted(replace(problem, motion=problem.motion.scaled(0.0)), fit.x, noise, 1.0, None)
+    alone = fitted(problem, fit.x, noise, 1.0, None)
+    advantage = 0.5 * (still.objective - alone.objective)
+    refused, doubts = [], list(series.doubts)
+    if advantage < _ADVANTAGE:
+        refused.append("the motion of the ground explains the rotation no better than ground at rest; another clock?")
+    if mean.below(0.0) < 0.975:
+        refused.append(f"impacts take no energy: r is {r}")
+    if scatter.value > _MOST_SCATTER:
+        refused.append(f"what impacts take scatters by {100.0 * scatter.value:.0f} %")
+    if not fit.converged:
+        doubts.append("The maximum of the posterior was not found: intervals may be wrong.")
+    p = math.sqrt(math.prod(body.side(foot).frequency_parameter for foot in FEET))
+    residuals = np.concatenate([residual for residual, _ in fit.terms.samples])
+    one = float(noise[0])
+    return Identification(
+        source=series.source, refused=tuple(refused), doubts=tuple(doubts), mean=r, coefficients=coefficients,
+        scatter=scatter, frequency_parameter=estimated(found.shared((FREQUENCY, 1.0)), p),
+        tilt=estimated(found.shared((TILT, 1.0))),
+        trend=estimated(found.shared((TREND, 1.0))) if known.trend else None, damping=None,
+        impacts=_impacts(problem, fit, found), residuals=residuals, noise=IntervalEstimate(one, one, one),
+        independent=float(residuals.size), p_value=math.nan, advantage=advantage, converged=fit.converged,
+        impulse={} if refused else impulses(body, coefficients), models=() if refused else compared(body, r),
+        designs=(), _next={foot: next_impact(each, found.scatter) for foot, each in by_side.items()},
+        forced=_forced(problem, fit, noise, found),
+    )  # fmt: skip
+
+
+def _impacts(problem: Forced, fit: Fit, found: ForcedPosterior) -> tuple[Impact, ...]:
+    """Return what every impact took."""
+    drawn, by = fit.terms.draws
+    states, x, made = fit.x[SIZE:].reshape(-1, 2), fit.x, []
+    for n, k in enumerate(np.flatnonzero(problem.seen.joined)):
+        sign = problem.seen.sign[k]
+        slopes = -by[n].copy()
+        slopes[[MEAN, HALF]] = 0.0
+        each = estimated(found.of(slopes, float(drawn[n] + x[MEAN] + sign * x[HALF])), 1.0)
+        foot: Foot = "right" if sign > 0.0 else "left"
+        before = math.exp(states[k, 1]) / each.value
+        made.append(Impact(n, float(states[k, 0]), foot, before, each))
+    return tuple(made)
+
+
+def _forced(problem: Forced, fit: Fit, noise: FloatArray, found: ForcedPosterior) -> ForcedRocking:
+    seen, kind = problem.seen, problem.kinds[0]
+    return ForcedRocking(
+        clock=estimated(found.shared((CLOCK, 1.0))), gain=estimated(found.shared((GAIN + kind, 1.0)), 1.0),
+        friction=_friction(problem, fit, noise), stretches=int(np.sum(~seen.joined)), odd=problem.odd,
+        seen=float(np.sum(seen.end - seen.begin)), measured=float(np.ptp(problem.series.time)),
+        foreseen=_foreseen(problem, fit.x),
+    )  # fmt: skip
+
+
+def _friction(problem: Forced, fit: Fit, noise: FloatArray) -> IntervalEstimate:
+    """Return the coefficient of friction; only what it is at least, if feet that slide explain nothing better.
+
+    The other unknowns follow to first order.
+    """
+    how = noise, _GUESS, SAME_TIME
+    free = np.isfinite(problem.precision)
+    hessian, rest = fit.terms.normal(*how)
+    hessian = (hessian + np.diag(np.where(free, problem.precision, 0.0)))[np.ix_(free, free)]
+    values = np.full(_FRICTIONS.size, math.inf)
+    for n in range(_FRICTIONS.size)[::-1]:
+        terms = replace(problem, friction=float(_FRICTIONS[n])).terms(fit.x, 1).beside(fit.terms)
+        pull = (terms.normal(*how)[1] - rest)[free]
+        if not np.isfinite(pull).all():
+            break
+        values[n] = terms.value(*how) - float(pull @ np.linalg.solve(hessian, pull))
+        if values[n] > values.min() + 40.0:
+            break
+    weights = np.exp(-0.5 * (values - values.min()))  # Eq. 286
+    share = (np.cumsum(weights) - 0.5 * weights) / weights.sum()
+    low, value, high = (float(np.interp(q, share, _FRICTIONS)) for q in (0.025, 0.5, 0.975))
+    if values[-1] - values.min() < _SLID:  # it never slides there
+        return IntervalEstimate(math.nan, float(np.interp(0.05, share, _FRICTIONS)), math.nan)
+    return IntervalEstimate(value, low, high)
+
+
+def _foreseen(problem: Forced, x: FloatArray) -> float:
+    """Return until when a motion that begins at rest is told by r, though it differed by a ten-thousandth [s]."""
+    body = problem.known.body
+    parameters = RockingParameters.of_body(body, {foot: 0.0 for foot in FEET}, Settings().gravity)
+    sides = {}
+    for foot, sign in (("right", 1.0), ("left", -1.0)):
+        side = getattr(parameters, foot)
+        sides[foot] = replace(
+            side, slenderness_angle=side.slenderness_angle * math.exp(x[SLENDERNESS]) - sign * x[TILT],
+            frequency_parameter=side.frequency_parameter * math.exp(x[FREQUENCY]),
+            coefficient=math.exp(x[MEAN] + sign * x[HALF]),
+        )  # fmt: skip
+    segments, rotations = problem.motion.segments(), []
+    for factor in (1.0, 1.0 - _DIFFERENCE):
+        both = {foot: replace(side, coefficient=side.coefficient * factor) for foot, side in sides.items()}
+        made = RockingParameters(both["right"], both["left"], ConstantRestitution(), "")
+        rotations.append(np.nan_to_num(run(made, segments, Settings()).rotation, nan=0.5 * math.pi))
+    apart = np.flatnonzero(np.abs(rotations[0] - rotations[1]) > _CLOSE * np.abs(rotations[0]).max())
+    return float(segments.step * (apart[0] if apart.size else segments.count))

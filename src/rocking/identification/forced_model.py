@@ -1,0 +1,228 @@
+"""Restitution from rocking under a known ground motion: half cycles that begin anew in the state that was measured.
+
+The unknowns are what all half cycles share, and two numbers for each of them: when it begins and ln of its angular
+velocity after the impact there, or, where no impact is seen, rotation and angular velocity at its first sample. What
+follows from them is compared with the samples, and where an impact is seen with the beginning of the next half cycle.
+So nothing grows from impact to impact, however chaotic the motion is.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from rocking.conventions import FEET, BoolArray, FloatArray, IntArray
+from rocking.identification.excursions import Excursions, excursions_of
+from rocking.identification.forced_half_cycles import Flights
+from rocking.identification.measurement import RotationSeries
+from rocking.identification.posterior import Mixture
+from rocking.identification.prior import Knowledge
+from rocking.motions.motion import GroundMotion
+
+SHARED = (MEAN, HALF, FREQUENCY, SLENDERNESS, TILT, TREND, CLOCK) = tuple(range(7))
+"""As in the state space; by how much the clock of the measurement is ahead of that of the motion [s]."""
+GAIN, OFFSET, DRIFT = 7, 9, 11  # of rotation, and one further of angular velocity: ln, and over half the time
+SIZE = 13
+KINDS = ("rotation", "angular_velocity")
+
+SAME_TIME = 1e-5  # within which a half cycle ends when the next one begins [s]
+STEP = 1e-6
+_MOST = 3000
+
+
+@dataclass(frozen=True, eq=False)
+class Terms:
+    """Differences and their slopes: of samples, of times of impacts, of ln r from its mean."""
+
+    samples: list[tuple[FloatArray, FloatArray]]  # of each kind that was measured; slopes by what is shared and own
+    owners: IntArray  # half cycle of each sample; those at rest have none and come last
+    times: tuple[FloatArray, FloatArray]
+    draws: tuple[FloatArray, FloatArray]
+
+    def beside(self, other: "Terms") -> "Terms":
+        """Return these differences with the slopes of others."""
+        samples = [(mine[0], theirs[1]) for mine, theirs in zip(self.samples, other.samples, strict=True)]
+        return Terms(samples, self.owners, (self.times[0], other.times[1]), (self.draws[0], other.draws[1]))
+
+    def value(self, noise: FloatArray, scatter: float, same: float | None) -> float:
+        """Return the sum of squares over the variances; without impacts if same is None."""
+        found = sum(float(r @ r) / s**2 for (r, _), s in zip(self.samples, noise, strict=True))
+        if same is not None:
+            found += float(self.times[0] @ self.times[0]) / same**2 + float(self.draws[0] @ self.draws[0]) / scatter**2
+        return found
+
+    def normal(self, noise: FloatArray, scatter: float, same: float | None) -> tuple[FloatArray, FloatArray]:
+        """Return half the second derivatives of `value`, of Gauss and Newton, and minus half the first."""
+        size = self.times[1].shape[1]
+        hessian, gradient = np.zeros((size, size)), np.zeros(size)
+        starts = np.searchsorted(self.owners, np.arange((size - SIZE) // 2 + 1))
+        for (residual, slopes), s in zip(self.samples, noise, strict=True):
+            for k, (a, b) in enumerate(pairwise([*starts, residual.size])):
+                own = np.r_[:SIZE, SIZE + 2 * k : SIZE + 2 * k + 2] if b <= starts[-1] else np.arange(SIZE)
+                by = slopes[a:b, : own.size]
+                hessian[np.ix_(own, own)] += by.T @ by / s**2
+                gradient[own] += by.T @ residual[a:b] / s**2
+        for (residual, by), s in () if same is None else ((self.times, same), (self.draws, scatter)):
+            hessian += by.T @ by / s**2
+            gradient += by.T @ residual / s**2
+        return hessian, gradient
+
+
+@dataclass(frozen=True, eq=False)
+class Forced:
+    """A measured body under a motion, with what is known a priori."""
+
+    known: Knowledge
+    motion: GroundMotion
+    series: RotationSeries
+    seen: Excursions
+    rest: IntArray  # samples at rest
+    mean: FloatArray  # of what all share
+    deviation: FloatArray
+    middle: float = 0.0  # ln of the speed at which r has its mean, if there is a trend
+    friction: float | None = None
+    odd: int = 0  # half cycles that were left out
+
+    @cached_property
+    def kinds(self) -> tuple[int, ...]:
+        """Which were measured."""
+        return tuple(k for k, kind in enumerate(KINDS) if getattr(self.series, kind) is not None)
+
+    @cached_property
+    def samples(self) -> tuple[IntArray, IntArray]:
+        """Samples that are compared, and of which half cycle each is."""
+        pieces = [np.arange(a, b + 1) for a, b in zip(self.seen.first, self.seen.last, strict=True)]
+        which = np.repeat(np.arange(len(pieces)), [piece.size for piece in pieces])
+        stride = max(1, math.ceil(which.size / _MOST))
+        return np.concatenate(pieces)[::stride], which[::stride]
+
+    @cached_property
+    def line(self) -> FloatArray:
+        """Time from -1 to 1."""
+        time = self.series.time
+        return np.asarray((time - 0.5 * (time[0] + time[-1])) / (0.5 * (time[-1] - time[0])))
+
+    def flights(self, x: FloatArray, moved: FloatArray) -> tuple[Flights, FloatArray]:
+        """Half cycles from unknowns, and from those with a few of them moved; and when they begin [s]."""
+        seen, states = self.seen, x[SIZE:].reshape(-1, 2)
+        z = (np.concatenate([x[:SIZE], [0.0, 0.0]]) + moved)[:, :, None]
+        first, second = states[:, 0] + z[:, -2], states[:, 1] + z[:, -1]
+        begin = np.where(seen.joined, first, seen.begin)
+        body = self.known.body
+        assert body is not None
+        right, left = (body.side(foot) for foot in ("right", "left"))
+        on_right = seen.sign > 0.0
+        alpha = np.where(on_right, right.slenderness_angle, left.slenderness_angle) * np.exp(z[:, SLENDERNESS])
+        p = np.where(on_right, right.frequency_parameter, left.frequency_parameter) * np.exp(z[:, FREQUENCY])
+        size = np.where(on_right, right.semi_diagonal, left.semi_diagonal)
+        turning = np.where(seen.joined, np.exp(np.minimum(second, 5.0)), second)
+        rows = (
+            begin - z[:, CLOCK], np.where(seen.joined, 0.0, first), turning, alpha - seen.sign * z[:, TILT], p,
+            np.broadcast_to(size, p.shape), np.broadcast_to(seen.sign, p.shape),
+        )  # fmt: skip
+        lasts = seen.end - seen.begin
+        length = 1.15 * lasts + 0.05 * lasts.mean() + np.clip(seen.begin - begin[0], 0.0, lasts)
+        flat = [each.ravel() for each in rows]
+        flights = Flights.of(
+            self.motion, (flat[0], flat[1], flat[2]), (flat[3], flat[4], flat[5]), flat[6],
+            np.broadcast_to(length, p.shape).ravel(), self.friction,
+        )  # fmt: skip
+        return flights, begin
+
+    def terms(self, x: FloatArray, moves: int = 7) -> Terms:
+        """Return what unknowns miss, with slopes by finite differences; without slopes if moves is 1."""
+        seen, (index, which), count = self.seen, self.samples, self.seen.sign.size
+        common = (FREQUENCY, SLENDERNESS, TILT, CLOCK)
+        moved = np.zeros((7, SIZE + 2))
+        moved[np.arange(1, 7), [SIZE, SIZE + 1, *common]] = STEP
+        flights, begin = self.flights(x, moved[:moves])
+
+        def slopes(values: FloatArray) -> FloatArray:
+            found = np.zeros((values.shape[1], SIZE + 2))
+            if moves > 1:
+                found[:, [SIZE, SIZE + 1, *common]] = (values[1:] - values[0]).T / STEP
+            return found
+
+        samples, at = [], np.concatenate([index, self.rest])
+        since = (self.series.time[index] - begin[:, which]).ravel()
+        computed = flights.at(since, (np.arange(moves)[:, None] * count + which).ravel())
+        for k in self.kinds:
+            value = computed[k].reshape(moves, -1) * seen.sign[which] * math.exp(x[GAIN + k])
+            by = np.concatenate([slopes(value), np.zeros((self.rest.size, SIZE + 2))])
+            by[: index.size, GAIN + k] = value[0]
+            by[:, OFFSET + k], by[:, DRIFT + k] = 1.0, self.line[at]
+            whole = np.concatenate([value[0], np.zeros(self.rest.size)]) + x[OFFSET + k] + x[DRIFT + k] * self.line[at]
+            samples.append((getattr(self.series, KINDS[k])[at] - whole, by))
+        owners = np.concatenate([which, np.full(self.rest.size, count)])
+
+        def spread(own: FloatArray, k: IntArray) -> FloatArray:
+            found, row = np.zeros((k.size, x.size)), np.arange(k.size)
+            found[:, :SIZE] = own[:, :SIZE]
+            found[row, SIZE + 2 * k], found[row, SIZE + 2 * k + 1] = own[:, SIZE], own[:, SIZE + 1]
+            return found
+
+        k = np.flatnonzero(seen.joined) - 1  # half cycles that an impact ends
+        lasts, speed = (each.reshape(moves, count)[:, k] for each in flights.ends())
+        ends, ln = begin[:, k] + lasts, np.log(speed)
+        states, row, sign = x[SIZE:].reshape(-1, 2)[k + 1], np.arange(k.size), seen.sign[k + 1]
+        by_time, by_speed = spread(slopes(ends), k), spread(slopes(ln), k) * (1.0 + x[TREND])
+        by_time[row, SIZE + 2 * (k + 1)] = -1.0
+        by_speed[row, SIZE + 2 * (k + 1) + 1] = -1.0
+        by_speed[:, MEAN], by_speed[:, HALF], by_speed[:, TREND] = 1.0, sign, ln[0] - self.middle
+        took = states[:, 1] - ln[0] - x[MEAN] - sign * x[HALF] - x[TREND] * (ln[0] - self.middle)  # Eq. 281
+        return Terms(samples, owners, (states[:, 0] - ends[0], by_time), (took, by_speed))
+
+    @cached_property
+    def precision(self) -> FloatArray:
+        """Of all unknowns a priori; infinite of what is known."""
+        with np.errstate(divide="ignore"):
+            return np.concatenate([1.0 / self.deviation**2, np.zeros(2 * self.seen.sign.size)])
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """The most likely unknowns."""
+
+    x: FloatArray
+    terms: Terms
+    objective: float
+    converged: bool
+
+
+def fitted(problem: Forced, x: FloatArray, noise: FloatArray, scatter: float, same: float | None, steps: int = 30) -> Fit:
+    """Return the minimum of the objective, by damped Gauss-Newton steps."""
+    free = np.isfinite(problem.precision)
+    precision = problem.precision[free]
+    prior = np.concatenate([problem.mean, np.zeros(x.size - SIZE)])
+
+    def objective(x: FloatArray) -> tuple[float, Terms | None]:
+        if not np.isfinite(x).all():
+            return math.inf, None
+        with np.errstate(all="ignore"):
+            terms = problem.terms(x)
+            value = terms.value(noise, scatter, same) + float(precision @ (x - prior)[free] ** 2)  # Eq. 283
+        return value if math.isfinite(value) else math.inf, terms
+
+    value, terms = objective(x)
+    damping, converged = 0.0, False
+    for _ in range(steps if math.isfinite(value) else 0):
+        assert terms is not None
+        hessian, gradient = terms.normal(noise, scatter, same)
+        hessian, gradient = hessian[np.ix_(free, free)] + np.diag(precision), gradient[free]
+        gradient -= precision * (x - prior)[free]
+        scale = 1.0 / np.sqrt(np.diag(hessian))
+        scaled = hessian * scale[:, None] * scale + (damping + 1e-14) * np.eye(scale.size)
+        trial = x.copy()
+        trial[free] += scale * np.linalg.solve(scaled, scale * gradient)
+        found, new = objective(trial)
+        converged = damping == 0.0 and abs(found - value) < 1e-3 * (1.0 + 1e-3 * value)
+        better = found <= value
+        if better:
+            x, value, terms = trial, found, new
+        damping = (0.1 * damping if damping > 1e-3 else 0.0) if better else max(10.0 * damping, 1e-3)
+        if converged or damping > 1e9:
+            break
+    assert terms is not None
+    return Fit(x, terms, value, converged)
