@@ -33,7 +33,7 @@ _SHARE, _OF_ALL, _AFTER = 0.66, 0.5, 1.0  # of times; seconds, after which nobod
 _ADVANTAGE, _MOST_SCATTER, _UNLIKELY, _EXPLAINED = 5.0, 0.12, 1e-4, 0.9
 
 
-def identify(
+def identify(  # noqa: PLR0913 - what is known beside the measurement
     measurement: ImpactTimes | RotationSeries,
     body: Any = None,
     *,

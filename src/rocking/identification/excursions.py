@@ -25,7 +25,8 @@ class Excursions:
     def kept(self, which: BoolArray) -> "Excursions":
         """Return some of them: what was joined to one that is not kept begins by itself."""
         joined = self.joined & np.concatenate([[False], which[:-1]])
-        return Excursions(*(each[which] for each in (self.first, self.last, self.sign, self.begin, self.end, joined)))
+        kept = {name: values[which] for name, values in vars(self).items()}
+        return Excursions(**(kept | {"joined": joined[which]}))
 
     def parted(self, which: BoolArray, time: FloatArray) -> "Excursions":
         """Return them with some no longer joined to the one before."""
@@ -35,7 +36,7 @@ class Excursions:
 
     def alone(self) -> BoolArray:
         """Return which are joined to none."""
-        return ~(self.joined | np.append(self.joined[1:], False))
+        return np.asarray(~(self.joined | np.append(self.joined[1:], False)))
 
 
 def excursions_of(time: FloatArray, rotation: FloatArray, share: float) -> Excursions:

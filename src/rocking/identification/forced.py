@@ -14,12 +14,26 @@ from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.identification import forced_start
-from rocking.identification.forced_model import CLOCK, FREQUENCY, GAIN, HALF, MEAN, SAME_TIME, SIZE, SLENDERNESS, TILT, TREND
-from rocking.identification.forced_model import Fit, Forced, fitted
+from rocking.identification.forced_model import (
+    CLOCK,
+    FREQUENCY,
+    GAIN,
+    HALF,
+    MEAN,
+    SAME_TIME,
+    SIZE,
+    SLENDERNESS,
+    TILT,
+    TREND,
+    Fit,
+    Forced,
+    fitted,
+)
 from rocking.identification.measurement import RotationSeries
 from rocking.identification.posterior import SCATTERS, Mixture, ln_scatter_density
 from rocking.identification.prior import Knowledge
 from rocking.identification.results import (
+    LEVELS,
     ForcedRocking,
     Identification,
     Impact,
@@ -36,7 +50,8 @@ _GRID = 61
 _OF_PULSE = 400
 _GUESS = 0.02  # of the scatter
 _MOST_SCATTER, _ADVANTAGE = 0.12, 5.0
-_FRICTIONS, _SLID = np.geomspace(0.05, 2.0, 40), 10.0
+_LEAST, _MOST, _TRIED = 0.05, 2.0, 24  # coefficients of friction
+_SLID = 10.0  # by so much must minus twice ln of the likelihood fall if it slides
 _CLOSE, _DIFFERENCE = 0.1, 1e-4
 
 
@@ -84,7 +99,8 @@ class ForcedPosterior:
     def likely_scatter(self) -> IntervalEstimate:
         """The scatter."""
         middle = np.cumsum(self.weights) - 0.5 * self.weights
-        return IntervalEstimate(*(float(np.exp(np.interp(q, middle, np.log(self.scatter)))) for q in (0.5, 0.025, 0.975)))
+        ln = np.log(self.scatter)
+        return IntervalEstimate(*(float(np.exp(np.interp(q, middle, ln))) for q in LEVELS))
 
 
 def identify_forced(measurement: Any, known: Knowledge, motion: Any, clock: Any) -> Identification | None:
@@ -184,33 +200,33 @@ def _forced(problem: Forced, fit: Fit, noise: FloatArray, found: ForcedPosterior
 def _friction(problem: Forced, fit: Fit, noise: FloatArray) -> IntervalEstimate:
     """Return the coefficient of friction; only what it is at least, if feet that slide explain nothing better.
 
-    The other unknowns follow to first order.
+    The other unknowns follow to first order. Above what was needed all coefficients are equally likely.
     """
     how = noise, _GUESS, SAME_TIME
     free = np.isfinite(problem.precision)
     hessian, rest = fit.terms.normal(*how)
     hessian = (hessian + np.diag(np.where(free, problem.precision, 0.0)))[np.ix_(free, free)]
-    values = np.full(_FRICTIONS.size, math.inf)
-    for n in range(_FRICTIONS.size)[::-1]:
-        terms = replace(problem, friction=float(_FRICTIONS[n])).terms(fit.x, 1).beside(fit.terms)
+    grid = np.geomspace(_LEAST, min(max(problem.demand(fit.x), 2.0 * _LEAST), 0.5 * _MOST), _TRIED)
+    values = np.full(grid.size + 1, math.inf)
+    values[-1] = fit.terms.value(*how)
+    for n in range(grid.size)[::-1]:
+        terms = replace(problem, friction=float(grid[n])).terms(fit.x, 1).beside(fit.terms)
         pull = (terms.normal(*how)[1] - rest)[free]
-        if not np.isfinite(pull).all():
+        if not np.isfinite(pull).all() or values[n + 1] > values.min() + 40.0:
             break
         values[n] = terms.value(*how) - float(pull @ np.linalg.solve(hessian, pull))
-        if values[n] > values.min() + 40.0:
-            break
-    weights = np.exp(-0.5 * (values - values.min()))  # Eq. 286
-    share = (np.cumsum(weights) - 0.5 * weights) / weights.sum()
-    low, value, high = (float(np.interp(q, share, _FRICTIONS)) for q in (0.025, 0.5, 0.975))
-    if values[-1] - values.min() < _SLID:  # it never slides there
-        return IntervalEstimate(math.nan, float(np.interp(0.05, share, _FRICTIONS)), math.nan)
-    return IntervalEstimate(value, low, high)
+    weights = np.exp(-0.5 * (values - values.min()))  # Eq. 287
+    weights[-1] *= math.log(_MOST / grid[-1]) / math.log(grid[1] / grid[0])
+    share = np.cumsum(weights) / weights.sum()
+    if values[-1] - values.min() < _SLID:
+        return IntervalEstimate(math.nan, float(np.interp(0.05, share[:-1], grid)), math.nan)
+    return IntervalEstimate(*(float(np.interp(q, share[:-1], grid)) for q in LEVELS))
 
 
 def _foreseen(problem: Forced, x: FloatArray) -> float:
     """Return until when a motion that begins at rest is told by r, though it differed by a ten-thousandth [s]."""
     body = problem.known.body
-    parameters = RockingParameters.of_body(body, {foot: 0.0 for foot in FEET}, Settings().gravity)
+    parameters = RockingParameters.of_body(body, dict.fromkeys(FEET, 0.0), Settings().gravity)
     sides = {}
     for foot, sign in (("right", 1.0), ("left", -1.0)):
         side = getattr(parameters, foot)

@@ -3,12 +3,13 @@
 All are mirrored, so that rotations are positive; the ground is given by its acceleration [m/s2].
 """
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
-from rocking.conventions import BoolArray, FloatArray, IntArray, g
-from rocking.dynamics.plane.equations import angular_acceleration
+from rocking.conventions import FloatArray, IntArray, g
+from rocking.dynamics.plane.equations import angular_acceleration, reactions
 from rocking.motions.motion import GroundMotion
 
 _LONGEST = 0.03  # step, as p times time
@@ -22,7 +23,7 @@ class Flights:
     step: FloatArray  # k [s]
     rotation: FloatArray  # n, k [rad]
     velocity: FloatArray  # n, k [rad/s]
-    slid: BoolArray = field(default_factory=lambda: np.zeros(0, np.bool_))  # k: whether its foot slid
+    demand: FloatArray  # n - 1, k: friction that holds the feet [-]
 
     @classmethod
     def of(
@@ -44,18 +45,15 @@ class Flights:
         weight = np.ones_like(push[:, :, :1])
         if motion.vertical is not None:
             weight = 1.0 + _within_steps(motion.vertical, motion.time_step, times, step) / g
-        foot = None if friction is None else _Foot(friction, size, alpha, p)
+        feet = _Feet(alpha, p, size, friction)
         rotations, velocities = np.empty((count + 1, start.size)), np.empty((count + 1, start.size))
         rotations[0], velocities[0] = first, turning
         for n in range(count):
-            at = push[n], np.broadcast_to(weight[n], push[n].shape)
-            if foot is None:
-                rotations[n + 1], velocities[n + 1] = _stepped(
-                    rotations[n], velocities[n], step, lambda y, v, j, at=at: angular_acceleration(y, 1.0, alpha, p, at[0][j], at[1][j])
-                )
-            else:
-                rotations[n + 1], velocities[n + 1] = foot.stepped(rotations[n], velocities[n], step, *at)
-        return cls(step, rotations, velocities, np.zeros(start.size, np.bool_) if foot is None else foot.slid)
+            rotations[n + 1], velocities[n + 1] = feet.stepped(rotations[n], velocities[n], step, push[n], weight[n])
+        before, after = rotations[:-1], velocities[:-1]
+        turning = angular_acceleration(before, 1.0, alpha, p, push[:, 0], weight[:, 0])
+        along, across = feet.forces(before, after, turning, push[:, 0], weight[:, 0])
+        return cls(step, rotations, velocities, np.abs(along) / np.maximum(across, 1e-9))
 
     def at(self, since: FloatArray, which: IntArray) -> tuple[FloatArray, FloatArray]:
         """Return rotation and angular velocity at times since the beginnings of some of them."""
@@ -83,46 +81,52 @@ class Flights:
         return np.where(ended, time, np.nan), np.where(ended, speed, np.nan)
 
 
-class _Foot:
+class _Feet:
     """Feet that slide where the ground would have to hold them with more than the friction; they begin at rest."""
 
-    def __init__(self, friction: float, size: FloatArray, alpha: FloatArray, p: FloatArray) -> None:
-        self.friction, self.size, self.alpha, self.p = friction, size, alpha, p
+    def __init__(self, alpha: FloatArray, p: FloatArray, size: FloatArray, friction: float | None) -> None:
+        self.alpha, self.p, self.size, self.friction = alpha, p, size, friction
         self.inertia = size * (g / p**2 - size)  # about the centre of mass, over the mass
-        self.speed, self.slid = np.zeros_like(p), np.zeros(p.size, np.bool_)
+        self.speed = np.zeros_like(p)
 
     def stepped(
         self, y: FloatArray, v: FloatArray, step: FloatArray, push: FloatArray, weight: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        held = angular_acceleration(y, 1.0, self.alpha, self.p, push[0], weight[0])
-        along, across = self._forces(y, v, held, push[0], weight[0])
+        """Return rotation and angular velocity a step later; push, weight: at its begin, middle and end."""
+
+        def held(y: FloatArray, v: FloatArray, j: int) -> FloatArray:
+            return angular_acceleration(y, 1.0, self.alpha, self.p, push[j], weight[j])
+
+        if self.friction is None:
+            return _stepped(y, v, step, held)
+        along, across = self.forces(y, v, held(y, v, 0), push[0], weight[0])
         slides = (self.speed != 0.0) | (np.abs(along) > self.friction * across)
         direction = np.where(self.speed != 0.0, np.sign(self.speed), -np.sign(along))
-        ratio, slip = -self.friction * direction, self.speed
+        ratio = -self.friction * direction
 
         def turning(y: FloatArray, v: FloatArray, j: int) -> FloatArray:
             sine, cosine = np.sin(self.alpha - y), np.cos(self.alpha - y)
             lever = sine + ratio * cosine
             free = -self.size * lever * (g * weight[j] - self.size * cosine * v**2)
-            sliding = free / (self.inertia + self.size**2 * sine * lever)  # Eq. 284
-            return np.where(slides, sliding, angular_acceleration(y, 1.0, self.alpha, self.p, push[j], weight[j]))
+            return np.where(slides, free / (self.inertia + self.size**2 * sine * lever), held(y, v, j))  # Eq. 286
 
-        after = _stepped(y, v, step, turning)
-        along, across = self._forces(y, v, turning(y, v, 0), push[1], weight[1])
-        changed = slip + step * (ratio * across - along)
+        along, across = self.forces(y, v, turning(y, v, 0), push[1], weight[1])
+        changed = self.speed + step * (ratio * across - along)
         self.speed = np.where(slides & (changed * direction > 0.0), changed, 0.0)
-        self.slid |= slides
-        return after
+        return _stepped(y, v, step, turning)
 
-    def _forces(self, y: FloatArray, v: FloatArray, turning: FloatArray, push: FloatArray, weight: FloatArray):
-        """Forces of the ground over the mass on a foot that does not slide faster."""
-        sine, cosine = np.sin(self.alpha - y), np.cos(self.alpha - y)
-        along = g * push + self.size * (cosine * turning + sine * v**2)  # Eq. 18
-        return along, g * weight + self.size * (sine * turning - cosine * v**2)
+    def forces(
+        self, y: FloatArray, v: FloatArray, turning: FloatArray, push: FloatArray, weight: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return forces of the ground over the mass, along and across it, on a foot that goes on as it does."""
+        horizontal, vertical = reactions(y, v, turning, 1.0, self.alpha, self.size, g * push, g * weight)
+        return horizontal, vertical
 
 
-def _stepped(y: FloatArray, v: FloatArray, step: FloatArray, acceleration) -> tuple[FloatArray, FloatArray]:
-    """One step of order 4; acceleration: of rotation, velocity, and 0, 1, 2 for begin, middle and end."""
+def _stepped(
+    y: FloatArray, v: FloatArray, step: FloatArray, acceleration: Callable[[FloatArray, FloatArray, int], FloatArray]
+) -> tuple[FloatArray, FloatArray]:
+    """Return both after a step of order 4; acceleration: of both, and 0, 1, 2 for begin, middle and end."""
     half = 0.5 * step
     a = acceleration(y, v, 0)
     v2 = v + half * a

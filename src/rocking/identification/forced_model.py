@@ -13,11 +13,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from rocking.conventions import FEET, BoolArray, FloatArray, IntArray
-from rocking.identification.excursions import Excursions, excursions_of
+from rocking.conventions import FloatArray, IntArray
+from rocking.identification.excursions import Excursions
 from rocking.identification.forced_half_cycles import Flights
 from rocking.identification.measurement import RotationSeries
-from rocking.identification.posterior import Mixture
 from rocking.identification.prior import Knowledge
 from rocking.motions.motion import GroundMotion
 
@@ -29,6 +28,8 @@ KINDS = ("rotation", "angular_velocity")
 
 SAME_TIME = 1e-5  # within which a half cycle ends when the next one begins [s]
 STEP = 1e-6
+_DAMPED, _CLOSE = 1e-3, 5e-3  # at most, where the objective no longer changes by more
+_LONGEST = 1.0  # change of any unknown at a time, in its own unit
 _MOST = 3000
 
 
@@ -48,7 +49,7 @@ class Terms:
 
     def value(self, noise: FloatArray, scatter: float, same: float | None) -> float:
         """Return the sum of squares over the variances; without impacts if same is None."""
-        found = sum(float(r @ r) / s**2 for (r, _), s in zip(self.samples, noise, strict=True))
+        found = sum(float(r @ r) / float(s) ** 2 for (r, _), s in zip(self.samples, noise, strict=True))
         if same is not None:
             found += float(self.times[0] @ self.times[0]) / same**2 + float(self.draws[0] @ self.draws[0]) / scatter**2
         return found
@@ -163,16 +164,24 @@ class Forced:
             found[row, SIZE + 2 * k], found[row, SIZE + 2 * k + 1] = own[:, SIZE], own[:, SIZE + 1]
             return found
 
-        k = np.flatnonzero(seen.joined) - 1  # half cycles that an impact ends
-        lasts, speed = (each.reshape(moves, count)[:, k] for each in flights.ends())
-        ends, ln = begin[:, k] + lasts, np.log(speed)
-        states, row, sign = x[SIZE:].reshape(-1, 2)[k + 1], np.arange(k.size), seen.sign[k + 1]
-        by_time, by_speed = spread(slopes(ends), k), spread(slopes(ln), k) * (1.0 + x[TREND])
-        by_time[row, SIZE + 2 * (k + 1)] = -1.0
-        by_speed[row, SIZE + 2 * (k + 1) + 1] = -1.0
+        before = np.flatnonzero(seen.joined) - 1  # half cycles that an impact ends
+        lasts, speed = (each.reshape(moves, count)[:, before] for each in flights.ends())
+        ends, ln = begin[:, before] + lasts, np.log(speed)
+        states, row, sign = x[SIZE:].reshape(-1, 2)[before + 1], np.arange(before.size), seen.sign[before + 1]
+        by_time, by_speed = spread(slopes(ends), before), spread(slopes(ln), before) * (1.0 + x[TREND])
+        by_time[row, SIZE + 2 * (before + 1)] = -1.0
+        by_speed[row, SIZE + 2 * (before + 1) + 1] = -1.0
         by_speed[:, MEAN], by_speed[:, HALF], by_speed[:, TREND] = 1.0, sign, ln[0] - self.middle
         took = states[:, 1] - ln[0] - x[MEAN] - sign * x[HALF] - x[TREND] * (ln[0] - self.middle)  # Eq. 281
         return Terms(samples, owners, (states[:, 0] - ends[0], by_time), (took, by_speed))
+
+    def demand(self, x: FloatArray) -> float:
+        """Return the largest friction that holds the feet while their half cycles last [-]."""
+        flights, _ = self.flights(x, np.zeros((1, SIZE + 2)))
+        lasts = self.seen.end - self.seen.begin
+        return float(
+            np.where(np.arange(len(flights.demand))[:, None] * flights.step < lasts, flights.demand, 0.0).max()
+        )
 
     @cached_property
     def precision(self) -> FloatArray:
@@ -191,7 +200,9 @@ class Fit:
     converged: bool
 
 
-def fitted(problem: Forced, x: FloatArray, noise: FloatArray, scatter: float, same: float | None, steps: int = 30) -> Fit:
+def fitted(
+    problem: Forced, x: FloatArray, noise: FloatArray, scatter: float, same: float | None, steps: int = 30
+) -> Fit:
     """Return the minimum of the objective, by damped Gauss-Newton steps."""
     free = np.isfinite(problem.precision)
     precision = problem.precision[free]
@@ -214,11 +225,12 @@ def fitted(problem: Forced, x: FloatArray, noise: FloatArray, scatter: float, sa
         gradient -= precision * (x - prior)[free]
         scale = 1.0 / np.sqrt(np.diag(hessian))
         scaled = hessian * scale[:, None] * scale + (damping + 1e-14) * np.eye(scale.size)
+        step = scale * np.linalg.solve(scaled, scale * gradient)
         trial = x.copy()
-        trial[free] += scale * np.linalg.solve(scaled, scale * gradient)
+        trial[free] += step * min(1.0, _LONGEST / np.abs(step).max())
         found, new = objective(trial)
-        converged = damping == 0.0 and abs(found - value) < 1e-3 * (1.0 + 1e-3 * value)
         better = found <= value
+        converged = damping <= _DAMPED and abs(found - value) < _CLOSE and (better or damping == 0.0)
         if better:
             x, value, terms = trial, found, new
         damping = (0.1 * damping if damping > 1e-3 else 0.0) if better else max(10.0 * damping, 1e-3)

@@ -34,14 +34,13 @@ _STILL = 0.7  # of the acceleration that lifts a body: below it rests for certai
 _ANNEALED = ((0.3, 3e-3), (0.03, 1e-4))  # scatter, and within which time half cycles end where the next ones begin
 _TRIES = 5
 _ODD = 4.0  # of the usual mean square: no half cycle of rocking
+_TELLS, _TAKES = 0.3, 0.5  # of ln r: standard deviation beyond which, and amount beyond which it is no impact
 _LARGEST, _FEW, _BETWEEN = 12, 400, 0.02  # half cycles and samples by which a clock is sought, at so many seconds
 SURE = 0.03
 """Standard deviation of a clock above which it is sought [s]."""
 
 
-def problem_of(
-    series: RotationSeries, known: Knowledge, motion: GroundMotion, clock: tuple[float, float]
-) -> Forced:
+def problem_of(series: RotationSeries, known: Knowledge, motion: GroundMotion, clock: tuple[float, float]) -> Forced:
     """Return what is known, of a body of which nothing has been seen yet."""
     assert known.body is not None
     mean, deviation = np.zeros(SIZE), np.zeros(SIZE)
@@ -78,7 +77,7 @@ def rotation_of(problem: Forced, shared: FloatArray) -> FloatArray:
     edges = np.concatenate([[0], loud, [time.size - 1]])
     calm = np.flatnonzero(np.diff(edges) > max(10, 0.3 / float(np.median(np.diff(time)))))
     if not calm.size:
-        return found - np.median(found)
+        return np.asarray(found - np.median(found))
     at = np.concatenate([[edges[k], edges[k + 1]] for k in calm]).astype(np.int64)
     return np.asarray(found - np.interp(time, time[at], found[at]))
 
@@ -115,7 +114,7 @@ def sought(problem: Forced, clock: tuple[float, float]) -> float:
     large = samples >= np.sort(samples)[-min(_LARGEST, samples.size)]
     tried = replace(problem, seen=seen.parted(seen.joined, problem.series.time).kept(large))
     x, shifts = begun(tried, shared), np.arange(-3.0 * clock[1], 3.0 * clock[1] + _BETWEEN, _BETWEEN)
-    return clock[0] + min((float(misfit), float(shift)) for shift, misfit in zip(shifts, _misfits(tried, x, shifts), strict=True))[1]
+    return clock[0] + float(shifts[np.argmin(_misfits(tried, x, shifts))])
 
 
 def _misfits(problem: Forced, x: FloatArray, shifts: FloatArray) -> FloatArray:
@@ -160,16 +159,15 @@ def first_fit(problem: Forced, shared: FloatArray) -> tuple[Forced, Fit, FloatAr
         if problem.seen.joined.sum() < FEWEST:
             return None
         fit = fitted(problem, begun(problem, shared), noise, 1.0, None)
-        sound = _sound(problem, fit, noise)
-        endless = np.zeros_like(sound)
-        endless[np.flatnonzero(problem.seen.joined)] = np.isnan(fit.terms.times[0])
-        if sound.all() and not endless.any():
+        sound, apart = _sound(problem, fit, noise), np.zeros(problem.seen.sign.size, np.bool_)
+        apart[np.flatnonzero(problem.seen.joined)] = _apart(problem, fit, noise)
+        if sound.all() and not apart.any():
             break
-        seen = problem.seen.parted(endless, problem.series.time).kept(sound)
+        seen = problem.seen.parted(apart, problem.series.time).kept(sound)
         problem = replace(problem, seen=seen.kept(~seen.alone()), odd=problem.odd + int(np.sum(~sound)))
     for scatter, same in _ANNEALED:
         fit = fitted(problem, fit.x, noise, scatter, same)
-        noise = np.maximum(noise, deviations(problem, fit))
+        noise = np.maximum(noise, deviations(problem, fit)) if fit.converged else noise
     return problem, fit, noise
 
 
@@ -179,3 +177,14 @@ def _sound(problem: Forced, fit: Fit, noise: FloatArray) -> BoolArray:
     square = sum((r[: which.size] / s) ** 2 for (r, _), s in zip(fit.terms.samples, noise, strict=True))
     each = np.bincount(which, square, count) / np.maximum(np.bincount(which, minlength=count), 1)
     return np.asarray(each < _ODD * np.median(each))
+
+
+def _apart(problem: Forced, fit: Fit, noise: FloatArray) -> BoolArray:
+    """Which impacts were none, or tell nothing: from half cycles each by itself, with what is not known of them."""
+    drawn, by = fit.terms.draws
+    hessian = fit.terms.normal(noise, 1.0, None)[0] + np.diag(np.minimum(problem.precision, 1e12))
+    scale = 1.0 / np.sqrt(np.diag(hessian))
+    root = np.linalg.inv(np.linalg.cholesky(hessian * scale[:, None] * scale + 1e-12 * np.eye(scale.size))) * scale
+    spread = np.linalg.norm(root @ by.T, axis=0)
+    with np.errstate(invalid="ignore"):
+        return ~((spread < _TELLS) & (np.abs(drawn) < _TAKES + 3.0 * spread))

@@ -122,7 +122,7 @@ def posterior(
 
 
 def ln_scatter_density(scatters: FloatArray) -> FloatArray:
-    """Return ln of the density of ln of the scatter: flat in the scatter where it is small, in its logarithm where not."""
+    """Return ln of the density of ln of a scatter: flat in the scatter where that is small, in its logarithm else."""
     low, high = (np.log(each + _SMALL_SCATTER) for each in SCATTERS)
     return np.asarray(np.log(scatters / (scatters + _SMALL_SCATTER) / (high - low)))  # Eq. 273
 
