@@ -11,7 +11,7 @@ from rocking.conventions import FEET, FloatArray, Foot
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.fast_engine import run
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.settings import NEVER_SLIDES, Settings
 from rocking.errors import InvalidValueError
 from rocking.identification import forced_start
 from rocking.identification.forced_model import (
@@ -43,7 +43,7 @@ from rocking.identification.results import (
     impulses,
     next_impact,
 )
-from rocking.motions.motion import checked_motion
+from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.pulse import Pulse
 
 _GRID = 61
@@ -51,7 +51,7 @@ _OF_PULSE = 400
 _GUESS = 0.02  # of the scatter
 _MOST_SCATTER, _ADVANTAGE = 0.12, 5.0
 _LEAST, _MOST, _TRIED = 0.05, 2.0, 24  # coefficients of friction
-_SLID = 10.0  # by so much must minus twice ln of the likelihood fall if it slides
+_SLID, _EXCLUDED = 10.0, 40.0  # of minus twice ln of the likelihood: fall if it slid, rise beyond which none is tried
 _CLOSE, _DIFFERENCE = 0.1, 1e-4
 
 
@@ -59,7 +59,7 @@ class ForcedPosterior:
     """Normal distributions of the unknowns, one for each scatter, with weights: all about one linearisation."""
 
     def __init__(self, problem: Forced, fit: Fit, noise: FloatArray) -> None:
-        self.problem, self.fit = problem, fit
+        self.problem, self.fit, self.noise = problem, fit, noise
         self.free = np.isfinite(problem.precision)
         self.scatter = np.geomspace(*SCATTERS, _GRID)
         prior = np.concatenate([problem.mean, np.zeros(fit.x.size - SIZE)])
@@ -77,7 +77,7 @@ class ForcedPosterior:
             self.steps.append(root.T @ across)
             self.roots.append(root)
             value = float(drawn @ drawn) / s**2 - float(across @ across)
-            ln.append(-0.5 * value + np.log(np.abs(np.diag(root))).sum() - drawn.size * math.log(s))  # Eq. 285
+            ln.append(-0.5 * value + np.log(np.abs(np.diag(root))).sum() - drawn.size * math.log(s))  # Eq. 284
         weights = np.array(ln) + ln_scatter_density(self.scatter)
         weights = np.exp(weights - weights.max())
         self.weights = weights / weights.sum()
@@ -107,6 +107,11 @@ def identify_forced(measurement: Any, known: Knowledge, motion: Any, clock: Any)
     """Return what a series says, or None if fewer than three impacts are seen."""
     if not isinstance(measurement, RotationSeries):
         raise InvalidValueError(f"under a motion the measurement must be a RotationSeries, got {measurement!r:.60}")
+    if measurement.from_acceleration:
+        raise InvalidValueError(
+            "under a motion the measurement must be a rotation, an angular velocity or a displacement relative to the "
+            "ground, got an acceleration, to which the ground adds its own"
+        )
     if known.body is None:
         raise InvalidValueError("under a motion the body must be given: what lifts it is its slenderness angle")
     if known.damping:
@@ -115,8 +120,15 @@ def identify_forced(measurement: Any, known: Knowledge, motion: Any, clock: Any)
         motion = motion.sampled(motion.duration / _OF_PULSE)
     checked_motion(motion)
     shift, error = (0.0, clock) if np.ndim(clock) == 0 else clock
-    clock = checks.number("clock", shift, "s"), checks.within("standard deviation of clock", error, 0.0, 60.0, unit="s")
-    series = measurement
+    clock = checks.number("clock", shift, "s"), checks.within("standard deviation of clock", error, 0.0, 10.0, unit="s")
+    found = fit_forced(measurement, known, motion, clock)
+    return None if found is None else answer(found)
+
+
+def fit_forced(
+    series: RotationSeries, known: Knowledge, motion: GroundMotion, clock: tuple[float, float]
+) -> ForcedPosterior | None:
+    """Return the posterior, or None if fewer than three impacts are seen."""
     problem = forced_start.problem_of(series, known, motion, clock)
     if clock[1] > forced_start.SURE:
         near = forced_start.sought(problem, clock), forced_start.SURE / 3.0
@@ -128,16 +140,19 @@ def identify_forced(measurement: Any, known: Knowledge, motion: Any, clock: Any)
             return None
         problem, fit, noise = first
         shared = fit.x[:SIZE]
+    problem = replace(problem, middle=float(np.median(fit.x[SIZE + 1 :: 2][problem.seen.joined])))
     guess = _GUESS
     for _ in range(2):
         fit = fitted(problem, fit.x, noise, guess, SAME_TIME)
         noise = forced_start.deviations(problem, fit)
         found = ForcedPosterior(problem, fit, noise)
         guess = max(found.likely_scatter.value, 1e-3)
-    return _answer(problem, fit, noise, found)
+    return found
 
 
-def _answer(problem: Forced, fit: Fit, noise: FloatArray, found: ForcedPosterior) -> Identification:
+def answer(found: ForcedPosterior) -> Identification:
+    """Return what a posterior says."""
+    problem, fit, noise = found.problem, found.fit, found.noise
     known, body, series = problem.known, problem.known.body, problem.series
     assert body is not None
     by_side = {foot: found.shared((MEAN, 1.0), (HALF, 1.0 if foot == "right" else -1.0)) for foot in FEET}
@@ -154,6 +169,8 @@ def _answer(problem: Forced, fit: Fit, noise: FloatArray, found: ForcedPosterior
         refused.append(f"impacts take no energy: r is {r}")
     if scatter.value > _MOST_SCATTER:
         refused.append(f"what impacts take scatters by {100.0 * scatter.value:.0f} %")
+    if problem.odd:
+        doubts.append(f"{problem.odd} half cycles are none of rocking alone under this motion, and are left out.")
     if not fit.converged:
         doubts.append("The maximum of the posterior was not found: intervals may be wrong.")
     p = math.sqrt(math.prod(body.side(foot).frequency_parameter for foot in FEET))
@@ -164,16 +181,17 @@ def _answer(problem: Forced, fit: Fit, noise: FloatArray, found: ForcedPosterior
         scatter=scatter, frequency_parameter=estimated(found.shared((FREQUENCY, 1.0)), p),
         tilt=estimated(found.shared((TILT, 1.0))),
         trend=estimated(found.shared((TREND, 1.0))) if known.trend else None, damping=None,
-        impacts=_impacts(problem, fit, found), residuals=residuals, noise=IntervalEstimate(one, one, one),
+        impacts=_impacts(found), residuals=residuals, noise=IntervalEstimate(one, one, one),
         independent=float(residuals.size), p_value=math.nan, advantage=advantage, converged=fit.converged,
         impulse={} if refused else impulses(body, coefficients), models=() if refused else compared(body, r),
         designs=(), _next={foot: next_impact(each, found.scatter) for foot, each in by_side.items()},
-        forced=_forced(problem, fit, noise, found),
+        forced=_forced(found),
     )  # fmt: skip
 
 
-def _impacts(problem: Forced, fit: Fit, found: ForcedPosterior) -> tuple[Impact, ...]:
+def _impacts(found: ForcedPosterior) -> tuple[Impact, ...]:
     """Return what every impact took."""
+    problem, fit = found.problem, found.fit
     drawn, by = fit.terms.draws
     states, x, made = fit.x[SIZE:].reshape(-1, 2), fit.x, []
     for n, k in enumerate(np.flatnonzero(problem.seen.joined)):
@@ -187,7 +205,8 @@ def _impacts(problem: Forced, fit: Fit, found: ForcedPosterior) -> tuple[Impact,
     return tuple(made)
 
 
-def _forced(problem: Forced, fit: Fit, noise: FloatArray, found: ForcedPosterior) -> ForcedRocking:
+def _forced(found: ForcedPosterior) -> ForcedRocking:
+    problem, fit, noise = found.problem, found.fit, found.noise
     seen, kind = problem.seen, problem.kinds[0]
     return ForcedRocking(
         clock=estimated(found.shared((CLOCK, 1.0))), gain=estimated(found.shared((GAIN + kind, 1.0)), 1.0),
@@ -208,19 +227,26 @@ def _friction(problem: Forced, fit: Fit, noise: FloatArray) -> IntervalEstimate:
     hessian = (hessian + np.diag(np.where(free, problem.precision, 0.0)))[np.ix_(free, free)]
     grid = np.geomspace(_LEAST, min(max(problem.demand(fit.x), 2.0 * _LEAST), 0.5 * _MOST), _TRIED)
     values = np.full(grid.size + 1, math.inf)
-    values[-1] = fit.terms.value(*how)
-    for n in range(grid.size)[::-1]:
-        terms = replace(problem, friction=float(grid[n])).terms(fit.x, 1).beside(fit.terms)
+    for n, friction in reversed(list(enumerate([*grid, NEVER_SLIDES]))):
+        terms = replace(problem, friction=float(friction)).terms(fit.x, 1).beside(fit.terms)
         pull = (terms.normal(*how)[1] - rest)[free]
-        if not np.isfinite(pull).all() or values[n + 1] > values.min() + 40.0:
+        if not np.isfinite(pull).all():
             break
         values[n] = terms.value(*how) - float(pull @ np.linalg.solve(hessian, pull))
-    weights = np.exp(-0.5 * (values - values.min()))  # Eq. 287
+        if values[n] > values.min() + _EXCLUDED:
+            break
+    weights = np.exp(-0.5 * (values - values.min()))  # Eq. 286
     weights[-1] *= math.log(_MOST / grid[-1]) / math.log(grid[1] / grid[0])
     share = np.cumsum(weights) / weights.sum()
-    if values[-1] - values.min() < _SLID:
-        return IntervalEstimate(math.nan, float(np.interp(0.05, share[:-1], grid)), math.nan)
-    return IntervalEstimate(*(float(np.interp(q, share[:-1], grid)) for q in LEVELS))
+    value, low, high = (float(np.interp(q, share[:-1], grid)) for q in LEVELS)
+    if values[-1] - values.min() > _SLID:
+        slid, held = (
+            fitted(replace(problem, friction=each), fit.x, noise, _GUESS, SAME_TIME).objective
+            for each in (value, NEVER_SLIDES)
+        )
+        if held - slid > _SLID:
+            return IntervalEstimate(value, low, high)
+    return IntervalEstimate(math.nan, float(np.interp(0.05, share[:-1], grid)), math.nan)
 
 
 def _foreseen(problem: Forced, x: FloatArray) -> float:

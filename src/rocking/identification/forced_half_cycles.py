@@ -108,7 +108,7 @@ class _Feet:
             sine, cosine = np.sin(self.alpha - y), np.cos(self.alpha - y)
             lever = sine + ratio * cosine
             free = -self.size * lever * (g * weight[j] - self.size * cosine * v**2)
-            return np.where(slides, free / (self.inertia + self.size**2 * sine * lever), held(y, v, j))  # Eq. 286
+            return np.where(slides, free / (self.inertia + self.size**2 * sine * lever), held(y, v, j))  # Eq. 285
 
         along, across = self.forces(y, v, turning(y, v, 0), push[1], weight[1])
         changed = self.speed + step * (ratio * across - along)

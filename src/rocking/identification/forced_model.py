@@ -155,7 +155,7 @@ class Forced:
             by[: index.size, GAIN + k] = value[0]
             by[:, OFFSET + k], by[:, DRIFT + k] = 1.0, self.line[at]
             whole = np.concatenate([value[0], np.zeros(self.rest.size)]) + x[OFFSET + k] + x[DRIFT + k] * self.line[at]
-            samples.append((getattr(self.series, KINDS[k])[at] - whole, by))
+            samples.append((getattr(self.series, KINDS[k])[at] - whole, by))  # Eq. 280
         owners = np.concatenate([which, np.full(self.rest.size, count)])
 
         def spread(own: FloatArray, k: IntArray) -> FloatArray:

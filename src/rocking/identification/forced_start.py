@@ -32,10 +32,11 @@ FEWEST = 3
 _SHARE, _SHARE_INTEGRATED = 0.01, 0.05  # of the range, least rotation that counts
 _STILL = 0.7  # of the acceleration that lifts a body: below it rests for certain
 _ANNEALED = ((0.3, 3e-3), (0.03, 1e-4))  # scatter, and within which time half cycles end where the next ones begin
-_TRIES = 5
+_TRIES = 8
 _ODD = 4.0  # of the usual mean square: no half cycle of rocking
 _TELLS, _TAKES = 0.3, 0.5  # of ln r: standard deviation beyond which, and amount beyond which it is no impact
-_LARGEST, _FEW, _BETWEEN = 12, 400, 0.02  # half cycles and samples by which a clock is sought, at so many seconds
+_LARGEST, _FEW, _BETWEEN = 12, 400, 0.02  # half cycles and samples by which a clock is sought, every so many seconds
+_AT_ONCE = 100
 SURE = 0.03
 """Standard deviation of a clock above which it is sought [s]."""
 
@@ -114,7 +115,8 @@ def sought(problem: Forced, clock: tuple[float, float]) -> float:
     large = samples >= np.sort(samples)[-min(_LARGEST, samples.size)]
     tried = replace(problem, seen=seen.parted(seen.joined, problem.series.time).kept(large))
     x, shifts = begun(tried, shared), np.arange(-3.0 * clock[1], 3.0 * clock[1] + _BETWEEN, _BETWEEN)
-    return clock[0] + float(shifts[np.argmin(_misfits(tried, x, shifts))])
+    parts = np.array_split(shifts, math.ceil(shifts.size / _AT_ONCE))
+    return clock[0] + float(shifts[np.argmin(np.concatenate([_misfits(tried, x, part) for part in parts]))])
 
 
 def _misfits(problem: Forced, x: FloatArray, shifts: FloatArray) -> FloatArray:
@@ -165,10 +167,10 @@ def first_fit(problem: Forced, shared: FloatArray) -> tuple[Forced, Fit, FloatAr
             break
         seen = problem.seen.parted(apart, problem.series.time).kept(sound)
         problem = replace(problem, seen=seen.kept(~seen.alone()), odd=problem.odd + int(np.sum(~sound)))
-    for scatter, same in _ANNEALED:
+    for scatter, same in _ANNEALED if math.isfinite(fit.objective) else ():
         fit = fitted(problem, fit.x, noise, scatter, same)
         noise = np.maximum(noise, deviations(problem, fit)) if fit.converged else noise
-    return problem, fit, noise
+    return (problem, fit, noise) if math.isfinite(fit.objective) and np.isfinite(fit.terms.times[0]).all() else None
 
 
 def _sound(problem: Forced, fit: Fit, noise: FloatArray) -> BoolArray:
@@ -187,4 +189,4 @@ def _apart(problem: Forced, fit: Fit, noise: FloatArray) -> BoolArray:
     root = np.linalg.inv(np.linalg.cholesky(hessian * scale[:, None] * scale + 1e-12 * np.eye(scale.size))) * scale
     spread = np.linalg.norm(root @ by.T, axis=0)
     with np.errstate(invalid="ignore"):
-        return ~((spread < _TELLS) & (np.abs(drawn) < _TAKES + 3.0 * spread))
+        return np.asarray(~((spread < _TELLS) & (np.abs(drawn) < _TAKES + 3.0 * spread)))

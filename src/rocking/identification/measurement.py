@@ -1,4 +1,4 @@
-"""What was measured of a body that rocks freely: when it hit the ground, or how it turned."""
+"""What was measured of a body that rocks: when it hit the ground, or how it turned."""
 
 from dataclasses import dataclass
 
@@ -66,7 +66,7 @@ class ImpactTimes:
 
 @dataclass(frozen=True, eq=False)
 class RotationSeries:
-    """How a body that rocks freely turned: its rotation, its angular velocity, or both, against time.
+    """How a body that rocks turned: its rotation, its angular velocity, or both, against time.
 
     Parameters
     ----------
@@ -80,6 +80,8 @@ class RotationSeries:
         Where they come from.
     doubts : tuple of str
         What the reader has to say against them.
+    from_acceleration : bool
+        Whether the rotation comes from an acceleration, to which a moving ground adds its own.
 
     Raises
     ------
@@ -97,6 +99,7 @@ class RotationSeries:
     angular_velocity: FloatArray | None = None
     source: str = ""
     doubts: tuple[str, ...] = ()
+    from_acceleration: bool = False
 
     def __post_init__(self) -> None:
         """Check the rows."""

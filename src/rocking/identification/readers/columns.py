@@ -145,7 +145,8 @@ def motion_series(source: Source, asked: Asked) -> RotationSeries | ImpactTimes:
     elif kind == "acceleration":
         values, said = rotation_of_acceleration(time, values, checks.length("height", asked.height))
         doubts += said
-    return RotationSeries(time, rotation=values, source=source.name, doubts=doubts)
+    felt = kind == "acceleration"
+    return RotationSeries(time, rotation=values, source=source.name, doubts=doubts, from_acceleration=felt)
 
 
 def clock_doubts(time: FloatArray) -> tuple[str, ...]:
