@@ -13,7 +13,7 @@ from rocking.dynamics.plane.equations import angular_acceleration, reactions
 from rocking.motions.motion import GroundMotion
 
 _LONGEST = 0.03  # step, as p times time
-_FINER = 4  # steps in one of these where feet may slide
+_FINER = 2  # steps in one of these where feet may slide
 
 
 @dataclass(frozen=True, eq=False)
