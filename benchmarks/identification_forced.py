@@ -58,9 +58,7 @@ def _followed(random: np.random.Generator) -> dict[str, Any] | None:
     width, centre = height * math.tan(alpha), 0.5 * height * random.uniform(0.9, 1.1)
     body = rk.Block(width=width, height=height, centre=(width * (0.5 + e), centre))
     across, up = np.exp(SIZE_ERROR * random.normal(size=2))
-    real = rk.Block(
-        width=width * across, height=height * up, centre=(width * across * (0.5 + e), centre * up)
-    )
+    real = rk.Block(width=width * across, height=height * up, centre=(width * across * (0.5 + e), centre * up))
     truth: dict[str, Any] = {"r": random.uniform(0.82, 0.95), "half": HALF_ERROR * random.normal()}
     truth |= {"scatter": random.uniform(0.01, 0.03), "tilt": TILT * random.normal()}
     kind = family(FAMILIES[random.integers(4)])
