@@ -146,7 +146,7 @@ V1_DAMAGES = [
     ("-12.345", "-12.34S", "number expected"),
     ("/&  ------", "   ------", "END OF DATA FOR CHANNEL expected"),
     ("SEC AND G/10", "SEC AND WHAT", "say units="),
-    ("SEC AND G/10", "SEC AND CM/SEC/SEC", "peak of 1.235"),
+    ("SEC AND G/10", "SEC AND CM/SEC/SEC", "MAX of 1.235"),
     ("MAX  = -1.235 G", "MAX  = 0.270 G", "MAX of 0.27, the data have 1.2345"),
     ("MAX  = -1.235 G", "MAX  = -1.236 G", "MAX of 1.236, the data have 1.2345"),
     ("MAX  = -1.235 G", "MAX  = -1.235 CM/SEC/SEC", "MAX of 1.235, the data have 1210"),

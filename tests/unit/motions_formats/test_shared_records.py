@@ -99,7 +99,6 @@ REFUSED = [
 ]
 
 
-@pytest.mark.filterwarnings("always")
 @pytest.mark.parametrize("wanted", WANTED, ids=lambda wanted: wanted.pattern)
 def test_once_refused_reads_as_its_header_states(shared_records: Path, wanted: Wanted) -> None:
     """Count, step, unit and peak are the header's, by one reader; what it doubts is said and kept."""

@@ -20,6 +20,7 @@ _UNIT = re.compile(r"(?<![\w/])(G/10|CM/SEC/SEC|CM/SEC2|GALS?|G)(?![\w/*])")
 _UNITS = {"G/10": "g/10", "CM/SEC/SEC": "cm/s2", "CM/SEC2": "cm/s2", "GAL": "gal", "GALS": "gal", "G": "g"}
 _STATED_MAX = re.compile(r"\bMAX\s*=(?:\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*(G/10|CM/SEC/SEC|CM/SEC2|GALS?|G)(?![\w/*]))?")
 _LENGTH, _PEAK, _PEAK_TIME = 2, 6, 7
+_UNKNOWN = -999.0  # of newer files
 _PAIRS = 10, 7  # columns of times and samples, and their width
 
 
@@ -69,13 +70,8 @@ class CsmipV1(RecordFormat):
         # the last line of the reals is written full or not
         last = -(-len(source.lines[after - 1].rstrip()) // 10)
         figures, line = fixed(source, reals, 48 + min(8, max(1, last)), 8, 10)
-        count = whole(
-            source,
-            first + _TEXT_LINES,
-            f"{next((wholes[k] for k in self._counts if wholes[k]), 0):.0f}",
-            "number of samples",
-            2,
-        )
+        stated = next((wholes[place] for place in self._counts if wholes[place]), 0.0)
+        count = whole(source, first + _TEXT_LINES, f"{stated:.0f}", "number of samples", 2)
         for text in header[:_TEXT_LINES]:
             if points := _POINTS.search(text[:LONGEST_LINE]):
                 check_count(source, int(points[1]), count)
@@ -95,22 +91,19 @@ class CsmipV1(RecordFormat):
         step = headers.step_between_samples(source, step, time_step)
         if self._end and not source.begins(behind, self._end):
             raise source.expected(behind, "END OF DATA FOR CHANNEL")
-        lasts = zero + (values.size - 1) * step
-        if figures[_LENGTH] > 0.0 and abs(figures[_LENGTH] - lasts) > step + 0.06:
-            source.doubt(
-                None, f"the header states a record of {figures[_LENGTH]:g} s, the last sample is at {lasts:g} s"
-            )
+        length, lasts = figures[_LENGTH], zero + (values.size - 1) * step
+        if length > 0.0 and abs(length - lasts) > step + 0.06:
+            source.doubt(None, f"the header states a record of {length:g} s, the last sample is at {lasts:g} s")
         in_g = ACCELERATION_UNITS[unit] / g
-        peak, at = (float(figures[place]) if self._has_peak else 0.0 for place in (_PEAK, _PEAK_TIME))
-        if peak:
+        told = _check_text(source, first, raw * ACCELERATION_UNITS[unit], headers.half_digit(printed) * in_g * g)
+        peak, at = (float(figures[place]) for place in (_PEAK, _PEAK_TIME))
+        if self._has_peak and peak not in {0.0, _UNKNOWN}:
             rounding = headers.half_digit(word(source, reals, _PEAK, 8, 10)) + in_g * headers.half_digit(printed)
             check_peak(source, peak, raw * in_g, rounding)
             headers.check_peak_time(source, at - zero, values * in_g, step, rounding)
-        told = _check_text(source, first, raw * ACCELERATION_UNITS[unit], headers.half_digit(printed) * in_g * g)
-        stated = abs(peak) / in_g if peak else None if told is None else told / ACCELERATION_UNITS[unit]
-        return (header, header[6][:LONGEST_LINE], Component("", values, unit, step, stated, done)), behind + bool(
-            self._end
-        )
+            told = abs(peak) * g
+        part = Component("", values, unit, step, told and told / ACCELERATION_UNITS[unit], done)
+        return (header, header[6][:LONGEST_LINE], part), behind + bool(self._end)
 
 
 class Usc(CsmipV1):
