@@ -2,6 +2,7 @@
 
 import hashlib
 import io
+import re
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from rocking.app.errors import NotFound, TooLarge
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
 from rocking.errors import RecordError
+from rocking.motions.formats import Component, Record, formats
 
 OCTETS = {"Content-Type": "application/octet-stream"}
 WAVE = 0.3 * np.sin(2.0 * np.pi * np.arange(800) * 0.01) * np.exp(-0.3 * np.arange(800) * 0.01)
@@ -50,6 +52,15 @@ def test_what_a_file_does_not_say_is_asked_for(client):
     assert told["needs"] == []
     assert np.isclose(told["components"][0]["peak_m_s2"], np.abs(np.round(WAVE, 6)).max() * 9.80665)
     assert told["record"] == asked["record"] == hashlib.sha256(BARE).hexdigest()
+
+
+def test_what_a_header_and_its_data_contradict_is_told(client):
+    """A peak at another time than the header's is read with a doubt; without one the answer has none."""
+    content = formats()["csmnc"].write(Record("", (Component("EW", WAVE, "m/s2", 0.01),)))
+    assert sent(client, content, "a.dat").json()["doubts"] == ""
+    late = sent(client, re.sub(rb"AT +\S+ SEC", b"AT  99.00 SEC", content), "a.dat").json()
+    assert late["needs"] == []
+    assert late["doubts"].startswith("a.dat: the header states the peak at 99 s, the data have it at")
 
 
 def test_several_components_are_asked_for(client):
