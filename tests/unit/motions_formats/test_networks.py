@@ -140,7 +140,7 @@ DAMAGES = {
         ("-16.986   AT", "-16.996   AT", "peak of EW of 16.996, the data have 16.9863"),
         ("AT   0.02 SEC", "AT   0.04 SEC", "doubt:states the peak at 0.04 s"),
         ("DURATION:  0.05 SEC", "DURATION:  0.09 SEC", "doubt:duration of 0.09 s"),
-        ("UNCORRECTED ACCELERATION ", "CORRECTED VELOCITY ", "accelerations are needed, the file holds a velocity"),
+        ("UNIT: CM/SEC/SEC", "UNIT: CM/SEC", "accelerations are needed, the file states CM/SEC, a velocity"),
         ("CM/SEC/SEC", "FURLONG", "unit CM/SEC/SEC expected"),
         ("-1.698632E+1", "-1.69863xE+1", "line 17: number expected"),
         ("INTERVALS OF:  0.005", "INTERVALS OF:  0.0o5", "NO. OF POINTS cannot be understood"),

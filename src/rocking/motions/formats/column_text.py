@@ -39,7 +39,7 @@ _SPELT = {"m/s/s": "m/s2", "cm/s/s": "cm/s2", "mm/s/s": "mm/s2", "m.s-2": "m/s2"
 _UNITS = ", ".join(ACCELERATION_UNITS)
 
 
-OTHERS = {"velocity", "displacement", "count of a recorder"}  # quantities that are taken for accelerations
+_TAKEN_FOR = {"velocity", "displacement", "count of a recorder"}  # quantities that are taken for accelerations
 
 
 @dataclass(frozen=True)
@@ -91,12 +91,20 @@ def kind_of(unit: str) -> tuple[str | None, str]:
     >>> kind_of("cm/s/s"), kind_of("cm/sec"), kind_of("furlong")
     (('cm/s2', 'acceleration'), (None, 'velocity'), (None, ''))
     """
-    behind = _plain(unit)
+    behind = _plain(unit if unit in ACCELERATION_UNITS else unit.replace("SEC", "sec"))
     small = _SPELT.get(behind.lower(), behind.lower())
     if behind in ACCELERATION_UNITS or small in _OF_ANY_CASE:
         return (behind if behind in ACCELERATION_UNITS else small), "acceleration"
     kinds = {"velocity": _VELOCITIES, "displacement": _LENGTHS, "count of a recorder": _COUNTS, "other": _OTHER_UNITS}
     return None, next((kind for kind, units in kinds.items() if small in units), "other" if small in _SECONDS else "")
+
+
+def unit_named(source: Source, line: int | None, word: str) -> str | None:
+    """Return which unit of acceleration a word is, or none; one of velocity, displacement or counts is refused."""
+    unit, kind = kind_of(word)
+    if kind in _TAKEN_FOR:
+        raise source.error(line, f"accelerations are needed, the file states {word[:20]}, a {kind}")
+    return unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +173,7 @@ class NamedColumns:
         if len(times) > 1:
             raise source.error(None, f"{_listed(times)} are both called a time; remove all but one")
         if not found:
-            kinds = {kind_of(one.behind)[1] for one in named} & OTHERS
+            kinds = {kind_of(one.behind)[1] for one in named} & _TAKEN_FOR
             hold = f", they hold {' and '.join(sorted(kinds))}" if kinds else ""
             raise source.error(
                 None,

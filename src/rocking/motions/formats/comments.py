@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 
 from rocking.motions.formats import headers, numbers
-from rocking.motions.formats.column_text import OTHERS, ColumnName, kind_of, names_on, readable
+from rocking.motions.formats.column_text import ColumnName, kind_of, names_on, readable, unit_named
 from rocking.motions.formats.record import Source
 
 _NUMBER = r"(\d*\.?\d+(?:[eE][-+]?\d+)?)"
@@ -47,20 +47,14 @@ class Said:
             if (found := _RATE.search(bare)) and (rate := numbers.number(source, line, found[1])) > 0.0:
                 step = 1.0 / rate
             for word in (*_UNIT.findall(bare), *_UNIT_OF.findall(bare)):
-                said, kind = kind_of(word.rstrip(".-"))
-                if kind in OTHERS:
-                    raise source.error(line, f"accelerations are needed, the file states {word}, a {kind}")
+                said = unit_named(source, line, word.rstrip(".-"))
                 unit = headers.acceleration_unit(source, unit, said) if said else unit
             called = names_on(bare)
             if called and len(called) == columns and any(kind_of(ColumnName.of(0, one).behind)[1] for one in called):
                 names = called
-        other = next((one for line, text in comments if (one := _OTHER.match(text[:200]))), None)
-        if (
-            other
-            and not unit
-            and not names
-            and not any(re.search("accel", text, re.IGNORECASE) for _, text in comments)
-        ):
+        spoken = " ".join(text for _, text in comments).lower()
+        other = next((one for _, text in comments if (one := _OTHER.match(text[:200]))), None)
+        if other and not unit and not names and "accel" not in spoken:
             headers.refuse_other(source, other[1])
         return cls(names, unit, step, count)
 

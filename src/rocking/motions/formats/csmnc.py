@@ -9,11 +9,11 @@ from typing import ClassVar
 import numpy as np
 
 from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.column_text import unit_named
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
 from rocking.motions.formats.said import after, said, side_by_side, text_said
 
 _HEADER = 16
-_UNITS = {"CM/SEC/SEC": "cm/s2", "CM/S/S": "cm/s2", "CM/S2": "cm/s2", "GAL": "gal"}
 
 
 class Csmnc(RecordFormat):
@@ -32,14 +32,11 @@ class Csmnc(RecordFormat):
         first = after(source, "PRE-EVENT TIME:", self.top)
         while first < len(source.lines) and not re.search(r"\d", source.lines[first]):
             first += 1
-        kind, unit = said(
-            source, first, "(?:UN)?CORRECTED", r"(ACCELERATION|VELOCITY|DISPLACEMENT)\s+UNIT:\s*(\S+)"
-        ).groups()
-        if kind.upper() != "ACCELERATION":
-            raise source.error(None, f"accelerations are needed, the file holds a {kind.lower()} in {unit}")
-        if unit.upper() not in _UNITS:
-            raise source.error(None, f"unit CM/SEC/SEC expected, found {unit[:20]!r}")
-        unit = headers.acceleration_unit(source, _UNITS[unit.upper()], units)
+        stated = said(source, first, "(?:UN)?CORRECTED", r"\w+\s+UNIT:\s*(\S+)")[1]
+        unit = unit_named(source, None, stated)
+        if unit is None:
+            raise source.error(None, f"unit CM/SEC/SEC expected, found {stated[:20]!r}")
+        unit = headers.acceleration_unit(source, unit, units)
         points = said(
             source, first, r"NO\. OF POINTS:", r"(\d{1,9})\s+EQUALLY SPACED INTERVALS OF:\s*(\d*\.?\d+)\s*SEC"
         )

@@ -8,7 +8,7 @@ import re
 from typing import ClassVar
 
 from rocking.motions.formats import headers, numbers
-from rocking.motions.formats.column_text import OTHERS, kind_of
+from rocking.motions.formats.column_text import unit_named
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
 
 _SIZE = re.compile(r"\s*(\d{1,9})[\s,]+(\d*\.\d+(?:[eE][-+]?\d+)?)[\s,]*")
@@ -49,10 +49,7 @@ class Eqsig(RecordFormat):
         names = " ".join(text.strip() for text in source.lines[:line])
         headers.refuse_other(source, names)
         said = re.search(r"\[([^\[\]]+)\]", names)
-        unit, kind = kind_of(said[1]) if said else (None, "")
-        if kind in OTHERS:
-            raise source.error(line - 1, f"accelerations are needed, the file states {said and said[1]}, a {kind}")
-        unit = headers.acceleration_unit(source, unit, units)
+        unit = headers.acceleration_unit(source, unit_named(source, None, said[1]) if said else None, units)
         values = numbers.rows(source, line + 1, len(source.lines))
         headers.check_count(source, int(found[1]), values.size)
         if values.size < 2:

@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking.errors import RecordError
 from rocking.motions.formats import headers, numbers
-from rocking.motions.formats.column_text import OTHERS, kind_of
+from rocking.motions.formats.column_text import unit_named
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
 
 _HEAD = re.compile(
@@ -72,10 +72,7 @@ def _channel(source: Source, first: int, last: int, units: str | None, time_step
     network, station, _, code, count, rate, start, layout, kind, word = found.groups()
     if kind == "ASCII":
         raise source.error(first, "the file holds text, no accelerations")
-    said, quantity = kind_of(word)
-    if quantity in OTHERS:
-        raise source.error(first, f"accelerations are needed, the file states {word}, a {quantity}")
-    unit = headers.acceleration_unit(source, said, units)
+    unit = headers.acceleration_unit(source, unit_named(source, first, word), units)
     step = headers.step_between_samples(source, 1.0 / float(rate) if float(rate) > 0.0 else 0.0, time_step)
     if layout == "SLIST":
         values = numbers.rows(source, first + 1, last)
