@@ -391,6 +391,7 @@ def test_remarks_say_nothing() -> None:
         "# dt unknown",
         "# filtered at 0.1 Hz, see units below",
         "# seed: 1",
+        "# Station PGA(g)",
     ):
         part = COLUMNS.read(_source(f"{remark}\n{PAIRS}"), "g").components[0]
         assert (part.unit, part.time_step, part.acceleration.tolist()) == ("g", 0.01, [0.1, -0.2, 0.3])

@@ -50,7 +50,10 @@ class Said:
                 said = unit_named(source, line, word.rstrip(".-"))
                 unit = headers.acceleration_unit(source, unit, said) if said else unit
             called = names_on(bare)
-            if called and len(called) == columns and any(kind_of(ColumnName.of(0, one).behind)[1] for one in called):
+            found_names = [ColumnName.of(place, one) for place, one in enumerate(called or ())]
+            # words with a unit somewhere are names if they name a time, or are accelerations all
+            named = any(one.is_time for one in found_names) or all(one.unit for one in found_names)
+            if len(found_names) == columns and named and any(kind_of(one.behind)[1] for one in found_names):
                 names = called
         spoken = " ".join(text for _, text in comments).lower()
         other = next((one for _, text in comments if (one := _OTHER.match(text[:200]))), None)
