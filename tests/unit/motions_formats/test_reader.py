@@ -245,14 +245,16 @@ def test_components_of_unequal_length_are_cut(made_up, tmp_path: Path) -> None:
         read_motion(path, component="90", vertical="UP")
 
 
-@pytest.mark.parametrize("name", [*TEXT_FORMATS, "columns"])
+@pytest.mark.parametrize(
+    "name", [*TEXT_FORMATS, "columns", "usc", "smc-boore", "csmnc", "unam", "itaca", "csn", "slist", "eqsig"]
+)
 def test_motions_come_back(name: str, tmp_path: Path) -> None:
-    """A motion written and read again is the same to the digits of the format, whatever its unit."""
+    """A motion written and read again without options is the same to the digits of the format, whatever its unit."""
     time = np.arange(200) * 0.01
     motion = GroundMotion(3.0 * np.sin(9.0 * time), 0.01, name="A made-up one", metadata={"component": "90"})
     path = tmp_path / "motion"
     write_motion(motion, path, name, units="cm/s2")
-    again = read_motion(path, units="cm/s2" if name == "columns" else None)
+    again = read_motion(path)
     # the coarsest, csmip-v1, has 0.001 g/10, half of which is 4.9e-4 m/s2
     np.testing.assert_allclose(again.acceleration, motion.acceleration, rtol=0.0, atol=4.91e-4)
     assert again.time_step == 0.01

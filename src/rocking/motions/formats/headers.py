@@ -155,7 +155,7 @@ def at_even_steps(
         step = max(
             round(one * 10.0**power, 9) for power in range(-6, 2) for one in (1, 2, 5) if one * 10.0**power <= usual
         )
-        if reach > 100.0 * usual * times.size:
+        if reach > 3.0 * usual * times.size:
             raise
     top = int(np.abs(values).argmax())
     before, behind = (int(span / step + 1e-9) for span in (times[top] - times[0], times[-1] - times[top]))
