@@ -105,7 +105,9 @@ def _geonet(text: str) -> list[Stated]:
 
 
 def _usc(text: str) -> list[Stated]:
-    return [Stated(one.samples, None) for one in _csmip_v1(re.sub(r"FILE +\d+ OF UNCORR", "UNCORR", text))]
+    lines = text.split("\n")
+    starts = [k for k, line in enumerate(lines) if re.match(r"\W*FILE +\d+ OF UNCORRECTED", line, re.IGNORECASE)]
+    return [Stated(int(_columns_of(lines[start + 13 : start + 20], 5)[27]), None) for start in starts]
 
 
 def _geonet_v1(text: str) -> list[Stated]:
