@@ -36,8 +36,8 @@ def record_set(
     records: list[Components] = []
     left_out: list[tuple[str, str]] = []
     for name in table.records or []:
+        _note(name, inputs)
         with located(f"records: {name}"):
-            _note(name, inputs)
             keys = (table.format, table.units, table.time_step)
             found = read_records(inputs.folder / name, *keys, workers=workers, progress=progress)
             if is_pattern(name) and found.left_out:  # these files were named
@@ -104,16 +104,15 @@ def stations_of(steps: Sequence[str]) -> Path | None:
 def _note(name: str, inputs: InputFiles) -> None:
     """Note the hash of every file that a name stands for."""
     path = inputs.folder / name
-    rows = rows_of_list(path)
-    if rows is not None:
-        inputs.file(name)
-        files = [path.parent / file for row in rows for file in row.files.values()]
-        paths = [each for each in files if each.is_file()]
+    if path.is_dir():
+        names = [(Path(name) / each.relative_to(path)).as_posix() for each in paths_of(path)]
+    elif (rows := rows_of_list(path)) is not None:
+        files = [Path(name).parent / file for row in rows for file in row.files.values()]
+        names = [name, *(each.as_posix() for each in files if (inputs.folder / each).is_file())]
     else:
-        paths = paths_of(path)
-    absolute = Path(name).is_absolute()
-    for each in paths:
-        inputs.file((each if absolute else each.relative_to(inputs.folder)).as_posix())
+        names = inputs.named(name)
+    for each in names:
+        inputs.file(each)
 
 
 def _scaled(part: Any, factor: float) -> Any:
