@@ -23,7 +23,7 @@ MARGIN = 1.001
 """Room for cubics, which leave the true response by less than 0.01 %, in the bound of what a step can hold [-]."""
 
 HIGH = 0.8  # samples whose state is so large, compared with the largest, give the first guess of the peaks [-]
-TOGETHER = 120_000  # steps times periods that are held at once: for more, the system is asked for room each time
+TOGETHER = 90_000  # steps times periods that are held at once: for more, the system is asked for room each time
 _BLOCK = 16  # samples of a row that follow one another in the recurrence of its states
 
 SHORTEST_PERIOD = 0.05  # shortest period in time steps: below, the record says nothing about what the oscillator feels
