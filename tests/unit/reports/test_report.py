@@ -71,12 +71,12 @@ def test_a_missing_package_costs_its_part_alone(missing, kept, said, folder, mon
     monkeypatch.setattr(paper_folder, "as_plain", lambda *_: {})
     monkeypatch.setattr(paper_folder, "write_html", lambda content, _, path: write_html(content, folder, path))
     monkeypatch.setattr(paper_folder, "render_pdf", lambda content, _, path: render_pdf(content, folder, path))
-    figures = SimpleNamespace(paper_figures=dict)
+    figures = SimpleNamespace(paper_figures=lambda data: {})
     monkeypatch.setitem(sys.modules, "rocking.plots.paper_figures", figures)
     monkeypatch.setitem(sys.modules, missing, None)
     if missing == "matplotlib":
-        figures.paper_figures = lambda: {"body": lambda: body_picture(Block(width=1.0, height=2.0))}
-    written, left_out = paper_folder.write_folder(None, folder / "out", lambda _: None)
+        figures.paper_figures = lambda data: {"body": lambda: body_picture(Block(width=1.0, height=2.0))}
+    written, left_out = paper_folder.write_folder(SimpleNamespace(data=None), folder / "out", lambda _: None)
     assert [path.name for path in written] == kept
     assert all(path.is_file() for path in written)
     assert len(left_out) == 1

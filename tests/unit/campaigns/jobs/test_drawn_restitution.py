@@ -85,7 +85,9 @@ def test_labels():
     values = 'values = [0.95, 1.0, 0.9]\ntimes = "housner"\nseed = 1'  # draws may multiply a model
     assert label_of(values) == "drawn per impact: 3 values from 0.9 to 1, seed 1"
     wanted = "drawn per impact: 30 values of the posterior of the measurements, seed 8"
-    assert label_of("posterior = true\ncount = 30") == wanted
+    cut = percent(restitution_distribution(4.0).cut["left"])
+    beyond = f" (of the distribution {cut} cut off, where impacts would create energy)"
+    assert label_of("posterior = true\ncount = 30") == wanted + beyond
     cut = percent(restitution_distribution(80.0).cut["left"])
     assert label_of("posterior = true", body=BODY.replace("2.0", "40.0")) == (
         "drawn per impact: posterior of the measurements (extrapolated in slenderness), seed 8"
