@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking.cli import options
+from rocking.cli import completion, options
 from rocking.cli.page import Page, bar, deliver
 from rocking.errors import InvalidValueError
 from rocking.spec.document import InventoryTable
@@ -43,7 +43,13 @@ def inventory(
     seed: Annotated[
         int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.", rich_help_panel=_SHAKING)
     ] = None,
-    restitution: options.Restitution = "ked",
+    restitution: Annotated[
+        str | None,
+        typer.Option(
+            help="Model as in rocking models, or a coefficient; calibrated if not given, in three dimensions ked.",
+            autocompletion=completion.models,
+        ),
+    ] = None,
     friction: options.Friction = None,
     units: options.RecordUnits = None,
     sets: options.Set = None,
@@ -120,7 +126,9 @@ def _problem(context: typer.Context) -> "StudyProblem":
         motions = [arguments.motion_table(word) for word in named] if synthetic is None else [synthetic]
         if pulse := next((motion["pulse"] for motion in motions if "pulse" in motion), None):
             raise InvalidValueError(f"--motion takes record files here, got the pulse {pulse[:80]!r}")
-        tables = {"restitution": {"model": options["restitution"]}, "inventory": table}
+        tables: dict[str, Any] = {"inventory": table}
+        if options["restitution"] is not None:
+            tables["restitution"] = {"model": options["restitution"]}
         return problem_of("inventory", arguments, [in_lists(motion) for motion in motions], **tables)
 
 

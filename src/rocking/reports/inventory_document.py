@@ -1,5 +1,7 @@
 """The report of an inventory: the ranked table with its lights, and what they do and do not say."""
 
+from collections.abc import Sequence
+
 from rocking.conventions import g
 from rocking.reports.document import Cell, Document, Paragraph, ReportSection, made_with, table
 from rocking.statistics.counts import share_interval
@@ -87,12 +89,13 @@ def _not_assessed(assessment: Assessment) -> ReportSection:
 def _numbers(assessment: Assessment) -> ReportSection:
     header = [
         "object", "along", "light", "stays still up to [g]", "lifted [%]", "overturned",
-        f"{percent(assessment.thresholds.level)} interval [%]", "median", "84 %", f"light by {assessment.comparison}",
+        f"{percent(assessment.thresholds.level)} interval [%]", "median", "84 %",
+        *(f"light by {name}" for name in assessment.comparisons),
     ]  # fmt: skip
     rows = [
-        _numbered(each, one, two, assessment)
+        _numbered(each, one, others, assessment)
         for each in assessment.verdicts
-        for one, two in zip(each.results, each.compared, strict=True)
+        for one, *others in zip(each.results, *each.compared, strict=True)
     ]
     note = (
         "Stays still: horizontal acceleration g b/h below which nothing moves. Median, 84 %: quantiles of the peak "
@@ -103,15 +106,17 @@ def _numbers(assessment: Assessment) -> ReportSection:
     return ReportSection("The numbers", [numbers] if rows else [])
 
 
-def _numbered(verdict: Verdict, one: DirectionResult, two: DirectionResult, assessment: Assessment) -> list[object]:
+def _numbered(
+    verdict: Verdict, one: DirectionResult, others: Sequence[DirectionResult], assessment: Assessment
+) -> list[object]:
     low, high = share_interval(one.overturned, one.count, assessment.thresholds.level)
     worse = " (worse)" if one is verdict.worse else ""
     still, lifted = rounded_down(one.uplift_acceleration / g, 3), f"{100.0 * one.lifted_share:.0f}"
     shares = f"{one.overturned} of {one.count}", f"{100.0 * low:.1f} to {100.0 * high:.1f}"
     rotations = rotation_words(one.median_rotation), rotation_words(one.high_rotation)
-    other = _light(two.light, "plain" if two.light is one.light else None)
+    beside = [_light(each.light, "plain" if each.light is one.light else None) for each in others]
     name, along = verdict.item.name, f"{one.direction}{worse}"
-    return [name, along, _light(one.light), still, lifted, *shares, *rotations, other]
+    return [name, along, _light(one.light), still, lifted, *shares, *rotations, *beside]
 
 
 def _meaning(assessment: Assessment) -> ReportSection:
@@ -129,8 +134,8 @@ def _shaking(assessment: Assessment) -> ReportSection:
             f"{hazard.source[:1].upper()}{hazard.source[1:]}; {hazard.words()}, PGV {low:.3g} to {high:.3g} m/s."
         ),
         Paragraph(
-            f"Impacts by {assessment.restitution}; beside it {assessment.comparison}. Where the two show different "
-            "lights, the loss of energy at an impact decides, and the more careful of the two is the prudent choice."
+            f"Impacts by {assessment.restitution}; beside it {' and '.join(assessment.comparisons)}. Where they show "
+            "different lights, the loss of energy at an impact decides, and the most careful is the prudent choice."
         ),
     ]
     if hazard.synthetic:

@@ -157,8 +157,8 @@ def _fragility(problem: StudyProblem, options: dict[str, Any]) -> Any:
 
 def inventory_of(
     problem: StudyProblem,
-) -> "tuple[Inventory, Callable[[Callable[[int], None] | None], Hazard], Thresholds]":
-    """Return the objects of an inventory, what makes its motions, and where its lights change."""
+) -> "tuple[Inventory, Callable[[Callable[[int], None] | None], Hazard], Thresholds, Any]":
+    """Return the objects of an inventory, what makes its motions, where its lights change, and the stated model."""
     from rocking.studies.inventory import Thresholds, read_inventory
     from rocking.studies.inventory.hazard import Hazard, IntensityLevel
     from rocking.studies.motion_sets import SyntheticSet
@@ -167,6 +167,7 @@ def inventory_of(
     assert table is not None  # the document refuses to be without
     if len(problem.restitutions) > 1:
         raise InvalidValueError("restitution: an inventory takes one; that of Housner stands beside it")
+    stated = problem.restitution if "restitution" in problem.document.model_fields_set else None
     try:
         limits = Thresholds(**table.thresholds.model_dump(exclude_none=True))
     except InvalidValueError as error:  # which begins with the key
@@ -191,16 +192,16 @@ def inventory_of(
             records = [motions[k] for k in range(len(motions))]
             return Hazard.of_records(records, level)  # type: ignore[arg-type]  # pulses are refused by the document
 
-    return objects, hazard, limits
+    return objects, hazard, limits, stated
 
 
 def _inventory(problem: StudyProblem, options: dict[str, Any]) -> Any:
     from rocking.studies.inventory import assess
 
-    objects, hazard, limits = inventory_of(problem)
+    objects, hazard, limits, restitution = inventory_of(problem)
     settings, motions = problem.settings, hazard(options["progress"])
     return assess(
-        objects, motions, restitution=problem.restitution, thresholds=limits, gravity=settings.gravity,
+        objects, motions, restitution=restitution, thresholds=limits, gravity=settings.gravity,
         friction=settings.friction, threads=options["threads"],
     )  # fmt: skip
 

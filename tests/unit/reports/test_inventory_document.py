@@ -29,7 +29,7 @@ chest;120;60;50;;hall
 def assessment():
     """A red, an amber and two green objects, and a row that says nothing."""
     hazard = Hazard.of_family("point-source", IntensityLevel.of("PGA", "0.3g"), count=100, seed=3)
-    return assess(parse_inventory(TEXT, "list.csv"), hazard)
+    return assess(parse_inventory(TEXT, "list.csv"), hazard, restitution="ked")
 
 
 def page(assessment):

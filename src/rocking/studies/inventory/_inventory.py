@@ -41,7 +41,7 @@ _OF_DIRECTIONS = {
 def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     objects: str | Path | Inventory | Sequence[InventoryObject],
     motions: str | Hazard | GroundMotion | Sequence[GroundMotion] = FAMILY,
-    restitution: Any = "ked",
+    restitution: Any = None,
     *,
     pga: str | float | None = None,
     pgv: str | float | None = None,
@@ -62,7 +62,8 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     motions : str, Hazard, GroundMotion or sequence of GroundMotion
         The family of synthetic motions, or records; each acts in either direction by itself.
     restitution : str, RestitutionModel, float or mapping
-        Model of impact; the verdict of Housner's stands beside it (of KED, if Housner's was asked for).
+        Model of impact; the verdict of Housner's stands beside it (of KED, if Housner's was asked for). The calibrated
+        default if not given, with both beside it; in three dimensions KED.
     pga, pgv : str or float, optional
         Peak ground acceleration or velocity to which every motion is scaled, such as ``"0.3g"`` or ``"25cm/s"``, a
         number in SI; synthetic motions need one of the two, records are taken as they are without [m/s2 or m/s].
@@ -135,8 +136,10 @@ def dataset_of(assessment: Assessment) -> "xr.Dataset":
     """Return an assessment as a labelled dataset."""
     xarray = extra("xarray", "inventory")
     verdicts, sentences = assessment.verdicts, assessment.thresholds.sentences()
-    results = [one for of_model in ("results", "compared") for each in verdicts for one in getattr(each, of_model)]
-    shape = (2, len(verdicts), len(DIRECTIONS))
+    names = [assessment.restitution, *assessment.comparisons]
+    by_model = [[each.results for each in verdicts], *zip(*(each.compared for each in verdicts), strict=True)]
+    results = [one for of_model in by_model for results in of_model for one in results]
+    shape = (len(names), len(verdicts), len(DIRECTIONS))
 
     def table(name: str, kind: type, words: str) -> tuple[Any, np.ndarray, dict[str, str]]:
         values = [np.inf if (value := getattr(one, name)) is None else value for one in results]
@@ -164,7 +167,7 @@ def dataset_of(assessment: Assessment) -> "xr.Dataset":
         "object": [each.item.name for each in verdicts],
         "row": ("object", [each.item.row for each in verdicts], {"units": "1", "long_name": "line of its file"}),
         "direction": list(DIRECTIONS),
-        "restitution": [assessment.restitution, assessment.comparison],
+        "restitution": names,
         "end": ["low", "high"],
         "not_assessed": [each.name for each in assessment.not_assessed],
     }

@@ -69,7 +69,7 @@ class Verdict:
 
     item: InventoryObject  # the object
     results: tuple[DirectionResult, ...]  # one for each direction, by the model of impact that was asked for
-    compared: tuple[DirectionResult, ...]  # the same by the other model
+    compared: tuple[tuple[DirectionResult, ...], ...]  # the same by each of the other models
     interval: tuple[float, float]  # interval of the share that overturns in the worse direction [-]
     friction: float | None = None  # of an object that moves in three dimensions; None for one that rocks in a plane [-]
 
@@ -79,9 +79,9 @@ class Verdict:
         return max(self.results, key=lambda each: each.severity)
 
     @property
-    def worse_compared(self) -> DirectionResult:
-        """The direction that governs by the other model."""
-        return max(self.compared, key=lambda each: each.severity)
+    def worse_compared(self) -> tuple[DirectionResult, ...]:
+        """The direction that governs, by each of the other models."""
+        return tuple(max(results, key=lambda each: each.severity) for results in self.compared)
 
     @property
     def uplift_acceleration(self) -> float:
@@ -95,8 +95,8 @@ class Verdict:
 
     @property
     def model_decides(self) -> bool:
-        """Whether the other model of impact would show another light."""
-        return self.worse_compared.light is not self.light
+        """Whether another model of impact would show another light."""
+        return any(each.light is not self.light for each in self.worse_compared)
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,8 +107,8 @@ class Assessment:
     not_assessed: tuple[NotAssessed, ...]  # rows without a verdict
     hazard: Hazard  # the motions
     thresholds: Thresholds  # what the lights mean
-    restitution: str  # restitution, comparison: the two models of impact, in words
-    comparison: str
+    restitution: str  # restitution, comparisons: the models of impact, in words
+    comparisons: tuple[str, ...]
     source: str = "objects"  # name of the inventory
     ignored: tuple[str, ...] = ()  # columns of the file that were not read
     gravity: float = g  # acceleration of gravity [m/s2]
@@ -121,15 +121,12 @@ class Assessment:
 PIECE = 1 << 18
 """Histories held in memory at once unless one object has more."""
 
-# the one asked for and the one beside it
-_MODELS = 2
-
 
 def assess(
     inventory: Inventory | Sequence[InventoryObject],
     hazard: Hazard,
     *,
-    restitution: Any = "ked",
+    restitution: Any = None,
     thresholds: Thresholds | None = None,
     gravity: float = g,
     friction: float | None = None,
@@ -184,14 +181,14 @@ def assessment_plan(
     inventory: Inventory | Sequence[InventoryObject],
     hazard: Hazard,
     *,
-    restitution: Any = "ked",
+    restitution: Any = None,
     thresholds: Thresholds | None = None,
     gravity: float = g,
     friction: float | None = None,
 ) -> tuple[Product, Callable[[Arrays], Assessment], tuple[InventoryObject, ...]]:
     """Return the histories of an assessment, what makes it of their results, and the objects, for campaigns.
 
-    The histories are over motion, object and direction, one scale, and the two models of impact.
+    The histories are over motion, object and direction, one scale, and the models of impact.
     """
     assessor = _Assessor(inventory, hazard, restitution, thresholds, gravity, friction)
     if any(map(assessor.in_space, assessor.inventory.objects)):
@@ -225,17 +222,18 @@ class _Assessor:
         self.hazard, self.thresholds = hazard, thresholds or Thresholds()
         self.gravity = checks.positive("gravity", gravity, "m/s2")
         is_housner = restitution == "housner" or getattr(restitution, "name", None) == "housner"
-        self.restitutions = (restitution, "ked" if is_housner else "housner")
+        beside = ("ked",) if is_housner else ("housner",)
+        self.restitutions = ("calibrated", "housner", "ked") if restitution is None else (restitution, *beside)
+        # nothing that was measured rocks in space: there the default is the paper's model, and both others stand beside
+        self.spatial = ("ked", "housner", "ked") if restitution is None else self.restitutions
         # a wrong word is the user's slip, not that of every row: it is refused here
         example = Block(width=1.0, height=4.0)
-        self.label, self.other_label = (
-            RockingParameters.of_body(example, each, self.gravity).label for each in self.restitutions
-        )
+        self.labels = tuple(RockingParameters.of_body(example, each, self.gravity).label for each in self.restitutions)
 
     def pieces(self) -> Iterator[Sequence[InventoryObject]]:
         """Yield objects whose histories fit into a piece: an inventory of any length takes no more memory."""
         objects = [item for item in self.inventory.objects if not self.in_space(item)]
-        many = max(1, PIECE // (len(self.hazard.motions) * len(DIRECTIONS) * _MODELS))
+        many = max(1, PIECE // (len(self.hazard.motions) * len(DIRECTIONS) * len(self.labels)))
         for first in range(0, len(objects), many):
             yield objects[first : first + many]
 
@@ -259,7 +257,7 @@ class _Assessor:
                 items.append(item)
         if not items:
             return None, items, refused
-        sides = {name: values.reshape(-1, _MODELS) for name, values in sides_of(parameters).items()}
+        sides = {name: values.reshape(-1, len(self.labels)) for name, values in sides_of(parameters).items()}
         settings = Settings(gravity=self.gravity)
         return Product(MotionList(self.hazard.motions), sides, np.ones(1), settings=settings), items, refused
 
@@ -267,7 +265,7 @@ class _Assessor:
         self, items: Sequence[InventoryObject], product: Product, results: Arrays
     ) -> Iterator[Verdict | NotAssessed]:
         """Yield a verdict of each object: from outcome, rotation over the slenderness angle, and loss of contact."""
-        shape = (len(product.motions), len(items), len(DIRECTIONS), _MODELS)
+        shape = (len(product.motions), len(items), len(DIRECTIONS), len(self.labels))
         outcome = results["outcome"].reshape(shape)
         peak = np.abs(results["peak_rotation"].reshape(shape))
         ratio = peak / product.sides["alpha_right"].reshape(shape[1:])
@@ -287,13 +285,16 @@ class _Assessor:
         shaking = [components_of(motion) for motion in self.hazard.motions]
         motions = MotionList([(x, None, up) for x, _, up in shaking] + [(None, x, up) for x, _, up in shaking])
         stated = self.friction if item.friction is None else item.friction
-        found = []
+        found: list[Any] = []
         try:
             body = item.in_space()
             settings = settings_of(self.gravity, {"friction": stated}, body)
             assert settings.friction is not None
             lifts = [min(settings.friction * self.gravity, each) for each in _uplift(body, self.gravity)]
-            for restitution in self.restitutions:
+            for restitution in self.spatial:
+                if (first := self.spatial.index(restitution)) < len(found):
+                    found.append(found[first])
+                    continue
                 word = getattr(restitution, "name", restitution)
                 parameters = RockingParameters.of_body(body, word, self.gravity, friction=settings.friction)
                 sides = {name: values[None] for name, values in sides_of([parameters]).items()}
@@ -313,16 +314,16 @@ class _Assessor:
     ) -> Verdict | NotAssessed:  # fmt: skip
         if (outcome == Outcome.FAILED.code).all(axis=0).any():
             return NotAssessed(item.row, item.name, "no motion could be computed in one of its directions")
-        of_model, of_other = (
+        of_model, *of_others = (
             tuple(
                 self._direction(way, lifts[j], outcome[:, j, model], ratio[:, j, model], lost[:, j, model])
                 for j, way in enumerate(DIRECTIONS)
             )
-            for model in range(_MODELS)
+            for model in range(len(self.labels))
         )
         worse = max(of_model, key=lambda each: each.severity)
         interval = share_interval(worse.overturned, worse.count, self.thresholds.level)
-        return Verdict(item, of_model, of_other, interval, friction)
+        return Verdict(item, of_model, tuple(of_others), interval, friction)
 
     def _direction(
         self, way: Direction, lifts: float, outcome: np.ndarray, ratio: FloatArray, lost: FloatArray
@@ -347,7 +348,7 @@ class _Assessor:
         verdicts.sort(key=lambda each: (each.worse.severity, -each.item.row), reverse=True)
         refused.sort(key=lambda each: each.row)
         return Assessment(
-            tuple(verdicts), tuple(refused), self.hazard, self.thresholds, self.label, self.other_label,
+            tuple(verdicts), tuple(refused), self.hazard, self.thresholds, self.labels[0], self.labels[1:],
             source=self.inventory.source, ignored=self.inventory.ignored, gravity=self.gravity,
         )  # fmt: skip
 

@@ -13,7 +13,7 @@ from rocking.tables import escaped
 HEADER = (
     "rank", "light", "name", "count", "row", "worse direction", "uplift acceleration [g]", "motions", "lifted",
     "overturned", "overturned, low [%]", "overturned, high [%]", "median rotation / angle", "84 % rotation / angle",
-    "light by the other model", "in words", "what to do", "note",
+    "light by other models", "in words", "what to do", "note",
 )  # fmt: skip
 """Columns of the table in files."""
 
@@ -23,6 +23,7 @@ def rows(assessment: Assessment) -> list[list[str | float | int]]:
     lines: list[list[str | float | int]] = []
     for rank, verdict in enumerate(assessment.verdicts, start=1):
         worse, item, (low, high) = verdict.worse, verdict.item, verdict.interval
+        others = "; ".join(f"{name}: {word}" for name, word in _lights(verdict, assessment).items())
         rotations = (
             rotation_words(each) if each is None else round(each, 3)
             for each in (worse.median_rotation, worse.high_rotation)
@@ -30,7 +31,7 @@ def rows(assessment: Assessment) -> list[list[str | float | int]]:
         lines.append([
             rank, f"{verdict.light.value} {verdict.light.word}", escaped(item.name), item.count, item.row,
             worse.direction, round(verdict.uplift_acceleration / g, 4), worse.count, worse.lifted, worse.overturned,
-            round(100.0 * low, 2), round(100.0 * high, 2), *rotations, verdict.worse_compared.light.word,
+            round(100.0 * low, 2), round(100.0 * high, 2), *rotations, others,
             sentence(verdict, assessment),
             f"{advice(verdict, assessment)} {model_note(verdict, assessment)}".strip(), escaped(item.note),
         ])  # fmt: skip
@@ -69,7 +70,7 @@ def as_plain(assessment: Assessment) -> dict[str, Any]:
             "pgv_range_m_s": [low, high],
         },
         "restitution": assessment.restitution,
-        "comparison": assessment.comparison,
+        "comparisons": list(assessment.comparisons),
         "thresholds": dict(vars(limits)) | {light.word: words for light, words in limits.sentences().items()},
         "counts": {light.word: count for light, count in assessment.counts().items()}
         | {"not_assessed": len(assessment.not_assessed)},
@@ -96,8 +97,11 @@ def _plain(rank: int, verdict: Verdict, assessment: Assessment) -> dict[str, Any
         "overturned_interval": list(verdict.interval),
         "friction": verdict.friction,
         "directions": [_direction(each) for each in verdict.results],
-        "directions_by_comparison": [_direction(each) for each in verdict.compared],
-        "light_by_comparison": verdict.worse_compared.light.word,
+        "directions_by_comparison": {
+            name: [_direction(each) for each in results]
+            for name, results in zip(assessment.comparisons, verdict.compared, strict=True)
+        },
+        "light_by_comparison": _lights(verdict, assessment),
         "model_decides": verdict.model_decides,
         "in_words": sentence(verdict, assessment),
         "what_to_do": advice(verdict, assessment),
@@ -134,7 +138,8 @@ LIMITS = (
     "Each motion acts once along the width and once along the depth; the worse direction counts. Rocking in both "
     "directions at once, twisting and rolling on the rim of a round base are not computed.",
     "Each direction is a rectangle of the outer size, on the base that is given; where no height of the centre of mass "
-    "is given it is half the height. With a friction or a body file the object moves in three dimensions instead.",
+    "is given it is half the height. With a friction or a body file the object moves in three dimensions instead, by "
+    "KED where no model was asked for, as nothing was measured there.",
     "Blows from neighbours, shaking loose, and damage without falling are not assessed.",
 )
 """What every report says about the assumptions."""
@@ -169,13 +174,19 @@ def advice(verdict: Verdict, assessment: Assessment) -> str:
     return f"{how} Until then keep people and other objects out of its reach."
 
 
+def _lights(verdict: Verdict, assessment: Assessment) -> dict[str, str]:
+    pairs = zip(assessment.comparisons, verdict.worse_compared, strict=True)
+    return {name: each.light.word for name, each in pairs}
+
+
 def model_note(verdict: Verdict, assessment: Assessment) -> str:
-    """Return whether the model of impact decides, as a sentence; empty if both models show the same light."""
-    if not verdict.model_decides:
-        return ""
-    other = verdict.worse_compared
-    share = f"{other.overturned} of {other.count}"
-    return f"The model of impact decides: {assessment.comparison} shows {other.light.word} ({share} overturn)."
+    """Return whether the model of impact decides, as a sentence; empty if all models show the same light."""
+    pairs = zip(assessment.comparisons, verdict.worse_compared, strict=True)
+    others = [
+        f"{name} shows {each.light.word} ({each.overturned} of {each.count} overturn)"
+        for name, each in pairs if each.light is not verdict.light
+    ]  # fmt: skip
+    return f"The model of impact decides: {', '.join(others)}." if others else ""
 
 
 def rotation_words(value: float | None) -> str:

@@ -114,7 +114,7 @@ def test_every_history(job, tmp_path):
     found = xr.load_dataset(export(folder, tmp_path / "all.nc"), engine="h5netcdf")
     assert found["object"].values.tolist() == ["tall vase", "cabinet", "column"]
     assert found["row"].values.tolist() == [2, 3, 4]
-    fell = (found["outcome"] == 2).sum("motion").sel(restitution="asked").max("direction")
+    fell = (found["outcome"] == 2).sum("motion").sel(restitution="calibrated").max("direction")
     verdicts = {each.item.name: each.worse.overturned for each in assessment(folder).verdicts}
     assert dict(zip(found["object"].values.tolist(), fell.values.tolist(), strict=True)) == verdicts
 

@@ -91,24 +91,29 @@ def product_study(problem: StudyProblem) -> Study:
 def inventory_study(problem: StudyProblem) -> Study:
     """Return the study of an inventory.
 
-    Returns over motion, object, direction and the model of impact: the one asked for and the one beside it.
+    Returns over motion, object, direction and the model of impact: the one asked for and those beside it.
     """
-    objects, motions, limits = inventory_of(problem)
+    objects, motions, limits, restitution = inventory_of(problem)
     hazard = motions(None)
     with located("inventory"):
         product, finish, items = assessment_plan(
-            objects, hazard, restitution=problem.restitution, thresholds=limits, gravity=problem.settings.gravity,
+            objects, hazard, restitution=restitution, thresholds=limits, gravity=problem.settings.gravity,
             friction=problem.settings.friction,
         )  # fmt: skip
+    names = ("asked", "compared") if restitution is not None else ("calibrated", "housner", "ked")
     dims = dict(
-        zip(("motion", "object", "direction", "restitution"), (len(hazard.motions), len(items), 2, 2), strict=True)
+        zip(
+            ("motion", "object", "direction", "restitution"),
+            (len(hazard.motions), len(items), 2, len(names)),
+            strict=True,
+        )
     )
     coordinates = {
         "motion": motions_along(product.motions),
         "object": labels_along("object", (item.name for item in items), "name of the object"),
         "row": along("object", [item.row for item in items], "1", "line of the object in its file"),
         "direction": labels_along("direction", DIRECTIONS, "direction of the shaking"),
-        "restitution": labels_along("restitution", ("asked", "compared"), "model of impact"),
+        "restitution": labels_along("restitution", names, "model of impact"),
     }
     attributes = {"shaking": hazard.words(), "hazard": hazard.source, "objects": objects.source}
     return Study(product, dims, coordinates, attributes, assess=finish)
