@@ -62,13 +62,13 @@ def test_inventory_is_the_assessment():
     labelled = rk.inventory(OBJECTS, RECORDS, pga="0.3g")
     found = assess(OBJECTS, Hazard.of_records([r.scaled(0.3 * 9.80665 / r.peak) for r in RECORDS]))
     assert labelled["object"].values.tolist() == [v.item.name for v in found.verdicts] == ["vase", "chest"]
-    assert labelled["restitution"].values.tolist() == [found.restitution, found.comparison]
+    assert labelled["restitution"].values.tolist() == [found.restitution, *found.comparisons]
     for place, verdict in enumerate(found.verdicts):
         one = labelled.isel(object=place)
         assert str(one["light"].values) == verdict.light.word
         assert tuple(one["overturned_share_95"].values) == verdict.interval
         assert float(one["uplift_acceleration"]) == verdict.uplift_acceleration
-        for model, results in enumerate((verdict.results, verdict.compared)):
+        for model, results in enumerate((verdict.results, *verdict.compared)):
             for result in results:
                 cell = one.isel(restitution=model).sel(direction=result.direction)
                 for name in ("count", "lifted", "overturned", "failed", "lost_contact"):
