@@ -6,7 +6,6 @@ namespace rocking::hull {
 
 constexpr double kSingular = 1e-12, kStraight = 1e-12;
 constexpr int kTurns = 60, kNewton = 20, kTries = 6;
-constexpr double kAlmost = 1e-3, kAmple = 1e3;  // what is left of a direction, and the violation, that decide before its end
 constexpr double kNearly = 1e-2;  // change of directions from which Newton goes on
 constexpr double kSwing = 1e-7;  // by which a direction is turned for the slope
 constexpr std::size_t kCorners = 8;  // of a facet with more no single one sticks
@@ -239,13 +238,13 @@ inline bool solved(int n, double t[][kCorners + 1]) {
 }
 
 // What forces on a few vertices do to their rates, in axes of the ground.
-struct Table {
+struct Yields {
     static constexpr std::size_t kMost = 4;
     Points at;
     Vec free[kMost];
     Mat yields[kMost][kMost];  // columns: rate of one by a unit of force at another
 
-    Table(const Problem& p, const Points& vertices) : at(vertices) {
+    Yields(const Problem& p, const Points& vertices) : at(vertices) {
         const Mat &axes = p.axes, &soft = p.body->inverse, turns{axes * (soft * axes.a), axes * (soft * axes.b), axes * (soft * axes.c)};
         const double light = 1.0 / p.body->mass;
         Vec arms[kMost];
@@ -263,7 +262,7 @@ struct Table {
 
 // What spares a candidate work: forces on those that touch, what it does without sliding, and the violation from which it is out.
 struct Aid {
-    const Table* table;
+    const Yields* table;
     const Solution* holding;
     double limit;
 };
@@ -302,9 +301,7 @@ class Rubbing {
     Vec rate(int k) const { return table_ ? rate_of(by_[k]) : p_.axes * p_.rate(s_.contact.members[k], s_.linear, s_.angular); }
 
     // The rest of the solution after `act`, unless it clearly breaks a law.
-    bool all() { return doomed(1.0) || (write(), solve(p_, s_)); }
-    // Whether a law is broken by so many times what is of no use.
-    bool doomed(double times) { return s_.doomed = table_ && breaks(times * limit_); }
+    bool all() { return (s_.doomed = table_ && breaks()) || (write(), solve(p_, s_)); }
 
     // Turns the direction of the only vertex that starts to slide: the other forces follow from its own, and leave one equation
     // for its angle (Newton). False where that fails, or there is no table.
@@ -420,18 +417,18 @@ class Rubbing {
         return made;
     }
 
-    bool breaks(double limit) const {
-        const double slack = limit * p_.body->mass;
+    bool breaks() const {
+        const double slack = limit_ * p_.body->mass;
         for (std::size_t k = 0; k < n_; ++k)
             if (x_[k] < -slack || (by_[k] == one_ && std::hypot(x_[n_], x_[n_ + 1]) > p_.friction * x_[k] + slack * (1.0 + p_.friction))) return true;
         for (int i = 0; i < static_cast<int>(table_->at.size()); ++i)
-            if (rate_of(i).z < -limit) return true;
+            if (rate_of(i).z < -limit_) return true;
         return false;
     }
 
     const Problem& p_;
     Solution& s_;
-    const Table* table_;
+    const Yields* table_;
     double limit_, x_[5];
     std::size_t n_;
     int one_ = -1, by_[3];
@@ -465,7 +462,6 @@ inline bool turned(const Points& free, const Numbers& soft, Rubbing& rub) {
             if (!across(r)) return false;
             continue;
         }
-        if (size <= kAlmost && rub.doomed(kAmple)) return true;
         const double before = size;
         for (int j = 0; j < n; ++j) from[j] = rub.ways[free[j]], table[j][n] = -r[j];
         for (int j = 0; j < n; ++j) {

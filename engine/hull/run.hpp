@@ -641,7 +641,7 @@ class Run {
                 return;
             }
             begin(members, way.stuck == kNobody ? Points{} : Points{way.stuck});
-            if (near_.size() <= Table::kMost && !table_) table_.emplace(p_, near_);
+            if (near_.size() <= Yields::kMost && !table_) table_.emplace(p_, near_);
             finish(sliding(p_, still_, {table_ ? &*table_ : nullptr, &hold(way.face), limit_}, made_.back()));
         }
 
@@ -684,7 +684,7 @@ class Run {
         std::vector<Held> holding_;
         Few<Way> ways_;
         std::vector<Solution> made_;
-        std::optional<Table> table_;
+        std::optional<Yields> table_;
         std::size_t next_ = 0;
     };
 
