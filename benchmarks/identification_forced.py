@@ -39,7 +39,7 @@ def shaken(number: int, kind: str = "rotation", clock: float = CLOCK) -> dict[st
         truth = _followed(random)
         if truth is not None:
             break
-    response, noise = truth.pop("response"), random.normal(0.0, 1.0, 3)
+    response, noise = truth["response"], random.normal(0.0, 1.0, 3)
     truth |= {"clock": clock * noise[0], "gain": math.exp(SIZE_ERROR * noise[1])}
     times = np.arange(0.0, response.time[-1] - 0.2, 1.0 / RATE)
     ground = np.clip(times - truth["clock"], 0.0, response.time[-1])

@@ -7,7 +7,7 @@ import numpy as np
 from rocking.conventions import BoolArray, FloatArray, IntArray
 
 _NOISES = 6.0  # least rotation over the noise
-_FEWEST = 5  # samples
+_FEWEST = 7  # samples
 _STEEP = 0.6  # of the speed before: slower across zero it rested in between
 
 

@@ -16,15 +16,15 @@ from rocking.errors import InvalidValueError
 from rocking.identification import forced_start
 from rocking.identification.forced_model import (
     CLOCK,
-    FREQUENCY,
     GAIN,
     HALF,
+    HEIGHT,
     MEAN,
     SAME_TIME,
     SIZE,
-    SLENDERNESS,
     TILT,
     TREND,
+    WIDTH,
     Fit,
     Forced,
     fitted,
@@ -173,12 +173,15 @@ def answer(found: ForcedPosterior) -> Identification:
         doubts.append(f"{problem.odd} half cycles are none of rocking alone under this motion, and are left out.")
     if not fit.converged:
         doubts.append("The maximum of the posterior was not found: intervals may be wrong.")
-    p = math.sqrt(math.prod(body.side(foot).frequency_parameter for foot in FEET))
+    sides = [body.side(foot) for foot in FEET]
+    p = math.sqrt(math.prod(side.frequency_parameter for side in sides))
+    half = 0.5 * float(np.mean([math.sin(side.slenderness_angle) ** 2 for side in sides]))
     residuals = np.concatenate([residual for residual, _ in fit.terms.samples])
     one = float(noise[0])
     return Identification(
         source=series.source, refused=tuple(refused), doubts=tuple(doubts), mean=r, coefficients=coefficients,
-        scatter=scatter, frequency_parameter=estimated(found.shared((FREQUENCY, 1.0)), p),
+        scatter=scatter,
+        frequency_parameter=estimated(found.shared((WIDTH, -half), (HEIGHT, half - 0.5)), p),
         tilt=estimated(found.shared((TILT, 1.0))),
         trend=estimated(found.shared((TREND, 1.0))) if known.trend else None, damping=None,
         impacts=_impacts(found), residuals=residuals, noise=IntervalEstimate(one, one, one),
@@ -255,10 +258,9 @@ def _foreseen(problem: Forced, x: FloatArray) -> float:
     parameters = RockingParameters.of_body(body, dict.fromkeys(FEET, 0.0), Settings().gravity)
     sides = {}
     for foot, sign in (("right", 1.0), ("left", -1.0)):
-        side = getattr(parameters, foot)
+        alpha, p, _ = problem.sides(sign, x[WIDTH], x[HEIGHT], x[TILT])
         sides[foot] = replace(
-            side, slenderness_angle=side.slenderness_angle * math.exp(x[SLENDERNESS]) - sign * x[TILT],
-            frequency_parameter=side.frequency_parameter * math.exp(x[FREQUENCY]),
+            getattr(parameters, foot), slenderness_angle=float(alpha), frequency_parameter=float(p),
             coefficient=math.exp(x[MEAN] + sign * x[HALF]),
         )  # fmt: skip
     segments, rotations = problem.motion.segments(), []

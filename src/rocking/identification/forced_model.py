@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -20,17 +21,17 @@ from rocking.identification.measurement import RotationSeries
 from rocking.identification.prior import Knowledge
 from rocking.motions.motion import GroundMotion
 
-SHARED = (MEAN, HALF, FREQUENCY, SLENDERNESS, TILT, TREND, CLOCK) = tuple(range(7))
-"""As in the state space; by how much the clock of the measurement is ahead of that of the motion [s]."""
+SHARED = (MEAN, HALF, WIDTH, HEIGHT, TILT, TREND, CLOCK) = tuple(range(7))
+"""As in the state space; ln of widths and heights over those of the body; by how much the clock is ahead [s]."""
 GAIN, OFFSET, DRIFT = 7, 9, 11  # of rotation, and one further of angular velocity: ln, and over half the time
 SIZE = 13
 KINDS = ("rotation", "angular_velocity")
 
-SAME_TIME = 1e-5  # within which a half cycle ends when the next one begins [s]
+SAME_TIME = 1e-4  # within which a half cycle ends when the next one begins [s]
 STEP = 1e-6
 _DAMPED, _CLOSE = 1e-3, 5e-3  # at most, where the objective no longer changes by more
 _LONGEST = 1.0  # change of any unknown at a time, in its own unit
-_MOST = 3000
+_MOST, _EDGE = 3000, 1  # samples that are compared, and at the edge of what is seen that are not
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +95,13 @@ class Forced:
     @cached_property
     def samples(self) -> tuple[IntArray, IntArray]:
         """Samples that are compared, and of which half cycle each is."""
-        pieces = [np.arange(a, b + 1) for a, b in zip(self.seen.first, self.seen.last, strict=True)]
+        seen, time = self.seen, self.series.time
+        first, last = seen.first + _EDGE, seen.last - _EDGE
+        if self.series.angular_velocity is None:  # up to the impacts, so that no sample is chosen by its noise
+            near = 1.5 * float(np.median(np.diff(time)))
+            first = np.where(seen.joined, np.searchsorted(time, seen.begin + near), first)
+            last = np.where(np.append(seen.joined[1:], False), np.searchsorted(time, seen.end - near) - 1, last)
+        pieces = [np.arange(a, b + 1) for a, b in zip(first, last, strict=True)]
         which = np.repeat(np.arange(len(pieces)), [piece.size for piece in pieces])
         stride = max(1, math.ceil(which.size / _MOST))
         return np.concatenate(pieces)[::stride], which[::stride]
@@ -105,23 +112,30 @@ class Forced:
         time = self.series.time
         return np.asarray((time - 0.5 * (time[0] + time[-1])) / (0.5 * (time[-1] - time[0])))
 
+    def sides(self, sign: Any, width: Any, height: Any, tilt: Any) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return slenderness angle [rad], p [rad/s] and R [m] over the right foot, where sign is 1, or the left one."""
+        body = self.known.body
+        assert body is not None
+        right, left = (body.side(foot) for foot in ("right", "left"))
+        across, up, p, size = (
+            np.where(np.asarray(sign) > 0.0, getattr(right, name), getattr(left, name))
+            for name in ("half_width", "centre_height", "frequency_parameter", "semi_diagonal")
+        )
+        across, up = across * np.exp(width), up * np.exp(height)
+        real = np.hypot(across, up)
+        return np.arctan2(across, up) - sign * tilt, p * np.sqrt(size / real), real
+
     def flights(self, x: FloatArray, moved: FloatArray) -> tuple[Flights, FloatArray]:
         """Half cycles from unknowns, and from those with a few of them moved; and when they begin [s]."""
         seen, states = self.seen, x[SIZE:].reshape(-1, 2)
         z = (np.concatenate([x[:SIZE], [0.0, 0.0]]) + moved)[:, :, None]
         first, second = states[:, 0] + z[:, -2], states[:, 1] + z[:, -1]
         begin = np.where(seen.joined, first, seen.begin)
-        body = self.known.body
-        assert body is not None
-        right, left = (body.side(foot) for foot in ("right", "left"))
-        on_right = seen.sign > 0.0
-        alpha = np.where(on_right, right.slenderness_angle, left.slenderness_angle) * np.exp(z[:, SLENDERNESS])
-        p = np.where(on_right, right.frequency_parameter, left.frequency_parameter) * np.exp(z[:, FREQUENCY])
-        size = np.where(on_right, right.semi_diagonal, left.semi_diagonal)
+        alpha, p, size = self.sides(seen.sign, z[:, WIDTH], z[:, HEIGHT], z[:, TILT])
         turning = np.where(seen.joined, np.exp(np.minimum(second, 5.0)), second)
         rows = (
-            begin - z[:, CLOCK], np.where(seen.joined, 0.0, first), turning, alpha - seen.sign * z[:, TILT], p,
-            np.broadcast_to(size, p.shape), np.broadcast_to(seen.sign, p.shape),
+            begin - z[:, CLOCK], np.where(seen.joined, 0.0, first), turning, alpha, p, size,
+            np.broadcast_to(seen.sign, p.shape),
         )  # fmt: skip
         lasts = seen.end - seen.begin
         length = 1.15 * lasts + 0.05 * lasts.mean() + np.clip(seen.begin - begin[0], 0.0, lasts)
@@ -135,7 +149,7 @@ class Forced:
     def terms(self, x: FloatArray, moves: int = 7) -> Terms:
         """Return what unknowns miss, with slopes by finite differences; without slopes if moves is 1."""
         seen, (index, which), count = self.seen, self.samples, self.seen.sign.size
-        common = (FREQUENCY, SLENDERNESS, TILT, CLOCK)
+        common = (WIDTH, HEIGHT, TILT, CLOCK)
         moved = np.zeros((7, SIZE + 2))
         moved[np.arange(1, 7), [SIZE, SIZE + 1, *common]] = STEP
         flights, begin = self.flights(x, moved[:moves])

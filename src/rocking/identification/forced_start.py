@@ -12,11 +12,15 @@ from rocking.identification.forced_model import (
     DRIFT,
     GAIN,
     HALF,
+    HEIGHT,
     KINDS,
     MEAN,
     OFFSET,
     SIZE,
     STEP,
+    TILT,
+    TREND,
+    WIDTH,
     Fit,
     Forced,
     fitted,
@@ -31,7 +35,7 @@ FEWEST = 3
 
 _SHARE, _SHARE_INTEGRATED = 0.01, 0.05  # of the range, least rotation that counts
 _STILL = 0.7  # of the acceleration that lifts a body: below it rests for certain
-_ANNEALED = ((0.3, 3e-3), (0.03, 1e-4))  # scatter, and within which time half cycles end where the next ones begin
+_ANNEALED = ((0.3, 3e-3), (0.03, 5e-4))  # scatter, and within which time half cycles end where the next ones begin
 _TRIES = 8
 _ODD = 4.0  # of the usual mean square: no half cycle of rocking
 _TELLS, _TAKES = 0.3, 0.5  # of ln r: standard deviation beyond which, and amount beyond which it is no impact
@@ -50,10 +54,9 @@ def problem_of(series: RotationSeries, known: Knowledge, motion: GroundMotion, c
     still = motion.time[strong[0]] if strong.size else 0.0
     rest = np.flatnonzero(series.time < still + clock[0] - 3.0 * clock[1])
     mean[MEAN], deviation[MEAN], deviation[HALF] = -0.1, 0.2, 0.5 * known.asymmetry
-    deviation[2:6] = (
-        known.frequencies[0][1], math.sqrt(2.0) * known.size_error, known.tilt_error, 0.05 if known.trend else 0.0
-    )  # fmt: skip
-    mean[4] = known.tilt
+    deviation[[WIDTH, HEIGHT]], deviation[TILT] = known.size_error, known.tilt_error
+    deviation[TREND] = 0.05 if known.trend else 0.0
+    mean[TILT] = known.tilt
     mean[CLOCK], deviation[CLOCK] = clock
     for k, kind in enumerate(KINDS):
         if (values := getattr(series, kind)) is not None:
