@@ -82,6 +82,9 @@ def _followed(random: np.random.Generator) -> dict[str, Any] | None:
         response = rk.simulate(
             real, floor, RandomRestitution(by_side, int(random.integers(1 << 30))), duration=floor.duration
         )
+    sides = response.parameters.right, response.parameters.left
+    if min(side.share for side in sides) < 1.0:  # draws that would create energy were cut off: the mean is another
+        return None
     if response.outcome.name != "ROCKED" or response.impacts.size < 6 or response.peak_rotation < 0.1 * alpha:
         return None
     return truth | {"body": body, "motion": motion, "response": response}
