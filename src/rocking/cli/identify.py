@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rocking.spec.identification import IdentifiedTrials
     from rocking.spec.reading import InputFiles
 
-TABLES = ("body", "measurement", "identify")
+TABLES = ("body", "measurement", "motion", "identify")
 _TELLING = 3
 """Experiments that are told."""
 
@@ -65,6 +65,9 @@ def identify(
         str | None,
         typer.Argument(help="What was measured: sound (.wav, .flac), table (.csv, .txt, .xlsx), or a folder."),
     ] = None,
+    motion: Annotated[
+        list[str] | None, typer.Option(help="Record of the ground under it, or a pulse, if it did not rock freely.")
+    ] = None,
     width: options.Width = None,
     height: options.Height = None,
     depth: options.Depth = None,
@@ -78,7 +81,7 @@ def identify(
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print the coefficient of restitution that a measurement of free rocking says, with its interval."""
+    """Print the coefficient of restitution that a measurement of rocking says, with its interval."""
     from rocking.cli.arguments import as_typed
     from rocking.spec.identification import IdentificationProblem
 
@@ -128,6 +131,8 @@ def _question(context: typer.Context, words: list[str]) -> "tuple[Identification
         "measurement": arguments.table("measurement", {"file": measured[0]}),
         "identify": arguments.table("identify", {}),
     }
+    if motions := arguments.options["motion"]:
+        document["motion"] = arguments.one_motion(motions)
     if bodies or arguments.sizes or arguments.sets.get("body"):
         document["body"] = arguments.body_table(bodies[0] if bodies else None)
     return checked(IdentificationDocument, document), CommandFiles(Path())
@@ -163,6 +168,8 @@ class IdentifiedAnswer:
         page.line(found.verdict, style="bold")
         for foot in FEET:
             page.line(f"Landing {foot}: {found.coefficients[foot]}.")
+        if found.forced:
+            page.line(str(found.forced))
         page.line()
         rows = [
             (str(i.number), f"{i.time:.4f}", i.onto, f"{i.speed:.4g}", f"{i.coefficient.value:.4f}",
@@ -191,8 +198,11 @@ def _facts(found: "Identification") -> list[tuple[str, str]]:
         ("p", f"{p} rad/s"),
         ("tilt of the floor", f"{1e3 * tilt.value:.3g} ({1e3 * tilt.low:.3g} to {1e3 * tilt.high:.3g}) mrad"),
         ("noise", f"{1e3 * noise.value:.3g} {unit}"),
-        ("steadiness", f"p = {found.p_value:.2g} that impacts change with their number by chance alone"),
     ]
+    if found.p_value == found.p_value:
+        lines += [("steadiness", f"p = {found.p_value:.2g} that impacts change with their number by chance alone")]
+    if found.forced:
+        lines += [("clock, ahead by", f"{found.forced.clock} s"), ("gain", str(found.forced.gain))]
     lines += [(f"impulse, {foot}", f"k = {each}") for foot, each in found.impulse.items()]
     return lines + [(name, str(getattr(found, name))) for name in ("trend", "damping") if getattr(found, name)]
 

@@ -176,7 +176,9 @@ def answer(found: ForcedPosterior) -> Identification:
     sides = [body.side(foot) for foot in FEET]
     p = math.sqrt(math.prod(side.frequency_parameter for side in sides))
     half = 0.5 * float(np.mean([math.sin(side.slenderness_angle) ** 2 for side in sides]))
-    residuals = np.concatenate([residual for residual, _ in fit.terms.samples])
+    at = np.concatenate([problem.samples[0], problem.rest])
+    order = np.argsort(at)
+    residuals = np.concatenate([residual[order] for residual, _ in fit.terms.samples])
     one = float(noise[0])
     return Identification(
         source=series.source, refused=tuple(refused), doubts=tuple(doubts), mean=r, coefficients=coefficients,
@@ -188,7 +190,8 @@ def answer(found: ForcedPosterior) -> Identification:
         independent=float(residuals.size), p_value=math.nan, advantage=advantage, converged=fit.converged,
         impulse={} if refused else impulses(body, coefficients), models=() if refused else compared(body, r),
         designs=(), _next={foot: next_impact(each, found.scatter) for foot, each in by_side.items()},
-        forced=_forced(found),
+        measurement=series, residual_times=np.tile(series.time[at[order]], len(problem.kinds)),
+        quantiles=next_impact(mean, 0.0), forced=_forced(found),
     )  # fmt: skip
 
 

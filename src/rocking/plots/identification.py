@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _LOOKS = {"left": (COLORS[1], "<"), "right": (COLORS[0], ">")}
 _UNITS = {"rotation": "rad", "angular_velocity": "rad/s"}
-_MOST_NAMES = 30
+_MOST_NAMES, _GAP = 30, 5.0
 _R = "coefficient of restitution r [-]"
 
 
@@ -110,7 +110,9 @@ def _turned(axes: "Axes", found: Identification) -> None:
     # of two quantities, that which is drawn comes first
     count = int(np.argmax(np.append(np.diff(found.residual_times) < 0.0, True))) + 1
     at = found.residual_times[:count]
-    axes.plot(at, np.interp(at, time, values) - found.residuals[:count], color=INK, linewidth=0.8)
+    fit = np.interp(at, time, values) - found.residuals[:count]
+    fit[np.append(np.diff(at) > _GAP * np.median(np.diff(at)), False)] = np.nan  # what was left out is not drawn
+    axes.plot(at, fit, color=INK, linewidth=0.8)
     axes.set_ylabel(f"{name.replace('_', ' ')} [{_UNITS[name]}]")
 
 

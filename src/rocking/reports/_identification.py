@@ -88,14 +88,15 @@ def _document_of(found: Identification, name: str, date: str) -> Document:
         "over, and what each impact took",
     )
     doubts = [ReportSection("What there is to say against it", [*map(Paragraph, found.doubts)])] if found.doubts else []
+    forced = [Paragraph(str(found.forced))] if found.forced else []
     sections = [ReportSection("What was measured", [picture]), *doubts]
     if not found.refused:
         sections = [
-            ReportSection("What was found", [picture, _found(found)]),
+            ReportSection("What was found", [picture, _found(found), *forced]),
             *doubts,
             *_compared(found.models),
             ReportSection("What each impact took", [_impacts(found)]),
-            ReportSection("What experiment would tell more", [_designs(found)]),
+            *([ReportSection("What experiment would tell more", [_designs(found)])] if found.designs else []),
         ]
     sections.append(ReportSection("How it was found", [Paragraph(_HOW)]))
     subtitle = ". ".join(each for each in (found.source, date) if each)

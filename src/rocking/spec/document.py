@@ -351,6 +351,9 @@ class IdentifyTable(JobTable):
     asymmetry: float | None = _key("standard deviation of ln r landing right less left; 0.06 if not given [-]")
     trend: bool | None = _key("fit a change of r with the speed")
     damping: bool | None = _key("fit damping between impacts")
+    clock: float | list[float] | None = _key(
+        "under a motion: standard deviation of the clock against that of the motion, or [ahead, deviation]; 0.02 [s]"
+    )
     first: Literal["left", "right"] | None = _key("foot on which it stands after the first impact, of times")
 
 
@@ -552,10 +555,14 @@ class IdentificationDocument(JobTable):
 
     body: dict[str, Any] | None = None
     measurement: MeasurementTable
+    motion: OneMotionTable | None = None
     identify: IdentifyTable = Field(default_factory=IdentifyTable)
 
     @model_validator(mode="after")
-    def _a_pair(self) -> "IdentificationDocument":
-        if isinstance(self.identify.tilt, list) and len(self.identify.tilt) != 2:
-            raise refused(f"identify.tilt is one number, or [tilt, deviation], got {self.identify.tilt}")
+    def _pairs(self) -> "IdentificationDocument":
+        for name in ("tilt", "clock"):
+            if isinstance(pair := getattr(self.identify, name), list) and len(pair) != 2:
+                raise refused(f"identify.{name} is one number, or a value and its deviation, got {pair}")
+        if self.identify.clock is not None and self.motion is None:
+            raise refused("identify.clock goes with [motion]: it is of both clocks")
         return self

@@ -25,7 +25,7 @@ from rocking.errors import InvalidValueError, RockingError
 from rocking.identification import Identification, IntervalEstimate, ModelComparison, identify, read_measurement
 from rocking.identification.readers.reader import ENDINGS, SOUNDS
 from rocking.identification.results import compared
-from rocking.spec.construction import body_of
+from rocking.spec.construction import body_of, motion_of
 from rocking.spec.reading import InputFiles, located
 from rocking.tables import Column, Table, text_array, to_csv
 from rocking.version import SOFTWARE
@@ -71,7 +71,11 @@ class IdentificationProblem:
                 body = body_of(document.body, inputs)
         reading = document.measurement.model_dump(exclude_none=True, exclude={"file"})
         path = inputs.folder / document.measurement.file
-        return cls(path, body, reading, document.identify.model_dump(exclude_none=True))
+        options = document.identify.model_dump(exclude_none=True)
+        if document.motion is not None:
+            with located("motion"):
+                options["motion"] = motion_of(document.motion, inputs).scaled(document.motion.scale)
+        return cls(path, body, reading, options)
 
     @property
     def trials(self) -> list[Path]:
@@ -144,7 +148,7 @@ class IdentificationProblem:
         """Return a hash of everything that a row hangs on."""
         sides = [self.body.side(foot) for foot in FEET] if self.body is not None else []
         body = [(each.slenderness_angle, each.frequency_parameter) for each in sides]
-        asked = json.dumps([SOFTWARE, body, self.reading, self.options], sort_keys=True)
+        asked = json.dumps([SOFTWARE, body, self.reading, self.options], sort_keys=True, default=_digest)
         return hashlib.sha256(asked.encode() + path.suffix.lower().encode() + path.read_bytes()).hexdigest()[:32]
 
 
@@ -236,6 +240,12 @@ def _table(rows: Iterable[Row], provenance: Mapping[str, Any] | None = None) -> 
     for name in ("refused", "doubts", "question"):
         columns[name] = Column(text_array([row[name] for row in listed]), "", _TEXTS[name])
     return Table("trial", columns, provenance or {})
+
+
+def _digest(motion: Any) -> str:
+    """Return what tells a motion from others."""
+    values = getattr(motion, "acceleration", np.zeros(0))
+    return f"{motion!r} {hashlib.sha256(np.ascontiguousarray(values).tobytes()).hexdigest()}"
 
 
 def _header_of(path: Path) -> list[str]:
