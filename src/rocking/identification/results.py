@@ -141,12 +141,11 @@ class ForcedRocking:
 
     def __str__(self) -> str:
         """Return it in sentences."""
-        slid = math.isfinite(self.friction.value)
-        friction = (
-            f"The coefficient of friction is {self.friction}."
-            if slid
-            else f"Friction is not identified: it never slid; it is {self.friction.low:.2g} at least."
-        )
+        least = f"Friction is not identified: {{}}; it is {self.friction.low:.2g} at least."
+        if math.isfinite(self.friction.value):
+            friction = f"The coefficient of friction is {self.friction}."
+        else:
+            friction = least.format("where it was followed it never slid" if self.odd else "it never slid")
         return (
             f"Identified from {self.seen:.3g} s of half cycles out of {self.measured:.3g} s, begun anew in "
             f"{self.stretches} measured states. From rest the motion is told up to {self.foreseen:.3g} s only: beyond, "

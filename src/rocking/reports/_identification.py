@@ -18,6 +18,11 @@ _HOW = (
     "tilt of the floor and the frequency parameter, within what is known of the body. Intervals are of 95 %, of the "
     "posterior."
 )
+_FORCED = (
+    "Between two impacts the body follows its equation of motion under the ground that was recorded. Half cycles begin "
+    "anew where they were measured; at every impact the coefficient is drawn about a mean of its side. Intervals are "
+    "of 95 %, of the posterior."
+)
 _TRIALS = (
     "Each trial is looked at by itself. The mean is that of the logarithms, with Student's t interval from how trials "
     "differ; what is common to all, such as an error of the size of the body, is not in it."
@@ -98,7 +103,7 @@ def _document_of(found: Identification, name: str, date: str) -> Document:
             ReportSection("What each impact took", [_impacts(found)]),
             *([ReportSection("What experiment would tell more", [_designs(found)])] if found.designs else []),
         ]
-    sections.append(ReportSection("How it was found", [Paragraph(_HOW)]))
+    sections.append(ReportSection("How it was found", [Paragraph(_FORCED if found.forced else _HOW)]))
     subtitle = ". ".join(each for each in (found.source, date) if each)
     mark = "bad" if found.refused else "fair" if found.doubts else "good"
     return Document(
