@@ -132,7 +132,6 @@ class CalibrationAnswer:
         }
 
     def show(self, page: Page) -> None:
-        from rocking.cli.paper import show_league
         from rocking.evidence import verdict
         from rocking.evidence.hierarchy import sentence_of
 
@@ -159,3 +158,17 @@ class CalibrationAnswer:
 
 def _different(words: tuple[str, ...]) -> list[str]:
     return [word for word in dict.fromkeys(words) if word]
+
+
+def show_league(page: Page, league: "tuple[LeagueRow, ...]", count: int) -> None:
+    """Print how all models fare."""
+    page.line(f"\nLeague: RMSE of r over {count} measurements, in bands of h/b; log error of the energy loss", "bold")
+    rows = [
+        (
+            f"  {row.name}", f"{row.rmse:.4f}", f"{row.bias:+.3f}", *(f"{value:.3f}" for value in row.by_band.values()),
+            f"{row.log_loss_rmse:.3f}", f"{row.bic:.1f}",
+        )
+        for row in league
+    ]  # fmt: skip
+    head = ("  model", "RMSE", "bias", "<=3", "3-6", ">6", "loss", "BIC")
+    page.table(head, rows, head[:1], bold={k for k, row in enumerate(league) if row.name in {"ked", "housner"}})

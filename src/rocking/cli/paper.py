@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking.cli.evidence import Selection
+from rocking.cli.evidence import Selection, show_league
 from rocking.cli.page import Page, bar, print_json
 
 if TYPE_CHECKING:
-    from rocking.evidence._league import LeagueRow
     from rocking.reports.paper_document import Reproduction
 
 
@@ -90,17 +89,3 @@ def _claims(result: "Reproduction") -> Any:
         style = styles.get(claim.verdict, "dim")
         table.add_row(f"  [{style}]{claim.verdict}[/]", claim.section, claim.quote)
     return table
-
-
-def show_league(page: Page, league: "tuple[LeagueRow, ...]", count: int) -> None:
-    """Print how all models fare."""
-    page.line(f"\nLeague: RMSE of r over {count} measurements, in bands of h/b; log error of the energy loss", "bold")
-    rows = [
-        (
-            f"  {row.name}", f"{row.rmse:.4f}", f"{row.bias:+.3f}", *(f"{value:.3f}" for value in row.by_band.values()),
-            f"{row.log_loss_rmse:.3f}", f"{row.bic:.1f}",
-        )
-        for row in league
-    ]  # fmt: skip
-    head = ("  model", "RMSE", "bias", "<=3", "3-6", ">6", "loss", "BIC")
-    page.table(head, rows, head[:1], bold={k for k, row in enumerate(league) if row.name in {"ked", "housner"}})
