@@ -3,6 +3,8 @@
 Here 200 bodies; `make identification` has 10,000, and goes on where it stopped.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 from benchmarks import identification
@@ -10,9 +12,8 @@ from benchmarks import identification
 import rocking as rk
 from rocking.identification import ImpactTimes, identify
 from rocking.identification.design import bound, one_impact_bound, peaks_bound, settling_bound
-from rocking.identification.half_cycles import duration, overturning_speed
+from rocking.identification.half_cycles import duration, overturning_speed, peak
 from rocking.identification.posterior import Noise, posterior
-from rocking.identification.series import Peaks
 from rocking.identification.state_space import FREQUENCY, MEAN, SHARED, SPEED, START, Clicks, Model
 from rocking.identification.times import start
 
@@ -62,6 +63,25 @@ def test_the_bound_of_a_whole_experiment():
     """Ten intervals from half of the slenderness angle, 1 ms; the reference is of the slender formula."""
     assert bound(ALPHA, P, 0.0, R, 0.0, peak=0.5, impacts=11, noise=1e-3) == pytest.approx(6.9e-5, rel=0.01)
     assert bound(ALPHA, P, 10.0, R, 0.0, peak=0.5, impacts=11, noise=1e-3) == pytest.approx(3.85e-4, rel=0.01)
+
+
+@dataclass
+class Peaks:
+    """The largest rotation of each half cycle, without its sign."""
+
+    measured: np.ndarray
+
+    @property
+    def count(self):
+        return self.measured.size
+
+    def residuals(self, path):
+        value = peak(path.y, path.alpha)
+        # of cos(alpha - peak) = cos(alpha) + 2 sin(alpha/2)^2 y^2
+        fall = np.sin(path.alpha - value)
+        by_y = 4.0 * np.sin(0.5 * path.alpha) ** 2 * path.y**2 / fall
+        by_alpha = 1.0 - np.sin(path.alpha) * (1.0 - path.y**2) / fall
+        return self.measured - value, by_y[..., None] * path.y_slopes + by_alpha[..., None] * path.alpha_slopes
 
 
 def _estimates(count, y, r, noise, repeats, *, peaks=False, unknown_p=False):

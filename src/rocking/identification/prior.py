@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import Foot, IntArray, opposite
+from rocking.conventions import Foot, IntArray
 from rocking.errors import InvalidValueError
 from rocking.identification import state_space
 from rocking.identification.state_space import SHARED, Model
@@ -102,8 +102,3 @@ class Knowledge:
         deviation[state_space.TREND] = 0.05 if self.trend else 0.0
         deviation[state_space.DAMPING] = 0.02 if self.damping else 0.0
         return Model(sides, self.slenderness_angles, (float(p[0]), float(p[1])), mean, deviation, speed)
-
-
-def other(foot: Foot, number: int) -> Foot:
-    """Return the foot on which the body stands so many impacts later."""
-    return foot if number % 2 == 0 else opposite(foot)

@@ -81,27 +81,6 @@ class SampledSeries:
 
 
 @dataclass(frozen=True, eq=False)
-class Peaks:
-    """The largest rotation of each half cycle, without its sign."""
-
-    measured: FloatArray
-
-    @property
-    def count(self) -> int:
-        """Number of peaks."""
-        return self.measured.size
-
-    def residuals(self, path: Path) -> tuple[FloatArray, FloatArray]:
-        """Measured less computed peaks."""
-        value = half_cycles.peak(path.y, path.alpha)
-        # of cos(alpha - peak) = cos(alpha) + 2 sin(alpha/2)^2 y^2
-        fall = np.sin(path.alpha - value)
-        by_y = 4.0 * np.sin(0.5 * path.alpha) ** 2 * path.y**2 / fall
-        by_alpha = 1.0 - np.sin(path.alpha) * (1.0 - path.y**2) / fall
-        return self.measured - value, by_y[..., None] * path.y_slopes + by_alpha[..., None] * path.alpha_slopes
-
-
-@dataclass(frozen=True, eq=False)
 class SeriesFit:
     """What a series says, and how far its noise is correlated."""
 

@@ -197,7 +197,8 @@ def laplace(
         step = np.linalg.solve(hessian + scale, gradient)
         straight = u[active] + step[..., 0]
         # times are known far better than speeds: what changes along the step is either linear in u or in them
-        bent = model.reached(straight, scatter[active], times + (time_slopes @ step)[..., 0])
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            bent = model.reached(straight, scatter[active], times + (time_slopes @ step)[..., 0])
         tried = np.concatenate([straight, bent])
         found = _objective(model, observer, np.tile(scatter[active], 2), np.tile(noise[active], 2), tried)
         pick = np.arange(active.size) + active.size * (found[0][active.size :] < found[0][: active.size])

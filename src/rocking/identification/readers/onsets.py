@@ -13,26 +13,30 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.identification.readers.clicks import causal, spectra
 
 _BEFORE, _AFTER, _REACH = 0.004, 0.030, 0.008
-_QUIET, _RINGING = 0.012, 0.060
+_QUIET, _RINGING = 0.012, 0.100
 _PICK_BEFORE, _PICK_AFTER = 0.008, 0.004
 _ROUNDS = 4
 _EQUALISED = 0.1
-_FARTHEST, _STEP, _PULL = 0.004, 1e-5, 0.05
+_FARTHEST, _STEP, _PULL, _NEAR = 0.006, 1e-5, 0.1, 5e-4
 _BAND = (150.0, 9_000.0)
 
 
-def onsets(sound: FloatArray, rate: float, times: FloatArray, feet: IntArray) -> FloatArray:
-    """Return when the clicks at about some times began [s]; clicks on the same of two feet are taken for alike."""
+def onsets(sound: FloatArray, rate: float, times: FloatArray, feet: IntArray) -> tuple[FloatArray, float]:
+    """Return when the clicks at about some times began [s], and how alike those on the same of two feet are, 1 at most.
+
+    That is the median correlation of a click with the sum of the others.
+    """
     size, noise, power = spectra(sound, rate)
     frames = np.clip(np.rint((times * rate - 0.3 * size) / (size // 2)).astype(int), 0, power.shape[0] - 1)
     clicks = np.maximum(power[frames].mean(axis=0) - noise, 0.0)
     # filters of minimum phase: nothing comes before its cause; the mean spectrum of clicks is made flat where it can be
     gains = (np.sqrt(clicks) / (noise + _EQUALISED * clicks), 1.0 / np.sqrt(noise))
     sharp, white = (oaconvolve(sound, causal(gain, rate, size))[: sound.size] for gain in gains)
-    found, picks, means = times.copy(), [], []
+    found, alike, picks, means = times.copy(), np.ones(times.size), [], []
     groups = [here for foot in (0, 1) if (here := np.flatnonzero(feet == foot)).size]
     for here in groups:
         places, parts = _aligned(sharp, rate, times[here])
+        alike[here] = _likeness(_cuts(sharp, rate, places, _BEFORE, _AFTER))
         pick = _first(_mean(white, rate, places, _PICK_BEFORE, _PICK_AFTER)) / rate - _PICK_BEFORE
         found[here] = (places + parts) / rate + pick
         picks.append(pick)
@@ -41,7 +45,14 @@ def onsets(sound: FloatArray, rate: float, times: FloatArray, feet: IntArray) ->
         off = _between(means[0], means[1], rate, picks[1] - picks[0]) - picks[1] + picks[0]
         found[groups[0]] -= 0.5 * off
         found[groups[1]] += 0.5 * off
-    return found
+    return found, float(np.median(alike))
+
+
+def _likeness(cuts: FloatArray) -> FloatArray:
+    """Return the correlation of each row with the sum of the others."""
+    others = cuts.sum(axis=0) - cuts
+    scale = np.sqrt((cuts**2).sum(axis=1) * (others**2).sum(axis=1)) + np.finfo(float).tiny
+    return np.asarray((cuts * others).sum(axis=1) / scale)
 
 
 def _between(one: FloatArray, two: FloatArray, rate: float, guess: float) -> float:
@@ -57,7 +68,7 @@ def _between(one: FloatArray, two: FloatArray, rate: float, guess: float) -> flo
         spectrum = rfft(each, size)
         cross = spectrum * np.conj(cross)
         noise = float((each[:quiet] ** 2).mean()) * each.size
-        weight *= np.maximum(np.abs(spectrum) ** 2 - 2.0 * noise, 0.0)
+        weight *= np.maximum(np.abs(spectrum) ** 2 - 4.0 * noise, 0.0)
     frequency = np.arange(cross.size) * rate / size
     inside = (frequency > _BAND[0]) & (frequency < _BAND[1]) & (weight > 0.0)
     lags = np.arange(-_FARTHEST, _FARTHEST, _STEP)
@@ -66,7 +77,7 @@ def _between(one: FloatArray, two: FloatArray, rate: float, guess: float) -> flo
     phase = 2.0 * np.angle(cross[inside]) + 4.0 * np.pi * np.outer(lags, frequency[inside])
     weight = weight[inside] ** 0.25
     agree = np.cos(phase) @ (weight / weight.sum())
-    return float(lags[np.argmax(agree - _PULL * ((lags - guess) / 1e-3) ** 2)])
+    return float(lags[np.argmax(agree - _PULL * np.log1p(((lags - guess) / _NEAR) ** 2))])
 
 
 def _aligned(sound: FloatArray, rate: float, times: FloatArray) -> tuple[IntArray, FloatArray]:
