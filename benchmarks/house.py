@@ -27,6 +27,7 @@ FLOORS = (
     ("studies", "identification"),
     ("evidence",),
     ("prediction",),
+    ("assessment",),
     ("spec",),
     ("campaigns",),
     ("plots",),

@@ -38,6 +38,7 @@ ROOMS = {
     "rocking.campaigns.jobs": "Jobs of campaigns",
     "rocking.evidence": "Evidence",
     "rocking.prediction": "Predictions",
+    "rocking.assessment": "Assessments",
     "rocking.statistics": "Statistics",
     "rocking.plots": "Pictures",
     "rocking.reports": "Reports",

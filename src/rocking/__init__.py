@@ -6,7 +6,8 @@ from rocking.lazy import exports, presenters
 from rocking.version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from rocking import bodies, dynamics, errors, evidence, examples, motions, plots, restitution, studies
+    from rocking import bodies, dynamics, errors, evidence, examples, motions, plots, restitution
+    from rocking.assessment import assess
     from rocking.bodies import Block, MassPoints, Region, Section, Solid
     from rocking.bodies.formats import read_body
     from rocking.dynamics import Response, free_rocking, simulate, simulate_many
@@ -31,6 +32,7 @@ __all__ = [
     "Response",
     "Section",
     "Solid",
+    "assess",
     "bodies",
     "coefficient_of_restitution",
     "dynamics",
@@ -53,11 +55,11 @@ __all__ = [
     "rocking_spectrum",
     "simulate",
     "simulate_many",
-    "studies",
     "synthetic",
 ]
 
 _HOMES = {
+    "assessment": ("assess",),
     "bodies": ("Block", "MassPoints", "Region", "Section", "Solid", "bodies"),
     "bodies.formats": ("read_body",),
     "dynamics": ("Response", "dynamics", "free_rocking", "simulate", "simulate_many"),
@@ -71,7 +73,7 @@ _HOMES = {
     "plots": ("plots",),
     "prediction": ("predict",),
     "restitution": ("coefficient_of_restitution", "restitution"),
-    "studies": ("minimum_overturning_acceleration", "overturning_map", "rocking_spectrum", "studies"),
+    "studies": ("minimum_overturning_acceleration", "overturning_map", "rocking_spectrum"),
     "studies.fragility": ("fragility",),
     "studies.inventory": ("inventory",),
 }

@@ -12,8 +12,9 @@ from rocking.version import SOFTWARE
 
 _MODULES = {"models": "catalogues", "formats": "catalogues"}
 COMMANDS = (
-    "cor", "equilibria", "simulate", "predict", "validate", "identify", "map", "minimum", "spectrum", "fragility",
-    "inventory", "codes", "paper", "models", "motion", "motions", "convert", "formats", "serve", "example",
+    "cor", "equilibria", "simulate", "predict", "assess", "validate", "identify", "map", "minimum", "spectrum",
+    "fragility", "inventory", "codes", "paper", "models", "motion", "motions", "convert", "formats", "serve",
+    "example",
 )  # fmt: skip
 
 

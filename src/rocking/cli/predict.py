@@ -1,9 +1,10 @@
 """`rocking predict`: how likely a body is to rock, to slide or to overturn, as far as it is known."""
 
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from rocking.spec.document import PredictionDocument
     from rocking.spec.reading import InputFiles
 
+D = TypeVar("D", bound="PredictionDocument")
 TABLES = ("body", "motion", "settings", "predict")
 ALIKE = "Nothing decides it: all bodies end alike."
 COUNT, SEED = 20, 1
@@ -75,13 +77,15 @@ def predict(
 ) -> None:
     """Print how likely a body is to rock, slide or overturn, what decides it, and whether that can be predicted."""
     from rocking.cli.arguments import as_typed, document_file
+    from rocking.spec.document import PredictionDocument
     from rocking.spec.prediction import PredictionProblem
 
     exports = Exports.of(out, EXPORTS)
     if file := document_file(context, body, ("predict",), ["threads"]):
-        document, inputs = _in_file(file, sets)
+        document, inputs = in_file(file, sets, PredictionDocument)
     else:
-        document, inputs = _typed(context)
+        told = {"restitution": number_or_name(restitution), "friction": friction}
+        document, inputs = typed(context, PredictionDocument, told)
     with as_typed():
         problem = PredictionProblem.of(document, inputs)
         with bar("motions", len(problem.motions), quiet=as_json) as progress:
@@ -90,42 +94,50 @@ def predict(
     deliver(PredictionAnswer(found, Path(body or "").stem, repairs), exports, as_json=as_json)
 
 
-def _in_file(file: Path, sets: list[str] | None) -> "tuple[PredictionDocument, InputFiles]":
+def in_file(
+    file: Path, sets: list[str] | None, kind: type[D], tables: Sequence[str] = TABLES
+) -> "tuple[D, InputFiles]":
+    """Return the document in a file, with what was set; kind: of its class, tables: those that may be set."""
     from rocking.cli.arguments import parsed_sets, with_sets
-    from rocking.spec.document import PredictionDocument
     from rocking.spec.reading import InputFiles, checked, located, tables_in
 
     with located(str(file)):
-        tables = dict(tables_in(file) or {})
-        lists = "motion" not in tables
-        document = checked(PredictionDocument, with_sets(tables, parsed_sets(sets, TABLES), lists=lists))
+        found = dict(tables_in(file) or {})
+        lists = "motion" not in found
+        document = checked(kind, with_sets(found, parsed_sets(sets, tables), lists=lists))
     return document, InputFiles(file.parent)
 
 
-def _typed(context: typer.Context) -> "tuple[PredictionDocument, InputFiles]":
+def typed(
+    context: typer.Context, kind: type[D], told: dict[str, Any], own: dict[str, dict[str, Any]] | None = None
+) -> "tuple[D, InputFiles]":
+    """Return the document that was typed; told: its [predict], own: tables that predict does not have."""
     from rocking.cli.arguments import NO_MOTION, Arguments, hinted
     from rocking.cli.study import family, in_lists
-    from rocking.spec.document import PredictionDocument
     from rocking.spec.reading import CommandFiles, checked
 
-    arguments = Arguments(context, *TABLES)
+    arguments = Arguments(context, *TABLES, *(own or ()))
     body, named = arguments.body_and_motions()
-    told = {name: arguments.options[name] for name in ("restitution", "friction")}
-    if told["restitution"] is not None:
-        with suppress(ValueError):  # the name of a model
-            told["restitution"] = float(told["restitution"])
     with hinted(body, named[0].partition("=")[2] or named[0] if named else None):
         document: dict[str, Any] = {
             "body": arguments.body_table(body),
             "predict": arguments.table("predict", told),
             "settings": arguments.table("settings", {}),
+            **{name: arguments.table(name, keys) for name, keys in (own or {}).items()},
         }
         synthetic = family(arguments, {"count": COUNT, "seed": SEED})
         if synthetic is not None and "synthetic" not in synthetic:
             raise InvalidValueError(f"{NO_MOTION}, or --synthetic firm-ground")
         each = [synthetic] if synthetic else map(in_lists, arguments.each(named, arguments.components))
         document["motions"] = list(each)
-        return checked(PredictionDocument, document), CommandFiles(Path())
+        return checked(kind, document), CommandFiles(Path())
+
+
+def number_or_name(text: Any) -> Any:
+    """Return a coefficient where a number was typed, else the name of a model."""
+    with suppress(TypeError, ValueError):
+        return float(text)
+    return text
 
 
 @dataclass(frozen=True)

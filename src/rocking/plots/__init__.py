@@ -6,6 +6,7 @@ from rocking.lazy import exports
 
 if TYPE_CHECKING:
     from rocking.plots.animation import animate_gif, animate_html
+    from rocking.plots.assessment import assessment_picture
     from rocking.plots.body import body_picture, coefficient_picture
     from rocking.plots.cloud import cloud_picture, measures_picture
     from rocking.plots.comparison import animate_comparison
@@ -39,6 +40,7 @@ __all__ = [
     "animate_comparison",
     "animate_gif",
     "animate_html",
+    "assessment_picture",
     "body_picture",
     "cloud_picture",
     "coefficient_picture",

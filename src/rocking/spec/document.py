@@ -357,6 +357,16 @@ class IdentifyTable(JobTable):
     first: Literal["left", "right"] | None = _key("foot on which it stands after the first impact, of times")
 
 
+class AssessTable(JobTable):
+    """What is asked of an assessment, and what stands on its report."""
+
+    restitutions: list[Any] | None = _key("models and coefficients of the histories; all models if not given")
+    margin: Positive = _key("factor on the motions that remedies must hold [-]", 1.0)
+    project: Text | None = _key("what the project is called")
+    author: Text | None = _key("who signs")
+    date: Text | None = _key("day of the report; today if not given")
+
+
 class SettingsTable(JobTable):
     """How to integrate: what is left out has its usual value."""
 
@@ -535,6 +545,12 @@ class PredictionDocument(PredictedBody):
         if (self.motion is None) == (not self.motions):
             raise refused("give [[motions]], or [motion] with x and y, and not both")
         return self
+
+
+class AssessmentDocument(PredictionDocument):
+    """A file that asks whether a body stands, and what to do about it."""
+
+    assess: AssessTable = Field(default_factory=AssessTable)
 
 
 class ValidationDocument(PredictedBody):

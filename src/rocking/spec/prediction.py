@@ -5,13 +5,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rocking.bodies import Body, Solid
+from rocking.errors import InvalidValueError
 from rocking.prediction import Prediction, predict
 from rocking.prediction.mechanics import COMPLEMENTARITY, MEASURED
 from rocking.spec.construction import any_body_of, components_of, motion_of, motions_of, restitutions_of
 from rocking.spec.reading import InputFiles, located
 
 if TYPE_CHECKING:
-    from rocking.spec.document import PredictedBody, PredictionDocument
+    from rocking.assessment import Assessment
+    from rocking.spec.document import AssessTable, PredictedBody, PredictionDocument
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,23 @@ class PredictionProblem:
             with located("motion"):
                 motions = [components_of(alone, inputs) or {"x": motion_of(alone, inputs).scaled(alone.scale)}]
         return cls(body, motions, options_of(document, body, inputs))
+
+    def assessed(
+        self, table: "AssessTable", progress: Callable[[int], None] | None = None, threads: int | None = None
+    ) -> "Assessment":
+        """Return whether the body stands, with what else was asked for."""
+        from rocking.assessment import assess
+
+        options = {name: value for name, value in self.options.items() if name not in {"bounce", "bounce_law"}}
+        if odd := sorted(set(self.options) - set(options)):
+            raise InvalidValueError(f"settings.{odd[0]} does not go with an assessment, whose histories do not bounce")
+        predicted, given = options.pop("restitution", None), table.restitutions
+        if predicted is None and given is not None and len(given) == 1:
+            predicted = given[0]
+        return assess(
+            self.body, self.motions, given, predicted=predicted, margin=table.margin, threads=threads,
+            progress=progress, **options,
+        )  # fmt: skip
 
     def answer(self, progress: Callable[[int], None] | None = None, threads: int | None = None) -> Prediction:
         return predict(self.body, self.motions, **self.options, threads=threads, progress=progress)

@@ -1,14 +1,14 @@
 """Code methods beside histories: what each says of bodies, and what then happens to them under a set of motions."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from rocking import checks, plausibility
+from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray
 from rocking.errors import InvalidValueError
@@ -16,14 +16,11 @@ from rocking.motions.intensity import measure as measure_of
 from rocking.statistics.counts import LEAST_CLUSTERS, share_interval
 from rocking.studies.code_methods.method import CodeMethod, Shaking, Stances
 from rocking.studies.code_methods.methods import CODE_METHODS
-from rocking.studies.fragility.subject import Responses, Subject, checked_levels
-from rocking.studies.histories import Histories, results_of
+from rocking.studies.fragility.subject import checked_levels
+from rocking.studies.margins import Margins
 from rocking.studies.motion_sets import MotionList, MotionSet
 
 MEASURE = "pga/(g tan alpha)"  # of levels, where nobody says another
-POINTS, REACH, HALVINGS = 64, 50.0, 6
-"""Levels at which the least that overturns is looked for, up to so many times what lifts, and halvings of its place."""
-
 REPETITIONS, TAIL = 1000, 0.025
 AT_MOST = 1.0 + 1e-9  # a demand that is all of the capacity passes: the clauses say "at least" [-]
 QUARTERS = 0.16, 0.5, 0.84  # quantiles that give median and scatter [-]
@@ -305,7 +302,7 @@ def compare_code_methods(
     kept = MotionList([motions[k] for k in range(len(motions))] if isinstance(motions, MotionSet) else motions)
     shaking, level = Shaking.of(kept), measure_of(measure)
     at = None if levels is None else checked_levels("levels", levels, level.unit)
-    cases = [_Case.of(body, kept, restitution, level, at, options) for body in several]
+    cases = [Margins.of(body, kept, restitution, level, at, options) for body in several]
     return CodeComparison(
         methods=chosen,
         bodies=tuple(map(repr, several)),
@@ -320,53 +317,3 @@ def compare_code_methods(
         asymmetric=np.array([not body.is_symmetric for body in several]),
         restitution=cases[0].label,
     )
-
-
-@dataclass(frozen=True, eq=False)
-class _Case:
-    """Histories of one body under all motions, of both ways round where these differ."""
-
-    least: FloatArray  # least factor that overturns, by motion
-    factors: FloatArray  # by motion and level
-    overturned: FloatArray
-    label: str
-
-    @classmethod
-    def of(
-        cls, body: Body, motions: MotionList, restitution: Any, measure: Any, levels: FloatArray | None,
-        options: dict[str, Any],
-    ) -> "_Case":  # fmt: skip
-        ground = {name: value for name, value in options.items() if name not in {"threads", "progress"}}
-        turned = (body,) if body.is_symmetric else (body, body.mirrored())
-        subjects = [Subject.of(each, motions, restitution, measure, ground) for each in turned]
-        one = subjects[0]
-        factors = np.ones((len(motions), 1)) if levels is None else measure.factors(one.intensities, levels)
-
-        def overturned(subject: Subject, histories: Histories, shape: tuple[int, ...]) -> FloatArray:
-            arrays = results_of(histories, threads=options.get("threads"), progress=options.get("progress"))
-            return Responses.of(arrays, subject.parameters, shape).overturned
-
-        fell = [overturned(each, each.product(factors), factors.shape) for each in subjects]
-        least = [_least(each, overturned) for each in subjects]
-        return cls(np.minimum.reduce(least), factors, np.maximum.reduce(fell), one.parameters.label)
-
-
-def _least(subject: Subject, overturned: Callable[[Subject, Histories, tuple[int, ...]], FloatArray]) -> FloatArray:
-    """Return the least factor on each motion that was found to overturn; infinite if none, NaN without a result."""
-    peaks, lifts = measure_of("pga").values(subject.motions, subject.scale), subject.scale.threshold
-    light = not subject.are_horizontal
-    highest = min(REACH * lifts, max(plausibility.LARGEST_PGA, 4.0 * lifts))
-    grid = np.geomspace((0.1 if light else 1.0) * lifts, highest, POINTS) / peaks[:, None]
-    fell = overturned(subject, subject.product(grid), grid.shape)
-    first = np.argmax(fell == 1.0, axis=1)
-    rows = np.arange(len(peaks))
-    found = np.where(fell[rows, first] == 1.0, grid[rows, first], np.inf)
-    low, high = grid[rows, np.maximum(first - 1, 0)], found
-    some = np.flatnonzero(np.isfinite(found) & (first > 0))
-    for _ in range(HALVINGS if some.size else 0):
-        middle = np.sqrt(low[some] * high[some])
-        falls = overturned(subject, subject.table(some, middle), middle.shape) == 1.0
-        high[some], low[some] = np.where(falls, middle, high[some]), np.where(falls, low[some], middle)
-    high[some] = np.sqrt(low[some] * high[some])
-    before = np.where(np.isfinite(found), first, POINTS)[:, None] > np.arange(POINTS)
-    return np.where((np.isnan(fell) & before).any(axis=1), np.nan, high)

@@ -1,0 +1,180 @@
+"""`assess`: histories with every model, margins, code methods, a probability, and remedies."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from rocking import checks, conventions
+from rocking.assessment.answer import Assessment, ModelMargin
+from rocking.assessment.remedies import lifting_factor, remedies
+from rocking.bodies import Body
+from rocking.conventions import FEET
+from rocking.dynamics.parameters import RockingParameters
+from rocking.errors import InvalidValueError, RockingError
+from rocking.evidence import calibrate
+from rocking.motions.components import rotated, with_vertical
+from rocking.motions.intensity import sampled
+from rocking.motions.motion import GroundMotion
+from rocking.prediction import predict
+from rocking.prediction.mechanics import FRICTION, parts, several
+from rocking.prediction.uncertain import Uncertain
+from rocking.restitution import model, models
+from rocking.studies.code_methods import CODE_METHODS
+from rocking.studies.code_methods.method import Shaking, Stances
+from rocking.studies.margins import Margins
+from rocking.studies.motion_sets import MotionList
+
+CALIBRATED = "calibrated"
+ENDS = {"": "coefficient", ", low": "low", ", high": "high"}
+"""What is taken of the calibrated model: its mean, and the ends of its 95 % interval for a single body."""
+
+DIRECTIONS = 12
+"""Over half a turn, into which two components are turned; both ways round make it a whole one."""
+
+
+def assess(
+    body: Body,
+    motions: Any,
+    restitution: Any = None,
+    *,
+    friction: Any = None,
+    margin: float = 1.0,
+    gravity: float = conventions.g,
+    threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
+    **known: Any,
+) -> Assessment:
+    """Say whether a body stands under motions, how far it is from overturning, what decides it and what to do.
+
+    Histories are computed under every motion, both ways round, with every model of restitution, rocking alone, and with
+    the one of the least margin also where it may slide. Each is repeated at factors on the motion, to find the least
+    one that overturns. Beside them stand a probability, in which what is not known is drawn, and the code methods.
+
+    Parameters
+    ----------
+    body : Block, Section or MassPoints
+        The body in its plane; a solid by ``solid.in_plane(azimuth)``.
+    motions : GroundMotion, Pulse, or mapping with x, y and z, or a sequence of them
+        With y, the body is turned to both components in 12 directions.
+    restitution : sequence, optional
+        Names, models and coefficients; if not given all registered models, and of the calibrated one its mean and
+        both ends of its 95 % interval [-].
+    friction : as for `predict`
+        Coefficient of friction; histories that slide take its median [-].
+    margin : float
+        Factor on the motions that remedies must hold [-].
+    gravity : float
+        Acceleration of gravity [m/s2].
+    threads : int, optional
+        Threads of the engine.
+    progress : callable, optional
+        Called with the number of histories done since the last call.
+    **known
+        What else is known of the body, as for `predict`: ``base``, ``centre``, ``polarity``, ``azimuth``, ``count``,
+        ``seed`` and more; also its ``restitution`` as ``predicted``.
+
+    Returns
+    -------
+    Assessment
+        Verdict, margins, probability, code methods, remedies.
+
+    Raises
+    ------
+    InvalidValueError
+        If the body is not plane, a motion is zero throughout, or a value is outside its range.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> found = assess(rk.Block(width=0.5, height=2.0, mass=300.0), rk.pulses.sine(3.4, 0.8), count=16)
+    >>> found.verdict
+    'It may overturn: under 1 of 1 motion with some of 10 restitutions, under 0 with all of them: what an impact costs decides.'
+    """
+    if not isinstance(body, Body):
+        raise InvalidValueError(
+            f"assess takes a plane body, got {body!r:.60}; a solid stands in a plane by in_plane(azimuth)"
+        )
+    margin, gravity = checks.positive("margin", margin), checks.positive("gravity", gravity, "m/s2")
+    whole = several(motions)
+    plane = in_the_plane(whole, known.get("azimuth"))
+    if flat := next((each for each in plane if not each.peak > 0.0), None):
+        raise InvalidValueError(f"motion {flat.name!r} is zero throughout: nothing would move")
+    kept, options = MotionList(plane), {"gravity": gravity, "threads": threads, "progress": progress}
+
+    def restitutions(each: Body) -> Mapping[str, Any]:
+        return choices(each, restitution)
+
+    found, refused = dict[str, ModelMargin](), dict[str, str]()
+    for name, choice in restitutions(body).items():
+        try:
+            found[name] = _margin(body, kept, choice, options)
+        except RockingError as error:
+            refused[name] = str(error)
+    if not found:
+        raise InvalidValueError(f"no restitution says anything of this body: {'; '.join(refused.values())}")
+    governing = min(found, key=lambda name: np.nan_to_num(found[name].lowest, nan=np.inf))
+    given = FRICTION[0] if friction is None else friction
+    coefficient = float(Uncertain.of("friction", given, *FRICTION[1:]).quantile(np.array([0.5]))[0])
+    chosen = restitutions(body)[governing]
+    sliding = _margin(body, kept, chosen, {**options, "friction": coefficient})
+    stances, shaking = Stances.of([body], gravity), Shaking.of(kept)
+    prediction = predict(
+        body, whole, restitution=known.pop("predicted", None), friction=friction, gravity=gravity, threads=threads,
+        progress=progress, **known,
+    )  # fmt: skip
+    lowest = min(float(np.nanmin(each.least)) for each in found.values() if not np.isnan(each.least).all())
+    return Assessment(
+        body=body, motions=tuple(plane), models=found, refused=refused, friction=coefficient, sliding=sliding,
+        lifts=np.array([lifting_factor(body, each, gravity) for each in plane]),
+        capacities={name: each.capacity(stances, shaking)[:, 0] for name, each in CODE_METHODS.items()},
+        prediction=prediction,
+        remedies=remedies(
+            body, plane, margin, gravity, lambda each: {k: v for k, v in restitutions(each).items() if k in found},
+            falls=lowest <= margin,
+        ),
+        gravity=gravity,
+    )  # fmt: skip
+
+
+def in_the_plane(motions: Any, azimuth: Any = None) -> list[GroundMotion]:
+    """Return what moves a body in its plane: one component as it is, two turned into every direction."""
+    found = []
+    for k in range(len(motions)):
+        along, across, upright = parts(motions[k])
+        turned = {"": sampled(along)}
+        if across is not None:
+            fixed = isinstance(azimuth, (int, float))
+            angles = [float(azimuth)] if fixed else np.pi * np.arange(DIRECTIONS) / DIRECTIONS
+            turned = {f", {np.degrees(a):.0f} deg": rotated(along, across, float(a))[0] for a in angles}
+        for words, each in turned.items():
+            vertical = each.vertical if upright is None else with_vertical(each, sampled(upright)).vertical
+            samples = each.acceleration if vertical is None else each.acceleration[: len(vertical)]
+            found.append(GroundMotion(samples, each.time_step, vertical, f"{along.name}{words}"))
+    return found
+
+
+def choices(body: Body, given: Sequence[Any] | None) -> Mapping[str, Any]:
+    """Return the restitutions of histories by their names."""
+    named: dict[str, Any] = {}
+    usual = [CALIBRATED, *(name for name in models() if name not in {CALIBRATED, "fixed"})]
+    for each in usual if given is None else given:
+        if each == CALIBRATED:
+            drawn = {foot: calibrate().predict(body, onto=foot) for foot in FEET}
+            for words, end in ENDS.items():
+                named[CALIBRATED + words] = {foot: float(getattr(each, end)) for foot, each in drawn.items()}
+        elif isinstance(each, (int, float)):
+            named[f"r = {each:g}"] = float(each)
+        else:
+            one = model(each)
+            named[one.label] = one
+    return named
+
+
+def _margin(body: Body, motions: MotionList, restitution: Any, options: dict[str, Any]) -> ModelMargin:
+    found = Margins.of(body, motions, restitution, "pga", None, options)
+    fell = found.overturned[:, 0]
+    # a factor of 1 may lie in a stretch that the levels have missed
+    least = np.where(fell == 1.0, np.minimum(found.least_each, 1.0), found.least_each)
+    parameters = RockingParameters.of_body(body, restitution, options["gravity"])
+    return ModelMargin({foot: getattr(parameters, foot).coefficient for foot in FEET}, fell, least)

@@ -1,0 +1,257 @@
+"""What is found of a body: with each model whether it stands and by which margin, and what to say of it."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rocking.assessment.remedies import Remedies
+from rocking.bodies import Body
+from rocking.conventions import FEET, FloatArray, g, percent
+from rocking.motions.motion import GroundMotion
+from rocking.prediction import Prediction
+from rocking.studies.code_methods.comparison import AT_MOST
+
+
+@dataclass(frozen=True, eq=False)
+class ModelMargin:
+    """What becomes of a body with one restitution.
+
+    Parameters
+    ----------
+    coefficients : dict of str to float
+        Landing on the left and on the right foot [-].
+    overturned : ndarray, shape (motions,)
+        1 where it overturns under a motion as it is, of either way round; NaN without a result.
+    least : ndarray, shape (ways round, motions)
+        Least factor on each motion that overturns it, as it stands and mirrored; infinite if none did [-].
+    """
+
+    coefficients: Mapping[str, float]
+    overturned: FloatArray
+    least: FloatArray
+
+    @property
+    def lowest(self) -> float:
+        """Least factor of all motions [-]."""
+        known = self.least[~np.isnan(self.least)]
+        return float(known.min()) if known.size else math.nan
+
+    @property
+    def falls(self) -> int:
+        """Motions under which it overturns [-]."""
+        return int(np.nansum(self.overturned))
+
+
+class Lowest(NamedTuple):
+    """The least factor of all, and whose it is."""
+
+    factor: float
+    model: str
+    motion: int
+    mirrored: bool
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Assessment:
+    """Whether a body stands, how far it is from overturning, what decides that and what to do about it.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    motions : tuple of GroundMotion
+        The motions in its plane; of two components every direction that was tried.
+    models : dict of str to ModelMargin
+        By the name of the restitution, without sliding.
+    refused : dict of str to str
+        Models that say nothing of the body, and why.
+    friction : float
+        Coefficient of friction of `sliding` [-].
+    sliding : ModelMargin
+        With the model of the least margin, where it may also slide, hop and fly.
+    lifts : ndarray, shape (motions,)
+        Factor on each motion from which on it lifts [-].
+    capacities : dict of str to ndarray
+        Factor on each motion up to which a code method calls it safe; NaN outside the method's domain [-].
+    prediction : Prediction
+        How likely it overturns, with what is not known drawn.
+    remedies : Remedies
+        What would help.
+    gravity : float
+        Acceleration of gravity [m/s2].
+    """
+
+    body: Body
+    motions: tuple[GroundMotion, ...]
+    models: Mapping[str, ModelMargin]
+    refused: Mapping[str, str]
+    friction: float
+    sliding: ModelMargin
+    lifts: FloatArray
+    capacities: Mapping[str, FloatArray]
+    prediction: Prediction
+    remedies: Remedies
+    gravity: float = g
+
+    @cached_property
+    def lowest(self) -> Lowest:
+        """The least factor on any motion that overturns it without sliding, with any model."""
+        name = min(self.models, key=lambda each: (math.isnan(self.models[each].lowest), self.models[each].lowest))
+        least = np.where(np.isnan(self.models[name].least), np.inf, self.models[name].least)
+        way, motion = np.unravel_index(int(np.argmin(least)), least.shape)
+        return Lowest(self.models[name].lowest, name, int(motion), bool(way))
+
+    @property
+    def fallen(self) -> FloatArray:
+        """Share of the models with which it overturns under each motion as it is [-]."""
+        rows = np.array([each.overturned for each in self.models.values()])
+        known = (~np.isnan(rows)).sum(axis=0)
+        return np.where(known > 0, np.nansum(rows, axis=0) / np.maximum(known, 1), np.nan)
+
+    @property
+    def verdict(self) -> str:
+        """Whether it stands, in words."""
+        several, models = self._several, f"{len(self.models)} restitution{'s' if len(self.models) > 1 else ''}"
+        with_all, with_some = int((self.fallen == 1.0).sum()), int((self.fallen > 0.0).sum())
+        if math.isnan(self.lowest.factor):
+            return "No history has a result: it cannot be said whether it stands."
+        if not with_some:
+            stands = "It does not lift" if (self.lifts > 1.0).all() else "It rocks and stands"
+            return f"{stands}: it overturns under none of {several}, with none of {models}, either way round."
+        if with_all == with_some:
+            return f"It overturns under {with_all} of {several}, with all of {models}."
+        return (
+            f"It may overturn: under {with_some} of {several} with some of {models}, under {with_all} with all of "
+            "them: what an impact costs decides."
+        )
+
+    @property
+    def margin_words(self) -> str:
+        """How far it is from overturning, in words."""
+        factor, model, motion, mirrored = self.lowest
+        if math.isinf(factor):
+            return f"No factor on {self._this} that was tried overturns it."
+        name, way = self.motions[motion].name, ", mirrored" if mirrored else ""
+        pga = factor * self.motions[motion].peak
+        return f"Margin to overturning: {factor:.3g} times {self._this}, {name} ({model}{way}), PGA {pga / g:.3g} g there."
+
+    @property
+    def governs(self) -> tuple[str, ...]:
+        """What decides the answer, in words."""
+        sides = {foot: self.body.side(foot, self.gravity) for foot in FEET}
+        weak = min(sides, key=lambda foot: sides[foot].slenderness_angle)
+        side, first = sides[weak], int(np.argmin(self.lifts))
+        found = [
+            f"Its weaker side is the {weak}: the centre is {side.half_width:.3g} m from that foot and "
+            f"{side.centre_height:.3g} m above it. "
+            if not self.body.is_symmetric
+            else f"The centre is {side.half_width:.3g} m from either foot and {side.centre_height:.3g} m above it. ",
+        ]
+        found[0] += (
+            f"It lifts from {side.uplift_acceleration / g:.3g} g, at {self.lifts[first]:.3g} times "
+            f"{self.motions[first].name}."
+        )
+        margins = {name: each.lowest for name, each in self.models.items() if math.isfinite(each.lowest)}
+        if len(margins) > 1:
+            low, high = min(margins, key=margins.__getitem__), max(margins, key=margins.__getitem__)
+            found.append(
+                f"What an impact costs moves the margin from {margins[low]:.3g} ({low}) to {margins[high]:.3g} ({high})."
+            )
+        slope = side.half_width / side.centre_height
+        slid = self.sliding.lowest
+        words = f"a margin of {slid:.3g}" if math.isfinite(slid) else "nothing that was tried overturns it"
+        slides = "before it lifts" if self.friction < slope else "only while it rocks, if at all"
+        found.append(f"With a friction of {self.friction:.3g} (b/h = {slope:.3g}) it slides {slides}: {words}.")
+        shares = {name: each for name, each in self.prediction.shares.items() if each.total > 0.0}
+        if shares:
+            most = max(shares, key=lambda name: shares[name].total)
+            word = "which motion it is" if most == "case" else most
+            found.append(f"Of what is not known, {word} decides most (share {shares[most].total:.2f} of the variance).")
+        return tuple(found)
+
+    @property
+    def to_do(self) -> tuple[str, ...]:
+        """What would help, in words."""
+        remedy, ask = self.remedies, f"{self.remedies.margin:g} times {self._this}"
+        if not remedy.needed:
+            return (f"Nothing: it does not lift under {ask}.",)
+        both = " and ".join(f"{force / 1e3:.3g} kN along the {edge} edge" for edge, force in remedy.tension.items())
+        found = [f"Anchors that keep it from lifting under {ask}: {both}; shear {remedy.shear / 1e3:.3g} kN in all."]
+        for change, what in (
+            (remedy.wider, "Base wider by {} on each side"), (remedy.lower, "Centre of mass lower by {}"),
+        ):  # fmt: skip
+            name = what.partition(" by ")[0]
+            still = f"{1e3 * change.lifts_not:.0f} mm" if math.isfinite(change.lifts_not) else ""
+            if change.why_not:
+                found.append(f"{name}: not found, {change.why_not}.")
+            elif change.stands > 0.0:
+                length = f"{math.ceil(1e3 * change.stands):d} mm"
+                found.append(f"{what.format(length)}: no history overturns any more; {still}: it does not even lift.")
+            elif still:
+                found.append(f"{what.format(still)}: it does not lift any more; it stands without.")
+        if remedy.isolation is None:
+            found.append("Isolators: no period up to 6 s keeps it from lifting.")
+        else:
+            period, far = remedy.isolation
+            found.append(
+                f"Isolators of a period of {period:.2g} s or more keep it from lifting; they move by "
+                f"{1e3 * far:.0f} mm at that period."
+            )
+        return tuple(found)
+
+    @property
+    def code_rows(self) -> list[tuple[str, int, int, int, float]]:
+        """Method, motions in its domain, those called safe, how many of these overturn, least factor it allows."""
+        rows = []
+        for name, capacity in self.capacities.items():
+            known = np.isfinite(capacity)
+            safe = known & (capacity * AT_MOST >= 1.0)
+            least = float(capacity[known].min()) if known.any() else math.nan
+            fell = int((safe & (self.fallen > 0.0)).sum())
+            rows.append((name, int(known.sum()), int(safe.sum()), fell, least))
+        return rows
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """Verdict, margin, probability, what governs, and what to do."""
+        return (self.verdict, self.margin_words, self.prediction.verdict, *self.governs, *self.to_do)
+
+    @property
+    def _several(self) -> str:
+        return f"{len(self.motions)} motions" if len(self.motions) > 1 else "1 motion"
+
+    @property
+    def _this(self) -> str:
+        return "these records" if len(self.motions) > 1 else "this record"
+
+    def __str__(self) -> str:
+        return "\n".join(self.sentences)
+
+    __repr__ = __str__
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return everything as plain values.
+
+        Returns
+        -------
+        dict
+            SI units; infinite where nothing overturns, NaN where something does not exist.
+        """
+        return {
+            "verdict": self.verdict,
+            "sentences": list(self.sentences),
+            "body": repr(self.body),
+            "motions": [each.name for each in self.motions],
+            "lowest": {**self.lowest._asdict(), "motion": self.motions[self.lowest.motion].name},
+            "lifting_factors": self.lifts,
+            "models": {name: {**vars(each), "lowest": each.lowest} for name, each in self.models.items()},
+            "refused": dict(self.refused),
+            "with_friction": {"friction": self.friction, **vars(self.sliding), "lowest": self.sliding.lowest},
+            "code_methods": dict(self.capacities),
+            "remedies": asdict(self.remedies),
+            "prediction": self.prediction.as_dict(),
+        }

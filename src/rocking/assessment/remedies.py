@@ -1,0 +1,215 @@
+"""What to do about a body that lifts or overturns: anchors, a wider base, a lower centre, isolators."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rocking.bodies import Block, Body
+from rocking.conventions import FEET, BoolArray, FloatArray
+from rocking.dynamics.parameters import RockingParameters, sides_of
+from rocking.dynamics.settings import Settings
+from rocking.errors import GeometryError
+from rocking.motions.motion import GroundMotion
+from rocking.motions.spectrum import response_spectrum
+from rocking.outcome import overturned
+from rocking.studies.histories import Product, results_of
+from rocking.studies.margins import ways_round
+from rocking.studies.motion_sets import MotionList
+
+STEPS, HALVINGS = 32, 5
+"""Changes that are tried up to the one that keeps a body from lifting, and halvings of the place found."""
+
+PERIODS, DAMPING = np.geomspace(0.5, 6.0, 40), 0.1
+"""Of the isolators that are looked at: periods [s] and damping ratio [-]."""
+
+Restitutions = Callable[[Body], Mapping[str, Any]]
+
+ASSUMED = (
+    "anchors: body, anchors and floor are rigid, so that nothing lifts and nothing is amplified; the anchors of one "
+    "edge pull straight down, with the other edge as the pivot; shear without help of friction; no safety factor",
+    "wider base, lower centre: mass and moment of inertia about the centre stay as they are; a wider base reaches out "
+    "equally on both sides",
+    f"isolators: linear, {100 * DAMPING:g} % of critical damping, in horizontal directions alone, the body rigid on "
+    "them; vertical motion passes through and is taken with its peaks throughout",
+)
+"""What the remedies take for granted."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """How far a length must be changed.
+
+    Parameters
+    ----------
+    stands : float
+        With which no history overturns any more: the least from which on all that were tried stand [m].
+    lifts_not : float
+        With which it does not even lift, in closed form [m].
+    why_not : str
+        Why none was looked for; empty if one was.
+    """
+
+    stands: float
+    lifts_not: float
+    why_not: str = ""
+
+
+@dataclass(frozen=True)
+class Remedies:
+    """What would keep a body standing under motions times a factor.
+
+    Parameters
+    ----------
+    margin : float
+        The factor on the motions [-].
+    tension : dict of str to float
+        Force that anchors along the left and the right edge must hold, that of the whole edge; 0 where it does not
+        lift [N].
+    shear : float
+        Horizontal force on all anchors [N].
+    wider, lower : Change
+        How far each side of the base must reach out, and how far the centre of mass must come down.
+    isolation : tuple of float, optional
+        Least period from which on no longer one lets it lift [s], and the displacement that it takes [m]; None if
+        there is none up to 6 s.
+    """
+
+    margin: float
+    tension: dict[str, float]
+    shear: float
+    wider: Change
+    lower: Change
+    isolation: tuple[float, float] | None
+
+    @property
+    def needed(self) -> bool:
+        """Whether it lifts at all."""
+        return any(force > 0.0 for force in self.tension.values())
+
+
+def parts_of(motion: GroundMotion) -> tuple[FloatArray, FloatArray]:
+    """Return the horizontal acceleration without its sign, both ways round being possible, and the one upwards."""
+    across = np.abs(motion.acceleration)
+    return across, np.zeros_like(across) if motion.vertical is None else np.asarray(motion.vertical)
+
+
+def lifting_factor(body: Body, motion: GroundMotion, gravity: float) -> float:
+    """Return the factor on a motion from which on it lifts a body, either way round [-]."""
+    across, up = parts_of(motion)
+    sides = [body.side(foot, gravity) for foot in FEET]
+    least = [s.half_width * gravity / max((across * s.centre_height - up * s.half_width).max(), 1e-300) for s in sides]
+    return float(min(least))  # Eq. 310
+
+
+def tension(body: Body, motion: GroundMotion, factor: float, gravity: float) -> dict[str, float]:
+    """Return the force with which anchors along each edge must hold it down [N]; the pivot is the other edge."""
+    across, up = parts_of(motion)
+    base = body.feet[1] - body.feet[0]
+    found = {}
+    for edge, pivot in zip(FEET, FEET[::-1], strict=True):
+        side = body.side(pivot, gravity)
+        moment = factor * across * side.centre_height - (gravity + factor * up) * side.half_width
+        found[edge] = max(0.0, body.mass * float(moment.max()) / base)  # Eq. 311
+    return {str(edge): force for edge, force in found.items()}
+
+
+def still(body: Body, motions: Sequence[GroundMotion], factor: float, gravity: float) -> tuple[float, float]:
+    """Return how far the sides must reach out, and the centre come down, that nothing lifts [m]; infinite if none."""
+    narrow, height = min(body.side(foot, gravity).half_width for foot in FEET), body.side("right", gravity).centre_height
+    ratio = 0.0
+    for motion in motions:
+        across, up = parts_of(motion)
+        weight = gravity + factor * up
+        if (weight <= 0.0).any():
+            return np.inf, np.inf
+        ratio = max(ratio, float((factor * across / weight).max()))
+    return max(0.0, ratio * height - narrow), max(0.0, height - narrow / ratio if ratio else 0.0)  # Eq. 312
+
+
+def remedies(
+    body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float, restitutions: Restitutions,
+    *, falls: bool,
+) -> Remedies:  # fmt: skip
+    """Return what would help; falls: whether it overturns under some motion times the margin."""
+    both = [tension(body, each, margin, gravity) for each in motions]
+    out, down = still(body, motions, margin, gravity)
+    shear = margin * body.mass * max(float(parts_of(each)[0].max()) for each in motions)
+    changes = {}
+    for name, most in (("out", out), ("down", down)):
+        try:
+            stands = _least(body, motions, margin, gravity, restitutions, name, most) if falls else 0.0
+            changes[name] = Change(stands, most)
+        except GeometryError as error:
+            changes[name] = Change(np.nan, most, str(error))
+    held = {edge: max(one[edge] for one in both) for edge in FEET}
+    lifts = any(force > 0.0 for force in held.values())
+    isolated = isolation(body, motions, margin, gravity) if lifts else None
+    return Remedies(margin, held, shear, changes["out"], changes["down"], isolated)
+
+
+def isolation(
+    body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float
+) -> tuple[float, float] | None:
+    """Return the least period from which on isolators keep a body from lifting [s], and their displacement [m]."""
+    slope = min(body.side(foot, gravity).half_width / body.side(foot, gravity).centre_height for foot in FEET)
+    good, far = np.ones(PERIODS.size, bool), np.zeros(PERIODS.size)
+    for motion in motions:
+        lightest = gravity + margin * min(float(parts_of(motion)[1].min()), 0.0)
+        found = response_spectrum(motion, PERIODS, DAMPING)
+        good &= margin * found.absolute_acceleration <= slope * lightest
+        far = np.maximum(far, margin * found.displacement)
+    first = int(np.flatnonzero(~good)[-1]) + 1 if not good.all() else 0
+    return (float(PERIODS[first]), float(far[first])) if first < PERIODS.size else None
+
+
+def changed(body: Body, *, out: float = 0.0, down: float = 0.0) -> Block:
+    """Return a block of the same mass and inertia with feet so far outside, and a centre so far below, as given [m]."""
+    left, right = body.feet
+    (x, y), ground = body.centre, body.ground
+    height = max(body.local_box[3], 2.0 * (y - ground))
+    return Block(
+        width=right - left + 2.0 * out, height=height, depth=1.0, mass=body.mass,
+        centre=(x - left + out, y - ground - down), moment_of_inertia=body.moment_of_inertia,
+    )  # fmt: skip
+
+
+def _least(
+    body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float, restitutions: Restitutions,
+    name: str, most: float,
+) -> float:  # fmt: skip
+    """Return the least change from which on all that are tried stand, up to the one that keeps it from lifting [m]."""
+    if not np.isfinite(most):
+        raise GeometryError("the vertical motion takes all of its weight: nothing but anchors holds it down")
+
+    def falls(lengths: Sequence[float]) -> BoolArray:
+        return overturns([changed(body, **{name: each}) for each in lengths], motions, margin, gravity, restitutions)
+
+    grid = np.linspace(0.0, most, STEPS + 1)[:-1]
+    down = np.flatnonzero(falls(grid.tolist()))
+    if not down.size:
+        return 0.0
+    low, high = float(grid[down[-1]]), float((*grid, most)[down[-1] + 1])
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if falls([middle])[0] else (low, middle)
+    return high
+
+
+def overturns(
+    bodies: Sequence[Body], motions: Sequence[GroundMotion], margin: float, gravity: float, restitutions: Restitutions
+) -> BoolArray:
+    """Return which bodies overturn under any motion times a factor, with any restitution, either way round."""
+    rows, owner = [], []
+    for k, body in enumerate(bodies):
+        for restitution in restitutions(body).values():
+            for one, _, own in ways_round(body, motions, restitution):
+                rows.append(RockingParameters.of_body(one, own, gravity))
+                owner.append(k)
+    sides = {name: values[:, None] for name, values in sides_of(rows).items()}
+    histories = Product(MotionList(motions), sides, np.array([margin]), settings=Settings(gravity=gravity))
+    fell = overturned(results_of(histories)["outcome"]).reshape(len(motions), len(rows)) == 1.0
+    found = np.zeros(len(bodies), bool)
+    np.logical_or.at(found, np.array(owner), fell.any(axis=0))
+    return found

@@ -1,0 +1,177 @@
+"""The report of an assessment: verdict, margins, probability, what governs, what to do, codes, assumptions, sources."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from rocking import checks
+from rocking.assessment import Assessment
+from rocking.assessment._assess import CALIBRATED, choices
+from rocking.assessment.remedies import ASSUMED
+from rocking.bodies.body import assumed_rows
+from rocking.conventions import g
+from rocking.dynamics import Response, simulate
+from rocking.evidence.measurements import provenance
+from rocking.motions.intensity import measure
+from rocking.plots.assessment import assessment_picture
+from rocking.plots.body import body_picture
+from rocking.plots.ground_motion import ground_motion_picture
+from rocking.plots.prediction import prediction_picture
+from rocking.plots.response import response_picture
+from rocking.reports.document import Cell, Document, Pair, Paragraph, Picture, ReportSection, ReportTable, table
+from rocking.reports.render import write_report
+from rocking.reports.response_document import _sides
+from rocking.restitution import models
+from rocking.studies.code_methods import CODE_METHODS, LEFT_OUT
+from rocking.tables import target_of
+from rocking.version import SOFTWARE
+
+_SEARCHED = (
+    "Histories: the ground is level, body and floor are rigid, the body stands on two feet. The least factor is looked "
+    "for at 64 levels in equal ratios, from what lifts the body up to 50 times that or the largest acceleration on "
+    "record, then by halvings: a thinner stretch below may have been missed. Both ways round are computed.",
+    "Remedies: the least change is looked for at 32 steps up to the one that keeps the body from lifting, and is that "
+    "from which on all that were tried stand, with every model; a thinner stretch above may have been missed.",
+)
+
+
+def assessment_report(
+    found: Assessment, path: str | Path, *, name: str = "", project: str = "", author: str = "", date: str = ""
+) -> Path:
+    """Write the report of an assessment, to be signed: verdict, evidence, what to do, assumptions and references.
+
+    Parameters
+    ----------
+    found : Assessment
+        Of `rocking.assess`.
+    path : str or Path
+        A document (.pdf), or a web page of one file (.html).
+    name : str
+        What the body is called.
+    project, author, date : str
+        What stands at its head and beside the signature.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no assessment, or the ending of the path is another.
+    MissingExtraError
+        If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
+    """
+    checks.of_kind("found", found, Assessment, "an Assessment")
+    target, worst = target_of(path), found.motions[found.lowest.motion]
+    history = governing_history(found)
+    pictures: dict[str, Callable[[], Any]] = {
+        "body": lambda: body_picture(found.body),
+        "margins": lambda: assessment_picture(found),
+        "prediction": lambda: prediction_picture(found.prediction),
+        "motion": lambda: ground_motion_picture(worst),
+        "response": lambda: response_picture(history, found.friction),
+    }
+    signed = {"project": project, "author": author, "date": date}
+    write_report(assessment_document(found, name, signed, history), pictures, target)
+    return target
+
+
+def governing_history(found: Assessment) -> Response:
+    """Return the history of the least margin, under its motion as it is."""
+    lowest = found.lowest
+    body = found.body.mirrored() if lowest.mirrored else found.body
+    choice = choices(found.body, None).get(lowest.model)
+    if choice is None or isinstance(choice, dict):
+        left, right = (found.models[lowest.model].coefficients[foot] for foot in ("left", "right"))
+        choice = {"left": right, "right": left} if lowest.mirrored else {"left": left, "right": right}
+    return simulate(body, found.motions[lowest.motion], choice, gravity=found.gravity)
+
+
+def assessment_document(found: Assessment, name: str, signed: dict[str, str], history: Response) -> Document:
+    """Return the content of the report of an assessment."""
+    worst, mirrored = found.motions[found.lowest.motion], " mirrored," if found.lowest.mirrored else ""
+    mark = "bad" if (found.fallen == 1.0).any() else "fair" if (found.fallen > 0.0).any() else "good"
+    margins = Picture("margins", "Least factor on each motion that overturns; code methods over it, unsafe above 1")
+    how_likely = Picture("prediction", "How likely it overturns and rocks under each motion, and what decides it")
+    motion = Picture("motion", f"{worst.name}: the ground, and its response spectrum for 5 % damping", 74)
+    under = f"The body{mirrored} under {worst.name} as it is, with {found.lowest.model}: {history.summary}"
+    sections = [
+        ReportSection("Does it stand?", [margins, _models(found), _motions(found)]),
+        ReportSection("How likely is it?", [*map(Paragraph, found.prediction.sentences), how_likely]),
+        ReportSection("What governs", [*map(Paragraph, found.governs)]),
+        ReportSection("What to do", [*map(Paragraph, found.to_do), *map(Paragraph, ASSUMED)]),
+        ReportSection("Code methods beside it", [_codes(found)]),
+        ReportSection("The body", [Pair(Picture("body", "The body on its feet O and O'"), _body(found))]),
+        ReportSection("The governing motion and history", [motion, Picture("response", under, 80)]),
+        ReportSection("What is known, and what was assumed", [
+            table("", ["input", "drawn from"], found.prediction.inputs.items()),
+            *map(Paragraph, (*_SEARCHED, *found.prediction.assumed)),
+            *(Paragraph(why, f"{model} says nothing of this body:", "fair") for model, why in found.refused.items()),
+        ]),
+        ReportSection("References", [*map(Paragraph, _references(found))]),
+        ReportSection("Signed", [table("", ["", ""], [(key, words or "_" * 30) for key, words in
+                                                      (*signed.items(), ("signature", ""))])]),
+    ]  # fmt: skip
+    head = ". ".join(filter(None, (signed["project"], f"{len(found.motions)} motions", signed["author"], signed["date"])))
+    verdict = [Paragraph(found.verdict, "", mark), Paragraph(found.margin_words), Paragraph(found.prediction.verdict)]
+    return Document(name or "A body in an earthquake", head, sections, verdict=verdict, footer=SOFTWARE)
+
+
+def _models(found: Assessment) -> ReportTable:
+    rows = [
+        (name, *(f"{each.coefficients[foot]:.3f}" for foot in ("left", "right")),
+         Cell(f"{each.falls} of {each.overturned.size}", "bad" if each.falls else "good"), f"{each.lowest:.3g}")
+        for name, each in (*found.models.items(), (f"{found.lowest.model}, friction {found.friction:.3g}", found.sliding))
+    ]  # fmt: skip
+    note = (
+        "r: velocity after an impact over velocity before. Least factor: on any motion, either way round; inf where none "
+        "that was tried overturns. The calibrated model's ends are those of 95 % for a single body."
+    )
+    head = ["restitution", "r left [-]", "r right [-]", "overturns under", "least factor [-]"]
+    return table("With each model of restitution", head, rows, note)
+
+
+def _motions(found: Assessment) -> ReportTable:
+    least = [min(float(each.least[:, k].min()) for each in found.models.values()) for k in range(len(found.motions))]
+    rows = [
+        (each.name, f"{each.peak / g:.3g}", f"{measure('pgv').of(each):.3g}", f"{found.lifts[k]:.3g}",
+         f"{least[k]:.3g}", Cell(f"{found.fallen[k] * len(found.models):.0f} of {len(found.models)}",
+                                 "bad" if found.fallen[k] > 0.0 else "good"))
+        for k, each in sorted(enumerate(found.motions), key=lambda pair: least[pair[0]])
+    ]  # fmt: skip
+    head = ["motion", "PGA [g]", "PGV [m/s]", "lifts at [-]", "overturns at [-]", "models that fall"]
+    return table("Under each motion", head, rows, "Factors on the motion as it is.")
+
+
+def _codes(found: Assessment) -> ReportTable:
+    rows = [
+        (CODE_METHODS[name].title, f"{safe} of {of}", str(fell), f"{least:.3g}", CODE_METHODS[name].reading)
+        for name, of, safe, fell, least in found.code_rows
+    ]
+    note = (
+        "These: motions that the method calls safe and that overturn with some model. Up to: least factor on any motion. "
+        f"Left out: {'; '.join(f'{name} ({why})' for name, why in LEFT_OUT.items())}."
+    )
+    return table("", ["method", "calls safe", "of these overturn", "up to [-]", "how sure the reading is"], rows, note)
+
+
+def _body(found: Assessment) -> ReportTable:
+    body = found.body
+    rows = [
+        ("mass", f"{body.mass:.5g} kg"), *assumed_rows(body),
+        ("centre of mass", f"x = {body.centre[0]:.4g} m, y = {body.centre[1]:.4g} m"),
+        ("feet", f"x = {body.feet[0]:.4g} m and {body.feet[1]:.4g} m"),
+        ("moment of inertia", f"{body.moment_of_inertia:.5g} kg m\N{SUPERSCRIPT TWO} about the centre"),
+        *_sides(body, found.gravity),
+    ]  # fmt: skip
+    return table("", ["quantity", "value"], rows)
+
+
+def _references(found: Assessment) -> list[str]:
+    kinds, source = models(), provenance()
+    used = [kinds[name] for name in dict.fromkeys(each.partition(":")[0] for each in found.models) if name in kinds]
+    measured = [f"calibrated: {source['source']}, doi:{source['doi']}"] if CALIBRATED in found.models else []
+    named = [f"{kind.name}: {kind.reference}" for kind in used]
+    return [*measured, *named, *(f"{one.title}: {one.reference}" for one in CODE_METHODS.values())]
