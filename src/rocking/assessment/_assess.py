@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from rocking import checks, conventions
-from rocking.assessment.answer import Assessment, ModelMargin
+from rocking.assessment.answer import BodyAssessment, ModelMargin
 from rocking.assessment.remedies import lifting_factor, remedies
-from rocking.bodies import Body
+from rocking.bodies import Body, Solid
 from rocking.conventions import FEET
 from rocking.dynamics.parameters import RockingParameters
 from rocking.errors import InvalidValueError, RockingError
@@ -34,7 +34,7 @@ DIRECTIONS = 12
 
 
 def assess(
-    body: Body,
+    body: Body | Solid,
     motions: Any,
     restitution: Any = None,
     *,
@@ -44,7 +44,7 @@ def assess(
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
     **known: Any,
-) -> Assessment:
+) -> BodyAssessment:
     """Say whether a body stands under motions, how far it is from overturning, what decides it and what to do.
 
     Histories are computed under every motion, both ways round, with every model of restitution, rocking alone, and with
@@ -76,7 +76,7 @@ def assess(
 
     Returns
     -------
-    Assessment
+    BodyAssessment
         Verdict, margins, probability, code methods, remedies.
 
     Raises
@@ -87,9 +87,9 @@ def assess(
     Examples
     --------
     >>> import rocking as rk
-    >>> found = assess(rk.Block(width=0.5, height=2.0, mass=300.0), rk.pulses.sine(3.4, 0.8), count=16)
+    >>> found = assess(rk.Block(width=0.5, height=2.0, mass=300.0), rk.pulses.sine(2.0, 0.8), ["ked", 0.95], count=16)
     >>> found.verdict
-    'It may overturn: under 1 of 1 motion with some of 10 restitutions, under 0 with all of them: what an impact costs decides.'
+    'It does not lift: it overturns under none of 1 motion, with none of 2 restitutions, either way round.'
     """
     if not isinstance(body, Body):
         raise InvalidValueError(
@@ -124,7 +124,7 @@ def assess(
         progress=progress, **known,
     )  # fmt: skip
     lowest = min(float(np.nanmin(each.least)) for each in found.values() if not np.isnan(each.least).all())
-    return Assessment(
+    return BodyAssessment(
         body=body, motions=tuple(plane), models=found, refused=refused, friction=coefficient, sliding=sliding,
         lifts=np.array([lifting_factor(body, each, gravity) for each in plane]),
         capacities={name: each.capacity(stances, shaking)[:, 0] for name, each in CODE_METHODS.items()},
@@ -148,9 +148,11 @@ def in_the_plane(motions: Any, azimuth: Any = None) -> list[GroundMotion]:
             angles = [float(azimuth)] if fixed else np.pi * np.arange(DIRECTIONS) / DIRECTIONS
             turned = {f", {np.degrees(a):.0f} deg": rotated(along, across, float(a))[0] for a in angles}
         for words, each in turned.items():
+            name = f"{along.name}{words}"
+            many = sum(other.name.partition(" (no. ")[0] == name for other in found)
             vertical = each.vertical if upright is None else with_vertical(each, sampled(upright)).vertical
             samples = each.acceleration if vertical is None else each.acceleration[: len(vertical)]
-            found.append(GroundMotion(samples, each.time_step, vertical, f"{along.name}{words}"))
+            found.append(GroundMotion(samples, each.time_step, vertical, f"{name} (no. {many + 1})" if many else name))
     return found
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking.assessment.remedies import Remedies
 from rocking.bodies import Body
-from rocking.conventions import FEET, FloatArray, g, percent
+from rocking.conventions import FEET, FloatArray, g
 from rocking.motions.motion import GroundMotion
 from rocking.prediction import Prediction
 from rocking.studies.code_methods.comparison import AT_MOST
@@ -56,7 +56,7 @@ class Lowest(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Assessment:
+class BodyAssessment:
     """Whether a body stands, how far it is from overturning, what decides that and what to do about it.
 
     Parameters
@@ -137,7 +137,8 @@ class Assessment:
             return f"No factor on {self._this} that was tried overturns it."
         name, way = self.motions[motion].name, ", mirrored" if mirrored else ""
         pga = factor * self.motions[motion].peak
-        return f"Margin to overturning: {factor:.3g} times {self._this}, {name} ({model}{way}), PGA {pga / g:.3g} g there."
+        on = "this record" if len(self.motions) == 1 else name
+        return f"Margin to overturning: {factor:.3g} times {on} ({model}{way}), a PGA of {pga / g:.3g} g."
 
     @property
     def governs(self) -> tuple[str, ...]:
@@ -159,7 +160,8 @@ class Assessment:
         if len(margins) > 1:
             low, high = min(margins, key=margins.__getitem__), max(margins, key=margins.__getitem__)
             found.append(
-                f"What an impact costs moves the margin from {margins[low]:.3g} ({low}) to {margins[high]:.3g} ({high})."
+                f"What an impact costs moves the margin from {margins[low]:.3g} ({low}) to {margins[high]:.3g} "
+                f"({high})."
             )
         slope = side.half_width / side.centre_height
         slid = self.sliding.lowest
@@ -170,13 +172,16 @@ class Assessment:
         if shares:
             most = max(shares, key=lambda name: shares[name].total)
             word = "which motion it is" if most == "case" else most
-            found.append(f"Of what is not known, {word} decides most (share {shares[most].total:.2f} of the variance).")
+            found.append(
+                f"Of what is not known, {word} decides most ({min(shares[most].total, 1.0):.2f} of the variance)."
+            )
         return tuple(found)
 
     @property
     def to_do(self) -> tuple[str, ...]:
         """What would help, in words."""
-        remedy, ask = self.remedies, f"{self.remedies.margin:g} times {self._this}"
+        remedy = self.remedies
+        ask = self._this if remedy.margin == 1.0 else f"{remedy.margin:g} times {self._this}"
         if not remedy.needed:
             return (f"Nothing: it does not lift under {ask}.",)
         both = " and ".join(f"{force / 1e3:.3g} kN along the {edge} edge" for edge, force in remedy.tension.items())
@@ -190,9 +195,11 @@ class Assessment:
                 found.append(f"{name}: not found, {change.why_not}.")
             elif change.stands > 0.0:
                 length = f"{math.ceil(1e3 * change.stands):d} mm"
-                found.append(f"{what.format(length)}: no history overturns any more; {still}: it does not even lift.")
+                found.append(
+                    f"{what.format(length)}: no history overturns any more. By {still}: it does not even lift."
+                )
             elif still:
-                found.append(f"{what.format(still)}: it does not lift any more; it stands without.")
+                found.append(f"{what.format(still)}: it does not lift any more. It stands without.")
         if remedy.isolation is None:
             found.append("Isolators: no period up to 6 s keeps it from lifting.")
         else:

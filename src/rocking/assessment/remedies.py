@@ -10,10 +10,11 @@ from rocking.bodies import Block, Body
 from rocking.conventions import FEET, BoolArray, FloatArray
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.settings import Settings
-from rocking.errors import GeometryError
+from rocking.errors import GeometryError, InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.spectrum import response_spectrum
 from rocking.outcome import overturned
+from rocking.restitution.implied import energy_bound
 from rocking.studies.histories import Product, results_of
 from rocking.studies.margins import ways_round
 from rocking.studies.motion_sets import MotionList
@@ -38,7 +39,7 @@ ASSUMED = (
 
 
 @dataclass(frozen=True)
-class Change:
+class LengthChange:
     """How far a length must be changed.
 
     Parameters
@@ -69,7 +70,7 @@ class Remedies:
         lift [N].
     shear : float
         Horizontal force on all anchors [N].
-    wider, lower : Change
+    wider, lower : LengthChange
         How far each side of the base must reach out, and how far the centre of mass must come down.
     isolation : tuple of float, optional
         Least period from which on no longer one lets it lift [s], and the displacement that it takes [m]; None if
@@ -79,8 +80,8 @@ class Remedies:
     margin: float
     tension: dict[str, float]
     shear: float
-    wider: Change
-    lower: Change
+    wider: LengthChange
+    lower: LengthChange
     isolation: tuple[float, float] | None
 
     @property
@@ -100,7 +101,7 @@ def lifting_factor(body: Body, motion: GroundMotion, gravity: float) -> float:
     across, up = parts_of(motion)
     sides = [body.side(foot, gravity) for foot in FEET]
     least = [s.half_width * gravity / max((across * s.centre_height - up * s.half_width).max(), 1e-300) for s in sides]
-    return float(min(least))  # Eq. 310
+    return float(min(least))  # Eq. 318
 
 
 def tension(body: Body, motion: GroundMotion, factor: float, gravity: float) -> dict[str, float]:
@@ -111,13 +112,14 @@ def tension(body: Body, motion: GroundMotion, factor: float, gravity: float) -> 
     for edge, pivot in zip(FEET, FEET[::-1], strict=True):
         side = body.side(pivot, gravity)
         moment = factor * across * side.centre_height - (gravity + factor * up) * side.half_width
-        found[edge] = max(0.0, body.mass * float(moment.max()) / base)  # Eq. 311
+        found[edge] = max(0.0, body.mass * float(moment.max()) / base)  # Eq. 319
     return {str(edge): force for edge, force in found.items()}
 
 
 def still(body: Body, motions: Sequence[GroundMotion], factor: float, gravity: float) -> tuple[float, float]:
     """Return how far the sides must reach out, and the centre come down, that nothing lifts [m]; infinite if none."""
-    narrow, height = min(body.side(foot, gravity).half_width for foot in FEET), body.side("right", gravity).centre_height
+    sides = [body.side(foot, gravity) for foot in FEET]
+    narrow, height = min(side.half_width for side in sides), sides[0].centre_height
     ratio = 0.0
     for motion in motions:
         across, up = parts_of(motion)
@@ -125,7 +127,7 @@ def still(body: Body, motions: Sequence[GroundMotion], factor: float, gravity: f
         if (weight <= 0.0).any():
             return np.inf, np.inf
         ratio = max(ratio, float((factor * across / weight).max()))
-    return max(0.0, ratio * height - narrow), max(0.0, height - narrow / ratio if ratio else 0.0)  # Eq. 312
+    return max(0.0, ratio * height - narrow), max(0.0, height - narrow / ratio if ratio else 0.0)  # Eq. 320
 
 
 def remedies(
@@ -139,19 +141,17 @@ def remedies(
     changes = {}
     for name, most in (("out", out), ("down", down)):
         try:
-            stands = _least(body, motions, margin, gravity, restitutions, name, most) if falls else 0.0
-            changes[name] = Change(stands, most)
+            stands = _least(body, motions, margin, gravity, restitutions, name=name, most=most) if falls else 0.0
+            changes[name] = LengthChange(stands, most)
         except GeometryError as error:
-            changes[name] = Change(np.nan, most, str(error))
-    held = {edge: max(one[edge] for one in both) for edge in FEET}
+            changes[name] = LengthChange(np.nan, most, str(error))
+    held = {str(edge): max(one[edge] for one in both) for edge in FEET}
     lifts = any(force > 0.0 for force in held.values())
     isolated = isolation(body, motions, margin, gravity) if lifts else None
     return Remedies(margin, held, shear, changes["out"], changes["down"], isolated)
 
 
-def isolation(
-    body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float
-) -> tuple[float, float] | None:
+def isolation(body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float) -> tuple[float, float] | None:
     """Return the least period from which on isolators keep a body from lifting [s], and their displacement [m]."""
     slope = min(body.side(foot, gravity).half_width / body.side(foot, gravity).centre_height for foot in FEET)
     good, far = np.ones(PERIODS.size, bool), np.zeros(PERIODS.size)
@@ -177,7 +177,7 @@ def changed(body: Body, *, out: float = 0.0, down: float = 0.0) -> Block:
 
 def _least(
     body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float, restitutions: Restitutions,
-    name: str, most: float,
+    *, name: str, most: float,
 ) -> float:  # fmt: skip
     """Return the least change from which on all that are tried stand, up to the one that keeps it from lifting [m]."""
     if not np.isfinite(most):
@@ -205,7 +205,7 @@ def overturns(
     for k, body in enumerate(bodies):
         for restitution in restitutions(body).values():
             for one, _, own in ways_round(body, motions, restitution):
-                rows.append(RockingParameters.of_body(one, own, gravity))
+                rows.append(_parameters(one, own, gravity))
                 owner.append(k)
     sides = {name: values[:, None] for name, values in sides_of(rows).items()}
     histories = Product(MotionList(motions), sides, np.array([margin]), settings=Settings(gravity=gravity))
@@ -213,3 +213,11 @@ def overturns(
     found = np.zeros(len(bodies), bool)
     np.logical_or.at(found, np.array(owner), fell.any(axis=0))
     return found
+
+
+def _parameters(body: Body, restitution: Any, gravity: float) -> RockingParameters:
+    """Return a changed body with its restitution, with the largest that energy allows where what is given is larger."""
+    try:
+        return RockingParameters.of_body(body, restitution, gravity)
+    except InvalidValueError:
+        return RockingParameters.of_body(body, {foot: energy_bound(body, foot) for foot in FEET}, gravity)

@@ -12,7 +12,7 @@ from rocking.cli.exports import Export, Exports, draw
 from rocking.cli.page import Page, bar, deliver
 
 if TYPE_CHECKING:
-    from rocking.assessment import Assessment
+    from rocking.assessment import BodyAssessment
     from rocking.spec.document import AssessTable
 
 
@@ -60,7 +60,7 @@ def assess(
     as_json: options.AsJson = False,
 ) -> None:
     """Print whether a body stands, its margin to overturning, what governs, and what to do about it."""
-    from rocking.cli.arguments import as_typed, document_file
+    from rocking.cli.arguments import as_typed, document_file, is_body
     from rocking.cli.predict import TABLES, in_file, number_or_name, typed
     from rocking.spec.document import AssessmentDocument
     from rocking.spec.prediction import PredictionProblem
@@ -74,15 +74,16 @@ def assess(
     with as_typed():
         problem = PredictionProblem.of(document, inputs)
         with bar("histories", quiet=as_json) as progress:
-            found = problem.assessed(document.assess, lambda done: progress(done), threads)
-    deliver(AssessmentAnswer(found, document.assess, Path(body or "").stem), exports, as_json=as_json)
+            found = problem.assessed(document.assess, inputs, progress, threads)
+    name = Path(body).stem if body and is_body(body) else ""
+    deliver(AssessmentAnswer(found, document.assess, name), exports, as_json=as_json)
 
 
 @dataclass(frozen=True)
 class AssessmentAnswer:
     """What is found of a body."""
 
-    found: "Assessment"
+    found: "BodyAssessment"
     told: "AssessTable"
     name: str = ""  # of the body
 
@@ -116,7 +117,8 @@ class AssessmentAnswer:
             for words in sentences:
                 page.line(words)
         page.line()
-        page.line("Assumptions, references and how sure the readings are: --out report.pdf, or --json.")
+        assumed = dict.fromkeys(each.partition(":")[0] for each in found.prediction.assumed)
+        page.line(f"Assumed: {'; '.join(assumed)}. What, why, and all references: --out report.pdf, or --json.")
 
 
 def _row(name: str, each: Any) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking import checks
-from rocking.assessment import Assessment
+from rocking.assessment import BodyAssessment
 from rocking.plots.labels import plain
 from rocking.plots.style import COLORS, DASHED, DOUBLE, GREY, PALE, in_journal_style, legend_below, new_figure, stroke
 
@@ -17,12 +17,12 @@ _MOST_NAMES = 14
 
 
 @in_journal_style
-def assessment_picture(found: Assessment) -> "Figure":
+def assessment_picture(found: BodyAssessment) -> "Figure":
     """Draw the least factor on each motion that overturns a body, and what code methods allow over it.
 
     Parameters
     ----------
-    found : Assessment
+    found : BodyAssessment
         As of `rocking.assess`.
 
     Returns
@@ -42,7 +42,7 @@ def assessment_picture(found: Assessment) -> "Figure":
     >>> [panel.get_xlabel() for panel in assessment_picture(found).axes]
     ['factor on the motion [-]', 'what a method allows over the least that overturns [-]']
     """
-    checks.of_kind("found", found, Assessment, "an Assessment")
+    checks.of_kind("found", found, BodyAssessment, "a BodyAssessment")
     figure, axes = new_figure(DOUBLE, 3.2, columns=2)
     least = np.array([np.fmin.reduce(each.least) for each in found.models.values()])
     least = np.where(np.isnan(least), np.inf, least)
@@ -58,7 +58,7 @@ def assessment_picture(found: Assessment) -> "Figure":
     return figure
 
 
-def _margins(axes: "Axes", found: Assessment, least: np.ndarray) -> None:
+def _margins(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
     order = np.argsort(least.min(axis=0), kind="stable")
     axes.axvline(1.0, color="black", linestyle=DASHED, linewidth=0.8)
     for row, k in enumerate(order.tolist()):
@@ -79,7 +79,7 @@ def _margins(axes: "Axes", found: Assessment, least: np.ndarray) -> None:
     _plain_ticks(axes)
 
 
-def _methods(axes: "Axes", found: Assessment, least: np.ndarray) -> None:
+def _methods(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
     axes.axvline(1.0, color="black", linestyle=DASHED, linewidth=0.8)
     ends = [1.0]
     for row, capacity in enumerate(found.capacities.values()):

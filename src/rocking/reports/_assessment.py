@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Any
 
 from rocking import checks
-from rocking.assessment import Assessment
-from rocking.assessment._assess import CALIBRATED, choices
+from rocking.assessment import BodyAssessment, ModelMargin
+from rocking.assessment._assess import CALIBRATED
 from rocking.assessment.remedies import ASSUMED
 from rocking.bodies.body import assumed_rows
-from rocking.conventions import g
+from rocking.conventions import FEET, g
 from rocking.dynamics import Response, simulate
 from rocking.evidence.measurements import provenance
 from rocking.motions.intensity import measure
@@ -36,13 +36,13 @@ _SEARCHED = (
 
 
 def assessment_report(
-    found: Assessment, path: str | Path, *, name: str = "", project: str = "", author: str = "", date: str = ""
+    found: BodyAssessment, path: str | Path, *, name: str = "", project: str = "", author: str = "", date: str = ""
 ) -> Path:
     """Write the report of an assessment, to be signed: verdict, evidence, what to do, assumptions and references.
 
     Parameters
     ----------
-    found : Assessment
+    found : BodyAssessment
         Of `rocking.assess`.
     path : str or Path
         A document (.pdf), or a web page of one file (.html).
@@ -63,7 +63,7 @@ def assessment_report(
     MissingExtraError
         If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
     """
-    checks.of_kind("found", found, Assessment, "an Assessment")
+    checks.of_kind("found", found, BodyAssessment, "a BodyAssessment")
     target, worst = target_of(path), found.motions[found.lowest.motion]
     history = governing_history(found)
     pictures: dict[str, Callable[[], Any]] = {
@@ -78,18 +78,16 @@ def assessment_report(
     return target
 
 
-def governing_history(found: Assessment) -> Response:
+def governing_history(found: BodyAssessment) -> Response:
     """Return the history of the least margin, under its motion as it is."""
     lowest = found.lowest
     body = found.body.mirrored() if lowest.mirrored else found.body
-    choice = choices(found.body, None).get(lowest.model)
-    if choice is None or isinstance(choice, dict):
-        left, right = (found.models[lowest.model].coefficients[foot] for foot in ("left", "right"))
-        choice = {"left": right, "right": left} if lowest.mirrored else {"left": left, "right": right}
-    return simulate(body, found.motions[lowest.motion], choice, gravity=found.gravity)
+    left, right = (found.models[lowest.model].coefficients[foot] for foot in FEET)
+    pair = {"left": right, "right": left} if lowest.mirrored else {"left": left, "right": right}
+    return simulate(body, found.motions[lowest.motion], pair, gravity=found.gravity)
 
 
-def assessment_document(found: Assessment, name: str, signed: dict[str, str], history: Response) -> Document:
+def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str], history: Response) -> Document:
     """Return the content of the report of an assessment."""
     worst, mirrored = found.motions[found.lowest.motion], " mirrored," if found.lowest.mirrored else ""
     mark = "bad" if (found.fallen == 1.0).any() else "fair" if (found.fallen > 0.0).any() else "good"
@@ -101,39 +99,40 @@ def assessment_document(found: Assessment, name: str, signed: dict[str, str], hi
         ReportSection("Does it stand?", [margins, _models(found), _motions(found)]),
         ReportSection("How likely is it?", [*map(Paragraph, found.prediction.sentences), how_likely]),
         ReportSection("What governs", [*map(Paragraph, found.governs)]),
-        ReportSection("What to do", [*map(Paragraph, found.to_do), *map(Paragraph, ASSUMED)]),
+        ReportSection("What to do", [*map(_led, found.to_do), *map(_led, ASSUMED)]),
         ReportSection("Code methods beside it", [_codes(found)]),
         ReportSection("The body", [Pair(Picture("body", "The body on its feet O and O'"), _body(found))]),
         ReportSection("The governing motion and history", [motion, Picture("response", under, 80)]),
         ReportSection("What is known, and what was assumed", [
             table("", ["input", "drawn from"], found.prediction.inputs.items()),
-            *map(Paragraph, (*_SEARCHED, *found.prediction.assumed)),
+            *map(_led, (*_SEARCHED, *found.prediction.assumed)),
             *(Paragraph(why, f"{model} says nothing of this body:", "fair") for model, why in found.refused.items()),
         ]),
-        ReportSection("References", [*map(Paragraph, _references(found))]),
+        ReportSection("References", [*map(_led, _references(found))]),
         ReportSection("Signed", [table("", ["", ""], [(key, words or "_" * 30) for key, words in
                                                       (*signed.items(), ("signature", ""))])]),
     ]  # fmt: skip
-    head = ". ".join(filter(None, (signed["project"], f"{len(found.motions)} motions", signed["author"], signed["date"])))
+    several = f"Under {len(found.motions)} motion{'s' if len(found.motions) > 1 else ''}"
+    head = ". ".join(filter(None, (several, signed["project"], signed["author"], signed["date"])))
     verdict = [Paragraph(found.verdict, "", mark), Paragraph(found.margin_words), Paragraph(found.prediction.verdict)]
     return Document(name or "A body in an earthquake", head, sections, verdict=verdict, footer=SOFTWARE)
 
 
-def _models(found: Assessment) -> ReportTable:
+def _models(found: BodyAssessment) -> ReportTable:
     rows = [
         (name, *(f"{each.coefficients[foot]:.3f}" for foot in ("left", "right")),
          Cell(f"{each.falls} of {each.overturned.size}", "bad" if each.falls else "good"), f"{each.lowest:.3g}")
-        for name, each in (*found.models.items(), (f"{found.lowest.model}, friction {found.friction:.3g}", found.sliding))
+        for name, each in (*found.models.items(), _with_friction(found))
     ]  # fmt: skip
     note = (
-        "r: velocity after an impact over velocity before. Least factor: on any motion, either way round; inf where none "
-        "that was tried overturns. The calibrated model's ends are those of 95 % for a single body."
+        "r: velocity after an impact over velocity before. Least factor: on any motion, either way round; inf where "
+        "none that was tried overturns. The calibrated model's ends are those of 95 % for a single body."
     )
     head = ["restitution", "r left [-]", "r right [-]", "overturns under", "least factor [-]"]
     return table("With each model of restitution", head, rows, note)
 
 
-def _motions(found: Assessment) -> ReportTable:
+def _motions(found: BodyAssessment) -> ReportTable:
     least = [min(float(each.least[:, k].min()) for each in found.models.values()) for k in range(len(found.motions))]
     rows = [
         (each.name, f"{each.peak / g:.3g}", f"{measure('pgv').of(each):.3g}", f"{found.lifts[k]:.3g}",
@@ -145,19 +144,29 @@ def _motions(found: Assessment) -> ReportTable:
     return table("Under each motion", head, rows, "Factors on the motion as it is.")
 
 
-def _codes(found: Assessment) -> ReportTable:
+def _with_friction(found: BodyAssessment) -> tuple[str, ModelMargin]:
+    return f"{found.lowest.model}, friction {found.friction:.3g}", found.sliding
+
+
+def _led(words: str) -> Paragraph:
+    """Return a paragraph whose first words stand out."""
+    lead, colon, rest = words.partition(": ")
+    return Paragraph(rest, f"{lead}:") if colon else Paragraph(words)
+
+
+def _codes(found: BodyAssessment) -> ReportTable:
     rows = [
         (CODE_METHODS[name].title, f"{safe} of {of}", str(fell), f"{least:.3g}", CODE_METHODS[name].reading)
         for name, of, safe, fell, least in found.code_rows
     ]
     note = (
-        "These: motions that the method calls safe and that overturn with some model. Up to: least factor on any motion. "
-        f"Left out: {'; '.join(f'{name} ({why})' for name, why in LEFT_OUT.items())}."
+        "Of these overturn: with some model. Up to: the least factor on any motion that it still calls safe. Left out: "
+        f"{'; '.join(f'{name} ({why})' for name, why in LEFT_OUT.items())}."
     )
     return table("", ["method", "calls safe", "of these overturn", "up to [-]", "how sure the reading is"], rows, note)
 
 
-def _body(found: Assessment) -> ReportTable:
+def _body(found: BodyAssessment) -> ReportTable:
     body = found.body
     rows = [
         ("mass", f"{body.mass:.5g} kg"), *assumed_rows(body),
@@ -169,7 +178,7 @@ def _body(found: Assessment) -> ReportTable:
     return table("", ["quantity", "value"], rows)
 
 
-def _references(found: Assessment) -> list[str]:
+def _references(found: BodyAssessment) -> list[str]:
     kinds, source = models(), provenance()
     used = [kinds[name] for name in dict.fromkeys(each.partition(":")[0] for each in found.models) if name in kinds]
     measured = [f"calibrated: {source['source']}, doi:{source['doi']}"] if CALIBRATED in found.models else []

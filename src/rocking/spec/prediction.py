@@ -12,7 +12,7 @@ from rocking.spec.construction import any_body_of, components_of, motion_of, mot
 from rocking.spec.reading import InputFiles, located
 
 if TYPE_CHECKING:
-    from rocking.assessment import Assessment
+    from rocking.assessment import BodyAssessment
     from rocking.spec.document import AssessTable, PredictedBody, PredictionDocument
 
 
@@ -39,17 +39,26 @@ class PredictionProblem:
         return cls(body, motions, options_of(document, body, inputs))
 
     def assessed(
-        self, table: "AssessTable", progress: Callable[[int], None] | None = None, threads: int | None = None
-    ) -> "Assessment":
+        self, table: "AssessTable", inputs: InputFiles, progress: Callable[[int], None] | None = None,
+        threads: int | None = None,
+    ) -> "BodyAssessment":  # fmt: skip
         """Return whether the body stands, with what else was asked for."""
         from rocking.assessment import assess
+        from rocking.spec.document import RestitutionTable
 
         options = {name: value for name, value in self.options.items() if name not in {"bounce", "bounce_law"}}
         if odd := sorted(set(self.options) - set(options)):
             raise InvalidValueError(f"settings.{odd[0]} does not go with an assessment, whose histories do not bounce")
         predicted, given = options.pop("restitution", None), table.restitutions
+        if given is not None and not isinstance(self.body, Solid):
+            given = [
+                next(iter(restitutions_of(RestitutionTable(model=each), 0, [self.body], inputs).values()))
+                if isinstance(each, str) and each != "calibrated"
+                else each
+                for each in given
+            ]
         if predicted is None and given is not None and len(given) == 1:
-            predicted = given[0]
+            predicted = MEASURED if given[0] == "calibrated" else given[0]
         return assess(
             self.body, self.motions, given, predicted=predicted, margin=table.margin, threads=threads,
             progress=progress, **options,

@@ -1,0 +1,87 @@
+"""`assess`: its verdicts, margins, components, and what it refuses."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.assessment._assess import DIRECTIONS, choices, in_the_plane
+from rocking.bodies.solid import Solid, box
+from rocking.errors import InvalidValueError
+
+CABINET = rk.Block(width=0.8, height=2.2, depth=1.2, mass=650.0, centre=(0.52, 0.9))
+
+
+def record(peak, period=0.8, **more):
+    """A sine of two periods as a record."""
+    time = np.arange(0.0, 2.0 * period, 0.01)
+    return rk.GroundMotion(peak * np.sin(2.0 * math.pi * time / period), 0.01, name=f"sine of {peak:g}", **more)
+
+
+def test_it_stands():
+    """What does not lift needs nothing, and its margin is above one."""
+    found = rk.assess(CABINET, record(2.0), ["ked", "housner"], count=16)
+    assert found.verdict.startswith("It does not lift: it overturns under none of 1 motion, with none of 2 rest")
+    assert found.lowest.factor > found.lifts[0] == pytest.approx(9.80665 * 0.28 / 0.9 / 2.0, rel=1e-3)
+    assert found.to_do == ("Nothing: it does not lift under this record.",)
+    assert found.remedies.tension == {"left": 0.0, "right": 0.0}
+    assert f"{found.lowest.factor:.3g} times this record" in found.margin_words
+
+
+def test_it_overturns():
+    """The margin is the least factor of all: a history just below stands with every model, just above one falls."""
+    found = rk.assess(CABINET, record(9.0), ["ked", 0.85], count=16)
+    factor, name, motion, mirrored = found.lowest
+    assert found.verdict == "It overturns under 1 of 1 motion, with all of 2 restitutions."
+    assert factor == min(each.lowest for each in found.models.values()) < 1.0
+    choice = choices(CABINET, ["ked", 0.85])[name]
+    body = CABINET.mirrored() if mirrored else CABINET
+    ends = [rk.simulate(body, found.motions[motion], choice, scale=k * factor).outcome for k in (0.998, 1.002)]
+    assert ends[1] is rk.Outcome.OVERTURNED
+    assert ends[0] is not rk.Outcome.OVERTURNED
+    assert [words.partition(" ")[0] for words in found.to_do] == ["Anchors", "Base", "Centre", "Isolators"]
+    assert found.sentences == tuple(str(found).splitlines())
+
+
+def test_more_margin_asks_for_more():
+    """Remedies hold the factor that is asked for."""
+    one, more = (rk.assess(CABINET, record(6.0), [0.85], count=16, margin=margin).remedies for margin in (1.0, 1.5))
+    assert more.tension["left"] - one.tension["left"] == pytest.approx(0.5 * 650.0 * 6.0 * 0.9 / 0.8, rel=1e-3)
+    assert more.shear == pytest.approx(1.5 * one.shear)
+    assert more.wider.lifts_not > one.wider.lifts_not
+
+
+def test_two_components_are_turned():
+    """Two horizontal components make 12 motions of the plane, the vertical one beside each; a known azimuth one."""
+    both = {"x": record(3.0), "y": record(4.0, 0.8), "z": record(1.0, 0.5)}
+    plane = in_the_plane([both])
+    assert len(plane) == DIRECTIONS
+    assert plane[0].peak == pytest.approx(both["x"].peak)
+    assert max(each.peak for each in plane) == pytest.approx(5.0, rel=0.01)  # 3 and 4, within 15 degrees
+    assert all(each.vertical is not None for each in plane)
+    (one,) = in_the_plane([both], azimuth=math.pi / 2.0)
+    assert one.peak == pytest.approx(both["y"].peak)
+    names = [each.name for each in in_the_plane([record(3.0), record(3.0)])]
+    assert names == ["sine of 3", "sine of 3 (no. 2)"]
+
+
+def test_the_calibrated_model_comes_with_its_interval():
+    """All models are asked where none is named, the calibrated one at its mean and both ends."""
+    named = choices(CABINET, None)
+    low, middle, high = (named[name]["right"] for name in ("calibrated, low", "calibrated", "calibrated, high"))
+    assert low < middle < high
+    assert set(rk.restitution.models()) - {"fixed"} <= {name.partition(":")[0] for name in named}
+    assert choices(CABINET, [0.85]) == {"r = 0.85": 0.85}
+
+
+def test_what_makes_no_sense_is_refused():
+    """A solid, a motion that is zero, a margin of zero, an unknown model."""
+    with pytest.raises(InvalidValueError, match="in_plane"):
+        rk.assess(Solid(box(1.0, 1.0, 3.0)), record(3.0))
+    with pytest.raises(InvalidValueError, match="zero throughout"):
+        rk.assess(CABINET, rk.GroundMotion([0.0, 0.0], 0.01))
+    with pytest.raises(InvalidValueError, match="margin must be"):
+        rk.assess(CABINET, record(3.0), margin=0.0)
+    with pytest.raises(rk.errors.UnknownModelError):
+        rk.assess(CABINET, record(3.0), ["nobody"])

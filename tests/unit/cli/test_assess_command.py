@@ -1,0 +1,73 @@
+"""`rocking assess`: one page, JSON, a report that can be signed, a question in a file, refusals."""
+
+import pytest
+
+COMMAND = "assess"
+BODY = ("--width", 0.8, "--height", 2.2, "--depth", 1.2, "--mass", 650, "--centre", "0.52,0.9")
+QUICK = ("--restitution", "ked", "--restitution", 0.85, "--set", "predict.count=8", "--set", "predict.shares=false")
+PULSE = "sine:amplitude=7,period=0.8"
+
+
+def test_a_page(printed):
+    """Verdict, margin and probability come first; models, codes, what governs and what to do follow, on one page."""
+    page = printed(*BODY, *QUICK, PULSE)
+    first, second, third = page.splitlines()[:3]
+    assert first.startswith("It overturns under 1 of 1 motion, with all of 2 restitutions.")
+    assert second.startswith("Margin to overturning: 0.")
+    assert "probability" in third
+    for words in ("r = 0.85", "asce-43", "What governs", "What to do", "kN along the left edge", "Assumed: "):
+        assert words in page
+    assert len(page.splitlines()) < 50
+
+
+def test_json_says_the_same(answered):
+    """Everything as plain values, what stands on the report too."""
+    found = answered(*BODY, *QUICK, PULSE, "--set", "assess.project=Archive")
+    assert found["project"] == "Archive"
+    assert set(found["models"]) == {"ked", "r = 0.85"}
+    assert found["lowest"]["factor"] == min(each["lowest"] for each in found["models"].values())
+    assert found["remedies"]["tension"]["left"] == pytest.approx(650.0 * (7.0 * 0.9 - 9.80665 * 0.28) / 0.8, rel=1e-4)
+    assert found["verdict"] == found["sentences"][0]
+
+
+def test_a_report_is_signed(printed, tmp_path):
+    """The report bears project, author and date, assumptions and references; a PDF and a picture are written too."""
+    html, pdf, png = (tmp_path / f"report.{ending}" for ending in ("html", "pdf", "png"))
+    signed = [
+        f"assess.{name}={words}" for name, words in (("project", "Archive"), ("author", "A. E."), ("date", "1 May"))
+    ]
+    printed(*BODY, *QUICK, PULSE, *(word for each in signed for word in ("--set", each)),
+            "--out", html, "--out", pdf, "--out", png)  # fmt: skip
+    text = html.read_text(encoding="utf-8")
+    for words in ("Archive", "A. E.", "1 May", "signature", "no safety factor", "Housner 1963", "What to do", "<svg"):
+        assert words in text
+    assert pdf.read_bytes().startswith(b"%PDF")
+    assert png.stat().st_size > 10_000
+
+
+def test_a_question_in_a_file(answered, tmp_path):
+    """A file with [assess] says everything itself."""
+    file = tmp_path / "cabinet.toml"
+    file.write_text(
+        'body = { units = "m", width = 0.8, height = 2.2, mass = 650.0, centre = [0.52, 0.9] }\n'
+        f'[[motions]]\npulse = ["{PULSE}"]\n[predict]\ncount = 8\nshares = false\n'
+        '[assess]\nrestitutions = ["ked"]\nmargin = 1.2\n',
+        "utf-8",
+    )  # fmt: skip
+    found = answered(file)
+    assert found["remedies"]["margin"] == 1.2
+    assert list(found["models"]) == ["ked"]
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        ((*BODY,), "what moves the ground?"),
+        ((*BODY, PULSE, "--set", "assess.margin=0"), "margin"),
+        ((*BODY, PULSE, "--restitution", "kde"), "no restitution model named 'kde'"),
+        ((*BODY, PULSE, "--set", "settings.bounce=0.1"), "do not bounce"),
+    ],
+)
+def test_refusals(refuses, words, why):
+    """What makes no sense is refused before anything is computed."""
+    refuses(words, why)

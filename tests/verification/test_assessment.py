@@ -1,0 +1,123 @@
+"""Assessments: what lifts, what anchors hold, how wide is wide enough, against the engines and closed forms."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import rocking as rk
+from rocking.assessment._assess import choices
+from rocking.assessment.remedies import (
+    DAMPING,
+    HALVINGS,
+    PERIODS,
+    STEPS,
+    changed,
+    isolation,
+    lifting_factor,
+    remedies,
+    still,
+    tension,
+)  # fmt: skip
+from rocking.conventions import g
+
+pytestmark = pytest.mark.verifies(room="studies")
+
+CABINET = rk.Block(width=0.8, height=2.2, depth=1.2, mass=650.0, centre=(0.52, 0.9))
+TIME = np.arange(0.0, 2.0, 0.005)
+PUSH = rk.GroundMotion(
+    8.0 * np.sin(2.0 * np.pi * TIME / 0.8) * (TIME < 0.8), 0.005, 1.5 * np.cos(2.0 * np.pi * TIME / 0.5) * (TIME < 1.0)
+)
+LEVEL = rk.GroundMotion(PUSH.acceleration, 0.005)
+
+
+def lifted(body, motion, factor, gravity=g):
+    """Whether it leaves the ground either way round, by the reference engine."""
+    ways = (body, body.mirrored())
+    ends = [rk.simulate(one, motion, 0.85, scale=factor, gravity=gravity, engine="reference").outcome for one in ways]
+    return any(end is not rk.Outcome.NO_UPLIFT for end in ends)
+
+
+def overturned(body, motion, coefficient):
+    """Whether it overturns either way round, by the reference engine."""
+    ends = [
+        rk.simulate(one, motion, coefficient, engine="reference").outcome for one in (body, body.mirrored())
+    ]  # fmt: skip
+    return any(end is rk.Outcome.OVERTURNED for end in ends)
+
+
+@pytest.mark.verifies("second engine", "our reference engine at factors beside it", within="1e-3", control="within")
+def test_it_lifts_from_the_factor_that_is_said():
+    """Just below the factor that lifts a body on no foot the reference engine sees it lift, just above it does, with
+    a vertical component too."""
+    for motion in (PUSH, LEVEL):
+        factor = lifting_factor(CABINET, motion, g)
+        assert not lifted(CABINET, motion, factor * (1.0 - 1e-3))
+        assert lifted(CABINET, motion, factor * (1.0 + 1e-3))
+
+
+@pytest.mark.verifies("closed form", "moments about the foot, m (a h - g b) / B", within="1e-12",
+                      control="test_less_than_the_anchor_force_lets_it_lift")  # fmt: skip
+def test_anchors_hold_the_moments_about_the_feet():
+    """Under 5 m/s2 the anchors of each edge hold m (a h - (g + v) b) / B, whichever side the centre is nearer to."""
+    flat = rk.GroundMotion([0.0, 5.0, 5.0, 0.0], 0.1, [0.0, -1.0, -1.0, 0.0])
+    held = tension(CABINET, flat, 2.0, g)
+    for edge, lever in (("left", 0.28), ("right", 0.52)):
+        assert held[edge] == pytest.approx(650.0 * (10.0 * 0.9 - (g - 2.0) * lever) / 0.8, rel=1e-12)
+
+
+@pytest.mark.verifies("negative control")
+def test_less_than_the_anchor_force_lets_it_lift():
+    """Negative control: a gravity that pulls as hard as the anchors just holds it, 1e-3 less does not."""
+    force = tension(CABINET, LEVEL, 1.0, g)["left"]
+    assert not lifted(CABINET, LEVEL, 1.0, g + (1.0 + 1e-3) * force * 0.8 / (650.0 * 0.28))
+    assert lifted(CABINET, LEVEL, 1.0, g + (1.0 - 1e-3) * force * 0.8 / (650.0 * 0.28))
+
+
+@pytest.mark.verifies("second engine", "our reference engine with each body", control="within")
+@pytest.mark.parametrize("name", ["out", "down"])
+def test_the_changed_body_just_stands(name):
+    """With the base so wide, or the centre so low, a body stands in the reference engine that overturns with two of
+    the last steps less, and one that is changed as far as the closed form says does not even lift."""
+    found = remedies(CABINET, [LEVEL], 1.0, g, lambda body: choices(body, [0.85]), falls=True)
+    change = {"out": found.wider, "down": found.lower}[name]
+    step = change.lifts_not / STEPS / 2.0**HALVINGS
+    assert overturned(CABINET, LEVEL, 0.85)
+    assert 0.0 < change.stands < change.lifts_not
+    assert not overturned(changed(CABINET, **{name: change.stands}), LEVEL, 0.85)
+    assert overturned(changed(CABINET, **{name: change.stands - 2.0 * step}), LEVEL, 0.85)
+    assert not lifted(changed(CABINET, **{name: change.lifts_not * (1.0 + 1e-6)}), LEVEL, 1.0)
+    assert lifted(changed(CABINET, **{name: change.lifts_not * 0.98}), LEVEL, 1.0)
+
+
+@pytest.mark.verifies("invariant", "mirror images, and moments about the feet", within="1e-12", control="within")
+def test_a_mirrored_body_needs_the_same():
+    """Lengths, forces and factors of a body in a mirror are the same, those of the edges exchanged."""
+    twin = CABINET.mirrored()
+    assert lifting_factor(twin, PUSH, g) == pytest.approx(lifting_factor(CABINET, PUSH, g), rel=1e-12)
+    assert still(twin, [PUSH], 1.0, g) == pytest.approx(still(CABINET, [PUSH], 1.0, g), rel=1e-12)
+    one, other = tension(CABINET, PUSH, 1.0, g), tension(twin, PUSH, 1.0, g)
+    assert (one["left"], one["right"]) == pytest.approx((other["right"], other["left"]), rel=1e-12)
+    assert one["left"] > 1.5 * one["right"]
+
+
+@pytest.mark.verifies("computed anew", "scipy's integrator for the oscillator", within="1e-3", control="within")
+def test_isolators_keep_it_from_lifting():
+    """At the period of the isolators the floor on them accelerates less than lifts, at the period before it more, and
+    moves as far as is said."""
+    period, far = isolation(CABINET, [LEVEL], 1.0, g)
+    capacity = g * 0.28 / 0.9
+    before = PERIODS[np.flatnonzero(period == PERIODS)[0] - 1]
+
+    def answered(natural):
+        omega = 2.0 * np.pi / natural
+
+        def rates(t, state):
+            ground = np.interp(t, TIME, LEVEL.acceleration)
+            return [state[1], -ground - 2.0 * DAMPING * omega * state[1] - omega**2 * state[0]]
+
+        found = solve_ivp(rates, (0.0, 6.0), [0.0, 0.0], max_step=0.005, rtol=1e-8)
+        x, v = found.y
+        return np.abs(x).max(), np.abs(omega**2 * x + 2.0 * DAMPING * omega * v).max()
+
+    assert answered(period)[0] == pytest.approx(far, rel=1e-3)
+    assert answered(period)[1] <= capacity < answered(before)[1]
