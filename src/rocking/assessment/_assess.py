@@ -139,7 +139,7 @@ def assess(
 
 def in_the_plane(motions: Any, azimuth: Any = None) -> list[GroundMotion]:
     """Return what moves a body in its plane: one component as it is, two turned into every direction."""
-    found = []
+    found: list[GroundMotion] = []
     for k in range(len(motions)):
         along, across, upright = parts(motions[k])
         turned = {"": sampled(along)}
@@ -152,7 +152,8 @@ def in_the_plane(motions: Any, azimuth: Any = None) -> list[GroundMotion]:
             many = sum(other.name.partition(" (no. ")[0] == name for other in found)
             vertical = each.vertical if upright is None else with_vertical(each, sampled(upright)).vertical
             samples = each.acceleration if vertical is None else each.acceleration[: len(vertical)]
-            found.append(GroundMotion(samples, each.time_step, vertical, f"{name} (no. {many + 1})" if many else name))
+            called = f"{name} (no. {many + 1})" if many else name
+            found.append(GroundMotion(samples, each.time_step, vertical, called, each.metadata, each.provenance))
     return found
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking.assessment.remedies import Remedies
 from rocking.bodies import Body
-from rocking.conventions import FEET, FloatArray, g
+from rocking.conventions import FEET, FloatArray, g, percent
 from rocking.motions.motion import GroundMotion
 from rocking.prediction import Prediction
 from rocking.studies.code_methods.comparison import AT_MOST
@@ -138,7 +138,21 @@ class BodyAssessment:
         name, way = self.motions[motion].name, ", mirrored" if mirrored else ""
         pga = factor * self.motions[motion].peak
         on = "this record" if len(self.motions) == 1 else name
-        return f"Margin to overturning: {factor:.3g} times {on} ({model}{way}), a PGA of {pga / g:.3g} g."
+        asked = self.remedies.margin
+        short = f" The {asked:g} that is asked for is not reached." if asked > max(factor, 1.0) else ""
+        return f"Margin to overturning: {factor:.3g} times {on} ({model}{way}), a PGA of {pga / g:.3g} g.{short}"
+
+    @property
+    def probability_words(self) -> str:
+        """How likely it overturns, of all motions and under the worst, in words."""
+        chance = self.prediction.chances["overturning"]
+        value, low, high = (percent(round(each, 3)) for each in (chance.value, chance.low, chance.high))
+        words = f"Probability of overturning, with what is not known drawn: {value} ({low} to {high})"
+        if len(self.prediction.motions) > 1:
+            worst = int(np.nanargmax(chance.per_motion))
+            each = percent(round(float(chance.per_motion[worst]), 3))
+            words += f" over all motions, each as likely; {each} under {self.prediction.motions[worst]}"
+        return f"{words}."
 
     @property
     def governs(self) -> tuple[str, ...]:
@@ -225,7 +239,7 @@ class BodyAssessment:
     @property
     def sentences(self) -> tuple[str, ...]:
         """Verdict, margin, probability, what governs, and what to do."""
-        return (self.verdict, self.margin_words, self.prediction.verdict, *self.governs, *self.to_do)
+        return (self.verdict, self.margin_words, self.probability_words, *self.governs, *self.to_do)
 
     @property
     def _several(self) -> str:

@@ -1,5 +1,6 @@
 """What to do about a body that lifts or overturns: anchors, a wider base, a lower centre, isolators."""
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,7 +11,7 @@ from rocking.bodies import Block, Body
 from rocking.conventions import FEET, BoolArray, FloatArray
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.settings import Settings
-from rocking.errors import GeometryError, InvalidValueError
+from rocking.errors import GeometryError, InvalidValueError, PlausibilityWarning
 from rocking.motions.motion import GroundMotion
 from rocking.motions.spectrum import response_spectrum
 from rocking.outcome import overturned
@@ -28,12 +29,12 @@ PERIODS, DAMPING = np.geomspace(0.5, 6.0, 40), 0.1
 Restitutions = Callable[[Body], Mapping[str, Any]]
 
 ASSUMED = (
-    "anchors: body, anchors and floor are rigid, so that nothing lifts and nothing is amplified; the anchors of one "
-    "edge pull straight down, with the other edge as the pivot; shear without help of friction; no safety factor",
-    "wider base, lower centre: mass and moment of inertia about the centre stay as they are; a wider base reaches out "
-    "equally on both sides",
-    f"isolators: linear, {100 * DAMPING:g} % of critical damping, in horizontal directions alone, the body rigid on "
-    "them; vertical motion passes through and is taken with its peaks throughout",
+    "Anchors: body, anchors and floor are rigid, so that nothing lifts and nothing is amplified; the anchors of one "
+    "edge pull straight down, with the other edge as the pivot; shear without help of friction; no safety factor.",
+    "Wider base, lower centre: mass and moment of inertia about the centre stay as they are; a wider base reaches out "
+    "equally on both sides.",
+    f"Isolators: linear, {100 * DAMPING:g} % of critical damping, in horizontal directions alone, the body rigid on "
+    "them; vertical motion passes through and is taken with its peaks throughout.",
 )
 """What the remedies take for granted."""
 
@@ -167,12 +168,14 @@ def isolation(body: Body, motions: Sequence[GroundMotion], margin: float, gravit
 def changed(body: Body, *, out: float = 0.0, down: float = 0.0) -> Block:
     """Return a block of the same mass and inertia with feet so far outside, and a centre so far below, as given [m]."""
     left, right = body.feet
-    (x, y), ground = body.centre, body.ground
-    height = max(body.local_box[3], 2.0 * (y - ground))
+    width, x, y = right - left + 2.0 * out, body.centre[0] - left + out, body.centre[1] - body.ground - down
+    if not y > 0.0:
+        raise GeometryError(f"the centre of mass would lie {-1e3 * y:.0f} mm below the ground")
+    gyration = body.moment_of_inertia / body.mass - x * (width - x)  # what of it only height can give
+    height = max(body.local_box[3], y + 1.01 * max(gyration, y**2) / y)
     return Block(
-        width=right - left + 2.0 * out, height=height, depth=1.0, mass=body.mass,
-        centre=(x - left + out, y - ground - down), moment_of_inertia=body.moment_of_inertia,
-    )  # fmt: skip
+        width=width, height=height, depth=1.0, mass=body.mass, centre=(x, y), moment_of_inertia=body.moment_of_inertia
+    )
 
 
 def _least(
@@ -202,11 +205,13 @@ def overturns(
 ) -> BoolArray:
     """Return which bodies overturn under any motion times a factor, with any restitution, either way round."""
     rows, owner = [], []
-    for k, body in enumerate(bodies):
-        for restitution in restitutions(body).values():
-            for one, _, own in ways_round(body, motions, restitution):
-                rows.append(_parameters(one, own, gravity))
-                owner.append(k)
+    with warnings.catch_warnings():  # a body that is tried may be as wide as high: nobody typed its coefficients
+        warnings.simplefilter("ignore", PlausibilityWarning)
+        for k, body in enumerate(bodies):
+            for restitution in restitutions(body).values():
+                for one, _, own in ways_round(body, motions, restitution):
+                    rows.append(_parameters(one, own, gravity))
+                    owner.append(k)
     sides = {name: values[:, None] for name, values in sides_of(rows).items()}
     histories = Product(MotionList(motions), sides, np.array([margin]), settings=Settings(gravity=gravity))
     fell = overturned(results_of(histories)["outcome"]).reshape(len(motions), len(rows)) == 1.0

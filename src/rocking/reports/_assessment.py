@@ -95,17 +95,18 @@ def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str]
     how_likely = Picture("prediction", "How likely it overturns and rocks under each motion, and what decides it")
     motion = Picture("motion", f"{worst.name}: the ground, and its response spectrum for 5 % damping", 74)
     under = f"The body{mirrored} under {worst.name} as it is, with {found.lowest.model}: {history.summary}"
+    picture = [how_likely] if found.prediction.chances["overturning"].value > 0.0 else []
     sections = [
         ReportSection("Does it stand?", [margins, _models(found), _motions(found)]),
-        ReportSection("How likely is it?", [*map(Paragraph, found.prediction.sentences), how_likely]),
         ReportSection("What governs", [*map(Paragraph, found.governs)]),
-        ReportSection("What to do", [*map(_led, found.to_do), *map(_led, ASSUMED)]),
+        ReportSection("What to do", [*map(_led, found.to_do)]),
+        ReportSection("How likely is it?", [*map(Paragraph, found.prediction.sentences), *picture]),
         ReportSection("Code methods beside it", [_codes(found)]),
         ReportSection("The body", [Pair(Picture("body", "The body on its feet O and O'"), _body(found))]),
         ReportSection("The governing motion and history", [motion, Picture("response", under, 80)]),
         ReportSection("What is known, and what was assumed", [
             table("", ["input", "drawn from"], found.prediction.inputs.items()),
-            *map(_led, (*_SEARCHED, *found.prediction.assumed)),
+            *map(_led, (*_SEARCHED, *ASSUMED, *found.prediction.assumed)),
             *(Paragraph(why, f"{model} says nothing of this body:", "fair") for model, why in found.refused.items()),
         ]),
         ReportSection("References", [*map(_led, _references(found))]),
@@ -113,9 +114,10 @@ def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str]
                                                       (*signed.items(), ("signature", ""))])]),
     ]  # fmt: skip
     several = f"Under {len(found.motions)} motion{'s' if len(found.motions) > 1 else ''}"
-    head = ". ".join(filter(None, (several, signed["project"], signed["author"], signed["date"])))
-    verdict = [Paragraph(found.verdict, "", mark), Paragraph(found.margin_words), Paragraph(found.prediction.verdict)]
-    return Document(name or "A body in an earthquake", head, sections, verdict=verdict, footer=SOFTWARE)
+    head = ". ".join(filter(None, (several, signed["project"] if name else "", signed["author"], signed["date"])))
+    verdict = [Paragraph(found.verdict, "", mark), *map(Paragraph, (found.margin_words, found.probability_words))]
+    title = name or signed["project"] or "A body in an earthquake"
+    return Document(title, head, sections, verdict=verdict, footer=SOFTWARE)
 
 
 def _models(found: BodyAssessment) -> ReportTable:
@@ -156,14 +158,14 @@ def _led(words: str) -> Paragraph:
 
 def _codes(found: BodyAssessment) -> ReportTable:
     rows = [
-        (CODE_METHODS[name].title, f"{safe} of {of}", str(fell), f"{least:.3g}", CODE_METHODS[name].reading)
+        (CODE_METHODS[name].title, f"{safe} of {of}", str(fell), f"{least:.3g}")
         for name, of, safe, fell, least in found.code_rows
     ]
     note = (
         "Of these overturn: with some model. Up to: the least factor on any motion that it still calls safe. Left out: "
         f"{'; '.join(f'{name} ({why})' for name, why in LEFT_OUT.items())}."
     )
-    return table("", ["method", "calls safe", "of these overturn", "up to [-]", "how sure the reading is"], rows, note)
+    return table("", ["method", "calls safe", "of these overturn", "up to [-]"], rows, note)
 
 
 def _body(found: BodyAssessment) -> ReportTable:
@@ -183,4 +185,8 @@ def _references(found: BodyAssessment) -> list[str]:
     used = [kinds[name] for name in dict.fromkeys(each.partition(":")[0] for each in found.models) if name in kinds]
     measured = [f"calibrated: {source['source']}, doi:{source['doi']}"] if CALIBRATED in found.models else []
     named = [f"{kind.name}: {kind.reference}" for kind in used]
-    return [*measured, *named, *(f"{one.title}: {one.reference}" for one in CODE_METHODS.values())]
+    return [
+        *measured,
+        *named,
+        *(f"{one.title}: {one.reference}. Our reading: {one.reading}" for one in CODE_METHODS.values()),
+    ]
