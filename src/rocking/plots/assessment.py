@@ -40,7 +40,7 @@ def assessment_picture(found: BodyAssessment) -> "Figure":
     >>> import rocking as rk
     >>> found = rk.assess(rk.Block(width=0.5, height=2.0), rk.pulses.sine(5.0, 0.8), [0.9], count=16)
     >>> [panel.get_xlabel() for panel in assessment_picture(found).axes]
-    ['factor on the motion [-]', 'what a method allows over the least that overturns [-]']
+    ['factor on the motion [-]', 'allowed over overturning factor [-]']
     """
     checks.of_kind("found", found, BodyAssessment, "a BodyAssessment")
     figure, axes = new_figure(DOUBLE, 3.2, columns=2)
@@ -92,7 +92,7 @@ def _methods(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
     axes.set_xlim(min(ends) / 1.5, 1.5 * max(ends))
     axes.set_yticks(range(len(found.capacities)), list(found.capacities))
     axes.set_ylim(len(found.capacities) - 0.5, -0.5)
-    axes.set_xlabel("what a method allows over the least that overturns [-]")
+    axes.set_xlabel("allowed over overturning factor [-]")
     axes.set_title("shaded: unsafe", loc="right", fontsize=7.0)
     _plain_ticks(axes)
 
