@@ -28,21 +28,24 @@ def rows():
 
 
 @pytest.mark.verifies(
-    "repeated sampling", "bodies made up, with scatter, asymmetry, tilt, bounces, missed or false times",
+    "repeated sampling", "bodies made up: scatter, asymmetry, tilt, bounces, missed or false times, drift",
     room="evidence", control="test_a_constant_coefficient_is_noticed",
 )  # fmt: skip
 def test_intervals_hold_the_truth(rows):
-    """At nominal 95 %: the aim is 93 to 97 %; over 600 it was 91 %, and of 200 that may be 88 % by chance."""
+    """At nominal 95 %: over 1,000 it was 94 % of the mean and 96 % of the scatter, between the aims of 93 and 97 %.
+
+    Of 200 a share of 93 % is as low as 89 %, one of 97 % as high as 99.5 %, with a probability of 1 in 70.
+    """
     found = identification.coverage(rows)
-    assert 0.88 <= found["mean"] <= 0.995, found
-    assert 0.88 <= found["scatter"] <= 1.0, found
+    assert 0.89 <= found["mean"] <= 0.995, found
+    assert 0.89 <= found["scatter"] <= 0.995, found
     assert found["refused"] <= 0.05, found
 
 
 @pytest.mark.verifies("negative control", room="evidence")
 def test_a_constant_coefficient_is_noticed(rows):
-    """Least squares with one r that never scatters holds the truth far less often, even where nothing is missed."""
-    assert identification.coverage(rows)["constant"] < 0.6
+    """Least squares with one r that never scatters holds the truth in 32 % (of 400), though nothing disturbs it."""
+    assert identification.coverage(rows)["constant"] < 0.45
 
 
 @pytest.mark.verifies(

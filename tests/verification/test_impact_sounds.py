@@ -49,15 +49,16 @@ def errors_of(runs, decibels):
 @pytest.mark.verifies(
     "computed anew",
     "impacts of random bodies in random rooms, 11 each, at 25, 15 and 8 dB above the noise",
-    within="0.9 of the rooms complete, 0.7 at 8 dB; onsets to 1e-4 s, 3e-4 s at 8 dB",
+    within="0.9 of the rooms complete, 0.8 at 8 dB; half of the onsets to 5e-5 s, 1e-4 s at 8 dB",
     control="test_a_plain_threshold_does_not_do",
 )
-@pytest.mark.parametrize(("decibels", "share", "median"), [(25.0, 0.9, 1e-4), (15.0, 0.9, 1e-4), (8.0, 0.7, 3e-4)])
+@pytest.mark.parametrize(("decibels", "share", "median"), [(25.0, 0.9, 5e-5), (15.0, 0.9, 5e-5), (8.0, 0.8, 1e-4)])
 def test_impacts_are_found(decibels, share, median):
     """Reverberation, hum and clipping: all impacts are found, none is added, and half of the onsets are close.
 
-    Of a few rooms one more may fail, since a share of six says little. The aim is more,
-    59, 58 and 50 of 60 rooms and .15 ms root mean square: cycles of slow modes are mistaken for each other.
+    Of a few rooms one more may fail, since a share of six says little. In the campaign 57, 55 and 51 of 60 rooms were
+    complete (the aim is 59, 58 and 50), with .04, .17 and .95 ms root mean square (the aim is .15), half of the onsets
+    within .02, .02 and .03 ms: in one run at 15 dB and eight at 8 dB one foot is off against the other.
     """
     errors = errors_of(ROOMS, decibels)
     assert errors.shape[0] >= share * ROOMS - (0 if CAMPAIGN else 1)
@@ -83,7 +84,7 @@ def test_a_plain_threshold_does_not_do():
 def test_what_is_no_rocking_is_refused(kind):
     """Clapping, a metronome, rain and speech are no rocking, and the refusal says why.
 
-    The aim is 100 of 100 of each: 99 of rain and 97 of speech were refused.
+    The aim is 100 of 100 of each: 99 of rain and 97 of speech were refused before clicks had to be alike.
     """
     refusals = []
     for seed in range(FIRST, FIRST + OTHERS):

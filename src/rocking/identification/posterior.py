@@ -13,7 +13,9 @@ from rocking.identification.state_space import SHARED, Laplace, Model, Observer,
 SCATTERS: Final = (1e-5, 0.3)
 """From least to largest standard deviation of ln r at an impact [-]."""
 
-_SMALL_SCATTER = 2e-2
+_SMALL_SCATTER = 0.02
+"""Below it the prior is flat in the scatter, above in its logarithm: impacts usually scatter by 1 to 3 % [-]."""
+
 _COARSE, _FINE, _NEGLIGIBLE = (9, 7), (11, 9), 1e-4
 
 
