@@ -137,8 +137,8 @@ struct Ground {
         made.degree = n;
     }
 
-    // The same over several stretches of lines: the cubic with the moments of the motion, which are what the end of a step knows of it
-    // (Eq. 259). Returns how far it lies beside the samples within.
+    // The same over several stretches of lines: the cubic with the moments of the motion, which are all that the end of a step knows
+    // of it up to the fourth order. Returns how far it lies beside the samples within.
     double across(std::int64_t stretch, double start, double span, Field& made) const {
         const double end = start + span;
         const std::int64_t first = stretch;
