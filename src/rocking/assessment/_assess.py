@@ -26,8 +26,8 @@ from rocking.studies.margins import Margins
 from rocking.studies.motion_sets import MotionList
 
 CALIBRATED = "calibrated"
-ENDS = {"": "coefficient", ", low": "low", ", high": "high"}
-"""What is taken of the calibrated model: its mean, and the ends of its 95 % interval for a single body."""
+ENDS = "low", "high"
+"""Of the 95 % interval of the calibrated model for a single body, which are asked beside it."""
 
 DIRECTIONS = 12
 """Over half a turn, into which two components are turned; both ways round make it a whole one."""
@@ -163,9 +163,9 @@ def choices(body: Body, given: Sequence[Any] | None) -> Mapping[str, Any]:
     usual = [CALIBRATED, *(name for name in models() if name not in {CALIBRATED, "fixed"})]
     for each in usual if given is None else given:
         if each == CALIBRATED:
-            drawn = {foot: calibrate().predict(body, onto=foot) for foot in FEET}
-            for words, end in ENDS.items():
-                named[CALIBRATED + words] = {foot: float(getattr(each, end)) for foot, each in drawn.items()}
+            named[CALIBRATED], drawn = model(each), {foot: calibrate().predict(body, onto=foot) for foot in FEET}
+            for end in ENDS:
+                named[f"{CALIBRATED}, {end}"] = {foot: float(getattr(one, end)) for foot, one in drawn.items()}
         elif isinstance(each, (int, float)):
             named[f"r = {each:g}"] = float(each)
         else:
@@ -176,8 +176,7 @@ def choices(body: Body, given: Sequence[Any] | None) -> Mapping[str, Any]:
 
 def _margin(body: Body, motions: MotionList, restitution: Any, options: dict[str, Any]) -> ModelMargin:
     found = Margins.of(body, motions, restitution, "pga", None, options)
-    fell = found.overturned[:, 0]
     # a factor of 1 may lie in a stretch that the levels have missed
-    least = np.where(fell == 1.0, np.minimum(found.least_each, 1.0), found.least_each)
+    least = np.where(found.fell_each[:, :, 0] == 1.0, np.minimum(found.least_each, 1.0), found.least_each)
     parameters = RockingParameters.of_body(body, restitution, options["gravity"])
-    return ModelMargin({foot: getattr(parameters, foot).coefficient for foot in FEET}, fell, least)
+    return ModelMargin({foot: getattr(parameters, foot).coefficient for foot in FEET}, found.overturned[:, 0], least)

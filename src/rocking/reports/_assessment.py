@@ -183,7 +183,7 @@ def _body(found: BodyAssessment) -> ReportTable:
 def _references(found: BodyAssessment) -> list[str]:
     kinds, source = models(), provenance()
     used = [kinds[name] for name in dict.fromkeys(each.partition(":")[0] for each in found.models) if name in kinds]
-    measured = [f"calibrated: {source['source']}, doi:{source['doi']}"] if CALIBRATED in found.models else []
+    measured = [f"measurements: {source['source']}, doi:{source['doi']}"] if CALIBRATED in found.models else []
     named = [f"{kind.name}: {kind.reference}" for kind in used]
     return [
         *measured,

@@ -23,8 +23,8 @@ class Margins:
     """Histories of one body under all motions, of both ways round where these differ."""
 
     least_each: FloatArray  # least factor that overturns, by way round (as it stands, mirrored) and motion [-]
-    factors: FloatArray  # by motion and level
-    overturned: FloatArray
+    fell_each: FloatArray  # 1 where it overturns, NaN without a result, by way round, motion and level
+    factors: FloatArray  # by motion and level [-]
     label: str  # of the restitution
 
     @classmethod
@@ -44,12 +44,17 @@ class Margins:
 
         fell = [overturned(each, each.product(factors), factors.shape) for each in subjects]
         least = [_least(each, overturned) for each in subjects]
-        return cls(np.array(least), factors, np.maximum.reduce(fell), one.parameters.label)
+        return cls(np.array(least), np.array(fell), factors, one.parameters.label)
 
     @property
     def least(self) -> FloatArray:
         """Least factor on each motion that overturns; infinite if none did, NaN without a result [-]."""
         return np.asarray(np.minimum.reduce(self.least_each))
+
+    @property
+    def overturned(self) -> FloatArray:
+        """1 where it overturns, of either way round, by motion and level; NaN without a result."""
+        return np.asarray(np.maximum.reduce(self.fell_each))
 
 
 def ways_round(body: Body, motions: Any, restitution: Any) -> list[tuple[Body, Any, Any]]:
