@@ -9,6 +9,7 @@ from rocking import checks
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
 from rocking.motions import processing
 from rocking.motions.components import Components, rotated
+from rocking.motions.floors import on_floor
 from rocking.motions.intensity import MEASURES, measure
 from rocking.motions.motion import GroundMotion, checked_motion
 
@@ -48,6 +49,7 @@ STEPS: dict[str, Callable[..., GroundMotion]] = {
     "trim": processing.trimmed,
     "significant": processing.trimmed_to_significant,
     "rotate": _rotated,
+    "floor": on_floor,
     "scale": _scaled,
 }
 """What a step does, by its word; keys are the names of its parameters."""
@@ -63,9 +65,10 @@ def processed(motion: Any, chain: str | Sequence[str]) -> Any:
         factor of the stronger horizontal one.
     chain : str or sequence of str
         Steps in their order, ``name:key=value,key=value``, with semicolons between: ``mean; bandpass:low=0.1,high=25;
-        taper``. There are response, resample, mean, baseline, taper, pad, bandpass, trim, significant, rotate, scale;
+        taper``. There are response, resample, mean, baseline, taper, pad, bandpass, trim, significant, rotate, floor, scale;
         keys are the parameters of the functions of `rocking.motions`; ``scale:factor=2`` or ``scale:pga=3`` [m/s2],
-        ``rotate:angle=30`` [degree], ``response:stations=FILE.xml,low=0.02,high=40`` [Hz].
+        ``rotate:angle=30`` [degree], ``floor:number=3,storeys=5,period=0.5``,
+        ``response:stations=FILE.xml,low=0.02,high=40`` [Hz].
 
     Returns
     -------
@@ -103,6 +106,9 @@ def _together(motion: Components, name: str, keys: dict[str, Any]) -> Components
     if name == "significant":
         first, last = processing.significant_bounds(motion.leading, **keys)
         return motion.each(lambda part: processing.trimmed(part, first, last))
+    if name == "floor":
+        along = [None if part is None else on_floor(part, **keys) for part in (motion.x, motion.y)]
+        return Components(*along, motion.z)
     if name == "scale" and "factor" not in keys:
         before, after = motion.leading.peak, _scaled(motion.leading, **keys).peak
         return motion.each(lambda part: part.scaled(after / before))
