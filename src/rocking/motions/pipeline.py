@@ -65,9 +65,9 @@ def processed(motion: Any, chain: str | Sequence[str]) -> Any:
         factor of the stronger horizontal one.
     chain : str or sequence of str
         Steps in their order, ``name:key=value,key=value``, with semicolons between: ``mean; bandpass:low=0.1,high=25;
-        taper``. There are response, resample, mean, baseline, taper, pad, bandpass, trim, significant, rotate, floor, scale;
-        keys are the parameters of the functions of `rocking.motions`; ``scale:factor=2`` or ``scale:pga=3`` [m/s2],
-        ``rotate:angle=30`` [degree], ``floor:number=3,storeys=5,period=0.5``,
+        taper``. There are response, resample, mean, baseline, taper, pad, bandpass, trim, significant, rotate, floor,
+        scale; keys are the parameters of the functions of `rocking.motions`; ``scale:factor=2`` or ``scale:pga=3``
+        [m/s2], ``rotate:angle=30`` [degree], ``floor:number=3,storeys=5,period=0.5`` [s],
         ``response:stations=FILE.xml,low=0.02,high=40`` [Hz].
 
     Returns

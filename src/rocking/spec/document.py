@@ -118,7 +118,7 @@ class MotionKeys(JobTable):
     vertical: Text | None = _key("vertical component, by name")
     vertical_file: Text | None = _key("file of the vertical component, where it has its own")
     process: Names | None = _key(
-        "steps that a record goes through: mean; bandpass:low=0.1,high=25; floor:number=3,storeys=5,period=0.5"
+        "steps that a record goes through: mean; bandpass:low=0.1,high=25; taper"
     )
     scale: float = _key("factor on the acceleration of the ground [-]", 1.0)
     seed: Seed | None = _key("seed of the synthetic motions")
