@@ -102,7 +102,7 @@ def lifting_factor(body: Body, motion: GroundMotion, gravity: float) -> float:
     across, up = parts_of(motion)
     sides = [body.side(foot, gravity) for foot in FEET]
     least = [s.half_width * gravity / max((across * s.centre_height - up * s.half_width).max(), 1e-300) for s in sides]
-    return float(min(least))  # Eq. 318
+    return float(min(least))  # Eq. 312
 
 
 def tension(body: Body, motion: GroundMotion, factor: float, gravity: float) -> dict[str, float]:
@@ -113,7 +113,7 @@ def tension(body: Body, motion: GroundMotion, factor: float, gravity: float) -> 
     for edge, pivot in zip(FEET, FEET[::-1], strict=True):
         side = body.side(pivot, gravity)
         moment = factor * across * side.centre_height - (gravity + factor * up) * side.half_width
-        found[edge] = max(0.0, body.mass * float(moment.max()) / base)  # Eq. 319
+        found[edge] = max(0.0, body.mass * float(moment.max()) / base)  # Eq. 313
     return {str(edge): force for edge, force in found.items()}
 
 
@@ -128,7 +128,7 @@ def still(body: Body, motions: Sequence[GroundMotion], factor: float, gravity: f
         if (weight <= 0.0).any():
             return np.inf, np.inf
         ratio = max(ratio, float((factor * across / weight).max()))
-    return max(0.0, ratio * height - narrow), max(0.0, height - narrow / ratio if ratio else 0.0)  # Eq. 320
+    return max(0.0, ratio * height - narrow), max(0.0, height - narrow / ratio if ratio else 0.0)  # Eq. 314
 
 
 def remedies(

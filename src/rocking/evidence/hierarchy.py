@@ -187,7 +187,7 @@ def _shares(tree: dict[str, dict[str, dict[Any, list[int]]]]) -> list[tuple[floa
     again = any(len(rows) > 1 for group in groups for rows in group.values())
     middle = [((np.arange(n) + 0.5) / n).tolist() for n in (_SHARES, _PARTS)]
     parts = product(middle[0], middle[1] if several else [0.0], middle[1] if again else [0.0])
-    return [(a * b, a * (1.0 - b), (1.0 - a) * c, (1.0 - a) * (1.0 - c)) for a, b, c in parts]  # Eq. 291
+    return [(a * b, a * (1.0 - b), (1.0 - a) * c, (1.0 - a) * (1.0 - c)) for a, b, c in parts]  # Eq. 288
 
 
 @dataclass(frozen=True)
@@ -209,7 +209,7 @@ class _Sums:
         return _Sums(
             self.precision / widened, self.moment / widened, self.square - variance * self.moment**2 / widened,
             self.logarithm + np.log(widened),
-        )  # fmt: skip  # Eq. 293
+        )  # fmt: skip  # Eq. 290
 
 
 class _Posterior:
@@ -231,7 +231,7 @@ class _Posterior:
     def term(self, groups: dict[str, dict[Any, list[int]]]) -> FloatArray:
         """Return the logarithm of the likelihood of a laboratory's rows, on the grid and for all shares."""
         rows = [i for group in groups.values() for block in group.values() for i in block]
-        known = {i: (self.data.coefficient[i] - self.mean[i], self.loading(i)) for i in rows}  # Eq. 290
+        known = {i: (self.data.coefficient[i] - self.mean[i], self.loading(i)) for i in rows}  # Eq. 287
         found = []
         for share in self.shares:
             laboratory, interface, block, alone = (self.variance * part for part in share)
@@ -243,13 +243,13 @@ class _Posterior:
                     inner += each if share[2] == 0.0 else each.integrated(block)
                 whole += inner.integrated(interface)
             whole = whole if share[0] == 0.0 else whole.integrated(laboratory)
-            found.append(-0.5 * (whole.square + whole.logarithm + len(rows) * math.log(2.0 * math.pi)))  # Eq. 294
+            found.append(-0.5 * (whole.square + whole.logarithm + len(rows) * math.log(2.0 * math.pi)))  # Eq. 291
         return np.stack(found, axis=-1)
 
     def row(self, row: int, variance: FloatArray, residual: FloatArray, loading: FloatArray) -> _Sums:
         own = variance * loading**2 + self.rounding[row]
         scaled = loading / own
-        return _Sums(loading * scaled, residual * scaled, residual**2 / own, np.log(own))  # Eq. 292
+        return _Sums(loading * scaled, residual * scaled, residual**2 / own, np.log(own))  # Eq. 289
 
     def whole(self) -> HierarchicalCalibration:
         """Return the calibration on all rows."""
@@ -286,5 +286,5 @@ class _Posterior:
         rounding, found = self.rounding[rows].sum(), 0.0
         for k, (laboratory, interface, block, own) in enumerate(self.shares):
             variance = self.variance * ((laboratory + interface) * common + block * by_block + own * alone) + rounding
-            found += float((weight[..., k] * ndtr(gap / np.sqrt(variance))).sum())  # Eq. 295
+            found += float((weight[..., k] * ndtr(gap / np.sqrt(variance))).sum())  # Eq. 292
         return found

@@ -51,10 +51,10 @@ def on_floor(motion: GroundMotion, number: int, storeys: int, period: float, dam
     period = checks.positive("period", period, "s")
     mode = 2 * np.arange(1, storeys + 1) - 1
     angle = mode * math.pi / (2 * storeys + 1)
-    periods = period * math.sin(0.5 * angle[0]) / np.sin(0.5 * angle)  # Eq. 321
+    periods = period * math.sin(0.5 * angle[0]) / np.sin(0.5 * angle)  # Eq. 315
     floors = np.arange(1, storeys + 1)
     shape = np.sin(np.outer(angle, floors))
-    share = shape.sum(axis=1) / (shape**2).sum(axis=1) * shape[:, number - 1]  # Eq. 322
+    share = shape.sum(axis=1) / (shape**2).sum(axis=1) * shape[:, number - 1]  # Eq. 316
     _, damping, rates = oscillators(motion, periods, damping)
     found = states(motion, rates)
     u = found.imag / rates.imag[:, None]

@@ -36,7 +36,7 @@ def fourier_amplitudes(
     """
     motion = checked_motion(motion)
     every = np.fft.rfftfreq(len(motion), motion.time_step)
-    amplitudes = motion.time_step * np.abs(np.fft.rfft(motion.acceleration))  # Eq. 310
+    amplitudes = motion.time_step * np.abs(np.fft.rfft(motion.acceleration))  # Eq. 304
     if frequencies is None:
         return np.asarray(every, dtype=np.float64), np.asarray(amplitudes, dtype=np.float64)
     wanted = np.atleast_1d(checks.positive_array("frequencies", frequencies, "Hz"))
@@ -45,6 +45,6 @@ def fourier_amplitudes(
     smooth = np.empty(wanted.size)
     for k, centre in enumerate(wanted.tolist()):
         x = b * np.log10(every[1:] / centre)
-        window = np.sinc(x / np.pi) ** 4  # Eq. 311
+        window = np.sinc(x / np.pi) ** 4  # Eq. 305
         smooth[k] = float((window * amplitudes[1:]).sum() / window.sum())
     return wanted.copy(), smooth

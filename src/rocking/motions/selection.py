@@ -135,8 +135,8 @@ def selected(
     spectra = np.array(list(mapped(spectrum, given, workers, progress)))
     with np.errstate(divide="ignore"):
         apart = np.log(spectra.reshape(-1, POINTS) / level)
-    factors = np.exp(-apart.mean(axis=1))  # Eq. 315
-    misfits = np.sqrt(((apart - apart.mean(axis=1, keepdims=True)) ** 2).mean(axis=1))  # Eq. 316
+    factors = np.exp(-apart.mean(axis=1))  # Eq. 309
+    misfits = np.sqrt(((apart - apart.mean(axis=1, keepdims=True)) ** 2).mean(axis=1))  # Eq. 310
     allowed = np.flatnonzero(np.isfinite(misfits) & (factors <= most) & (factors >= 1.0 / most))
     number = allowed.size if count is None else checks.whole("count", count, 1)
     if allowed.size < max(number, 1):

@@ -82,13 +82,13 @@ def eurocode8(ag: float, ground: str = "A", type: int = 1, damping: float = 0.05
     kind = int(checks.one_of("type", str(type), ("1", "2")))
     s, b, c, d = GROUNDS[kind][checks.one_of("ground", str(ground).upper(), GROUNDS[1])]
     damping = checks.within("damping", damping, 0.0, 1.0, open_high=True, hint="a ratio, not a percentage")
-    eta = max(float(np.sqrt(10.0 / (5.0 + 100.0 * damping))), 0.55)  # Eq. 313
+    eta = max(float(np.sqrt(10.0 / (5.0 + 100.0 * damping))), 0.55)  # Eq. 307
 
     def spectrum(t: FloatArray) -> FloatArray:
         top = 2.5 * eta
         rising, long = 1.0 + t / b * (top - 1.0), np.maximum(t, c)
         falling = top * c / long * np.minimum(1.0, d / long)
-        return np.asarray(ag * s * np.where(t < b, rising, falling), dtype=np.float64)  # Eq. 312
+        return np.asarray(ag * s * np.where(t < b, rising, falling), dtype=np.float64)  # Eq. 306
 
     name = f"Eurocode 8 type {kind}, ground {str(ground).upper()}, ag {ag:g} m/s2"
     return TargetSpectrum(name, damping, LONGEST, 0.0, spectrum)
@@ -107,7 +107,7 @@ def asce7(sds: float, sd1: float, tl: float) -> TargetSpectrum:
 
     def spectrum(t: FloatArray) -> FloatArray:
         rising, long = 0.4 + 0.6 * t / (0.2 * ts), np.maximum(t, ts)
-        return np.asarray(sds * np.minimum(rising, ts / long * np.minimum(1.0, tl / long)), dtype=np.float64)  # Eq. 314
+        return np.asarray(sds * np.minimum(rising, ts / long * np.minimum(1.0, tl / long)), dtype=np.float64)  # Eq. 308
 
     return TargetSpectrum(f"ASCE 7, SDS {sds:g}, SD1 {sd1:g} m/s2, TL {tl:g} s", 0.05, np.inf, 0.0, spectrum)
 

@@ -71,7 +71,7 @@ class Calibrated(InertiaModel):
         """Return the mean over the posterior, node by node within what energy allows."""
         bound = np.sqrt(geometry.old_gyration / geometry.new_gyration)  # Eq. 29
         means = (weight * np.minimum(eta * shifted(geometry, k), bound) for eta, k, weight in _nodes())
-        return np.asarray(sum(means))  # Eq. 296
+        return np.asarray(sum(means))  # Eq. 293
 
 
 @lru_cache(maxsize=1)

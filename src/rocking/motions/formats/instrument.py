@@ -38,7 +38,7 @@ def without_response(motion: GroundMotion, stations: Path, low: float, high: flo
         raise source.error(None, what)
     frequencies = np.asarray(np.fft.rfftfreq(count, motion.time_step), dtype=np.float64)
     edge = _edge((frequencies - 0.5 * low) / (0.5 * low)) * _edge((ABOVE * high - frequencies) / ((ABOVE - 1.0) * high))
-    gain = np.where(edge > 0.0, edge / np.where(edge > 0.0, arrays[0], 1.0), 0.0)  # Eq. 317
+    gain = np.where(edge > 0.0, edge / np.where(edge > 0.0, arrays[0], 1.0), 0.0)  # Eq. 311
     samples = np.fft.irfft(np.fft.rfft(motion.acceleration, count) * gain, count)[: len(motion)]
     what = f"response of the instrument by {stations.name} removed from {low:g} to {high:g} Hz"
     return motion.changed(what, acceleration=samples)

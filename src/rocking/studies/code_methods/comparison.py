@@ -168,7 +168,7 @@ class CodeComparison:
         """
         chosen = slice(None) if body is None else slice(body, body + 1)
         truth = self.overturning[:, chosen]
-        ratio = self.capacity[self._place(method)][:, chosen] / truth  # Eq. 309
+        ratio = self.capacity[self._place(method)][:, chosen] / truth  # Eq. 303
         good = np.isfinite(ratio)
         if not good.any():
             return Bias(math.nan, (math.nan, math.nan), math.nan, 0, 0)

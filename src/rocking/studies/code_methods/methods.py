@@ -19,8 +19,8 @@ class StaticOverturning(CodeMethod):
     example = "closed form: the acceleration of uplift"
 
     def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
-        """Eq. 300."""
-        return stances.uplift / shaking.acceleration  # Eq. 300
+        """Eq. 294."""
+        return stances.uplift / shaking.acceleration  # Eq. 294
 
 
 class ItalianLinearKinematic(CodeMethod):
@@ -38,8 +38,8 @@ class ItalianLinearKinematic(CodeMethod):
     behaviour_factor = 2.0  # q [-]
 
     def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
-        """Eq. 301."""
-        return self.behaviour_factor * stances.uplift / shaking.acceleration  # Eq. 301
+        """Eq. 295."""
+        return self.behaviour_factor * stances.uplift / shaking.acceleration  # Eq. 295
 
 
 class AsceRocking(CodeMethod):
@@ -65,13 +65,13 @@ class AsceRocking(CodeMethod):
     def restitution(stances: Stances) -> FloatArray:
         """Return C_R of every side [-]."""
         a = stances.slope
-        return 1.0 - 2.0 * a**2 / _inertia(stances)  # Eq. 302
+        return 1.0 - 2.0 * a**2 / _inertia(stances)  # Eq. 296
 
     def damping(self, stances: Stances) -> FloatArray:
         """Return beta_e of every side; NaN where C_R is not above zero [-]."""
         r = self.restitution(stances)
         gamma = -2.0 * np.log(np.where(r > 0.0, r, np.nan))
-        return np.asarray(gamma / np.hypot(2.0 * math.pi, gamma))  # Eq. 303
+        return np.asarray(gamma / np.hypot(2.0 * math.pi, gamma))  # Eq. 297
 
     @staticmethod
     def oscillator(stances: Stances, rotation: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -79,11 +79,11 @@ class AsceRocking(CodeMethod):
         a, h = stances.slope, stances.height
         f1 = np.cos(rotation) + a * np.sin(rotation) - 1.0
         work = 2.0 * stances.gravity * f1
-        period = 2.0 * math.pi * rotation * np.sqrt(_inertia(stances) * h / work)  # Eq. 304
-        return period, work / rotation  # Eq. 305
+        period = 2.0 * math.pi * rotation * np.sqrt(_inertia(stances) * h / work)  # Eq. 298
+        return period, work / rotation  # Eq. 299
 
     def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
-        """Eqs. 302 to 305, at the rotation that overturns."""
+        """Eqs. 296 to 299, at the rotation that overturns."""
         beta, (period, capacity) = self.damping(stances), self.oscillator(stances, stances.angle)
         found = np.full((len(shaking.motions), *beta.shape), np.nan)
         alike = np.round(beta, 12)  # sides of one damping share their spectra
@@ -119,10 +119,10 @@ class IshiyamaCriteria(CodeMethod):
         """Return the ground velocity below which a body stands, by side [m/s]."""
         alpha, p = stances.angle, stances.frequency_parameter
         impulse = 2.0 * np.sin(0.5 * alpha) * stances.gravity / (p * np.cos(alpha))
-        return np.asarray(self.share * impulse)  # Eq. 306
+        return np.asarray(self.share * impulse)  # Eq. 300
 
     def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
-        """Eq. 306; both must be passed."""
+        """Eq. 300; both must be passed."""
         lifts = stances.uplift / shaking.acceleration
         return np.maximum(lifts, self.velocity(stances) / shaking.velocity)
 
@@ -146,10 +146,10 @@ class KanekoHayashi(CodeMethod):
         width, height = 2.0 * stances.half_width, 2.0 * stances.height
         slow = stances.gravity * ratio * (1.0 + ratio)
         quick = width / np.sqrt(height) * (1.0 + ratio) ** 2.5 * 2.0 * math.pi * frequency
-        return np.maximum(slow, quick)  # Eq. 307
+        return np.maximum(slow, quick)  # Eq. 301
 
     def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
-        """Eq. 307; a motion that is scaled keeps its frequency."""
+        """Eq. 301; a motion that is scaled keeps its frequency."""
         frequency = shaking.acceleration / (2.0 * math.pi * shaking.velocity)
         return self.acceleration(stances, frequency) / shaking.acceleration
 
@@ -168,10 +168,10 @@ class HousnerPulse(CodeMethod):
     def acceleration(stances: Stances, duration: FloatArray) -> FloatArray:
         """Return the acceleration of a pulse of some duration [s] that just overturns, by side [m/s2]."""
         ratio = 0.5 * (1.0 + 1.0 / np.tanh(0.5 * stances.frequency_parameter * duration))
-        return np.asarray(ratio * stances.gravity * stances.angle)  # Eq. 308
+        return np.asarray(ratio * stances.gravity * stances.angle)  # Eq. 302
 
     def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
-        """Eq. 308; a motion that is scaled keeps its duration."""
+        """Eq. 302; a motion that is scaled keeps its duration."""
         return self.acceleration(stances, shaking.velocity / shaking.acceleration) / shaking.acceleration
 
 
