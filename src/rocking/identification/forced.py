@@ -272,4 +272,4 @@ def _foreseen(problem: Forced, x: FloatArray) -> float:
         made = RockingParameters(both["right"], both["left"], ConstantRestitution(), "")
         rotations.append(np.nan_to_num(run(made, segments, Settings()).rotation, nan=0.5 * math.pi))
     apart = np.flatnonzero(np.abs(rotations[0] - rotations[1]) > _CLOSE * np.abs(rotations[0]).max())
-    return float(segments.step * (apart[0] if apart.size else segments.count))
+    return float(segments.step * apart[0]) if apart.size else math.nan

@@ -127,7 +127,7 @@ class ForcedRocking:
     seen, measured : float
         Duration of the half cycles that were used, and of the measurement [s].
     foreseen : float
-        When a difference of a ten-thousandth in r changes what follows from rest by a tenth of its peak [s].
+        When a difference of a ten-thousandth in r changes what follows from rest by a tenth of its peak; NaN if never [s].
     """
 
     clock: IntervalEstimate
@@ -146,10 +146,15 @@ class ForcedRocking:
             friction = f"The coefficient of friction is {self.friction}."
         else:
             friction = least.format("where it was followed it never slid" if self.odd else "it never slid")
+        told = "From rest a difference of 1e-4 in r changes the motion nowhere by a tenth of its peak."
+        if math.isfinite(self.foreseen):
+            told = (
+                f"From rest the motion is told up to {self.foreseen:.3g} s only: beyond, a difference of 1e-4 in r "
+                "changes it by more than a tenth of its peak."
+            )
         return (
             f"Identified from {self.seen:.3g} s of half cycles out of {self.measured:.3g} s, begun anew in "
-            f"{self.stretches} measured states. From rest the motion is told up to {self.foreseen:.3g} s only: beyond, "
-            f"a difference of 1e-4 in r changes it by more than a tenth of its peak. {friction}"
+            f"{self.stretches} measured states. {told} {friction}"
         )
 
 
