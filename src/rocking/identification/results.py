@@ -127,7 +127,7 @@ class ForcedRocking:
     seen, measured : float
         Duration of the half cycles that were used, and of the measurement [s].
     foreseen : float
-        When a difference of a ten-thousandth in r changes what follows from rest by a tenth of its peak; NaN if never [s].
+        When a difference of 1e-4 in r changes what follows from rest by a tenth of its peak; NaN if never [s].
     """
 
     clock: IntervalEstimate
