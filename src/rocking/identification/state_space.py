@@ -195,13 +195,15 @@ def laplace(
         gradient = turned @ residual[..., None] - u[active, :, None]
         scale = damping[active, None, None] * eye + _ROUNDING * eye * np.einsum("gii->gi", hessian)[:, None, :]
         step = np.linalg.solve(hessian + scale, gradient)
-        straight = u[active] + step[..., 0]
-        # times are known far better than speeds: what changes along the step is either linear in u or in them
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            bent = model.reached(straight, scatter[active], times + (time_slopes @ step)[..., 0])
-        tried = np.concatenate([straight, bent])
-        found = _objective(model, observer, np.tile(scatter[active], 2), np.tile(noise[active], 2), tried)
-        pick = np.arange(active.size) + active.size * (found[0][active.size :] < found[0][: active.size])
+        tries = [u[active] + step[..., 0]]
+        if scatter.any():
+            # times are known far better than speeds: what changes along the step is either linear in u or in them
+            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+                goal = times + (time_slopes @ step)[..., 0]
+                tries.append(model.reached(tries[0], scatter[active], goal))
+        tried, n = np.concatenate(tries), len(tries)
+        found = _objective(model, observer, np.tile(scatter[active], n), np.tile(noise[active], n), tried)
+        pick = np.arange(active.size) + active.size * found[0].reshape(n, -1).argmin(axis=0)
         better = found[0][pick] <= value
         for kept, new in zip(best, found, strict=True):
             kept[active[better]] = new[pick[better]]
