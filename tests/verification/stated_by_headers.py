@@ -106,7 +106,7 @@ def _geonet(text: str) -> list[Stated]:
 
 def _usc(text: str) -> list[Stated]:
     lines = text.split("\n")
-    starts = [k for k, line in enumerate(lines) if re.match(r"\W*FILE +\d+ OF UNCORRECTED", line, re.IGNORECASE)]
+    starts = [k for k, line in enumerate(lines) if re.match(r"\W*FILE\s+\d+ OF UNCORRECTED", line, re.IGNORECASE)]
     return [Stated(int(_columns_of(lines[start + 13 : start + 20], 5)[27]), None) for start in starts]
 
 
