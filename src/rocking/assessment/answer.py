@@ -138,9 +138,10 @@ class BodyAssessment:
         name, way = self.motions[motion].name, ", mirrored" if mirrored else ""
         pga = factor * self.motions[motion].peak
         on = "this record" if len(self.motions) == 1 else name
-        asked = self.remedies.margin
+        asked, here = self.remedies.margin, self.models[model].overturned[motion]
+        more = "; it stands under the motion as it is, which is no margin" if factor < 1.0 and here == 0.0 else ""
         short = f" The {asked:g} that is asked for is not reached." if asked > max(factor, 1.0) else ""
-        return f"Margin to overturning: {factor:.3g} times {on} ({model}{way}), a PGA of {pga / g:.3g} g.{short}"
+        return f"Margin to overturning: {factor:.3g} times {on} ({model}{way}), a PGA of {pga / g:.3g} g{more}.{short}"
 
     @property
     def probability_words(self) -> str:

@@ -23,6 +23,9 @@ from rocking.studies.motion_sets import MotionList
 STEPS, HALVINGS = 32, 5
 """Changes that are tried up to the one that keeps a body from lifting, and halvings of the place found."""
 
+SHARES = np.array([0.6, 0.7, 0.8, 0.9, 1.0])
+"""Of the factor, at which each change is tried: what stands under more may overturn under less."""
+
 PERIODS, DAMPING = np.geomspace(0.5, 6.0, 40), 0.1
 """Of the isolators that are looked at: periods [s] and damping ratio [-]."""
 
@@ -203,7 +206,7 @@ def _least(
 def overturns(
     bodies: Sequence[Body], motions: Sequence[GroundMotion], margin: float, gravity: float, restitutions: Restitutions
 ) -> BoolArray:
-    """Return which bodies overturn under any motion times a factor, with any restitution, either way round."""
+    """Return which bodies overturn under any motion up to a factor, with any restitution, either way round."""
     rows, owner = [], []
     with warnings.catch_warnings():  # a body that is tried may be as wide as high: nobody typed its coefficients
         warnings.simplefilter("ignore", PlausibilityWarning)
@@ -213,10 +216,10 @@ def overturns(
                     rows.append(_parameters(one, own, gravity))
                     owner.append(k)
     sides = {name: values[:, None] for name, values in sides_of(rows).items()}
-    histories = Product(MotionList(motions), sides, np.array([margin]), settings=Settings(gravity=gravity))
-    fell = overturned(results_of(histories)["outcome"]).reshape(len(motions), len(rows)) == 1.0
+    histories = Product(MotionList(motions), sides, margin * SHARES, settings=Settings(gravity=gravity))
+    fell = overturned(results_of(histories)["outcome"]).reshape(len(motions), len(rows), SHARES.size) == 1.0
     found = np.zeros(len(bodies), bool)
-    np.logical_or.at(found, np.array(owner), fell.any(axis=0))
+    np.logical_or.at(found, np.array(owner), fell.any(axis=(0, 2)))
     return found
 
 

@@ -31,7 +31,8 @@ _SEARCHED = (
     "for at 64 levels in equal ratios, from what lifts the body up to 50 times that or the largest acceleration on "
     "record, then by halvings: a thinner stretch below may have been missed. Both ways round are computed.",
     "Remedies: the least change is looked for at 32 steps up to the one that keeps the body from lifting, and is that "
-    "from which on all that were tried stand, with every model; a thinner stretch above may have been missed.",
+    "from which on all that were tried stand, with every model, at 0.6 to 1 times what is asked; a thinner stretch "
+    "above may have been missed.",
 )
 
 
@@ -90,7 +91,8 @@ def governing_history(found: BodyAssessment) -> Response:
 def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str], history: Response) -> Document:
     """Return the content of the report of an assessment."""
     worst, mirrored = found.motions[found.lowest.motion], " mirrored," if found.lowest.mirrored else ""
-    mark = "bad" if (found.fallen == 1.0).any() else "fair" if (found.fallen > 0.0).any() else "good"
+    some = (found.fallen > 0.0).any() or found.lowest.factor < 1.0
+    mark = "bad" if (found.fallen == 1.0).any() else "fair" if some else "good"
     margins = Picture("margins", "Least factor on each motion that overturns; code methods over it, unsafe above 1")
     how_likely = Picture("prediction", "How likely it overturns and rocks under each motion, and what decides it")
     motion = Picture("motion", f"{worst.name}: the ground, and its response spectrum for 5 % damping", 74)

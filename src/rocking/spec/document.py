@@ -117,9 +117,7 @@ class MotionKeys(JobTable):
     component: Text | None = _key("horizontal component of the file, by name")
     vertical: Text | None = _key("vertical component, by name")
     vertical_file: Text | None = _key("file of the vertical component, where it has its own")
-    process: Names | None = _key(
-        "steps that a record goes through: mean; bandpass:low=0.1,high=25; taper"
-    )
+    process: Names | None = _key("steps that a record goes through: mean; bandpass:low=0.1,high=25; taper")
     scale: float = _key("factor on the acceleration of the ground [-]", 1.0)
     seed: Seed | None = _key("seed of the synthetic motions")
     pga: Positive | None = _key("peak ground acceleration to which synthetic motions are scaled [m/s2]")
