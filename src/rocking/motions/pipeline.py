@@ -107,8 +107,8 @@ def _together(motion: Components, name: str, keys: dict[str, Any]) -> Components
         first, last = processing.significant_bounds(motion.leading, **keys)
         return motion.each(lambda part: processing.trimmed(part, first, last))
     if name == "floor":
-        along = [None if part is None else on_floor(part, **keys) for part in (motion.x, motion.y)]
-        return Components(*along, motion.z)
+        x, y = (None if part is None else on_floor(part, **keys) for part in (motion.x, motion.y))
+        return Components(x, y, motion.z)
     if name == "scale" and "factor" not in keys:
         before, after = motion.leading.peak, _scaled(motion.leading, **keys).peak
         return motion.each(lambda part: part.scaled(after / before))
