@@ -61,11 +61,13 @@ def _csmip_v1(text: str) -> list[Stated]:
 def _csmip_v2(text: str) -> list[Stated]:
     counts = _all(r"^ *(\d+) +POINTS OF ACCEL", text)
     steps = _all(r"POINTS OF ACCEL DATA EQUALLY SPACED AT +([\d.]+) +SEC", text)
-    peaks = _all(r"^PEAK ACCELERATION *= *(-?[\d.]+)", text)
-    if len(peaks) != len(counts):
-        return [Stated(int(n), float(step)) for n, step in zip(counts, steps, strict=True)]
+    lines = text.split("\n")
+    starts = [k for k, line in enumerate(lines) if re.match(r"\W*CORRECTED ACCEL", line, re.IGNORECASE)]
+    # the peak stands among the 25 lines of text, which may have lost it
+    peaks = ["".join(_all(r"^PEAK ACCELERATION *= *(-?[\d.]+)", "\n".join(lines[k : k + 25]))[:1]) for k in starts]
     rows = zip(counts, steps, peaks, strict=True)
-    return [Stated(int(n), float(step), abs(float(peak)), _unit_of(peak)) for n, step, peak in rows]
+    found = [(int(n), float(step), peak) for n, step, peak in rows]
+    return [Stated(n, step, abs(float(peak)), _unit_of(peak)) if peak else Stated(n, step) for n, step, peak in found]
 
 
 def _smc(text: str) -> list[Stated]:
