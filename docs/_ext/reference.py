@@ -47,7 +47,9 @@ ROOMS = {
     "rocking.conventions": "Conventions and constants",
 }
 # whose members Python describes
-BASES = "object, BaseException, float, int, str, tuple, dict, Enum, StrEnum, IntEnum, AttributeError, ImportError"
+BASES = (
+    "object, BaseException, float, int, str, tuple, dict, Enum, StrEnum, IntEnum, AttributeError, ImportError, BaseModel"
+)
 
 
 def names_of(module: ModuleType) -> list[str]:
