@@ -48,7 +48,8 @@ ROOMS = {
 }
 # whose members Python describes
 BASES = (
-    "object, BaseException, float, int, str, tuple, dict, Enum, StrEnum, IntEnum, AttributeError, ImportError, BaseModel"
+    "object, BaseException, float, int, str, tuple, dict, Enum, StrEnum, IntEnum, AttributeError, ImportError, "
+    "BaseModel"
 )
 
 
