@@ -302,7 +302,8 @@ def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None, *, raw:
             raise InvalidValueError("a record is a file; only pulses and synthetic motions are made")
         if (inputs.folder / table.record).is_dir():
             raise InvalidValueError(
-                f"{table.record} is a folder, and one record is wanted; predict, fragility and inventory take sets"
+                f"{table.record} is a folder, and one record is wanted; "
+                "assess, codes, fragility, inventory, motions and predict take sets"
             )
         return (_unprocessed if raw else _record)(inputs.file(table.record), table, inputs)
     member = table.member or 0

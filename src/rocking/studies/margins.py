@@ -59,11 +59,12 @@ class Margins:
 
 def ways_round(body: Body, motions: Any, restitution: Any) -> list[tuple[Body, Any, Any]]:
     """Return a body with its motions and restitution, and mirrored with the same where that differs."""
-    if body.is_symmetric:
-        return [(body, motions, restitution)]
-    swapped = restitution
+    swapped, differ = restitution, not body.is_symmetric
     if isinstance(restitution, Mapping) and {"left", "right"} <= set(restitution):
         swapped = {"left": restitution["right"], "right": restitution["left"]}
+        differ |= restitution["left"] != restitution["right"]
+    if not differ:
+        return [(body, motions, restitution)]
     return [(body, motions, restitution), (body.mirrored(), motions, swapped)]
 
 

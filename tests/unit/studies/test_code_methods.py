@@ -89,3 +89,18 @@ def test_what_is_refused():
         compare_code_methods(SMALL, PULSES, methods=["eurocode"])
     with pytest.raises(InvalidValueError, match="> 0"):
         compare_code_methods(SMALL, rk.GroundMotion([0.0, 0.0, 0.0], 0.1))
+
+
+def test_a_symmetric_body_with_two_coefficients_has_two_ways_round():
+    """A lopsided pulse overturns it less early the one way round than the other: the worse one counts."""
+    time = np.arange(0.0, 3.0, 0.01)
+    push = np.where(time < 0.9, np.sin(2.0 * np.pi * time / 0.9) * (1.0 + time), 0.0)
+    pushes = [rk.GroundMotion(sign * push, 0.01) for sign in (1.0, -1.0)]
+    pair = {"left": 0.55, "right": 0.98}
+    one, twin = compare_code_methods([LARGE], pushes, pair), compare_code_methods([LARGE], pushes[::-1], pair)
+    assert np.array_equal(one.overturning, twin.overturning)
+    assert one.asymmetric.all()
+    assert one.overturning[0] == one.overturning[1]
+    ways = [rk.studies.margins.Margins.of(LARGE, pushes, r, "pga", None, {}).least_each for r in (pair, 0.9)]
+    assert [len(each) for each in ways] == [2, 1]
+    assert ways[0][0][0] != pytest.approx(ways[0][1][0], rel=0.01)

@@ -314,6 +314,6 @@ def compare_code_methods(
         overturning=np.stack([each.least for each in cases], axis=1),
         factors=np.stack([each.factors for each in cases], axis=1),
         overturned=np.stack([each.overturned for each in cases], axis=1),
-        asymmetric=np.array([not body.is_symmetric for body in several]),
+        asymmetric=np.array([len(each.least_each) > 1 for each in cases]),
         restitution=cases[0].label,
     )
