@@ -12,22 +12,25 @@ from rocking.bodies import Body, Solid
 from rocking.conventions import FEET
 from rocking.dynamics.parameters import RockingParameters
 from rocking.errors import InvalidValueError, RockingError
-from rocking.evidence import calibrate
+from rocking.evidence import restitution_distribution
 from rocking.motions.components import rotated, with_vertical
 from rocking.motions.intensity import sampled
 from rocking.motions.motion import GroundMotion
 from rocking.prediction import predict
 from rocking.prediction.mechanics import FRICTION, parts, several
 from rocking.prediction.uncertain import Uncertain
-from rocking.restitution import model, models
+from rocking.restitution import RestitutionModel, model, models
 from rocking.studies.code_methods import CODE_METHODS
 from rocking.studies.code_methods.method import Shaking, Stances
 from rocking.studies.margins import Margins
 from rocking.studies.motion_sets import MotionList
 
 CALIBRATED = "calibrated"
-ENDS = "low", "high"
-"""Of the 95 % interval of the calibrated model for a single body, which are asked beside it."""
+ENDS = {"low": 0.025, "high": 0.975}
+"""Of the 95 % interval of what is measured of single bodies, which are asked beside the calibrated model: quantiles."""
+
+MOST_ASKED = 50.0
+"""Largest factor on the motions that remedies may be asked to hold, that up to which margins are looked for [-]."""
 
 DIRECTIONS = 12
 """Over half a turn, into which two components are turned; both ways round make it a whole one."""
@@ -57,13 +60,13 @@ def assess(
         The body in its plane; a solid by ``solid.in_plane(azimuth)``.
     motions : GroundMotion, Pulse, or mapping with x, y and z, or a sequence of them
         With y, the body is turned to both components in 12 directions.
-    restitution : sequence, optional
+    restitution : str, float, RestitutionModel or a sequence of them, optional
         Names, models and coefficients; if not given all registered models, and of the calibrated one its mean and
         both ends of its 95 % interval [-].
     friction : as for `predict`
         Coefficient of friction; histories that slide take its median [-].
     margin : float
-        Factor on the motions that remedies must hold [-].
+        Factor on the motions that remedies must hold, up to 50 [-].
     gravity : float
         Acceleration of gravity [m/s2].
     threads : int, optional
@@ -95,7 +98,10 @@ def assess(
         raise InvalidValueError(
             f"assess takes a plane body, got {body!r:.60}; a solid stands in a plane by in_plane(azimuth)"
         )
-    margin, gravity = checks.positive("margin", margin), checks.positive("gravity", gravity, "m/s2")
+    checks.within("margin", margin, 0.0, MOST_ASKED, open_low=True)
+    margin, gravity = float(margin), checks.positive("gravity", gravity, "m/s2")
+    if isinstance(restitution, (str, int, float, RestitutionModel)):
+        restitution = [restitution]
     whole = several(motions)
     plane = in_the_plane(whole, known.get("azimuth"))
     if flat := next((each for each in plane if not each.peak > 0.0), None):
@@ -123,7 +129,7 @@ def assess(
         body, whole, restitution=known.pop("predicted", None), friction=friction, gravity=gravity, threads=threads,
         progress=progress, **known,
     )  # fmt: skip
-    lowest = min(float(np.nanmin(each.least)) for each in found.values() if not np.isnan(each.least).all())
+    lowest = min((each.lowest for each in found.values() if not np.isnan(each.lowest)), default=np.inf)
     return BodyAssessment(
         body=body, motions=tuple(plane), models=found, refused=refused, friction=coefficient, sliding=sliding,
         lifts=np.array([lifting_factor(body, each, gravity) for each in plane]),
@@ -163,9 +169,9 @@ def choices(body: Body, given: Sequence[Any] | None) -> Mapping[str, Any]:
     usual = [CALIBRATED, *(name for name in models() if name not in {CALIBRATED, "fixed"})]
     for each in usual if given is None else given:
         if each == CALIBRATED:
-            named[CALIBRATED], drawn = model(each), {foot: calibrate().predict(body, onto=foot) for foot in FEET}
-            for end in ENDS:
-                named[f"{CALIBRATED}, {end}"] = {foot: float(getattr(one, end)) for foot, one in drawn.items()}
+            named[CALIBRATED], drawn = model(each), restitution_distribution(body)
+            for end, level in ENDS.items():
+                named[f"{CALIBRATED}, {end}"] = {foot: float(drawn.quantile(level, foot)) for foot in FEET}
         elif isinstance(each, (int, float)):
             named[f"r = {each:g}"] = float(each)
         else:

@@ -133,6 +133,8 @@ class BodyAssessment:
     def margin_words(self) -> str:
         """How far it is from overturning, in words."""
         factor, model, motion, mirrored = self.lowest
+        if math.isnan(factor):
+            return "Margin to overturning: not known."
         if math.isinf(factor):
             return f"No factor on {self._this} that was tried overturns it."
         name, way = self.motions[motion].name, ", mirrored" if mirrored else ""
@@ -180,7 +182,8 @@ class BodyAssessment:
             )
         slope = side.half_width / side.centre_height
         slid = self.sliding.lowest
-        words = f"a margin of {slid:.3g}" if math.isfinite(slid) else "nothing that was tried overturns it"
+        words = "no factor that was tried overturns it" if math.isinf(slid) else f"a margin of {slid:.3g}"
+        words = "no history has a result" if math.isnan(slid) else words
         slides = "before it lifts" if self.friction < slope else "only while it rocks, if at all"
         found.append(f"With a friction of {self.friction:.3g} (b/h = {slope:.3g}) it slides {slides}: {words}.")
         shares = {name: each for name, each in self.prediction.shares.items() if each.total > 0.0}
@@ -214,7 +217,8 @@ class BodyAssessment:
                     f"{what.format(length)}: no history overturns any more. By {still}: it does not even lift."
                 )
             elif still:
-                found.append(f"{what.format(still)}: it does not lift any more. It stands without.")
+                without = " It stands without." if self.lowest.factor > remedy.margin else ""
+                found.append(f"{what.format(still)}: it does not lift any more.{without}")
         if remedy.isolation is None:
             found.append("Isolators: no period up to 6 s keeps it from lifting.")
         else:

@@ -1,6 +1,7 @@
 """`assess`: its verdicts, margins, components, and what it refuses."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import rocking as rk
 from rocking.assessment._assess import DIRECTIONS, choices, in_the_plane
 from rocking.bodies.solid import Solid, box
 from rocking.errors import InvalidValueError
+from rocking.studies.margins import Margins
 
 CABINET = rk.Block(width=0.8, height=2.2, depth=1.2, mass=650.0, centre=(0.52, 0.9))
 
@@ -75,6 +77,33 @@ def test_the_calibrated_model_comes_with_its_interval():
     assert choices(CABINET, [0.85]) == {"r = 0.85": 0.85}
 
 
+def test_the_interval_is_that_of_predictions():
+    """The calibrated model's ends are the quantiles of what `predict` draws from, onto each foot."""
+    named = choices(CABINET, ["calibrated"])
+    for foot in ("left", "right"):
+        drawn = rk.evidence.restitution_distribution(CABINET, onto=foot).sample(200_000, 1)
+        for end, level in (("low", 0.025), ("high", 0.975)):
+            below = (drawn < named[f"calibrated, {end}"][foot]).mean()
+            assert below == pytest.approx(level, abs=0.002)  # five deviations of a share of 200 000 draws
+
+
+def test_one_restitution_needs_no_list():
+    """A name, a number and a model are taken as a list of one."""
+    for one in ("ked", 0.9, rk.restitution.Housner()):
+        assert list(rk.assess(CABINET, record(2.0), one, count=8).models) == list(choices(CABINET, [one]))
+
+
+def test_no_history_with_a_result(monkeypatch):
+    """Where no history has a result nothing is said but that: no margin, no remedy that would rest on histories."""
+    unknown = SimpleNamespace(fell_each=np.full((2, 1, 1), np.nan), least_each=np.full((2, 1), np.nan))
+    unknown.overturned = unknown.fell_each[0]
+    monkeypatch.setattr(Margins, "of", lambda *_: unknown)
+    found = rk.assess(CABINET, record(6.0), [0.9], count=8)
+    assert found.verdict == "No history has a result: it cannot be said whether it stands."
+    assert found.margin_words == "Margin to overturning: not known."
+    assert not any("stands" in words or "overturns" in words for words in (*found.to_do, *found.governs))
+
+
 def test_what_makes_no_sense_is_refused():
     """A solid, a motion that is zero, a margin of zero, an unknown model."""
     with pytest.raises(InvalidValueError, match="in_plane"):
@@ -83,5 +112,7 @@ def test_what_makes_no_sense_is_refused():
         rk.assess(CABINET, rk.GroundMotion([0.0, 0.0], 0.01))
     with pytest.raises(InvalidValueError, match="margin must be"):
         rk.assess(CABINET, record(3.0), margin=0.0)
+    with pytest.raises(InvalidValueError, match=r"margin must be in \(0, 50\], got 1e\+09"):
+        rk.assess(CABINET, record(3.0), margin=1e9)
     with pytest.raises(rk.errors.UnknownModelError):
         rk.assess(CABINET, record(3.0), ["nobody"])
