@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rocking.spec.document import MotionKeys, MotionTable
 
 PERIODS = (0.1, 2.0)  # that count where records are compared with a target and nobody says otherwise [s]
+STILL = "zero throughout: the ground would not move"
 MOST_NAMED = 5  # files that were left out and are named one by one
 
 
@@ -65,14 +66,20 @@ def record_set(
 def motions_of_set(table: "MotionTable", inputs: InputFiles, *, paired: bool) -> list[Any]:
     """Return the motions of a study; paired: two horizontal components are one motion, which no plane body takes."""
     found, _ = record_set(table, inputs)
-    plausibility.warn(f"left out: {name}: {why}" for name, why in found.left_out[:MOST_NAMED])
-    if (more := len(found.left_out) - MOST_NAMED) > 0:
-        plausibility.warn([f"{more} more files were left out; rocking motions lists them"])
     motions: list[Any] = []
+    left_out = [*found.left_out]
     for record in found:
-        motions += [record] if paired and record.y is not None else plane_motions(record)
+        level = plane_motions(record)
+        moving = [each for each in level if each.peak > 0.0]
+        both = paired and record.y is not None and moving
+        left_out += [] if both else [(each.name, STILL) for each in level if not each.peak > 0.0]
+        motions += [record] if both else moving
+    plausibility.warn(f"left out: {name}: {why}" for name, why in left_out[:MOST_NAMED])
+    if (more := len(left_out) - MOST_NAMED) > 0:
+        plausibility.warn([f"{more} more files were left out; rocking motions lists them"])
     if not motions:
-        raise InvalidValueError("no record has a horizontal component")
+        still = any(why == STILL for _, why in left_out)
+        raise InvalidValueError(f"every record is {STILL}" if still else "no record has a horizontal component")
     return motions
 
 

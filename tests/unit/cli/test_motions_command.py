@@ -103,3 +103,22 @@ def test_convert(run, folder, tmp_path):
     assert json.loads(made[2].read_text("utf-8"))["provenance"] == list(expected.provenance)
     assert "band-pass 0.2 to 20 Hz" in out
     assert run("convert", source, "--set", "motion.process=polish")[0] == 2
+
+
+@pytest.mark.parametrize("command", ["assess", "codes"])
+def test_a_record_of_zeros_does_not_stop_a_folder(run, folder, command):
+    """It is left out with its reason as damaged ones are; a folder of nothing else is refused."""
+    quick = ["--set", "predict.count=8", "--set", "predict.shares=false"] if command == "assess" else []
+    still = GroundMotion(np.zeros(400), 0.02, None, "Still", {"component": "000", "station": "Cellar"})
+    write_motion(still, folder / "RSN9_A000.AT2", "peer")
+    code, out, err = run(command, *BLOCK, "--restitution", "0.9", *quick, folder, "--json")
+    assert code == 0, err
+    assert "left out: Still: zero throughout" in out
+    assert "damaged.at2" in out
+    assert not any("Still" in name for name in json.loads(out)["motions"])
+    for path in folder.iterdir():
+        if path.name != "RSN9_A000.AT2":
+            path.unlink()
+    code, out, err = run(command, *BLOCK, "--restitution", "0.9", *quick, folder)
+    assert (code, out) == (2, "")
+    assert "every record is zero throughout" in err
