@@ -16,6 +16,17 @@ from rocking.prediction import Prediction
 from rocking.studies.code_methods.comparison import AT_MOST
 
 
+def upwards(value: float, digits: int = 3) -> float:
+    """Return what is demanded with so many digits, never less than it is."""
+    step = 10.0 ** (math.floor(math.log10(value)) - digits + 1) if value > 0.0 else 1.0
+    return math.ceil(value / step - 1e-9) * step
+
+
+def millimetres(length: float) -> int:
+    """Return a length that is demanded in whole millimetres, never less than it is."""
+    return math.ceil(1e3 * length - 1e-9)
+
+
 @dataclass(frozen=True, eq=False)
 class ModelMargin:
     """What becomes of a body with one restitution.
@@ -202,17 +213,17 @@ class BodyAssessment:
         ask = self._this if remedy.margin == 1.0 else f"{remedy.margin:g} times {self._this}"
         if not remedy.needed:
             return (f"Nothing: it does not lift under {ask}.",)
-        both = " and ".join(f"{force / 1e3:.3g} kN along the {edge} edge" for edge, force in remedy.tension.items())
-        found = [f"Anchors that keep it from lifting under {ask}: {both}; shear {remedy.shear / 1e3:.3g} kN in all."]
+        both = " and ".join(f"{upwards(force / 1e3):.3g} kN along the {edge} edge" for edge, force in remedy.tension.items())
+        found = [f"Anchors that keep it from lifting under {ask}: {both}; shear {upwards(remedy.shear / 1e3):.3g} kN in all."]
         for change, what in (
             (remedy.wider, "Base wider by {} on each side"), (remedy.lower, "Centre of mass lower by {}"),
         ):  # fmt: skip
             name = what.partition(" by ")[0]
-            still = f"{1e3 * change.lifts_not:.0f} mm" if math.isfinite(change.lifts_not) else ""
+            still = f"{millimetres(change.lifts_not)} mm" if math.isfinite(change.lifts_not) else ""
             if change.why_not:
                 found.append(f"{name}: not found, {change.why_not}.")
             elif change.stands > 0.0:
-                length = f"{math.ceil(1e3 * change.stands):d} mm"
+                length = f"{millimetres(change.stands)} mm"
                 found.append(
                     f"{what.format(length)}: no history overturns any more. By {still}: it does not even lift."
                 )
@@ -224,8 +235,8 @@ class BodyAssessment:
         else:
             period, far = remedy.isolation
             found.append(
-                f"Isolators of a period of {period:.2g} s or more keep it from lifting; they move by "
-                f"{1e3 * far:.0f} mm at that period."
+                f"Isolators of a period of {period:.3g} s or more keep it from lifting; they move by "
+                f"{millimetres(far)} mm at that period."
             )
         return tuple(found)
 

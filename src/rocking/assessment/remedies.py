@@ -26,8 +26,8 @@ STEPS, HALVINGS = 32, 5
 SHARES = np.array([0.6, 0.7, 0.8, 0.9, 1.0])
 """Of the factor, at which each change is tried: what stands under more may overturn under less."""
 
-PERIODS, DAMPING = np.geomspace(0.5, 6.0, 40), 0.1
-"""Of the isolators that are looked at: periods [s] and damping ratio [-]."""
+PERIODS, DAMPING = np.round(np.geomspace(0.5, 6.0, 40), 2), 0.1
+"""Of the isolators that are looked at: periods, such as can be said in three digits [s], and damping ratio [-]."""
 
 Restitutions = Callable[[Body], Mapping[str, Any]]
 

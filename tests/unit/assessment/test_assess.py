@@ -1,6 +1,8 @@
 """`assess`: its verdicts, margins, components, and what it refuses."""
 
+import itertools
 import math
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,6 +10,7 @@ import pytest
 
 import rocking as rk
 from rocking.assessment._assess import DIRECTIONS, choices, in_the_plane
+from rocking.assessment.answer import millimetres, upwards
 from rocking.bodies.solid import Solid, box
 from rocking.errors import InvalidValueError
 from rocking.studies.margins import Margins
@@ -44,6 +47,22 @@ def test_it_overturns():
     assert ends[0] is not rk.Outcome.OVERTURNED
     assert [words.partition(" ")[0] for words in found.to_do] == ["Anchors", "Base", "Centre", "Isolators"]
     assert found.sentences == tuple(str(found).splitlines())
+
+
+def test_what_is_demanded_is_never_rounded_down():
+    """Every force, length and period in words holds at least what is computed, and less than a hundredth more."""
+    for peak in (6.0, 6.3, 6.6, 6.9):
+        found = rk.assess(CABINET, record(peak), [0.85], count=8)
+        asked, said = found.remedies, [re.findall(r"[\d.]+(?= (?:kN|mm|s)\b)", words) for words in found.to_do]
+        anchors = [*asked.tension.values(), asked.shear]
+        exact = [force / 1e3 for force in anchors]
+        exact += [1e3 * getattr(each, name) for each in (asked.wider, asked.lower) for name in ("stands", "lifts_not")]
+        exact += [asked.isolation[0], 1e3 * asked.isolation[1]]
+        for words, value in zip(map(float, itertools.chain(*said)), filter(None, exact), strict=True):
+            assert value * (1.0 - 1e-9) <= words < 1.01 * value + 1.0
+    assert (upwards(12.34), upwards(12.3), upwards(0.0), millimetres(0.0031), millimetres(0.003)) == (
+        pytest.approx(12.4), pytest.approx(12.3), 0.0, 4, 3,
+    )  # fmt: skip
 
 
 def test_more_margin_asks_for_more():
