@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking import checks, conventions
 from rocking.assessment.answer import BodyAssessment, ModelMargin
-from rocking.assessment.remedies import lifting_factor, remedies
+from rocking.assessment.remedies import CALIBRATED, lifting_factor, remedies
 from rocking.bodies import Body, Solid
 from rocking.conventions import FEET
 from rocking.dynamics.parameters import RockingParameters
@@ -25,7 +25,6 @@ from rocking.studies.code_methods.method import Shaking, Stances
 from rocking.studies.margins import Margins
 from rocking.studies.motion_sets import MotionList
 
-CALIBRATED = "calibrated"
 ENDS = {"low": 0.025, "high": 0.975}
 """Of the 95 % interval of what is measured of single bodies, which are asked beside the calibrated model: quantiles."""
 
@@ -108,22 +107,18 @@ def assess(
         raise InvalidValueError(f"motion {flat.name!r} is zero throughout: nothing would move")
     kept, options = MotionList(plane), {"gravity": gravity, "threads": threads, "progress": progress}
 
-    def restitutions(each: Body) -> Mapping[str, Any]:
-        return choices(each, restitution)
-
-    found, refused = dict[str, ModelMargin](), dict[str, str]()
-    for name, choice in restitutions(body).items():
+    found, refused, chosen = dict[str, ModelMargin](), dict[str, str](), choices(body, restitution)
+    for name, choice in chosen.items():
         try:
             found[name] = _margin(body, kept, choice, options)
         except RockingError as error:
             refused[name] = str(error)
     if not found:
         raise InvalidValueError(f"no restitution says anything of this body: {'; '.join(refused.values())}")
-    governing = min(found, key=lambda name: np.nan_to_num(found[name].lowest, nan=np.inf))
+    worst = sorted(found, key=lambda name: np.nan_to_num(found[name].lowest, nan=np.inf))
     given = FRICTION[0] if friction is None else friction
     coefficient = float(Uncertain.of("friction", given, *FRICTION[1:]).quantile(np.array([0.5]))[0])
-    chosen = restitutions(body)[governing]
-    sliding = _margin(body, kept, chosen, {**options, "friction": coefficient})
+    sliding = _margin(body, kept, chosen[worst[0]], {**options, "friction": coefficient})
     stances, shaking = Stances.of([body], gravity), Shaking.of(kept)
     prediction = predict(
         body, whole, restitution=known.pop("predicted", None), friction=friction, gravity=gravity, threads=threads,
@@ -136,8 +131,7 @@ def assess(
         capacities={name: each.capacity(stances, shaking)[:, 0] for name, each in CODE_METHODS.items()},
         prediction=prediction,
         remedies=remedies(
-            body, plane, margin, gravity, lambda each: {k: v for k, v in restitutions(each).items() if k in found},
-            falls=lowest <= margin,
+            body, plane, margin, gravity, {name: chosen[name] for name in worst}, falls=lowest <= margin
         ),
         gravity=gravity,
     )  # fmt: skip

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rocking.assessment.remedies import Remedies
+from rocking.assessment.remedies import Remedies, millimetres
 from rocking.bodies import Body
 from rocking.conventions import FEET, FloatArray, g, percent
 from rocking.motions.motion import GroundMotion
@@ -20,11 +20,6 @@ def upwards(value: float, digits: int = 3) -> float:
     """Return what is demanded with so many digits, never less than it is."""
     step = 10.0 ** (math.floor(math.log10(value)) - digits + 1) if value > 0.0 else 1.0
     return math.ceil(value / step - 1e-9) * step
-
-
-def millimetres(length: float) -> int:
-    """Return a length that is demanded in whole millimetres, never less than it is."""
-    return math.ceil(1e3 * length - 1e-9)
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,8 +208,12 @@ class BodyAssessment:
         ask = self._this if remedy.margin == 1.0 else f"{remedy.margin:g} times {self._this}"
         if not remedy.needed:
             return (f"Nothing: it does not lift under {ask}.",)
-        both = " and ".join(f"{upwards(force / 1e3):.3g} kN along the {edge} edge" for edge, force in remedy.tension.items())
-        found = [f"Anchors that keep it from lifting under {ask}: {both}; shear {upwards(remedy.shear / 1e3):.3g} kN in all."]
+        both = " and ".join(
+            f"{upwards(force / 1e3):.3g} kN along the {edge} edge" for edge, force in remedy.tension.items()
+        )
+        found = [
+            f"Anchors that keep it from lifting under {ask}: {both}; shear {upwards(remedy.shear / 1e3):.3g} kN in all."
+        ]
         for change, what in (
             (remedy.wider, "Base wider by {} on each side"), (remedy.lower, "Centre of mass lower by {}"),
         ):  # fmt: skip

@@ -1,7 +1,8 @@
 """What to do about a body that lifts or overturns: anchors, a wider base, a lower centre, isolators."""
 
+import math
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from rocking.bodies import Block, Body
 from rocking.conventions import FEET, BoolArray, FloatArray
-from rocking.dynamics.parameters import RockingParameters, sides_of
+from rocking.dynamics.parameters import RockingParameters, coefficients_of, sides_of
 from rocking.dynamics.settings import Settings
 from rocking.errors import GeometryError, InvalidValueError, PlausibilityWarning
 from rocking.motions.motion import GroundMotion
@@ -17,19 +18,19 @@ from rocking.motions.spectrum import response_spectrum
 from rocking.outcome import overturned
 from rocking.restitution.implied import energy_bound
 from rocking.studies.histories import Product, results_of
-from rocking.studies.margins import ways_round
+from rocking.studies.margins import Margins, ways_round
 from rocking.studies.motion_sets import MotionList
+
+CALIBRATED = "calibrated"
 
 STEPS, HALVINGS = 32, 5
 """Changes that are tried up to the one that keeps a body from lifting, and halvings of the place found."""
 
 SHARES = np.array([0.6, 0.7, 0.8, 0.9, 1.0])
-"""Of the factor, at which each change is tried: what stands under more may overturn under less."""
+"""Of the factor, at which each change is tried before the margin of the one that is found is looked for."""
 
 PERIODS, DAMPING = np.round(np.geomspace(0.5, 6.0, 40), 2), 0.1
 """Of the isolators that are looked at: periods, such as can be said in three digits [s], and damping ratio [-]."""
-
-Restitutions = Callable[[Body], Mapping[str, Any]]
 
 ASSUMED = (
     "Anchors: body, anchors and floor are rigid, so that nothing lifts and nothing is amplified; the anchors of one "
@@ -42,6 +43,11 @@ ASSUMED = (
 """What the remedies take for granted."""
 
 
+def millimetres(length: float) -> int:
+    """Return a length that is demanded in whole millimetres, never less than it is."""
+    return math.ceil(1e3 * length - 1e-9)
+
+
 @dataclass(frozen=True)
 class LengthChange:
     """How far a length must be changed.
@@ -49,7 +55,8 @@ class LengthChange:
     Parameters
     ----------
     stands : float
-        With which no history overturns any more: the least from which on all that were tried stand [m].
+        With which no history overturns any more: the least from which on all that were tried stand, in whole
+        millimetres; 0 where it stands as it is [m].
     lifts_not : float
         With which it does not even lift, in closed form [m].
     why_not : str
@@ -135,17 +142,18 @@ def still(body: Body, motions: Sequence[GroundMotion], factor: float, gravity: f
 
 
 def remedies(
-    body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float, restitutions: Restitutions,
-    *, falls: bool,
+    body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float,
+    restitutions: Mapping[str, Any], *, falls: bool,
 ) -> Remedies:  # fmt: skip
-    """Return what would help; falls: whether it overturns under some motion times the margin."""
+    """Return what would help; restitutions: by name; falls: whether it overturns under some motion times the margin."""
     both = [tension(body, each, margin, gravity) for each in motions]
     out, down = still(body, motions, margin, gravity)
     shear = margin * body.mass * max(float(parts_of(each)[0].max()) for each in motions)
     changes = {}
     for name, most in (("out", out), ("down", down)):
         try:
-            stands = _least(body, motions, margin, gravity, restitutions, name=name, most=most) if falls else 0.0
+            landings = Landings(body, restitutions) if falls else None
+            stands = _least(body, motions, margin, gravity, landings, name=name, most=most) if landings else 0.0
             changes[name] = LengthChange(stands, most)
         except GeometryError as error:
             changes[name] = LengthChange(np.nan, most, str(error))
@@ -181,39 +189,86 @@ def changed(body: Body, *, out: float = 0.0, down: float = 0.0) -> Block:
     )
 
 
+class Landings:
+    """Coefficients of a body that is changed: those it has, moved as far as what gives them says for the change.
+
+    What is changed is a block, whose mass lies otherwise than that of the body: unchanged it has the body's own ones.
+    """
+
+    def __init__(self, body: Body, restitutions: Mapping[str, Any]) -> None:
+        self._rules = {name: CALIBRATED if isinstance(each, Mapping) else each for name, each in restitutions.items()}
+        real, same = ({name: self._pair(each, one) for name, each in given.items()}
+                      for given, one in ((restitutions, body), (self._rules, changed(body))))  # fmt: skip
+        self._moved = {name: {foot: real[name][foot] - same[name][foot] for foot in FEET} for name in real}
+
+    def of(self, body: Body) -> list[dict[str, float]]:
+        """Return the coefficients of a changed body, each at most as large as energy allows."""
+        most = {foot: energy_bound(body, foot) for foot in FEET}
+        return [
+            {foot: min(max(pair[foot] + self._moved[name][foot], 0.0), most[foot]) for foot in FEET}
+            for name, pair in ((name, self._pair(rule, body)) for name, rule in self._rules.items())
+        ]
+
+    @staticmethod
+    def _pair(restitution: Any, body: Body) -> Mapping[str, float]:
+        """Return the coefficients; where the model says none, the largest that energy allows."""
+        try:
+            return coefficients_of(restitution, body)[0]
+        except InvalidValueError:
+            return {foot: energy_bound(body, foot) for foot in FEET}
+
+
 def _least(
-    body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float, restitutions: Restitutions,
+    body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float, landings: Landings,
     *, name: str, most: float,
 ) -> float:  # fmt: skip
-    """Return the least change from which on all that are tried stand, up to the one that keeps it from lifting [m]."""
+    """Return the least change from which on all that are tried stand, up to the one that keeps it from lifting [m].
+
+    It is a whole number of millimetres, as it is said, and that changed body has a margin above what is asked for.
+    """
     if not np.isfinite(most):
         raise GeometryError("the vertical motion takes all of its weight: nothing but anchors holds it down")
 
     def falls(lengths: Sequence[float]) -> BoolArray:
-        return overturns([changed(body, **{name: each}) for each in lengths], motions, margin, gravity, restitutions)
+        return overturns([changed(body, **{name: each}) for each in lengths], motions, margin, gravity, landings)
 
-    grid = np.linspace(0.0, most, STEPS + 1)[:-1]
-    down = np.flatnonzero(falls(grid.tolist()))
-    if not down.size:
-        return 0.0
-    low, high = float(grid[down[-1]]), float((*grid, most)[down[-1] + 1])
+    grid = np.linspace(0.0, most, STEPS + 1)
+    down = np.flatnonzero(falls(grid[:-1].tolist()))
+    last = int(down[-1]) if down.size else 0
+    low, high = float(grid[last]), float(grid[last + 1])
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if falls([middle])[0] else (low, middle)
-    return high
+    for length in (high, *grid[last + 1 : -1].tolist()):
+        whole = millimetres(length) / 1e3
+        if holds(changed(body, **{name: whole}), motions, margin, gravity, landings):
+            return whole
+    return millimetres(most) / 1e3
+
+
+def holds(body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float, landings: Landings) -> bool:
+    """Return whether the least factor that overturns a changed body is above the margin, with every restitution."""
+    kept = MotionList(motions)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PlausibilityWarning)
+        for pair in landings.of(body):
+            found = Margins.of(body, kept, pair, "pga", None, {"gravity": gravity})
+            if not (found.least_each > margin).all() or (margin >= 1.0 and (found.fell_each != 0.0).any()):
+                return False
+    return True
 
 
 def overturns(
-    bodies: Sequence[Body], motions: Sequence[GroundMotion], margin: float, gravity: float, restitutions: Restitutions
+    bodies: Sequence[Body], motions: Sequence[GroundMotion], margin: float, gravity: float, landings: Landings
 ) -> BoolArray:
     """Return which bodies overturn under any motion up to a factor, with any restitution, either way round."""
     rows, owner = [], []
     with warnings.catch_warnings():  # a body that is tried may be as wide as high: nobody typed its coefficients
         warnings.simplefilter("ignore", PlausibilityWarning)
         for k, body in enumerate(bodies):
-            for restitution in restitutions(body).values():
-                for one, _, own in ways_round(body, motions, restitution):
-                    rows.append(_parameters(one, own, gravity))
+            for pair in landings.of(body):
+                for one, _, own in ways_round(body, motions, pair):
+                    rows.append(RockingParameters.of_body(one, own, gravity))
                     owner.append(k)
     sides = {name: values[:, None] for name, values in sides_of(rows).items()}
     histories = Product(MotionList(motions), sides, margin * SHARES, settings=Settings(gravity=gravity))
@@ -221,11 +276,3 @@ def overturns(
     found = np.zeros(len(bodies), bool)
     np.logical_or.at(found, np.array(owner), fell.any(axis=(0, 2)))
     return found
-
-
-def _parameters(body: Body, restitution: Any, gravity: float) -> RockingParameters:
-    """Return a changed body with its restitution, with the largest that energy allows where what is given is larger."""
-    try:
-        return RockingParameters.of_body(body, restitution, gravity)
-    except InvalidValueError:
-        return RockingParameters.of_body(body, {foot: energy_bound(body, foot) for foot in FEET}, gravity)

@@ -162,7 +162,10 @@ def test_a_file_wins_over_a_pulse(answered, tmp_path, monkeypatch):
 REFUSED = {
     "no file": (["no.at2"], "no.at2: no such file; a pulse is written as sine:amplitude=3,period=0.8"),
     "no folder": (["no/where:1"], "no such file"),
-    "folder": (["."], "is a folder, and one record is wanted; assess, codes, fragility, inventory, motions and predict take"),
+    "folder": (
+        ["."],
+        "is a folder, and one record is wanted; assess, codes, fragility, inventory, motions and predict take",
+    ),
     "long": (["x" * 5000], "no such file"),
     "unknown pulse": (["sin:amplitude=3"], "no pulse named 'sin'"),
     "half a pulse": (["sine"], "takes"),
