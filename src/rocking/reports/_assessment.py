@@ -31,8 +31,9 @@ _SEARCHED = (
     "for at 64 levels in equal ratios, from what lifts the body up to 50 times that or the largest acceleration on "
     "record, then by halvings: a thinner stretch below may have been missed. Both ways round are computed.",
     "Remedies: the least change is looked for at 32 steps up to the one that keeps the body from lifting, and is that "
-    "from which on all that were tried stand, with every model, at 0.6 to 1 times what is asked; a thinner stretch "
-    "above may have been missed.",
+    "from which on all that were tried stand, with every model, at 0.6 to 1 times what is asked, and whose least "
+    "factor, looked for as above, is more; what is changed is a block with the coefficients of the body, moved by "
+    "what the models say of the change.",
 )
 
 

@@ -9,10 +9,14 @@ import numpy as np
 import pytest
 
 import rocking as rk
+import rocking.assessment.remedies
 from rocking.assessment._assess import DIRECTIONS, choices, in_the_plane
 from rocking.assessment.answer import millimetres, upwards
+from rocking.assessment.remedies import Landings, changed, remedies
 from rocking.bodies.solid import Solid, box
+from rocking.conventions import g
 from rocking.errors import InvalidValueError
+from rocking.studies import SyntheticSet
 from rocking.studies.margins import Margins
 
 CABINET = rk.Block(width=0.8, height=2.2, depth=1.2, mass=650.0, centre=(0.52, 0.9))
@@ -47,6 +51,44 @@ def test_it_overturns():
     assert ends[0] is not rk.Outcome.OVERTURNED
     assert [words.partition(" ")[0] for words in found.to_do] == ["Anchors", "Base", "Centre", "Isolators"]
     assert found.sentences == tuple(str(found).splitlines())
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_what_helps_is_seen_by_the_search_for_the_margin(seed, monkeypatch):
+    """The body that is changed as advised has a margin above one; a look at 0.6 to 1 times the motion is not enough."""
+    motion = SyntheticSet("firm-ground", 3, seed, pga=7.0)[2]
+    found = rk.assess(CABINET, motion, 0.92, count=8)
+    assert found.lowest.factor < 1.0
+
+    def margin(**change):
+        body = changed(CABINET, **change)
+        (pair,) = Landings(CABINET, {"one": 0.92}).of(body)
+        return Margins.of(body, [motion], pair, "pga", None, {}).least_each.min()
+
+    assert margin(out=found.remedies.wider.stands) > 1.0
+    assert margin(down=found.remedies.lower.stands) > 1.0
+    monkeypatch.setattr(rocking.assessment.remedies, "holds", lambda *_: True)  # negative control
+    assert margin(out=remedies(CABINET, [motion], 1.0, g, {"one": 0.92}, falls=True).wider.stands) < 0.95
+
+
+def test_a_body_of_another_shape_keeps_its_coefficients():
+    """A T is changed as a block of its mass and moments, with the T's own coefficients, and never said to stand."""
+    stem = [(0.0, 0.0), (0.4, 0.0), (0.4, 1.6), (0.9, 1.6), (0.9, 2.0), (-0.3, 2.0), (-0.3, 1.6), (0.0, 1.6)]
+    tee = rk.Section([rk.Region(stem, 700.0)])
+    same, ked = changed(tee), rk.restitution.model("ked")
+    landings = Landings(tee, {"ked": ked, "number": 0.8})
+    for foot in ("left", "right"):
+        own = ked.coefficient(tee, foot)
+        assert [each[foot] for each in landings.of(same)] == pytest.approx([own, 0.8], rel=1e-12)
+        assert abs(own - ked.coefficient(same, foot)) > 0.003  # negative control: the block's own
+        wider = changed(tee, out=0.02)
+        moved = ked.coefficient(wider, foot) - ked.coefficient(same, foot)
+        assert landings.of(wider)[0][foot] == pytest.approx(own + moved, rel=1e-12)
+    peak = 6.0 * 1.002 * rk.assess(tee, record(6.0), "ked", count=8).lowest.factor
+    found = rk.assess(tee, record(peak), "ked", count=8)
+    assert "overturns under 1 of 1 motion" in found.verdict
+    assert "no history overturns any more" in found.to_do[1]
+    assert "stands without" not in str(found)
 
 
 def test_what_is_demanded_is_never_rounded_down():
