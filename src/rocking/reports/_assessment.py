@@ -1,8 +1,11 @@
 """The report of an assessment: verdict, margins, probability, what governs, what to do, codes, assumptions, sources."""
 
+import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from rocking import checks
 from rocking.assessment import BodyAssessment, ModelMargin
@@ -13,6 +16,8 @@ from rocking.conventions import FEET, g
 from rocking.dynamics import Response, simulate
 from rocking.evidence.measurements import provenance
 from rocking.motions.intensity import measure
+from rocking.motions.motion import GroundMotion
+from rocking.outcome import Outcome
 from rocking.plots.assessment import assessment_picture
 from rocking.plots.body import body_picture
 from rocking.plots.ground_motion import ground_motion_picture
@@ -66,38 +71,56 @@ def assessment_report(
         If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
     """
     checks.of_kind("found", found, BodyAssessment, "a BodyAssessment")
-    target, worst = target_of(path), found.motions[found.lowest.motion]
-    history = governing_history(found)
+    target, drawn = target_of(path), governing_history(found)
     pictures: dict[str, Callable[[], Any]] = {
         "body": lambda: body_picture(found.body),
         "margins": lambda: assessment_picture(found),
         "prediction": lambda: prediction_picture(found.prediction),
-        "motion": lambda: ground_motion_picture(worst),
-        "response": lambda: response_picture(history, found.friction),
+        "motion": lambda: ground_motion_picture(drawn.motion),
+        "response": lambda: response_picture(drawn.history, found.friction),
     }
     signed = {"project": project, "author": author, "date": date}
-    write_report(assessment_document(found, name, signed, history), pictures, target)
+    write_report(assessment_document(found, name, signed, drawn), pictures, target)
     return target
 
 
-def governing_history(found: BodyAssessment) -> Response:
-    """Return the history of the least margin, under its motion as it is."""
-    lowest = found.lowest
-    body = found.body.mirrored() if lowest.mirrored else found.body
-    left, right = (found.models[lowest.model].coefficients[foot] for foot in FEET)
-    pair = {"left": right, "right": left} if lowest.mirrored else {"left": left, "right": right}
-    return simulate(body, found.motions[lowest.motion], pair, gravity=found.gravity)
+class Drawn(NamedTuple):
+    """The history that is drawn, of which motion, and which it is in words."""
+
+    history: Response
+    motion: GroundMotion
+    words: str
 
 
-def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str], history: Response) -> Document:
+def governing_history(found: BodyAssessment) -> Drawn:
+    """Return a history that overturns: under a motion as it is, that of the least margin first, or at the margin."""
+    factor, model, motion, mirrored = found.lowest
+    fell = [(name, k) for name, each in found.models.items() for k in np.flatnonzero(each.overturned == 1.0).tolist()]
+    at, how = 1.0, "as it is"
+    if fell:
+        model, motion = min(fell, key=lambda one: (one[1] != motion, one[0] != model))
+    elif math.isfinite(factor):  # just above what was found between two factors that are a thousandth apart
+        at, how = 1.001 * factor, f"at {factor:.3g} times, the least factor that was found to overturn it"
+    pair = found.models[model].coefficients
+    swapped = {foot: pair[other] for foot, other in zip(FEET, FEET[::-1], strict=True)}
+    for twin in (mirrored, not mirrored):
+        body, own = (found.body.mirrored(), swapped) if twin else (found.body, pair)
+        history = simulate(body, found.motions[motion], own, scale=at, gravity=found.gravity)
+        if not fell or history.outcome is Outcome.OVERTURNED:
+            break
+    name = found.motions[motion].name
+    return Drawn(history, found.motions[motion],
+                 f"The body{' mirrored,' if twin else ''} under {name} {how}, with {model}")  # fmt: skip
+
+
+def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str], drawn: Drawn) -> Document:
     """Return the content of the report of an assessment."""
-    worst, mirrored = found.motions[found.lowest.motion], " mirrored," if found.lowest.mirrored else ""
     some = (found.fallen > 0.0).any() or found.lowest.factor < 1.0
     mark = "bad" if (found.fallen == 1.0).any() else "fair" if some else "good"
     margins = Picture("margins", "Least factor on each motion that overturns; code methods over it, unsafe above 1")
     how_likely = Picture("prediction", "How likely it overturns and rocks under each motion, and what decides it")
-    motion = Picture("motion", f"{worst.name}: the ground, and its response spectrum for 5 % damping", 74)
-    under = f"The body{mirrored} under {worst.name} as it is, with {found.lowest.model}: {history.summary}"
+    motion = Picture("motion", f"{drawn.motion.name}: the ground, and its response spectrum for 5 % damping", 74)
+    under = f"{drawn.words}: {drawn.history.summary}"
     picture = [how_likely] if found.prediction.chances["overturning"].value > 0.0 else []
     sections = [
         ReportSection("Does it stand?", [margins, _models(found), _motions(found)]),
@@ -145,8 +168,12 @@ def _motions(found: BodyAssessment) -> ReportTable:
                                  "bad" if found.fallen[k] > 0.0 else "good"))
         for k, each in sorted(enumerate(found.motions), key=lambda pair: least[pair[0]])
     ]  # fmt: skip
-    head = ["motion", "PGA [g]", "PGV [m/s]", "lifts at [-]", "overturns at [-]", "models that fall"]
-    return table("Under each motion", head, rows, "Factors on the motion as it is.")
+    note = (
+        "Factors on the motion as it is. Overturns at: the least factor with any model; what overturns under less may "
+        "stand under the motion as it is, where no model then falls, and that is no margin."
+    )
+    head = ["motion", "PGA [g]", "PGV [m/s]", "lifts at [-]", "overturns at [-]", "models that fall at 1"]
+    return table("Under each motion", head, rows, note)
 
 
 def _with_friction(found: BodyAssessment) -> tuple[str, ModelMargin]:
