@@ -9,7 +9,7 @@ from rocking import checks, conventions
 from rocking.assessment.answer import BodyAssessment, ModelMargin
 from rocking.assessment.remedies import CALIBRATED, lifting_factor, remedies
 from rocking.bodies import Body, Solid
-from rocking.conventions import FEET
+from rocking.conventions import FEET, IntArray
 from rocking.dynamics.parameters import RockingParameters
 from rocking.errors import InvalidValueError, RockingError
 from rocking.evidence import restitution_distribution
@@ -102,7 +102,7 @@ def assess(
     if isinstance(restitution, (str, int, float, RestitutionModel)):
         restitution = [restitution]
     whole = several(motions)
-    plane = in_the_plane(whole, known.get("azimuth"))
+    plane, records = in_the_plane(whole, known.get("azimuth"))
     if flat := next((each for each in plane if not each.peak > 0.0), None):
         raise InvalidValueError(f"motion {flat.name!r} is zero throughout: nothing would move")
     kept, options = MotionList(plane), {"gravity": gravity, "threads": threads, "progress": progress}
@@ -126,7 +126,8 @@ def assess(
     )  # fmt: skip
     lowest = min((each.lowest for each in found.values() if not np.isnan(each.lowest)), default=np.inf)
     return BodyAssessment(
-        body=body, motions=tuple(plane), models=found, refused=refused, friction=coefficient, sliding=sliding,
+        body=body, motions=tuple(plane), records=records, models=found, refused=refused,
+        friction=coefficient, sliding=sliding,
         lifts=np.array([lifting_factor(body, each, gravity) for each in plane]),
         capacities={name: each.capacity(stances, shaking)[:, 0] for name, each in CODE_METHODS.items()},
         prediction=prediction,
@@ -137,9 +138,10 @@ def assess(
     )  # fmt: skip
 
 
-def in_the_plane(motions: Any, azimuth: Any = None) -> list[GroundMotion]:
-    """Return what moves a body in its plane: one component as it is, two turned into every direction."""
+def in_the_plane(motions: Any, azimuth: Any = None) -> tuple[list[GroundMotion], IntArray]:
+    """Return what moves a body in its plane, one component as it is, two turned into every direction, and of which."""
     found: list[GroundMotion] = []
+    records: list[int] = []
     for k in range(len(motions)):
         along, across, upright = parts(motions[k])
         turned = {"": sampled(along)}
@@ -154,7 +156,8 @@ def in_the_plane(motions: Any, azimuth: Any = None) -> list[GroundMotion]:
             samples = each.acceleration if vertical is None else each.acceleration[: len(vertical)]
             called = f"{name} (no. {many + 1})" if many else name
             found.append(GroundMotion(samples, each.time_step, vertical, called, each.metadata, each.provenance))
-    return found
+            records.append(k)
+    return found, np.array(records)
 
 
 def choices(body: Body, given: Sequence[Any] | None) -> Mapping[str, Any]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking.assessment.remedies import Remedies, millimetres
 from rocking.bodies import Body
-from rocking.conventions import FEET, FloatArray, g, percent
+from rocking.conventions import FEET, FloatArray, IntArray, g, percent
 from rocking.motions.motion import GroundMotion
 from rocking.prediction import Prediction
 from rocking.studies.code_methods.comparison import AT_MOST
@@ -46,11 +46,6 @@ class ModelMargin:
         known = self.least[~np.isnan(self.least)]
         return float(known.min()) if known.size else math.nan
 
-    @property
-    def falls(self) -> int:
-        """Motions under which it overturns [-]."""
-        return int(np.nansum(self.overturned))
-
 
 class Lowest(NamedTuple):
     """The least factor of all, and whose it is."""
@@ -71,6 +66,8 @@ class BodyAssessment:
         The body.
     motions : tuple of GroundMotion
         The motions in its plane; of two components every direction that was tried.
+    records : ndarray, shape (motions,)
+        Of which motion that was given each is a direction, by number.
     models : dict of str to ModelMargin
         By the name of the restitution, without sliding.
     refused : dict of str to str
@@ -93,6 +90,7 @@ class BodyAssessment:
 
     body: Body
     motions: tuple[GroundMotion, ...]
+    records: IntArray
     models: Mapping[str, ModelMargin]
     refused: Mapping[str, str]
     friction: float
@@ -111,17 +109,49 @@ class BodyAssessment:
         way, motion = np.unravel_index(int(np.argmin(least)), least.shape)
         return Lowest(self.models[name].lowest, name, int(motion), bool(way))
 
+    def by_record(self, values: FloatArray, worst: np.ufunc = np.fmax) -> FloatArray:
+        """Return what is worst in any direction of each motion that was given.
+
+        Parameters
+        ----------
+        values : ndarray, shape (motions,)
+            What is known of each direction; NaN where nothing is.
+        worst : ufunc
+            What takes the worse one of two.
+
+        Returns
+        -------
+        ndarray
+            One value a motion that was given.
+        """
+        return np.array([worst.reduce(values[self.records == k]) for k in np.unique(self.records)])
+
+    def falls(self, margin: ModelMargin) -> int:
+        """Return under how many of the motions that were given it overturns, in any direction.
+
+        Parameters
+        ----------
+        margin : ModelMargin
+            With one restitution.
+
+        Returns
+        -------
+        int
+            Their number.
+        """
+        return int(np.nansum(self.by_record(margin.overturned)))
+
     @property
     def fallen(self) -> FloatArray:
-        """Share of the models with which it overturns under each motion as it is [-]."""
-        rows = np.array([each.overturned for each in self.models.values()])
+        """Share of the models with which it overturns under each motion that was given, in any direction [-]."""
+        rows = np.array([self.by_record(each.overturned) for each in self.models.values()])
         known = (~np.isnan(rows)).sum(axis=0)
         return np.where(known > 0, np.nansum(rows, axis=0) / np.maximum(known, 1), np.nan)
 
     @property
     def verdict(self) -> str:
         """Whether it stands, in words."""
-        several, models = self._several, f"{len(self.models)} restitution{'s' if len(self.models) > 1 else ''}"
+        several, models = self.several, f"{len(self.models)} restitution{'s' if len(self.models) > 1 else ''}"
         with_all, with_some = int((self.fallen == 1.0).sum()), int((self.fallen > 0.0).sum())
         if math.isnan(self.lowest.factor):
             return "No history has a result: it cannot be said whether it stands."
@@ -241,9 +271,10 @@ class BodyAssessment:
 
     @property
     def code_rows(self) -> list[tuple[str, int, int, int, float]]:
-        """Method, motions in its domain, those called safe, how many of these overturn, least factor it allows."""
+        """Method, motions in its domain in all directions, of these safe, of these overturn, least factor it allows."""
         rows = []
-        for name, capacity in self.capacities.items():
+        for name, each in self.capacities.items():
+            capacity = self.by_record(each, np.minimum)  # NaN where one direction is outside the domain
             known = np.isfinite(capacity)
             safe = known & (capacity * AT_MOST >= 1.0)
             least = float(capacity[known].min()) if known.any() else math.nan
@@ -257,12 +288,15 @@ class BodyAssessment:
         return (self.verdict, self.margin_words, self.probability_words, *self.governs, *self.to_do)
 
     @property
-    def _several(self) -> str:
-        return f"{len(self.motions)} motions" if len(self.motions) > 1 else "1 motion"
+    def several(self) -> str:
+        """How many motions, and in how many directions, in words."""
+        count = len(np.unique(self.records))
+        turned = f" (in {len(self.motions)} directions)" if len(self.motions) > count else ""
+        return f"{count} motion{'s' if count > 1 else ''}{turned}"
 
     @property
     def _this(self) -> str:
-        return "these records" if len(self.motions) > 1 else "this record"
+        return "these records" if len(np.unique(self.records)) > 1 else "this record"
 
     def __str__(self) -> str:
         return "\n".join(self.sentences)
@@ -282,6 +316,7 @@ class BodyAssessment:
             "sentences": list(self.sentences),
             "body": repr(self.body),
             "motions": [each.name for each in self.motions],
+            "records": self.records,
             "lowest": {**self.lowest._asdict(), "motion": self.motions[self.lowest.motion].name},
             "lifting_factors": self.lifts,
             "models": {name: {**vars(each), "lowest": each.lowest} for name, each in self.models.items()},

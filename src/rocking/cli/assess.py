@@ -103,7 +103,7 @@ class AssessmentAnswer:
         page.line()
         head = ("restitution", "r left, right", "overturns under", "least factor")
         with_friction = (f"{found.lowest.model}, friction {found.friction:.3g}", found.sliding)
-        page.table(head, [_row(name, each) for name, each in (*found.models.items(), with_friction)], head[:1])
+        page.table(head, [_row(found, name, each) for name, each in (*found.models.items(), with_friction)], head[:1])
         page.warn(f"{name}: {why}" for name, why in found.refused.items())
         page.line()
         head = ("code method", "calls safe", "these overturn", "up to factor")
@@ -121,6 +121,6 @@ class AssessmentAnswer:
         page.line(f"Assumed: {'; '.join(assumed)}. What, why, and all references: --out report.pdf, or --json.")
 
 
-def _row(name: str, each: Any) -> tuple[str, ...]:
+def _row(found: "BodyAssessment", name: str, each: Any) -> tuple[str, ...]:
     r = ", ".join(f"{each.coefficients[foot]:.3f}" for foot in ("left", "right"))
-    return name, r, f"{each.falls} of {each.overturned.size}", f"{each.lowest:.3g}"
+    return name, r, f"{found.falls(each)} of {found.fallen.size}", f"{each.lowest:.3g}"

@@ -75,7 +75,7 @@ def _margins(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
         axes.set_yticks(range(order.size), [plain(name if len(name) <= 34 else f"{name[:31]}...") for name in names])
     else:
         axes.set_yticks([])
-        axes.set_ylabel(f"{order.size} motions, the most dangerous first")
+        axes.set_ylabel(f"{found.several}, the most dangerous first")
     _plain_ticks(axes)
 
 

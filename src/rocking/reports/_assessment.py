@@ -139,7 +139,7 @@ def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str]
         ReportSection("Signed", [table("", ["", ""], [(key, words or "_" * 30) for key, words in
                                                       (*signed.items(), ("signature", ""))])]),
     ]  # fmt: skip
-    several = f"Under {len(found.motions)} motion{'s' if len(found.motions) > 1 else ''}"
+    several = f"Under {found.several}"
     head = ". ".join(filter(None, (several, signed["project"] if name else "", signed["author"], signed["date"])))
     verdict = [Paragraph(found.verdict, "", mark), *map(Paragraph, (found.margin_words, found.probability_words))]
     title = name or signed["project"] or "A body in an earthquake"
@@ -149,7 +149,8 @@ def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str]
 def _models(found: BodyAssessment) -> ReportTable:
     rows = [
         (name, *(f"{each.coefficients[foot]:.3f}" for foot in ("left", "right")),
-         Cell(f"{each.falls} of {each.overturned.size}", "bad" if each.falls else "good"), f"{each.lowest:.3g}")
+         Cell(f"{found.falls(each)} of {found.fallen.size}", "bad" if found.falls(each) else "good"),
+         f"{each.lowest:.3g}")
         for name, each in (*found.models.items(), _with_friction(found))
     ]  # fmt: skip
     note = (
@@ -161,16 +162,20 @@ def _models(found: BodyAssessment) -> ReportTable:
 
 
 def _motions(found: BodyAssessment) -> ReportTable:
-    least = [min(float(each.least[:, k].min()) for each in found.models.values()) for k in range(len(found.motions))]
+    least = np.fmin.reduce([np.fmin.reduce(each.least) for each in found.models.values()])
+    worst = [min(np.flatnonzero(found.records == k).tolist(), key=lambda j: np.nan_to_num(least[j], nan=np.inf))
+             for k in np.unique(found.records)]  # fmt: skip
+    count = len(found.models)
     rows = [
-        (each.name, f"{each.peak / g:.3g}", f"{measure('pgv').of(each):.3g}", f"{found.lifts[k]:.3g}",
-         f"{least[k]:.3g}", Cell(f"{found.fallen[k] * len(found.models):.0f} of {len(found.models)}",
-                                 "bad" if found.fallen[k] > 0.0 else "good"))
-        for k, each in sorted(enumerate(found.motions), key=lambda pair: least[pair[0]])
+        (found.motions[j].name, f"{found.motions[j].peak / g:.3g}", f"{measure('pgv').of(found.motions[j]):.3g}",
+         f"{found.lifts[j]:.3g}", f"{least[j]:.3g}",
+         Cell(f"{fallen * count:.0f} of {count}", "bad" if fallen > 0.0 else "good"))
+        for j, fallen in sorted(zip(worst, found.fallen, strict=True), key=lambda pair: least[pair[0]])
     ]  # fmt: skip
     note = (
-        "Factors on the motion as it is. Overturns at: the least factor with any model; what overturns under less may "
-        "stand under the motion as it is, where no model then falls, and that is no margin."
+        "Factors on the motion as it is; of two components in the direction of the least. Overturns at: the least "
+        "factor with any model; what overturns under less may stand under the motion as it is, where no model then "
+        "falls, and that is no margin."
     )
     head = ["motion", "PGA [g]", "PGV [m/s]", "lifts at [-]", "overturns at [-]", "models that fall at 1"]
     return table("Under each motion", head, rows, note)

@@ -118,15 +118,31 @@ def test_more_margin_asks_for_more():
 def test_two_components_are_turned():
     """Two horizontal components make 12 motions of the plane, the vertical one beside each; a known azimuth one."""
     both = {"x": record(3.0), "y": record(4.0, 0.8), "z": record(1.0, 0.5)}
-    plane = in_the_plane([both])
+    plane, records = in_the_plane([both])
+    assert records.tolist() == [0] * DIRECTIONS
     assert len(plane) == DIRECTIONS
     assert plane[0].peak == pytest.approx(both["x"].peak)
     assert max(each.peak for each in plane) == pytest.approx(5.0, rel=0.01)  # 3 and 4, within 15 degrees
     assert all(each.vertical is not None for each in plane)
-    (one,) = in_the_plane([both], azimuth=math.pi / 2.0)
+    ((one,), _) = in_the_plane([both], azimuth=math.pi / 2.0)
     assert one.peak == pytest.approx(both["y"].peak)
-    names = [each.name for each in in_the_plane([record(3.0), record(3.0)])]
+    names = [each.name for each in in_the_plane([record(3.0), record(3.0)])[0]]
     assert names == ["sine of 3", "sine of 3 (no. 2)"]
+
+
+def test_records_are_counted_not_their_directions():
+    """Of one pair and one component two motions are counted, in verdict, models and code methods."""
+    pair = {"x": record(9.0), "y": record(0.5)}
+    found = rk.assess(CABINET, [pair, record(2.0)], ["ked", 0.85], count=8)
+    assert found.verdict == "It overturns under 1 of 2 motions (in 13 directions), with all of 2 restitutions."
+    assert found.fallen.tolist() == [1.0, 0.0]
+    assert [found.falls(each) for each in found.models.values()] == [1, 1]
+    fell = np.array([each.overturned for each in found.models.values()]).max(axis=0)
+    assert 1 < fell.sum() < DIRECTIONS  # negative control: directions are more, and some stand
+    for _, known, safe, overturn, _ in found.code_rows:
+        assert overturn <= 1
+        assert safe <= known <= 2
+    assert "deg" in found.motions[found.lowest.motion].name
 
 
 def test_the_calibrated_model_comes_with_its_interval():
