@@ -9,8 +9,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.assessment import BodyAssessment, ModelMargin
-from rocking.assessment._assess import CALIBRATED
-from rocking.assessment.remedies import ASSUMED
+from rocking.assessment.remedies import ASSUMED, CALIBRATED
 from rocking.bodies.body import assumed_rows
 from rocking.conventions import FEET, g
 from rocking.dynamics import Response, simulate
