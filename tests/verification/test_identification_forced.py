@@ -140,11 +140,48 @@ def test_what_is_refused_under_a_motion(measured, given, words):
         identify(measured, **({"body": BODY, "motion": motion} | given))
 
 
+@pytest.mark.verifies("damage", "motions that are zero, or weak", room="evidence")
+@pytest.mark.parametrize("peak", [0.0, 0.5])
+def test_a_motion_that_lifts_nothing_is_refused(peak):
+    """By what it takes, and with the likely cause."""
+    time = np.arange(0.0, 3.0, 0.01)
+    series = RotationSeries(time, rotation=1e-4 * np.random.default_rng(3).normal(size=time.size))
+    with pytest.raises(InvalidValueError, match=f"must lift the body.* got a peak of {peak:g} m/s2"):
+        identify(series, BODY, motion=rk.GroundMotion(peak * np.sin(time), 0.01))
+
+
+@pytest.mark.verifies("behaviour", "a record that begins with strong shaking", room="evidence")
+def test_no_sample_at_rest():
+    """Shaken from its first sample on, the body is never known to rest; the interval holds the truth all the same."""
+    time = np.arange(0.0, 4.0, 0.01)
+    motion = rk.GroundMotion(3.0 * np.cos(4.0 * np.pi * time) * np.clip(2.5 - time, 0.0, 1.0), 0.01)
+    response = rk.simulate(BODY, motion, 0.88)
+    noise = 2e-4 * np.random.default_rng(4).normal(size=response.time.size)
+    found = identify(RotationSeries(response.time, rotation=response.rotation + noise), BODY, motion=motion)
+    assert found.mean.low < 0.88 < found.mean.high < found.mean.low + 0.05
+
+
+@pytest.mark.verifies("damage", "a record that is cut off, a clock that is wrong by 0.1 s", room="evidence")
+def test_doubts_of_records_and_clocks(response):
+    """Both are told; of the whole record and the right clock nothing is."""
+    time = np.arange(0.0, response.time[-1], 0.004)
+    values = response.at(time) + 2e-4 * np.random.default_rng(5).normal(size=time.size)
+    cut = rk.GroundMotion(response.motion.acceleration[: int(1.7 / 0.013)], 0.013)
+
+    def doubts(motion, ahead=0.0):
+        return " ".join(identify(RotationSeries(time + ahead, rotation=values), BODY, motion=motion).doubts)
+
+    assert "The motion ends at 1.68 s while it still shakes" in doubts(cut)
+    assert "is found to be ahead by 0.1 s, though 0 +- 0.02 s" in doubts(response.motion, 0.1)
+    assert "ahead" not in doubts(response.motion)
+    assert "ends at" not in doubts(response.motion)
+
+
 @pytest.mark.verifies("behaviour", "a body that stands still", room="evidence")
 def test_a_body_that_stands_still_tells_nothing():
-    """Noise under a motion that does not lift the body has no coefficient."""
+    """Noise under a motion that may lift the body, or not quite, has no coefficient."""
     time = np.arange(0.0, 3.0, 0.01)
     noise = 1e-4 * np.random.default_rng(3).normal(size=time.size)
-    found = identify(RotationSeries(time, rotation=noise), BODY, motion=rk.pulses.sine(amplitude=0.5, period=0.6))
+    found = identify(RotationSeries(time, rotation=noise), BODY, motion=rk.pulses.sine(amplitude=1.9, period=0.6))
     assert found.refused
     assert found.forced is None

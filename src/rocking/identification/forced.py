@@ -53,6 +53,11 @@ _MOST_SCATTER, _ADVANTAGE = 0.12, 5.0
 _LEAST, _MOST, _TRIED = 0.05, 2.0, 24  # coefficients of friction
 _SLID, _EXCLUDED = 10.0, 40.0  # of minus twice ln of the likelihood: fall if it slid, rise beyond which none is tried
 _CLOSE, _DIFFERENCE = 0.1, 1e-4
+_ENDING, _CALM, _FAR = (
+    0.5,
+    0.02,
+    3.0,
+)  # seconds, over the peak: a record that ends at rest; standard deviations of a clock
 
 
 class ForcedPosterior:
@@ -116,13 +121,36 @@ def identify_forced(measurement: Any, known: Knowledge, motion: Any, clock: Any)
         raise InvalidValueError("under a motion the body must be given: what lifts it is its slenderness angle")
     if known.damping:
         raise InvalidValueError("damping must be False under a motion: it is fitted to free rocking only")
-    if isinstance(motion, Pulse):
+    if whole := isinstance(motion, Pulse):
         motion = motion.sampled(motion.duration / _OF_PULSE)
     checked_motion(motion)
     shift, error = (0.0, clock) if np.ndim(clock) == 0 else clock
     clock = checks.number("clock", shift, "s"), checks.within("standard deviation of clock", error, 0.0, 10.0, unit="s")
     found = fit_forced(measurement, known, motion, clock)
-    return None if found is None else answer(found)
+    if found is None:
+        return None
+    said = answer(found)
+    return replace(said, doubts=(*said.doubts, *_of_clocks(said, motion, clock, whole=whole)))
+
+
+def _of_clocks(said: Identification, motion: GroundMotion, clock: tuple[float, float], *, whole: bool) -> list[str]:
+    """Return doubts about when it was measured: after the record, or by another clock than was said."""
+    assert said.forced is not None
+    assert isinstance(said.measurement, RotationSeries)
+    doubts, ahead, last = [], said.forced.clock.value, float(motion.time[-1])
+    measured = float(said.measurement.time[-1]) - ahead
+    ends = np.abs(motion.acceleration[motion.time >= last - _ENDING]).max()
+    if not whole and measured > last + _ENDING and ends > _CALM * motion.peak:
+        doubts.append(
+            f"The motion ends at {last:.3g} s while it still shakes, the measurement at {measured:.3g} s of its time: "
+            "the ground is taken to stand still between; perhaps the record was cut off."
+        )
+    if abs(ahead - clock[0]) > _FAR * clock[1] > 0.0:
+        doubts.append(
+            f"The clock of the measurement is found to be ahead by {ahead:.3g} s, though {clock[0]:g} +- {clock[1]:g} "
+            "s was said: perhaps half cycles are matched with the wrong shaking."
+        )
+    return doubts
 
 
 def fit_forced(

@@ -62,7 +62,7 @@ class Terms:
         starts = np.searchsorted(self.owners, np.arange((size - SIZE) // 2 + 1))
         for (residual, slopes), s in zip(self.samples, noise, strict=True):
             for k, (a, b) in enumerate(pairwise([*starts, residual.size])):
-                own = np.r_[:SIZE, SIZE + 2 * k : SIZE + 2 * k + 2] if b <= starts[-1] else np.arange(SIZE)
+                own = np.r_[:SIZE, SIZE + 2 * k : SIZE + 2 * k + 2] if k < (size - SIZE) // 2 else np.arange(SIZE)
                 by = slopes[a:b, : own.size]
                 hessian[np.ix_(own, own)] += by.T @ by / s**2
                 gradient[own] += by.T @ residual[a:b] / s**2

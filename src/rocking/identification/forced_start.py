@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from rocking.conventions import FEET, BoolArray, FloatArray, g
+from rocking.errors import InvalidValueError
 from rocking.identification.excursions import Excursions, excursions_of
 from rocking.identification.forced_model import (
     CLOCK,
@@ -51,8 +52,12 @@ def problem_of(series: RotationSeries, known: Knowledge, motion: GroundMotion, c
     mean, deviation = np.zeros(SIZE), np.zeros(SIZE)
     lifts = g / max(known.body.side(foot).slenderness_ratio for foot in FEET)
     strong = np.flatnonzero(np.abs(motion.acceleration) > _STILL * lifts)
-    still = motion.time[strong[0]] if strong.size else 0.0
-    rest = np.flatnonzero(series.time < still + clock[0] - 3.0 * clock[1])
+    if not strong.size:
+        raise InvalidValueError(
+            f"motion must lift the body, which takes {lifts:.3g} m/s2, got a peak of {motion.peak:.3g} m/s2; perhaps "
+            "its unit is another one"
+        )
+    rest = np.flatnonzero(series.time < motion.time[strong[0]] + clock[0] - 3.0 * clock[1])
     mean[MEAN], deviation[MEAN], deviation[HALF] = -0.1, 0.2, 0.5 * known.asymmetry
     deviation[[WIDTH, HEIGHT]], deviation[TILT] = known.size_error, known.tilt_error
     deviation[TREND] = 0.05 if known.trend else 0.0
