@@ -233,7 +233,8 @@ class TrialsAnswer:
         page.line(found.verdict, style="bold")
         if found.mean is not None:
             page.line(
-                "The interval is from how trials differ; an error of the size of the body, common to all, is not in it."
+                "The interval is from how trials differ, and never narrower than their own allow; the error of the "
+                "size of the body, common to all, is in it."
             )
         page.line()
         rows = [
@@ -246,4 +247,5 @@ class TrialsAnswer:
         kept = len(found.rows) - found.computed
         if kept:
             page.line(f"{kept} of {len(found.rows)} were there already, and were not computed again.")
+        page.warn(found.doubts)
         page.warn(f"{row['trial']}: {as_options(row['refused'])}" for row in found.rows if row["refused"])

@@ -25,7 +25,7 @@ from rocking.identification.results import (
     next_impact,
 )
 from rocking.identification.series import fit_series
-from rocking.identification.state_space import DAMPING, FREQUENCY, HALF, MEAN, SHARED, TILT, TREND
+from rocking.identification.state_space import DAMPING, FREQUENCY, HALF, MEAN, SHARED, SLENDERNESS, TILT, TREND
 from rocking.identification.times import fit_times
 from rocking.motions.pulse import Motion
 
@@ -214,6 +214,7 @@ def _result(
         converged=found.converged, impulse=impulses(body, coefficients) if body is not None and not refused else {},
         models=compared(body, r) if body is not None and not refused else (), designs=experiments,
         measurement=measurement, quantiles=next_impact(mean, 0.0),
+        _common=found.explained(MEAN, (FREQUENCY, SLENDERNESS)),
         _next={foot: next_impact(each, found.scatter) for foot, each in by_side.items()},
     )  # fmt: skip
 

@@ -100,6 +100,12 @@ class ForcedPosterior:
             slopes[which] = factor
         return self.of(slopes, float(slopes @ self.fit.x))
 
+    def explained(self, which: int, by: tuple[int, ...]) -> float:
+        """Return the standard deviation of what all share that falls away where others of it are known."""
+        place, root = np.cumsum(self.free) - 1, self.roots[int(np.argmax(self.weights))]
+        one, others = root[:, place[which]], root[:, [place[each] for each in by if self.free[each]]]
+        return float(np.linalg.norm(np.linalg.qr(others)[0].T @ one)) if others.size else 0.0
+
     @property
     def likely_scatter(self) -> IntervalEstimate:
         """The scatter."""
@@ -219,7 +225,7 @@ def answer(found: ForcedPosterior) -> Identification:
         impulse={} if refused else impulses(body, coefficients), models=() if refused else compared(body, r),
         designs=(), _next={foot: next_impact(each, found.scatter) for foot, each in by_side.items()},
         measurement=series, residual_times=np.tile(series.time[at[order]], len(problem.kinds)),
-        quantiles=next_impact(mean, 0.0), forced=_forced(found),
+        quantiles=next_impact(mean, 0.0), forced=_forced(found), _common=found.explained(MEAN, (WIDTH, HEIGHT)),
     )  # fmt: skip
 
 

@@ -1,6 +1,6 @@
 """The posterior of all unknowns: normal for each scatter and noise, mixed over a grid of both."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -53,6 +53,12 @@ class Posterior:
         for which, factor in terms:
             slopes[which] = factor * self.model.deviation[which]
         return self.normal(slopes, sum(factor * float(self.model.mean[which]) for which, factor in terms))
+
+    def explained(self, which: int, by: Sequence[int]) -> float:
+        """Return the standard deviation of what all impacts share that falls away where others of it are known."""
+        across, among = self.covariance[:, which, by], self.covariance[:, by][:, :, by]
+        part = np.einsum("gi,gij,gj->g", across, np.linalg.pinv(among, hermitian=True), across)
+        return float(self.model.deviation[which] * np.sqrt(self.weights @ part))
 
     def of_impact(self, number: int) -> "Mixture":
         """Return the distribution of the draw of an impact, as part of ln r."""

@@ -212,6 +212,8 @@ class Identification:
         Quantiles of the mean coefficient of restitution, at equal steps of its probability [-].
     forced : ForcedRocking or None
         What else there is of a measurement under a known ground motion.
+    _common : float
+        Standard deviation of ln of the mean that comes from the size of the body, common to all its trials [-].
     """
 
     source: str
@@ -239,6 +241,7 @@ class Identification:
     residual_times: FloatArray = field(default_factory=lambda: np.zeros(0))
     quantiles: FloatArray = field(default_factory=lambda: np.zeros(0))
     forced: ForcedRocking | None = None
+    _common: float = 0.0
 
     @property
     def verdict(self) -> str:

@@ -25,7 +25,7 @@ _FORCED = (
 )
 _TRIALS = (
     "Each trial is looked at by itself. The mean is that of the logarithms, with Student's t interval from how trials "
-    "differ; what is common to all, such as an error of the size of the body, is not in it."
+    "differ, never narrower than their own intervals allow; the error of the size of the body, common to all, is in it."
 )
 
 
@@ -75,10 +75,11 @@ def trials_report(found: IdentifiedTrials, path: Path) -> None:
             table("", ["trial", "r [-]", "95 %", "scatter of ln r [-]", "impacts"], rows),
             *([table("Trials without a coefficient", ["trial", "why"], refused)] if refused else []),
         ]),
+        *([ReportSection("What there is to say against it", [*map(Paragraph, found.doubts)])] if found.doubts else []),
         *_compared(found.models),
         ReportSection("How it was found", [Paragraph(_HOW), Paragraph(_TRIALS)]),
     ]  # fmt: skip
-    mark = "bad" if found.mean is None else "fair" if refused else "good"
+    mark = "bad" if found.mean is None else "fair" if refused or found.doubts else "good"
     document = Document(
         f"Coefficient of restitution: {found.name}", f"{len(found.rows)} trials", sections,
         verdict=[Paragraph(found.verdict, "", mark)], footer=SOFTWARE,

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from multiprocessing import get_context
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -50,6 +51,7 @@ _TEXTS = {
     "doubts": "what else there is to say against it",
     "question": "hash of the file and of what was asked of it",
 }
+_REACH = 1.96  # of a 95 % interval, in standard deviations
 _FEW, _EVERY = 12, 1.0  # trials for which no process is started; seconds after which the table is written again
 
 
@@ -137,12 +139,12 @@ class IdentificationProblem:
         try:
             found = self.answer(path)
         except RockingError as error:
-            return _row_of(str(error).removeprefix(f"{path.name}: "), (), 0, {})
+            return _row_of(str(error).removeprefix(f"{path.name}: "), ())
         if found.refused:
-            return _row_of("; ".join(found.refused), found.doubts, 0, {})
+            return _row_of("; ".join(found.refused), found.doubts)
         numbers = {"r": found.mean, **{f"r_{foot}": found.coefficients[foot] for foot in FEET}}
         numbers |= {name: getattr(found, name) for name in ("scatter", "frequency_parameter", "tilt")}
-        return _row_of("", found.doubts, len(found.impacts), numbers)
+        return _row_of("", found.doubts, len(found.impacts), found._common, numbers)
 
     def _question(self, path: Path) -> str:
         """Return a hash of everything that a row hangs on."""
@@ -168,14 +170,19 @@ class IdentifiedTrials:
 
     @cached_property
     def mean(self) -> IntervalEstimate | None:
-        """Geometric mean of all trials and its interval, from how they differ, by Student's t; None of fewer than two.
+        """Geometric mean of all trials and its interval; None of fewer than two.
 
-        What is common to all trials, such as an error of the size of the body, is not in it.
+        It is from how trials differ, by Student's t, or from their own intervals where these say more; the error of the
+        size of the body, common to all, is added.
         """
-        ln = np.log([row["r"] for row in self.rows if not row["refused"]])
-        if ln.size < 2:
+        good = [row for row in self.rows if not row["refused"]]
+        if len(good) < 2:
             return None
-        reach = float(stdtrit(ln.size - 1, 0.975)) * float(ln.std(ddof=1)) / math.sqrt(ln.size)
+        ln, common = np.log([row["r"] for row in good]), np.array([row["common"] for row in good])
+        within = np.log([row["r_high"] / row["r_low"] for row in good]) / (2.0 * _REACH)
+        between = float(stdtrit(ln.size - 1, 0.975)) * float(ln.std(ddof=1))
+        own = _REACH * math.sqrt(float(np.mean(np.maximum(within**2 - common**2, 0.0))))
+        reach = math.hypot(max(between, own) / math.sqrt(ln.size), _REACH * math.sqrt(float(np.mean(common**2))))
         middle = float(ln.mean())
         return IntervalEstimate(*(math.exp(middle + each) for each in (0.0, -reach, reach)))
 
@@ -183,6 +190,19 @@ class IdentifiedTrials:
     def models(self) -> tuple[ModelComparison, ...]:
         """Models of restitution beside the mean."""
         return compared(self.body, self.mean) if self.body is not None and self.mean is not None else ()
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Trials that say the same to nine digits: two files of one event, which counts twice."""
+        seen: dict[tuple[Any, ...], list[str]] = {}
+        for row in self.rows:
+            if not row["refused"]:
+                same = (row["impacts"], *(f"{row[name]:.9g}" for name in ("r", "r_low", "r_high", "scatter")))
+                seen.setdefault(same, []).append(row["trial"])
+        return tuple(
+            f"{' and '.join(names)} say the same: perhaps they are of one event, which counts {len(names)} times."
+            for names in seen.values() if len(names) > 1
+        )  # fmt: skip
 
     @property
     def verdict(self) -> str:
@@ -200,6 +220,7 @@ class IdentifiedTrials:
         """Return everything as plain values."""
         return {
             "verdict": self.verdict,
+            "doubts": self.doubts,
             "mean": None if self.mean is None else vars(self.mean),
             "models": [vars(each) for each in self.models],
             "trials": self.rows,
@@ -220,9 +241,15 @@ def bodies_in(folder: Path) -> list[Path]:
     return sorted(path for path in folder.iterdir() if path.suffix.lower() in FORMATS and path.is_file())
 
 
-def _row_of(refused: str, doubts: Iterable[str], impacts: int, numbers: Mapping[str, IntervalEstimate]) -> Row:
+def _row_of(
+    refused: str,
+    doubts: Iterable[str],
+    impacts: int = 0,
+    common: float = math.nan,
+    numbers: Mapping[str, IntervalEstimate] = MappingProxyType({}),
+) -> Row:
     none = IntervalEstimate(math.nan, math.nan, math.nan)
-    row: Row = {"refused": refused, "doubts": " ".join(doubts), "impacts": impacts}
+    row: Row = {"refused": refused, "doubts": " ".join(doubts), "impacts": impacts, "common": common}
     for name in _NUMBERS:
         each = numbers.get(name, none)
         row |= {name: each.value, f"{name}_low": each.low, f"{name}_high": each.high}
@@ -237,6 +264,8 @@ def _table(rows: Iterable[Row], provenance: Mapping[str, Any] | None = None) -> 
         for end, more in _ENDS.items():
             values = np.array([row[f"{name}{end}"] for row in listed], dtype=np.float64)
             columns[f"{name}{end}"] = Column(values, unit, f"{meaning}{more}")
+    common = np.array([row["common"] for row in listed], dtype=np.float64)
+    columns["common"] = Column(common, "1", "standard deviation of ln r from the size of the body, common to all")
     for name in ("refused", "doubts", "question"):
         columns[name] = Column(text_array([row[name] for row in listed]), "", _TEXTS[name])
     return Table("trial", columns, provenance or {})

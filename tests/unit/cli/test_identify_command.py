@@ -212,6 +212,40 @@ def test_a_folder_is_resumed(run, folder, tmp_path, monkeypatch):
     assert "4 of 6 trials" in run(folder)[1]
 
 
+def trials_of(*middles, common):
+    """Trials whose own intervals are of +-0.001."""
+    numbers = [{"r": r, "r_low": r / 1.001, "r_high": r * 1.001} for r in middles]
+    rows = [{"trial": f"{k}.csv", "refused": "", "impacts": 9, "scatter": 0.01 + k} for k in range(len(middles))]
+    rows = [row | more | {"common": common} for row, more in zip(rows, numbers, strict=True)]
+    return identification.IdentifiedTrials("folder", BLOCK, tuple(rows), len(rows))
+
+
+@pytest.mark.parametrize(
+    ("middles", "common", "reach"),
+    [
+        ((0.9, 0.9 * np.exp(1e-6)), 0.0, 0.001 / np.sqrt(2.0)),  # by luck as good as the same
+        ((0.9, 0.9 * np.exp(1e-6)), 0.001 / 1.96, 0.001),  # all of what is not known is of the body
+        ((0.9,) * 400, 0.0004 / 1.96, np.hypot(np.sqrt(0.001**2 - 0.0004**2) / 20.0, 0.0004)),
+        ((0.89, 0.91), 0.0, 12.706 * np.log(0.91 / 0.89) / 2.0),  # they differ: Student's t
+    ],
+)
+def test_luck_narrows_no_interval(middles, common, reach):
+    """Of trials that agree it is what their own intervals allow, and what is common never falls away."""
+    mean = trials_of(*middles, common=common).mean
+    assert 0.5 * np.log(mean.high / mean.low) == pytest.approx(reach, rel=1e-3)
+
+
+def test_two_files_of_one_event_are_told(printed, answered, rocked, tmp_path):
+    """The same times in two files; those of another trial are not."""
+    for k in range(2):
+        times_file(tmp_path / f"{k}.csv", rocked[0], seed=k)
+    times_file(tmp_path / "again.csv", rocked[0])
+    again = "1.csv and again.csv say the same: perhaps they are of one event, which counts 2 times."
+    assert answered(tmp_path, *SIZE)["doubts"] == [again]
+    assert f"! {again}" in printed(tmp_path, *SIZE, "--out", tmp_path / "all.html")
+    assert again in (tmp_path / "all.html").read_text("utf-8")
+
+
 def test_processes_change_nothing(answered, rocked, tmp_path, monkeypatch):
     """Trials in two processes, as one after the other."""
     monkeypatch.setattr(identification, "_FEW", 1)
