@@ -188,10 +188,13 @@ def _result(
         refused.append(f"impacts take no energy: r is {r}")
     if scattered.value > _MOST_SCATTER:
         refused.append(f"what impacts take scatters by {100.0 * scattered.value:.0f} %")
+    first_sizes = "check the sizes of the body, then " if known.body is not None else ""
     if p_value < _UNLIKELY and not known.trend:
-        refused.append(f"what impacts take changes steadily with their number (p = {p_value:.1g}); try trend=True")
+        refused.append(
+            f"what impacts take changes steadily with their number (p = {p_value:.1g}); {first_sizes}try trend=True"
+        )
     elif p_value < 0.01:
-        doubts.append(f"What impacts take changes with their number, p = {p_value:.2g}: try trend=True.")
+        doubts.append(f"What impacts take changes with their number, p = {p_value:.2g}: {first_sizes}try trend=True.")
     if not found.converged:
         doubts.append("The maximum of the posterior was not found everywhere: intervals may be wrong.")
     frequency = math.sqrt(found.model.p[0] * found.model.p[1])

@@ -29,7 +29,7 @@ from rocking.identification.forced_model import (
     Forced,
     fitted,
 )
-from rocking.identification.measurement import RotationSeries
+from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.posterior import SCATTERS, Mixture, ln_scatter_density
 from rocking.identification.prior import Knowledge
 from rocking.identification.results import (
@@ -117,7 +117,10 @@ class ForcedPosterior:
 def identify_forced(measurement: Any, known: Knowledge, motion: Any, clock: Any) -> Identification | None:
     """Return what a series says, or None if fewer than three impacts are seen."""
     if not isinstance(measurement, RotationSeries):
-        raise InvalidValueError(f"under a motion the measurement must be a RotationSeries, got {measurement!r:.60}")
+        what = "times of impacts" if isinstance(measurement, ImpactTimes) else type(measurement).__name__
+        raise InvalidValueError(
+            f"under a motion the measurement must be a rotation or an angular velocity (RotationSeries), got {what}"
+        )
     if measurement.from_acceleration:
         raise InvalidValueError(
             "under a motion the measurement must be a rotation, an angular velocity or a displacement relative to the "

@@ -1,5 +1,6 @@
 """What may stand in the file of a campaign or of a response. Imported only when one is read: it loads pydantic."""
 
+import math
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -574,11 +575,18 @@ class IdentificationDocument(JobTable):
     motion: OneMotionTable | None = None
     identify: IdentifyTable = Field(default_factory=IdentifyTable)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _pairs(cls, stated: Any) -> Any:
+        known = stated.get("identify") if isinstance(stated, dict) else None
+        for name in {"tilt", "clock"} & set(known) if isinstance(known, dict) else ():
+            pair = given if isinstance(given := known[name], list) else [given, 0.0]
+            if len(pair) != 2 or not all(type(each) in {int, float} and abs(each) < math.inf for each in pair):
+                raise refused(f"identify.{name} is one number, or a value and its deviation, got {given!r:.60}")
+        return stated
+
     @model_validator(mode="after")
-    def _pairs(self) -> "IdentificationDocument":
-        for name in ("tilt", "clock"):
-            if isinstance(pair := getattr(self.identify, name), list) and len(pair) != 2:
-                raise refused(f"identify.{name} is one number, or a value and its deviation, got {pair}")
+    def _of_two_clocks(self) -> "IdentificationDocument":
         if self.identify.clock is not None and self.motion is None:
             raise refused("identify.clock goes with [motion]: it is of both clocks")
         return self
