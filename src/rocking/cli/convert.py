@@ -74,6 +74,7 @@ def convert(
     with hinted(None, record[0].removeprefix("x="), upright):
         scaled = arguments.table("motion", {"scale": scale}, keys={"scale"})
         table = checked(OneMotionTable, {**arguments.one_motion(record), **scaled})
+        exports.spare(*record)
         before = motion_of(table, CommandFiles(Path()), raw=True)
         after = motion_of(table, CommandFiles(Path()))
     if not isinstance(before, GroundMotion) or not isinstance(after, GroundMotion):

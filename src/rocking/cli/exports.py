@@ -47,6 +47,13 @@ class Exports:
         """The kinds that were asked for."""
         return {name for name, _ in self.files}
 
+    def spare(self, *words: str | Path) -> None:
+        """Refuse to write over what an answer is made from: files, as they were typed, such as x=FILE#COMPONENT."""
+        names = [name for word in map(str, words) for name in (word, word.partition("=")[2])]
+        read = {Path(part).resolve() for name in names for part in (name, name.rpartition("#")[0]) if part}
+        if over := next((path for _, path in self.files if path.resolve() in read), None):
+            raise InvalidValueError(f"--out {over} is what is read, and would be written over; take another name")
+
     def write(self, answer: Any) -> list[Path]:
         """Write every file; return them."""
         for name, path in self.files:

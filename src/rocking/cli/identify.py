@@ -82,12 +82,13 @@ def identify(
     as_json: options.AsJson = False,
 ) -> None:
     """Print the coefficient of restitution that a measurement of rocking says, with its interval."""
-    from rocking.cli.arguments import as_typed
+    from rocking.cli.arguments import as_options, as_typed
     from rocking.spec.identification import IdentificationProblem
 
     exports = Exports.of(out, EXPORTS)
     with as_typed():
         problem = IdentificationProblem.of(*_question(context, [each for each in (body, record) if each is not None]))
+        exports.spare(*(problem.trials if problem.path.is_dir() else [problem.path]), *(motion or ()))
         if problem.path.is_dir():
             table = next((path for name, path in exports.files if name == "csv"), None)
             with bar("trials", len(problem.trials), quiet=as_json) as progress:
@@ -98,7 +99,7 @@ def identify(
     answer = IdentifiedAnswer(found, Path(body or "").stem if record else "")
     if found.refused:
         written = exports.write(answer)
-        raise MeasurementError(f"{found.source}: {found.verdict}{f' See {written[0]}.' if written else ''}")
+        raise MeasurementError(f"{found.source}: {as_options(found.verdict)}{f' See {written[0]}.' if written else ''}")
     deliver(answer, exports, as_json=as_json)
 
 

@@ -102,8 +102,6 @@ class IdentificationProblem:
     ) -> "IdentifiedTrials":
         """Return what every trial of the folder says; keep: a table, gone on with, and written on the way."""
         trials = self.trials
-        if keep is not None and keep.exists() and keep.resolve() in {path.resolve() for path in trials}:
-            raise InvalidValueError(f"{keep}: is one of the trials, and would be written over; take another name")
         hashes = {path: self._question(path) for path in trials}
         known = {row["question"]: row for row in _rows_in(keep) if not row["refused"]} if keep is not None else {}
         rows = {path: known[each] | {"trial": path.name} for path, each in hashes.items() if each in known}

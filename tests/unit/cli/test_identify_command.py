@@ -206,8 +206,8 @@ def test_a_folder_is_resumed(run, folder, tmp_path, monkeypatch):
     done.clear()
     run(folder, "--out", table, "--set", "identify.tilt=0")
     assert len(done) == 6
-    refused = run(folder, "--out", folder / "times_0.csv")
-    assert "is one of the trials" in refused[2]
+    for what in (folder, folder / "times_0.csv"):
+        assert "is what is read, and would be written over" in run(what, *SIZE, "--out", folder / "times_0.csv")[2]
     (folder / "all.csv").write_bytes(whole)  # a table of trials is no trial
     assert "4 of 6 trials" in run(folder)[1]
 
@@ -263,6 +263,13 @@ def test_processes_change_nothing(answered, rocked, tmp_path, monkeypatch):
         (("one.wav", "two.wav"), "one body and one measurement"),
         (("TIMES", *SIZE, "--set", "identify.first=both"), "identify.first"),
         (("TIMES", *SIZE, "--set", "identify.tilt=[1]"), "identify.tilt is one number, or a value and its deviation"),
+        (
+            ("TIMES", *SIZE, "--set", "identify.clock=abc"),
+            "identify.clock is one number, or a value and its deviation, got 'abc'\n",
+        ),
+        (("TIMES", *SIZE, "--set", "identify.clock=[0,nan]"), "a value and its deviation, got [0, nan]\n"),
+        (("TIMES", *SIZE, "--motion", "sine:amplitude=3,period=0.6"), "(RotationSeries), got times of impacts\n"),
+        (("TIMES", "--width", 0.03, "--height", 0.12), "sizes of the body, then try --set identify.trend=true"),
         (("TIMES", *SIZE, "--set", "identify.tlt=0"), "did you mean tilt"),
         (("TIMES", *SIZE, "--set", "measurement.kind=smell"), "kind must be"),
         (("TIMES", "--width", 1), "a body is a file"),

@@ -93,6 +93,19 @@ def test_what_is_no_set_is_refused(refuses, folder):
     refuses(["fragility", *BLOCK, "--records", folder], "is now --motion FOLDER")
 
 
+@pytest.mark.parametrize("word", ["{}", "x={}", "{}#acceleration"])
+def test_convert_keeps_its_source(run, tmp_path, word):
+    """However it is named, also by another path, the record is there afterwards as it was before."""
+    own = tmp_path / "own.csv"
+    own.write_text("time [s],acceleration [m/s2]\n" + "\n".join(f"{0.01 * k:.2f},{k % 3}" for k in range(50)), "utf-8")
+    before = own.read_bytes()
+    for out in (own, tmp_path / ".." / tmp_path.name / "own.csv", f"columns={own}"):
+        code, _, err = run("convert", word.format(own), "--out", out)
+        assert code == 2
+        assert "is what is read, and would be written over" in err
+    assert own.read_bytes() == before
+
+
 def test_convert(run, folder, tmp_path):
     """A record goes through its steps into another format, drawn before and after, with what was done to it."""
     source, made = folder / "RSN0_A000.AT2", [tmp_path / name for name in ("new.at2", "new.png", "new.json")]
