@@ -2,6 +2,8 @@
 
 import csv
 import json
+import os
+import time
 
 import numpy as np
 import pytest
@@ -300,8 +302,6 @@ def test_what_is_no_rocking_gives_no_number(run, tmp_path):
 @pytest.mark.verifies("behaviour", "a minute of sound at 44.1 kHz", within="2 s of CPU", room="doors")
 def test_a_minute_takes_seconds(answered, phone, tmp_path):
     """From file to answer, with a rocking body in the middle."""
-    import time
-
     from rocking.identification.readers.wav import read_wav
 
     samples = read_wav(phone.read_bytes(), "phone").samples[:, 0]
@@ -311,3 +311,15 @@ def test_a_minute_takes_seconds(answered, phone, tmp_path):
     begun = time.process_time()
     answered(path, *SIZE)
     assert time.process_time() - begun < 2.0
+
+
+@pytest.mark.timed
+@pytest.mark.verifies("behaviour", "a folder of 200 trials of times", within="60 s, and 60 s of CPU", room="doors")
+def test_200_trials_take_a_minute(answered, rocked, tmp_path):
+    """From folder to table, in as many processes as there are processors; CPU is theirs too."""
+    for k in range(200):
+        times_file(tmp_path / f"{k:03d}.csv", rocked[0], seed=k)
+    begun, spent = time.perf_counter(), sum(os.times()[:4])
+    assert len(answered(tmp_path, *SIZE, "--out", tmp_path / "all.csv")["trials"]) == 200
+    assert time.perf_counter() - begun < 60.0
+    assert sum(os.times()[:4]) - spent < 60.0
