@@ -579,7 +579,8 @@ class IdentificationDocument(JobTable):
     @classmethod
     def _pairs(cls, stated: Any) -> Any:
         known = stated.get("identify") if isinstance(stated, dict) else None
-        for name in {"tilt", "clock"} & set(known) if isinstance(known, dict) else ():
+        known = known if isinstance(known, dict) else {}
+        for name in {"tilt", "clock"} & set(known):
             pair = given if isinstance(given := known[name], list) else [given, 0.0]
             if len(pair) != 2 or not all(type(each) in {int, float} and abs(each) < math.inf for each in pair):
                 raise refused(f"identify.{name} is one number, or a value and its deviation, got {given!r:.60}")
