@@ -45,11 +45,10 @@ def add(
 def list_(as_json: AsJson = False) -> None:
     """Print the published measurements and your own: who measured what, and how many."""
     from rocking.evidence import store
-    from rocking.evidence.measurement_file import read_measurements
     from rocking.evidence.measurements import GROUPS, datasets
 
     sets = [(name, datasets()[name]) for name in GROUPS]
-    deliver(ListAnswer([*sets, *((str(path), read_measurements(path)) for path in store.own_files())]), as_json=as_json)
+    deliver(ListAnswer([*sets, *((str(path), data) for path, data in store.own_sets())]), as_json=as_json)
 
 
 @evidence.command()
@@ -100,7 +99,7 @@ class ListAnswer:
     def show(self, page: Page) -> None:
         rows = [
             (
-                each["name"], str(each["measurements"]), "{:g} - {:g}".format(*each["slenderness"]),
+                Path(each["name"]).name, str(each["measurements"]), "{:g} - {:g}".format(*each["slenderness"]),
                 "{:.3f} - {:.3f}".format(*each["coefficient"]), ", ".join(each["laboratories"]),
             )
             for each in self.facts()
@@ -108,6 +107,7 @@ class ListAnswer:
         page.table(("set", "n", "h/b", "r", "laboratories"), rows, ("set", "laboratories"))
         page.line()
         page.facts(dict.fromkeys(("source", data.source) for _, data in self.sets))
+        page.facts(dict.fromkeys(("own files", str(Path(name).parent)) for name, _ in self.sets if Path(name).suffix))
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ import numpy as np
 from pydantic import Field, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
+from rocking import plausibility
 from rocking.bodies.block import Block
 from rocking.bodies.formats.schema import Positive, StrictTable
 from rocking.bodies.formats.words import sentence
@@ -23,6 +24,11 @@ from rocking.evidence.measurements import DataSet, interface_of, joined
 
 _LARGEST, _MOST = 16 * 2**20, 100_000  # bytes of a file, measurements in it
 _NORMAL = 1.959963984540054
+_RATIOS, _USUAL_RATIOS = (0.5, 200.0), (1.0, 30.0)
+"""h/b that is refused outside, and doubted: below 0.71 a block that keeps to Housner's model does not rock on [-]."""
+
+_DEVIATIONS, _USUAL_DEVIATIONS = (1e-6, 0.29), (1e-4, 0.1)
+"""Standard deviations of r likewise: all of 0 to 1, each as likely, has 0.29; times are hardly known to 1e-4 [-]."""
 
 Word = Annotated[str, Field(min_length=1, max_length=300)]
 Coefficient = Annotated[float, Field(gt=0.0, le=2.0)]
@@ -113,7 +119,35 @@ class Measurement(StrictTable):
             raise _contradiction(f"r must lie in an interval that is open, got {low:g} <= {r:g} <= {high:g}")
         if r > 1.0:
             raise _contradiction(f"r must be <= 1: a rectangle that gains energy was not measured, got {r:g}")
+        if not _RATIOS[0] <= self.ratio <= _RATIOS[1]:
+            raise _contradiction(
+                f"h/b must be in {_RATIOS[0]:g} to {_RATIOS[1]:g}, got {self.ratio:g}; is it b/h, or is one length in "
+                "another unit?"
+            )
+        if not _DEVIATIONS[0] <= self.deviation <= _DEVIATIONS[1]:
+            raise _contradiction(
+                f"r must be known to a standard deviation of {_DEVIATIONS[0]:g} to {_DEVIATIONS[1]:g}, got "
+                f"{self.deviation:.3g}; is it in percent, or that of something else?"
+            )
         return self
+
+    @property
+    def deviation(self) -> float:
+        """Standard deviation of r [-]."""
+        low, _, high = self.interval
+        return (high - low) / math.sqrt(12.0)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What was hardly meant."""
+        found = []
+        if not _USUAL_RATIOS[0] <= self.ratio <= _USUAL_RATIOS[1]:
+            found.append(f"h/b = {self.ratio:.4g} is outside {_USUAL_RATIOS[0]:g} to {_USUAL_RATIOS[1]:g}; is it b/h?")
+        if not _USUAL_DEVIATIONS[0] <= self.deviation <= _USUAL_DEVIATIONS[1]:
+            low, high = _USUAL_DEVIATIONS
+            found.append(f"a standard deviation of r of {self.deviation:.3g} is outside {low:g} to {high:g}")
+        size = () if self.height is None else plausibility.of_body(0.5 * self.height, self.ratio, ())
+        return (*found, *size, *plausibility.of_coefficient(self.interval[1]))
 
     @property
     def ratio(self) -> float:
@@ -174,6 +208,7 @@ def rows_in(path: Path) -> list[Measurement]:
     if path.suffix.lower() not in kinds:
         raise MeasurementError(f"{path}: measurements stand in .toml or .csv, got {path.suffix or 'no ending'!r}")
     found: list[Measurement] = []
+    doubts, places = [], {}
     for place, keys in kinds[path.suffix.lower()](path, text):
         if len(found) == _MOST:
             raise MeasurementError(f"{path}: has more than {_MOST} measurements")
@@ -181,8 +216,14 @@ def rows_in(path: Path) -> list[Measurement]:
             found.append(Measurement.model_validate(keys))
         except ValidationError as error:
             raise MeasurementError(f"{path}, {place}: {sentence(error, None)}") from error
+        doubts += [f"{path.name}, {place}: {doubt}" for doubt in found[-1].doubts]
+        row = found[-1].model_dump_json()
+        if row in places:
+            doubts.append(f"{path.name}, {place}: it is the same as {places[row]}, and counts twice")
+        places.setdefault(row, place)
     if not found:
         raise MeasurementError(f"{path}: has no measurement")
+    plausibility.warn(doubts[:3] + ([f"{path.name}: {len(doubts) - 3} more doubts like these"] if doubts[3:] else []))
     return found
 
 
@@ -203,6 +244,9 @@ def _tables(path: Path, text: str) -> Iterable[tuple[str, dict[str, Any]]]:
 def _lines(path: Path, text: str) -> Iterable[tuple[str, dict[str, Any]]]:
     reader = csv.DictReader(io.StringIO(text), restkey="", strict=True)
     try:
+        names = reader.fieldnames or ()
+        if twice := [name for name in names if names.count(name) > 1]:
+            raise MeasurementError(f"{path}, line 1: names a column twice, {twice[0]!r:.60}")
         for row in reader:
             place = f"line {reader.line_num}"
             if "" in row or None in row.values():

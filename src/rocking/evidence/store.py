@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from rocking.errors import InvalidValueError, RockingError
+from rocking.errors import InvalidValueError, MeasurementError, RockingError
 from rocking.evidence.measurements import GROUPS, DataSet, all_measurements, datasets, joined
 
 PUBLISHED, OWN = "published", "own"
@@ -32,6 +32,35 @@ def own_files() -> list[Path]:
     return sorted(path for path in store().glob("*") if path.suffix in {".toml", ".csv"})
 
 
+def own_sets() -> list[tuple[Path, DataSet]]:
+    """Return the files of the store with what they hold; one that cannot be used is named, and no row counts twice."""
+    from rocking.evidence.measurement_file import read_measurements
+
+    found = []
+    for path in own_files():
+        try:
+            found.append((path, read_measurements(path)))
+        except MeasurementError as error:
+            raise MeasurementError(f"{error}. It is part of your own evidence; delete the file to go on") from error
+    _once([(str(path), data) for path, data in found])
+    return found
+
+
+def _once(sets: Sequence[tuple[str, DataSet]]) -> None:
+    """Refuse measurements that are in two sets; an interface may be written in several ways, so it tells none apart."""
+    seen: dict[tuple[object, ...], str] = {}
+    for name, data in sets:
+        ratios, values = ([f"{value:.9g}" for value in each] for each in (data.slenderness, data.coefficient))
+        rows = set(zip(data.group, data.labels, ratios, values, strict=True))
+        if both := rows & seen.keys():
+            row = min(both)
+            raise InvalidValueError(
+                f"the measurement {', '.join(map(str, row))} (group, block, h/b, r) is in {seen[row]} and in {name}: "
+                "it would count twice; leave out or delete one of them"
+            )
+        seen |= dict.fromkeys(rows, name)
+
+
 def add(path: Path) -> tuple[Path, DataSet, bool]:
     """Check a file of measurements and copy it into the store; return the copy, its data, and whether it is new."""
     from rocking.evidence.measurement_file import read_measurements
@@ -41,6 +70,7 @@ def add(path: Path) -> tuple[Path, DataSet, bool]:
     target = store() / f"{path.stem}-{hashlib.sha256(content).hexdigest()[:8]}{path.suffix.lower()}"
     if target.exists():
         return target, data, False
+    _once([*((str(kept), each) for kept, each in own_sets()), (str(path), data)])
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         partial = target.with_suffix(".part")
@@ -63,9 +93,9 @@ def selected(words: Sequence[str] = ()) -> DataSet:
         if word == PUBLISHED:
             sets.append(all_measurements())
         elif word == OWN:
-            if not own_files():
+            if not (kept := [each for _, each in own_sets()]):
                 raise InvalidValueError(f"{store()} has no evidence yet: rocking evidence add FILE")
-            sets.append(read_measurements(*own_files()))
+            sets.append(kept[0] if len(kept) == 1 else joined(kept, OWN, "measurements of files"))
         elif word in known:
             sets.append(known[word])
         elif Path(word).suffix:
@@ -75,10 +105,5 @@ def selected(words: Sequence[str] = ()) -> DataSet:
             raise InvalidValueError(
                 f"no measurements named {word!r:.60}; there are {allowed}, and files .toml and .csv"
             )
-    seen: set[tuple[object, ...]] = set()
-    for data in sets:
-        rows = set(zip(data.group, data.labels, data.slenderness.tolist(), data.coefficient.tolist(), strict=True))
-        if both := seen & rows:
-            raise InvalidValueError(f"{min(both)!r} is in two of the selected sets: it would count twice")
-        seen |= rows
+    _once([(each.name, each) for each in sets])
     return sets[0] if len(sets) == 1 else joined(sets, "+".join(each.name for each in sets), "a selection")

@@ -27,7 +27,8 @@ def test_add_list_calibrate(printed, answered, own):
     assert answered("evidence", "add", own)["new"] is False
     assert "are in your evidence already" in printed("evidence", "add", own)
     assert [each["measurements"] for each in answered("evidence", "list")] == [12, 9, 9, 9, 2]
-    assert "Ceh" in printed("evidence", "list")
+    assert "Ceh" in (page := printed("evidence", "list"))
+    assert f"\n{store.own_files()[0].name} " in page  # by its name; the folder is said once
     found = answered("evidence", "calibrate")
     assert (found["measurements"], len(found["left_out_groups"])) == (41, 10)
     assert sum(found["shares"].values()) == pytest.approx(1.0)

@@ -1,12 +1,14 @@
 """Files of measurements: the published rows through them to all digits, what is refused, and a user's own store."""
 
 import dataclasses
+import re
+import warnings
 
 import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.errors import InvalidValueError, MeasurementError, RockingError
+from rocking.errors import InvalidValueError, MeasurementError, PlausibilityWarning, RockingError
 from rocking.evidence import (
     Measurement,
     all_measurements,
@@ -122,6 +124,12 @@ WRONG = {
     "nan": ({"r": float("nan")}, "finite"),
     "doi": ({"doi": "https://doi.org/10.1/x"}, "doi"),
     "text": ({"mass": "heavy"}, "must be a number"),
+    "far too slender": ({"slenderness_ratio": 1e300}, "h/b must be in 0.5 to 200, got 1e+300"),
+    "width as height": ({"slenderness_ratio": 0.001}, "h/b must be in 0.5 to 200, got 0.001"),
+    "sizes of two units": ({"slenderness_ratio": None, "width": 0.1, "height": 400.0}, "got 4000"),
+    "unknown r": ({"uncertainty": 5.0}, "standard deviation of 1e-06 to 0.29, got 5"),
+    "too well known": ({"uncertainty": 1e-12}, "standard deviation of 1e-06 to 0.29, got 1e-12"),
+    "interval of nothing": ({"uncertainty": None, "low": 0.0, "high": 1.5}, "to 0.29, got 0.433"),
 }  # fmt: skip
 
 
@@ -152,9 +160,38 @@ FILES = {
     "empty.csv": ("source,licence\n", "no measurement"),
     "short.csv": ("source,licence\na\n", "as many fields"),
     "long.csv": ("source,licence\na,b,c\n", "as many fields"),
+    "twice.csv": ("source,r,r\na,.9,.8\n", "names a column twice, 'r'"),
     "quotes.csv": ('source,licence\n"a"b,c\n', "is no CSV"),
     "rows.txt": ("", ".toml or .csv"),
 }
+
+
+DOUBTS = {
+    "a tower": ({"slenderness_ratio": None, "width": 100.0, "height": 400.0}, "200 m above the ground"),
+    "a grain": ({"slenderness_ratio": None, "width": 1e-3, "height": 4e-3}, "0.002 m above the ground"),
+    "b/h": ({"slenderness_ratio": 0.6}, "h/b = 0.6 is outside 1 to 30"),
+    "hardly known": ({"uncertainty": 0.2}, "r of 0.2 is outside"),
+    "known to the last digit": ({"uncertainty": 1e-5}, "r of 1e-05 is outside"),
+    "a loss": ({"r": 0.1}, "0.1 is less than 0.25"),
+}
+
+
+@pytest.mark.verifies("damage")
+@pytest.mark.parametrize("how", DOUBTS)
+def test_rows_that_are_doubted(tmp_path, how):
+    """What can hardly be meant is read with a word that names file and row; a row of a laboratory has none."""
+    change, words = DOUBTS[how]
+    path = write_measurements([Measurement(**ROW)], tmp_path / "rows.csv")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        read_measurements(path)
+    write_measurements([Measurement(**{**ROW, **change})], path)
+    with pytest.warns(PlausibilityWarning, match=r"check the input: rows\.csv, line 2: .*") as told:
+        assert len(read_measurements(path)) == 1
+    assert words in str(told[0].message)
+    write_measurements([Measurement(**ROW)] * 2, path)
+    with pytest.warns(PlausibilityWarning, match="line 3: it is the same as line 2"):
+        read_measurements(path)
 
 
 @pytest.mark.verifies("damage")
@@ -218,6 +255,26 @@ def test_the_store(own):
         store.selected(["T"])
     with pytest.raises(InvalidValueError, match="at least 5 blocks, got 2"):
         league(measurements=store.selected(["own"]))
+
+
+@pytest.mark.verifies("damage")
+def test_what_spoils_the_store_is_named(own):
+    """A row that is there in another file is no news, however the file is written; a file that spoils all is named."""
+    target = store.add(own)[0]
+    again = own.with_name("again.toml")
+    again.write_text(TOML.replace("width = 0.1\nheight = 0.35", "slenderness_ratio = 3.5"), "utf-8")
+    with pytest.raises(InvalidValueError, match=f"A, 3.5, 0.91 .*is in {re.escape(str(target))} and in .*count twice"):
+        store.add(again)
+    assert store.own_files() == [target]
+    (twin := target.with_name("twin.toml")).write_bytes(again.read_bytes())  # from before this was looked at
+    with pytest.raises(InvalidValueError, match=f"{re.escape(str(twin))}: it would count twice; .*delete"):
+        store.selected()
+    twin.write_text(TOML.replace("ratio = 5", "ratio = 1e300"), "utf-8")
+    for word in ((), ("own",)):
+        with pytest.raises(MeasurementError, match=rf"{re.escape(str(twin))}, measurement 2: h/b .*delete the file"):
+            store.selected(word)
+    twin.unlink()
+    assert len(store.selected()) == 41
 
 
 def test_an_empty_store(monkeypatch, tmp_path):
