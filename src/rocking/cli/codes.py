@@ -203,7 +203,7 @@ class CodesAnswer:
 def _row(found: "CodeComparison", name: str) -> tuple[str, ...]:
     called, bias = found.called_safe(name), found.bias(name)
     if not called.total:
-        return name, "outside", *["-"] * 4
+        return name, "outside its domain", *["-"] * 4
     share = "-" if called.interval is None else f"{_share(called)} ({_between(called.interval, 100.0)})"
     median = f"{bias.median:.3g} ({_between(bias.interval)})" if bias.count else "-"
     said = ("yes" if called.safe else "no") if called.total == 1 else percent(round(called.safe / called.total, 3))

@@ -44,6 +44,7 @@ def test_one_body_under_one_motion(printed, answered):
     assert "the worse one counts" in page
     rows = {line.split()[0]: line.split()[1] for line in page.splitlines() if line.split()[:1]}
     assert (rows["static"], rows["italian-linear"]) == ("no", "yes")
+    assert "asce-43        outside its domain " in page
     found = answered(*body, "sine:amplitude=3.5,period=0.5")
     assert found["worse_side_counts"] == [True]
     ratio = found["methods"]["static"]["called_safe"][0][0]["ratio"]

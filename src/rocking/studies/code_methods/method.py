@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rocking.bodies import Body
-from rocking.conventions import FEET, FloatArray, g
+from rocking.conventions import FEET, BoolArray, FloatArray, g
 from rocking.errors import InvalidValueError
 from rocking.motions.components import leading
 from rocking.motions.intensity import MEASURES, RockingScale, sampled
@@ -50,6 +50,23 @@ class Stances:
         return np.arctan(self.slope)
 
     @property
+    def inertia(self) -> FloatArray:
+        """Moment of inertia about the foot over m h^2 [-]."""
+        h, p = self.height, self.frequency_parameter
+        return np.asarray(self.gravity * np.hypot(self.half_width, h) / (p * h) ** 2)
+
+    @property
+    def symmetric(self) -> BoolArray:
+        """Whether both feet of each body are equally far from its centre."""
+        right, left = self.half_width.T
+        return np.isclose(right, left, rtol=1e-9, atol=0.0)
+
+    @property
+    def rectangle(self) -> BoolArray:
+        """Whether each body rocks as a rectangle does: symmetric, and about a foot 4/3 m R^2."""
+        return self.symmetric & np.isclose(self.inertia, 4.0 / 3.0 * (1.0 + self.slope**2), rtol=1e-6).all(axis=1)
+
+    @property
     def uplift(self) -> FloatArray:
         """Horizontal acceleration that lifts a body about the foot [m/s2]."""
         return self.gravity * self.slope
@@ -78,6 +95,12 @@ class Shaking:
     def velocity(self) -> FloatArray:
         """PGV, of shape (motions, 1, 1) [m/s]."""
         return self._peaks("pgv")
+
+    @cached_property
+    def vertical(self) -> BoolArray:
+        """Whether each motion has a vertical part, of shape (motions, 1)."""
+        parts = [getattr(each, "vertical", None) for each in self.motions]
+        return np.array([[part is not None and bool(np.any(part))] for part in parts])
 
     def spectra(self, periods: FloatArray, damping: float) -> FloatArray:
         """Return pseudo-spectral accelerations of every motion [m/s2] at periods [s] and a damping ratio [-]."""
@@ -113,6 +136,21 @@ class CodeMethod(ABC):
             Of a shape that fits (motions, bodies, 2) [-].
         """
 
+    def holds(self, stances: Stances, shaking: Shaking) -> BoolArray:
+        """Return whether a body under a motion is in the domain.
+
+        Parameters
+        ----------
+        stances, shaking
+            As for `capacity`.
+
+        Returns
+        -------
+        ndarray
+            Of a shape that fits (motions, bodies); throughout if a method does not say otherwise.
+        """
+        return np.ones((1, 1), dtype=np.bool_)
+
     def capacity(self, stances: Stances, shaking: Shaking) -> FloatArray:
         """Return the factor on every motion up to which a body is called safe.
 
@@ -129,4 +167,5 @@ class CodeMethod(ABC):
             Of the worse side; NaN outside the domain [-].
         """
         shape = (len(shaking.motions), *stances.slope.shape)
-        return np.asarray(np.broadcast_to(self.of_sides(stances, shaking), shape).min(axis=2))
+        worse = np.broadcast_to(self.of_sides(stances, shaking), shape).min(axis=2)
+        return np.where(self.holds(stances, shaking), worse, np.nan)

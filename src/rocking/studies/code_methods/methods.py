@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from rocking.conventions import FloatArray
+from rocking.conventions import BoolArray, FloatArray
 from rocking.studies.code_methods.method import CodeMethod, Shaking, Stances
 
 
@@ -61,11 +61,15 @@ class AsceRocking(CodeMethod):
     )
     example = "closed form: C_R of a rectangle is Housner's coefficient"
 
+    def holds(self, stances: Stances, shaking: Shaking) -> BoolArray:
+        """Symmetric, and without vertical motion."""
+        return np.asarray(stances.symmetric & ~shaking.vertical)
+
     @staticmethod
     def restitution(stances: Stances) -> FloatArray:
         """Return C_R of every side [-]."""
         a = stances.slope
-        return 1.0 - 2.0 * a**2 / _inertia(stances)  # Eq. 296
+        return 1.0 - 2.0 * a**2 / stances.inertia  # Eq. 296
 
     def damping(self, stances: Stances) -> FloatArray:
         """Return beta_e of every side; NaN where C_R is not above zero [-]."""
@@ -79,7 +83,7 @@ class AsceRocking(CodeMethod):
         a, h = stances.slope, stances.height
         f1 = np.cos(rotation) + a * np.sin(rotation) - 1.0
         work = 2.0 * stances.gravity * f1
-        period = 2.0 * math.pi * rotation * np.sqrt(_inertia(stances) * h / work)  # Eq. 298
+        period = 2.0 * math.pi * rotation * np.sqrt(stances.inertia * h / work)  # Eq. 298
         return period, work / rotation  # Eq. 299
 
     def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
@@ -92,12 +96,6 @@ class AsceRocking(CodeMethod):
             periods, places = np.unique(period[some], return_inverse=True)
             found[:, some] = capacity[some] / shaking.spectra(periods, float(value))[:, places.ravel()]
         return found
-
-
-def _inertia(stances: Stances) -> FloatArray:
-    """Return C_I = I_O / (m h^2), which is 4/3 (1 + a^2) for a rectangle [-]."""
-    h, p = stances.height, stances.frequency_parameter
-    return stances.gravity * np.hypot(stances.half_width, h) / (p * h) ** 2
 
 
 class IshiyamaCriteria(CodeMethod):
@@ -139,6 +137,10 @@ class KanekoHayashi(CodeMethod):
         "be confirmed; f_b is taken where both branches meet, 15.61 for its 15.6"
     )
 
+    def holds(self, stances: Stances, shaking: Shaking) -> BoolArray:
+        """Rectangles."""
+        return stances.rectangle
+
     @staticmethod
     def acceleration(stances: Stances, frequency: FloatArray) -> FloatArray:
         """Return A_R50 of every side; frequency: of the floor's motion [Hz]. In m and s its 10 is 1 [m/s2]."""
@@ -160,9 +162,18 @@ class HousnerPulse(CodeMethod):
     name = "housner-pulse"
     title = "Housner's rectangular pulse"
     reference = "Housner 1963, Bull. Seismol. Soc. Am. 53(2) 403-417, constant acceleration of duration t1"
-    domain = "slender bodies (alpha up to about 20 degrees), linearised; the duration PGV / PGA is ours, not Housner's"
+    domain = (
+        "slender bodies (alpha up to 20 degrees on the weaker side), linearised; the duration PGV / PGA is ours, not "
+        "Housner's"
+    )
     reading = "certain for the pulse: it follows from the linear equation of motion"
     example = "our own engine under the pulse (tests), in the limit of slender bodies"
+
+    widest = math.radians(20.0)  # alpha [rad]
+
+    def holds(self, stances: Stances, shaking: Shaking) -> BoolArray:
+        """Slender on the weaker side."""
+        return np.asarray(stances.angle.min(axis=1) <= self.widest)
 
     @staticmethod
     def acceleration(stances: Stances, duration: FloatArray) -> FloatArray:
