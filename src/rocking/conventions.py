@@ -22,6 +22,9 @@ g: Final = 9.80665
 FEET: Final[tuple[Foot, Foot]] = ("left", "right")
 """The two feet of a plane body, in the order of arrays by foot."""
 
+NORMAL_95: Final = 1.959963984540054
+"""Standard deviations of a normal distribution within which 95 % of it lie, on either side [-]."""
+
 LENGTH_UNITS: Final[dict[str, float]] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
 """Length of one unit in metres; units are always named, never guessed."""
 

@@ -96,11 +96,14 @@ def is_found(pattern: str) -> bool:
         return False
 
 
+_SHORT = re.compile(r"[+-]?(\.\d+|\d+\.)([eE][+-]?\d+)?")  # .01 and 2., which TOML takes for no number
+
+
 def parsed_sets(texts: Sequence[str] | None, known: Iterable[str]) -> Tables:
     """Return the tables of ``--set table.key=value``.
 
-    >>> parsed_sets(["settings.gravity=9.81", "body.up=y"], ["settings", "body"])
-    {'settings': {'gravity': 9.81}, 'body': {'up': 'y'}}
+    >>> parsed_sets(["settings.gravity=9.81", "settings.friction=.5", "body.up=y"], ["settings", "body"])
+    {'settings': {'gravity': 9.81, 'friction': 0.5}, 'body': {'up': 'y'}}
     """
     tables: Tables = {}
     for text in texts or ():
@@ -116,7 +119,8 @@ def parsed_sets(texts: Sequence[str] | None, known: Iterable[str]) -> Tables:
         try:
             tables[table][key] = tomllib.loads(f"value = {value.strip()}")["value"]
         except (tomllib.TOMLDecodeError, ValueError, RecursionError):
-            tables[table][key] = value.strip()  # what TOML does not know is text
+            word = value.strip()  # what TOML does not know is text, but for numbers as people write them
+            tables[table][key] = float(word) if _SHORT.fullmatch(word) else word
     return tables
 
 

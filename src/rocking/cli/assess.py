@@ -108,7 +108,7 @@ class AssessmentAnswer:
         page.line()
         head = ("code method", "calls safe", "these overturn", "up to factor")
         page.table(head, [
-            (name, f"{safe} of {of}" if of else "outside its domain", str(fell) if of else "-", f"{least:.3g}" if of else "-")
+            (name, *((f"{safe} of {of}", str(fell), f"{least:.3g}") if of else ("outside its domain", "-", "-")))
             for name, of, safe, fell, least in found.code_rows
         ], head[:1])  # fmt: skip
         for title, sentences in (("What governs", found.governs), ("What to do", found.to_do)):

@@ -192,9 +192,10 @@ class CodesAnswer:
                 ], ("body",))  # fmt: skip
         page.line()
         page.line(
-            "safe: called so; D/C: median of demand over capacity; capacity/truth: median of the intensity up "
-            "to which a method calls a body safe over the least that overturns it, above 1 where it is unsafe; "
-            "scatter: of its logarithm; in brackets 95 %. Sources, domains, and how sure the readings are: --json."
+            "safe: called so, or outside its domain; D/C: median of demand over capacity; capacity/truth: median of "
+            "the intensity up to which a method calls a body safe over the least that overturns it, above 1 where it "
+            "is unsafe; scatter: of its logarithm; in brackets 95 %. Sources, domains, and how sure the readings are: "
+            "--json."
         )
         if found.asymmetric.any():
             page.line("Where sides differ, the worse one counts, in methods and in histories.")
@@ -203,9 +204,12 @@ class CodesAnswer:
 def _row(found: "CodeComparison", name: str) -> tuple[str, ...]:
     called, bias = found.called_safe(name), found.bias(name)
     if not called.total:
-        return name, "outside its domain", *["-"] * 4
+        return name, "outside", *["-"] * 4
     share = "-" if called.interval is None else f"{_share(called)} ({_between(called.interval, 100.0)})"
-    median = f"{bias.median:.3g} ({_between(bias.interval)})" if bias.count else "-"
+    fell = bias.count - bias.censored
+    median = f"{bias.median:.3g} ({_between(bias.interval)})" if bias.median > 0.0 else "few overturned"
+    if not fell:
+        median = "none overturned" if bias.count else "-"
     said = ("yes" if called.safe else "no") if called.total == 1 else percent(round(called.safe / called.total, 3))
     return (
         name,
@@ -213,7 +217,7 @@ def _row(found: "CodeComparison", name: str) -> tuple[str, ...]:
         f"{called.ratio:.3g}",
         share,
         median,
-        "-" if bias.scatter != bias.scatter else f"{bias.scatter:.2g}",
+        f"{bias.scatter:.2g}" if fell and bias.scatter == bias.scatter else "-",
     )
 
 

@@ -10,7 +10,7 @@ import typer
 from rocking.cli import options
 from rocking.cli.exports import Export, Exports, draw
 from rocking.cli.page import Page, bar, deliver
-from rocking.conventions import FEET
+from rocking.conventions import FEET, NORMAL_95
 from rocking.errors import InvalidValueError, MeasurementError
 
 if TYPE_CHECKING:
@@ -185,7 +185,7 @@ class IdentifiedAnswer:
         for each in found.designs[:_TELLING]:
             page.line(
                 f"Let go from {each.peak:g} of its slenderness angle, {each.impacts} impacts timed to "
-                f"{1e3 * each.noise:.2g} ms: r to +- {1.96 * each.deviation:.2g}."
+                f"{1e3 * each.noise:.2g} ms: r to +- {NORMAL_95 * each.deviation:.2g}."
             )
         page.warn(map(as_options, found.doubts))
 

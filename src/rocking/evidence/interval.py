@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from rocking.bodies import Body
-from rocking.conventions import Foot
+from rocking.conventions import NORMAL_95, Foot
 from rocking.evidence.calibration import KEPT, PredictedCoefficient, fingerprint, geometry_of
 from rocking.evidence.hierarchy import calibrate_hierarchy
 from rocking.evidence.likelihood import fit_scatter, scatter
@@ -49,7 +49,7 @@ def interval_for(
     else:
         floor, slope = _misfit(model.of_slenderness(data.slenderness).tobytes(), data)
     sd = scatter(r, floor, slope)
-    reach = 1.959963984540054 * sd
+    reach = NORMAL_95 * sd
     top = np.maximum(bound, r)
     return PredictedCoefficient(r, np.clip(r - reach, 0.0, None), np.minimum(r + reach, top.reshape(())), sd)
 

@@ -19,11 +19,11 @@ from rocking import plausibility
 from rocking.bodies.block import Block
 from rocking.bodies.formats.schema import Positive, StrictTable
 from rocking.bodies.formats.words import sentence
+from rocking.conventions import NORMAL_95
 from rocking.errors import InvalidValueError, MeasurementError
 from rocking.evidence.measurements import DataSet, interface_of, joined
 
 _LARGEST, _MOST = 16 * 2**20, 100_000  # bytes of a file, measurements in it
-_NORMAL = 1.959963984540054
 _RATIOS, _USUAL_RATIOS = (0.5, 200.0), (1.0, 30.0)
 """h/b that is refused outside, and doubted: below 0.71 a block that keeps to Housner's model does not rock on [-]."""
 
@@ -208,7 +208,8 @@ def rows_in(path: Path) -> list[Measurement]:
     if path.suffix.lower() not in kinds:
         raise MeasurementError(f"{path}: measurements stand in .toml or .csv, got {path.suffix or 'no ending'!r}")
     found: list[Measurement] = []
-    doubts, places = [], {}
+    doubts: list[str] = []
+    places: dict[str, str] = {}
     for place, keys in kinds[path.suffix.lower()](path, text):
         if len(found) == _MOST:
             raise MeasurementError(f"{path}: has more than {_MOST} measurements")
@@ -308,7 +309,7 @@ def measurement_of(found: Any, body: Block, **known: Any) -> Measurement:
         raise InvalidValueError(f"what was refused is no measurement: {found.refused[0]}")
     if not isinstance(body, Block):
         raise InvalidValueError(f"body must be a Block: evidence is of rectangles, got {body!r:.60}")
-    spread = (found.mean.high - found.mean.low) / (2.0 * _NORMAL)
+    spread = (found.mean.high - found.mean.low) / (2.0 * NORMAL_95)
     keys = {
         "width": body.width, "height": body.height, "mass": body.mass, "r": found.mean.value, "uncertainty": spread,
     }  # fmt: skip

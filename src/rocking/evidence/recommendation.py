@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking.conventions import FEET, Foot, percent
+from rocking.conventions import FEET, NORMAL_95, Foot, percent
 from rocking.evidence import recommendation_words as words
 from rocking.evidence.judgement import Judgement, Standing, TrackRecord
 from rocking.outcome import Outcome
@@ -87,7 +87,7 @@ class ModelForBody:
         """
         # the shorter side may have been cut at 0 or at the energy bound
         r = self.coefficients[onto]
-        return max(self.high[onto] - r, r - self.low[onto]) / 1.959963984540054
+        return max(self.high[onto] - r, r - self.low[onto]) / NORMAL_95
 
     @property
     def impacts_to_half(self) -> float:

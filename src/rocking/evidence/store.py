@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rocking.errors import InvalidValueError, MeasurementError, RockingError
 from rocking.evidence.measurements import GROUPS, DataSet, all_measurements, datasets, joined
+from rocking.tables.table import written_whole
 
 PUBLISHED, OWN = "published", "own"
 """Words of a selection: the 39 coefficients of the package, and all files of the store."""
@@ -29,7 +30,7 @@ def store() -> Path:
 
 def own_files() -> list[Path]:
     """Return the files of the store, in the order of their names."""
-    return sorted(path for path in store().glob("*") if path.suffix in {".toml", ".csv"})
+    return sorted(path for path in store().glob("[!.]*") if path.suffix in {".toml", ".csv"})
 
 
 def own_sets() -> list[tuple[Path, DataSet]]:
@@ -73,12 +74,8 @@ def add(path: Path) -> tuple[Path, DataSet, bool]:
     _once([*((str(kept), each) for kept, each in own_sets()), (str(path), data)])
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        partial = target.with_suffix(".part")
-        with partial.open("wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        partial.replace(target)
+        with written_whole(target) as unfinished:
+            unfinished.write_bytes(content)
     except OSError as error:
         raise RockingError(f"cannot write to {target.parent}: {error.strerror}") from error
     return target, data, True

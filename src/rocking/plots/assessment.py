@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.assessment import BodyAssessment
-from rocking.plots.labels import plain
+from rocking.plots.labels import plain, plain_log
 from rocking.plots.style import COLORS, DASHED, DOUBLE, GREY, PALE, in_journal_style, legend_below, new_figure, stroke
 
 if TYPE_CHECKING:
@@ -67,7 +67,6 @@ def _margins(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
         if values.size:
             axes.plot([values.min(), values.max()], [row, row], color=COLORS[0], linewidth=1.0)
             axes.plot(values.min(), row, "o", color=COLORS[0], markersize=3.0)
-    axes.set_xscale("log")
     axes.set_ylim(order.size - 0.5, -0.5)
     axes.set_xlabel("factor on the motion [-]")
     if order.size <= _MOST_NAMES:
@@ -76,7 +75,7 @@ def _margins(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
     else:
         axes.set_yticks([])
         axes.set_ylabel(f"{found.several}, the most dangerous first")
-    _plain_ticks(axes)
+    plain_log(axes, "x")
 
 
 def _methods(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
@@ -88,19 +87,9 @@ def _methods(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
         axes.plot(ratio, np.full(ratio.size, row), "o", color=COLORS[5], markersize=3.0)
         ends += ratio.tolist()
     axes.axvspan(1.0, 1.5 * max(ends), color=PALE, linewidth=0.0, zorder=0)
-    axes.set_xscale("log")
     axes.set_xlim(min(ends) / 1.5, 1.5 * max(ends))
     axes.set_yticks(range(len(found.capacities)), list(found.capacities))
     axes.set_ylim(len(found.capacities) - 0.5, -0.5)
     axes.set_xlabel("allowed over overturning factor [-]")
     axes.set_title("shaded: unsafe", loc="right", fontsize=7.0)
-    _plain_ticks(axes)
-
-
-def _plain_ticks(axes: "Axes") -> None:
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-    low, high = axes.get_xlim()
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 100.0 * low else (1.0,)))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    plain_log(axes, "x")

@@ -192,7 +192,10 @@ def _led(words: str) -> Paragraph:
 
 def _codes(found: BodyAssessment) -> ReportTable:
     rows = [
-        (CODE_METHODS[name].title, *((f"{safe} of {of}", str(fell), f"{least:.3g}") if of else ("outside its domain", "-", "-")))
+        (
+            CODE_METHODS[name].title,
+            *((f"{safe} of {of}", str(fell), f"{least:.3g}") if of else ("outside its domain", "-", "-")),
+        )
         for name, of, safe, fell, least in found.code_rows
     ]
     note = (

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from rocking import checks
-from rocking.conventions import FEET
+from rocking.conventions import FEET, NORMAL_95
 from rocking.identification import Identification, ModelComparison
 from rocking.plots.identification import identification_picture, trials_picture
 from rocking.reports.document import Document, Paragraph, Picture, ReportSection, ReportTable, table
@@ -146,7 +146,7 @@ def _impacts(found: Identification) -> ReportTable:
 
 def _designs(found: Identification) -> ReportTable:
     rows = [
-        (f"{each.peak:g}", each.impacts, f"{1e3 * each.noise:.2g}", f"{1.96 * each.deviation:.2g}")
+        (f"{each.peak:g}", each.impacts, f"{1e3 * each.noise:.2g}", f"{NORMAL_95 * each.deviation:.2g}")
         for each in found.designs
     ]
     head = ["let go from, over the slenderness angle [-]", "impacts", "times to [ms]", "r to +- [-]"]

@@ -1,7 +1,6 @@
 """The folder that an inventory is written to: HTML, PDF, spreadsheet, CSV, JSON."""
 
 import json
-import os
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
@@ -13,6 +12,7 @@ from rocking.reports.inventory_document import inventory_document
 from rocking.reports.render import render_pdf, write_html
 from rocking.studies.inventory.assessment import Assessment
 from rocking.studies.inventory.table import HEADER, LIMITS, as_csv, as_plain, rows
+from rocking.tables.table import written_whole
 
 STEM = "inventory"  # name of every file, before its suffix
 
@@ -56,14 +56,11 @@ def _form(path: Path) -> str:
 
 
 def _write_whole(assessment: Assessment, path: Path) -> Path:
-    unfinished = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
     try:
-        _WRITERS[_form(path)](assessment, unfinished)
-        unfinished.replace(path)
+        with written_whole(path) as unfinished:
+            _WRITERS[_form(path)](assessment, unfinished)
     except OSError as error:
         raise RockingError(f"cannot write {path}: {error.strerror or error}") from error
-    finally:
-        unfinished.unlink(missing_ok=True)
     return path
 
 

@@ -29,6 +29,7 @@ from rocking.identification.results import compared
 from rocking.spec.construction import body_of, motion_of
 from rocking.spec.reading import InputFiles, located
 from rocking.tables import Column, Table, text_array, to_csv
+from rocking.tables.table import written_whole
 from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
@@ -313,6 +314,5 @@ def _kept(path: Path | None, rows: dict[Path, Row]) -> Iterator[None]:
 
 def _write(rows: dict[Path, Row], path: Path) -> None:
     """Write a table in one go, so that it is whole at any instant."""
-    part = path.with_name(f".{path.name}.part")
-    to_csv(_table(rows[each] for each in sorted(rows)), part)
-    part.replace(path)
+    with written_whole(path) as part:
+        to_csv(_table(rows[each] for each in sorted(rows)), part)

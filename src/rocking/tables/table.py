@@ -3,6 +3,7 @@
 import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -240,6 +241,19 @@ def target_of(path: str | os.PathLike[str]) -> Path:
     if not target.parent.is_dir():
         raise InvalidValueError(f"no folder {target.parent} to write {target.name} into")
     return target
+
+
+@contextmanager
+def written_whole(path: Path) -> Iterator[Path]:
+    """Give the name under which to write a file that is there as a whole or not at all."""
+    unfinished = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    try:
+        yield unfinished
+        with unfinished.open("rb+") as file:
+            os.fsync(file.fileno())
+        unfinished.replace(path)
+    finally:
+        unfinished.unlink(missing_ok=True)
 
 
 def text_array(values: Sequence[Any]) -> np.ndarray:

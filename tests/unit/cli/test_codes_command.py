@@ -44,13 +44,21 @@ def test_one_body_under_one_motion(printed, answered):
     assert "the worse one counts" in page
     rows = {line.split()[0]: line.split()[1] for line in page.splitlines() if line.split()[:1]}
     assert (rows["static"], rows["italian-linear"]) == ("no", "yes")
-    assert "asce-43        outside its domain " in page
+    assert (rows["asce-43"], rows["kaneko-hayashi"], rows["housner-pulse"]) == ("outside", "outside", "yes")
     found = answered(*body, "sine:amplitude=3.5,period=0.5")
     assert found["worse_side_counts"] == [True]
     ratio = found["methods"]["static"]["called_safe"][0][0]["ratio"]
     assert ratio == pytest.approx(3.5 / (9.80665 * 0.28 / 0.9), rel=1e-6)
     # negative control: the other side alone would be safe
     assert 3.5 / (9.80665 * 0.52 / 0.9) < 1.0
+
+
+def test_a_giant_that_nothing_overturns(run):
+    """It is said in words that none overturned, not as a ratio of zero."""
+    code, page, _ = run("--height", 1e3, "--width", 100, *FAMILY)
+    assert code == 0
+    assert "0 of 6 overturned" in page
+    assert page.count("  none overturned        -\n") == 6
 
 
 def test_levels_in_another_measure(answered):

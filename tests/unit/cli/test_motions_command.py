@@ -52,6 +52,17 @@ def test_a_folder_becomes_a_flatfile(run, folder, tmp_path):
     assert files[3].stat().st_size > 1000
 
 
+@pytest.mark.filterwarnings("always:check the input")
+def test_a_doubt_names_its_file_once(run, folder):
+    """Whether the motion doubts it or the reader, who names it too."""
+    rows = [f"{0.25 * k}, {60.0 * np.sin(k):.6f}" for k in range(60)]
+    (folder / "odd.csv").write_text("\n".join(["time [s], x [m/s2]", *rows]), "utf-8")
+    _, _, err = run("motions", folder / "odd.csv", "--threads", 1, "--periods", "1,2")
+    lines = [line for line in err.splitlines() if "odd.csv" in line]
+    assert len(lines) >= 2
+    assert all(line.count("odd.csv") == 1 for line in lines)
+
+
 def test_a_target_chooses_and_scales(run, folder):
     """Two of three records come with their factors and misfits, and the sentence of the set."""
     words = ["--set", "motion.target=eurocode8:ag=0.3g,ground=B", "--set", "motion.count=2", "--periods", "1"]

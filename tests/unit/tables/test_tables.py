@@ -22,6 +22,7 @@ from rocking.tables import (
     to_netcdf,
     to_parquet,
 )
+from rocking.tables.table import written_whole
 
 CODES = np.array([2, 0, 3, 1, 4, 77])
 
@@ -118,3 +119,17 @@ def test_tables_of_cells_refuse_what_would_be_lost():
             Table.of_rows("row", ("a",), [(bad,)])
         with pytest.raises(InvalidValueError, match="must be finite"):
             safe_cell(bad)
+
+
+def test_a_file_is_whole_or_not_there(tmp_path):
+    """What was there stays until all of the new is written; what broke off leaves nothing behind."""
+    path = tmp_path / "a.csv"
+    for text in ("old", "new"):
+        with written_whole(path) as unfinished:
+            unfinished.write_text(text, "utf-8")
+            assert (path.read_text("utf-8") if path.exists() else "") == ("" if text == "old" else "old")
+    with pytest.raises(KeyError), written_whole(path) as unfinished:  # noqa: PT012 - breaks off after half
+        unfinished.write_text("half", "utf-8")
+        raise KeyError
+    assert path.read_text("utf-8") == "new"
+    assert list(tmp_path.iterdir()) == [path]

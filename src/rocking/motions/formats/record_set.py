@@ -229,7 +229,8 @@ def _read(path: Path, **options: Any) -> Read:
 
 def _motions(path: Path, read: Read, left_out: list[tuple[str, str]]) -> list[GroundMotion]:
     found, doubts = read
-    plausibility.warn(f"{path.name}: {doubt.removeprefix('check the input: ')}" for doubt in doubts)
+    said = (doubt.removeprefix("check the input: ").removeprefix(f"{path.name}: ") for doubt in doubts)
+    plausibility.warn(f"{path.name}: {doubt}" for doubt in said)
     if isinstance(found, str):
         left_out.append((str(path), found))
         return []

@@ -59,12 +59,13 @@ class Stances:
     def symmetric(self) -> BoolArray:
         """Whether both feet of each body are equally far from its centre."""
         right, left = self.half_width.T
-        return np.isclose(right, left, rtol=1e-9, atol=0.0)
+        return np.asarray(np.isclose(right, left, rtol=1e-9, atol=0.0))
 
     @property
     def rectangle(self) -> BoolArray:
         """Whether each body rocks as a rectangle does: symmetric, and about a foot 4/3 m R^2."""
-        return self.symmetric & np.isclose(self.inertia, 4.0 / 3.0 * (1.0 + self.slope**2), rtol=1e-6).all(axis=1)
+        like = np.isclose(self.inertia, 4.0 / 3.0 * (1.0 + self.slope**2), rtol=1e-6)
+        return np.asarray(self.symmetric & like.all(axis=1))
 
     @property
     def uplift(self) -> FloatArray:

@@ -81,7 +81,8 @@ class AsceRocking(CodeMethod):
     def oscillator(stances: Stances, rotation: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return period [s] and capacity [m/s2] at a rotation of every side [rad]."""
         a, h = stances.slope, stances.height
-        f1 = np.cos(rotation) + a * np.sin(rotation) - 1.0
+        half = 0.5 * rotation
+        f1 = 2.0 * np.sin(half) * (a * np.cos(half) - np.sin(half))  # cos + a sin - 1, to all digits of slender bodies
         work = 2.0 * stances.gravity * f1
         period = 2.0 * math.pi * rotation * np.sqrt(stances.inertia * h / work)  # Eq. 298
         return period, work / rotation  # Eq. 299
