@@ -9,10 +9,10 @@ from rocking import checks, conventions
 from rocking.bodies import Body, Solid
 from rocking.conventions import FloatArray
 from rocking.dynamics.settings import check_progress, check_threads
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.pulse import Motion
 from rocking.prediction.forecast import Chance, EndsOfRange, Growth, Prediction
-from rocking.prediction.mechanics import Mechanics
+from rocking.prediction.mechanics import MEASURED, Mechanics
 from rocking.statistics.counts import LEAST_CLUSTERS, share_interval
 from rocking.statistics.shares import REPETITIONS, SaltelliDesign
 
@@ -26,6 +26,9 @@ REPRODUCED = 0.01
 """Pairs of histories under each motion that differ by so much in scale, and by how much peaks then may [-]."""
 
 FIFTH = 0.2
+
+BESIDE = "ked", "housner"
+"""Models that stand beside what the measurements say, for half of the draws."""
 
 
 def predict(  # noqa: PLR0913 - everything that is not known is an argument
@@ -130,6 +133,16 @@ def predict(  # noqa: PLR0913 - everything that is not known is an argument
     if np.isnan(found["overturning"]).all():
         raise InvalidValueError("no history has a result: is the motion of the body's size, and in m/s2?")
     falls = found["overturning"][: len(points)]
+    others: dict[str, Chance] = {}
+    if isinstance(body, Body) and (restitution is None or (isinstance(restitution, str) and restitution in MEASURED)):
+        for name in BESIDE:
+            try:
+                other = _mechanics(body, motions, {**given, "restitution": name}, gravity, bounce, bounce_law)
+            except RockingError:
+                continue  # it says nothing of this body
+            fell = _counted(other, points[:half, mechanics.widths["restitution"] :], least, threads, None, 0)
+            if not np.isnan(fell["overturning"]).all():
+                others[name] = _chance(fell["overturning"], design.seed)
     return Prediction(
         body=repr(body),
         motions=tuple(mechanics.names),
@@ -144,6 +157,7 @@ def predict(  # noqa: PLR0913 - everything that is not known is an argument
         histories=found["overturning"].size,
         failed=failed,
         seed=design.seed,
+        beside=others,
     )
 
 
@@ -169,9 +183,10 @@ def _counted(
     least: float,
     threads: int | None,
     progress: Callable[[int], None] | None,
+    pairs: int = PAIRS,
 ) -> dict[str, FloatArray]:
     """Return what happened, one row a body, one column a motion: at all points, then again at a changed scale."""
-    again = points[:PAIRS]
+    again = points[:pairs]
     factor = np.concatenate([np.ones(len(points)), np.full(len(again), 1.0 + CHANGE)])
     columns: dict[str, list[FloatArray]] = {name: [] for name in ("uplift", "sliding", "overturning", "peak")}
     for number in range(len(mechanics.names)):

@@ -3,7 +3,7 @@
 import math
 import os
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -107,6 +107,9 @@ class Prediction:
         Bodies for each motion behind a probability, histories in all, and those without a result, which do not count.
     seed : int
         Seed of the draws.
+    beside : dict of str to Chance
+        Of overturning with KED and with Housner's restitution instead of the measured one, all else drawn alike; of
+        plane bodies, where no restitution was asked for.
     """
 
     body: str
@@ -122,6 +125,7 @@ class Prediction:
     histories: int
     failed: int
     seed: int
+    beside: Mapping[str, Chance] = field(default_factory=dict)
 
     @property
     def verdict(self) -> str:
@@ -138,6 +142,9 @@ class Prediction:
         far = f"slides by {1000.0 * self.sliding_beyond:g} mm or more"
         both = [_said("rocks", self.chances["uplift"]), _said(far, self.chances["sliding"])]
         found = [self.verdict, *(f"I{said[1:]}." for said in both)]
+        if self.beside:
+            each = (f"{percent(c.value)} ({percent(c.low)} to {percent(c.high)}, {n})" for n, c in self.beside.items())
+            found.append(f"With another restitution, all else drawn alike, it overturns with {' or '.join(each)}.")
         movers = sorted(self.ends.items(), key=lambda pair: -abs(pair[1].probability_high - pair[1].probability_low))
         for name, each in movers[:2]:
             if each.probability_low != each.probability_high:
@@ -178,6 +185,7 @@ class Prediction:
         return {
             **{name: getattr(self, name) for name in plain},
             "probability": {name: vars(chance) for name, chance in self.chances.items()},
+            "beside": {name: vars(chance) for name, chance in self.beside.items()},
             "shares": {_told(name): asdict(share) for name, share in self.shares.items()},
             "ends": {name: asdict(each) for name, each in self.ends.items()},
             "growth": {**asdict(self.growth), "sentence": self.growth.sentence},

@@ -229,3 +229,21 @@ def test_bad_input(given, why):
 def test_bad_bodies_and_motions(body, motions, why):
     with pytest.raises(RockingError, match=why):
         predict(body, motions)
+
+
+def test_ked_and_housner_stand_beside_what_was_measured():
+    """Their probabilities are those of the models by themselves; of a model or a coefficient nothing stands beside."""
+    motions = [rk.pulses.sine(amplitude, 0.8) for amplitude in (3.0, 3.4, 5.0)]
+    found = predict(BLOCK, motions, count=512, shares=False)
+    assert list(found.beside) == ["ked", "housner"]
+    for name, chance in found.beside.items():
+        alone = predict(BLOCK, motions, restitution=name, count=512, shares=False)
+        assert alone.beside == {}
+        assert chance.low <= alone.chances["overturning"].value <= chance.high
+        assert f", {name})" in found.sentences[3]
+    assert predict(BLOCK, motions[0], restitution=0.9, count=16, shares=False).beside == {}
+    known = {"friction": 5.0, "base": 0.0, "centre": 1.0, "polarity": 1.0}  # nothing is left to draw
+    fixed = predict(BLOCK, motions, **known, count=16, shares=False)
+    for name, chance in fixed.beside.items():
+        alone = predict(BLOCK, motions, restitution=name, **known, count=16, shares=False).chances["overturning"]
+        assert chance.per_motion.tolist() == alone.per_motion.tolist()
