@@ -141,10 +141,12 @@ class Prediction:
         """Verdict, the other probabilities, what would change the answer, and whether it can be predicted at all."""
         far = f"slides by {1000.0 * self.sliding_beyond:g} mm or more"
         both = [_said("rocks", self.chances["uplift"]), _said(far, self.chances["sliding"])]
-        found = [self.verdict, *(f"I{said[1:]}." for said in both)]
-        if self.beside:
-            each = (f"{percent(c.value)} ({percent(c.low)} to {percent(c.high)}, {n})" for n, c in self.beside.items())
-            found.append(f"With another restitution, all else drawn alike, it overturns with {' or '.join(each)}.")
+        found = [self.verdict, *(f"I{each[1:]}." for each in both)]
+        if given := self.beside.items():
+            others = (
+                f"{percent(c.value)} ({percent(c.low)} to {percent(c.high)}, {n})" for n, c in self.beside.items()
+            )
+            found.append(f"With another restitution, all else drawn alike, it overturns with {' or '.join(others)}.")
         movers = sorted(self.ends.items(), key=lambda pair: -abs(pair[1].probability_high - pair[1].probability_low))
         for name, each in movers[:2]:
             if each.probability_low != each.probability_high:
