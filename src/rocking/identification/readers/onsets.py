@@ -2,7 +2,7 @@
 
 A faint click alone would be picked late, once it has grown beyond the noise; the mean of all clicks on a foot stands
 out more, and the lags between them come from cross-correlation, to a part of a sample. Clicks of the two feet are not
-alike, but the same modes of the body ring in both, with real factors: see `_between`.
+alike, but the same modes of the body ring in both, with real factors: see `_agreement`.
 """
 
 import numpy as np
@@ -11,29 +11,39 @@ from scipy.signal import oaconvolve
 
 from rocking.conventions import FloatArray, IntArray
 from rocking.identification.readers.clicks import causal, spectra
+from rocking.identification.readers.rocking_sequence import alternation_misfit
 
 _BEFORE, _AFTER, _REACH = 0.004, 0.030, 0.008
 _QUIET, _RINGING = 0.012, 0.100
 _PICK_BEFORE, _PICK_AFTER = 0.008, 0.004
 _ROUNDS = 4
 _EQUALISED = 0.1
-_FARTHEST, _STEP, _PULL, _NEAR = 0.006, 1e-5, 0.1, 5e-4
+_FARTHEST, _STEP, _PULL, _NEAR, _NOISES = 0.012, 1e-5, 0.05, 5e-4, 2.0
+_LAW, _LAW_SCATTER, _MOST = 0.02, 0.012, 20.0
+_SEARCHED, _LIKE = 0.15, 0.15
 _BAND = (150.0, 9_000.0)
 
 
-def onsets(sound: FloatArray, rate: float, times: FloatArray, feet: IntArray) -> tuple[FloatArray, float]:
-    """Return when the clicks at about some times began [s], and how alike those on the same of two feet are, 1 at most.
-
-    That is the median correlation of a click with the sum of the others.
-    """
+def sharpened(sound: FloatArray, rate: float, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return a sound in which the clicks at about some times are short, and one whose noise is white."""
     size, noise, power = spectra(sound, rate)
     frames = np.clip(np.rint((times * rate - 0.3 * size) / (size // 2)).astype(int), 0, power.shape[0] - 1)
     clicks = np.maximum(power[frames].mean(axis=0) - noise, 0.0)
     # filters of minimum phase: nothing comes before its cause; the mean spectrum of clicks is made flat where it can be
     gains = (np.sqrt(clicks) / (noise + _EQUALISED * clicks), 1.0 / np.sqrt(noise))
     sharp, white = (oaconvolve(sound, causal(gain, rate, size))[: sound.size] for gain in gains)
+    return sharp, white
+
+
+def onsets(
+    sharp: FloatArray, white: FloatArray, rate: float, times: FloatArray, orders: IntArray
+) -> tuple[FloatArray, float]:
+    """Return when the impacts at about some times began [s], and how alike those on the same of two feet are, 1 at most.
+
+    That is the median correlation of a click with the sum of the others.
+    """
     found, alike, picks, means = times.copy(), np.ones(times.size), [], []
-    groups = [here for foot in (0, 1) if (here := np.flatnonzero(feet == foot)).size]
+    groups = [here for foot in (0, 1) if (here := np.flatnonzero(orders % 2 == foot)).size]
     for here in groups:
         places, parts = _aligned(sharp, rate, times[here])
         alike[here] = _likeness(_cuts(sharp, rate, places, _BEFORE, _AFTER))
@@ -42,10 +52,64 @@ def onsets(sound: FloatArray, rate: float, times: FloatArray, feet: IntArray) ->
         picks.append(pick)
         means.append(_mean(sharp, rate, places, _QUIET, _RINGING))
     if len(groups) == 2:
-        off = _between(means[0], means[1], rate, picks[1] - picks[0]) - picks[1] + picks[0]
-        found[groups[0]] -= 0.5 * off
-        found[groups[1]] += 0.5 * off
+        lags = np.arange(-_FARTHEST, _FARTHEST, _STEP)
+        off = lags - picks[1] + picks[0]
+        law = alternation_misfit(found, orders, off) / _LAW_SCATTER**2
+        likely = _agreement(means[0], means[1], rate, lags) - _PULL * np.log1p((off / _NEAR) ** 2)
+        later = off[np.argmax(likely - _LAW * np.minimum(law - law.min(), _MOST))]
+        found[groups[0]] -= 0.5 * later
+        found[groups[1]] += 0.5 * later
     return found, float(np.median(alike))
+
+
+def revised(
+    sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, members: IntArray
+) -> tuple[FloatArray, IntArray, IntArray]:
+    """Return impacts less the last ones that are none, and with those that were missed, whose member is -1.
+
+    An impact is like those before it on the same foot, and nearly as loud.
+    """
+    while times.size > 3 and _resembles(sharp, rate, times[:-1], orders[:-1], orders[-1], times[-1], _REACH)[1] < _LIKE:
+        times, orders, members = times[:-1], orders[:-1], members[:-1]
+    order = 4
+    while order <= orders[-1] + 1:
+        if order not in orders:
+            known = dict(zip(orders.tolist(), times.tolist(), strict=True))
+            spans = {n: known[n] - known[n - 1] for n in known if n - 1 in known and n < order}
+            falls = [spans[n] / spans[n - 2] for n in spans if n - 2 in spans]
+            if order - 2 in spans and order - 1 in known and falls:
+                span = spans[order - 2] * float(np.median(falls[-4:]))
+                at, like = _resembles(
+                    sharp, rate, times, orders, order, known[order - 1] + span, _SEARCHED * span
+                )
+                if like > _LIKE:
+                    place = int(np.searchsorted(orders, order))
+                    times, orders, members = (
+                        np.insert(values, place, value)
+                        for values, value in ((times, at), (orders, order), (members, -1))
+                    )
+        order += 1
+    return times, orders, members
+
+
+def _resembles(
+    sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, order: int, about: float, reach: float
+) -> tuple[float, float]:
+    """Return what near a time is most like the impacts before on the same foot: when, and how alike times how loud."""
+    earlier = np.flatnonzero((orders < order) & (orders % 2 == order % 2))
+    begin, end = int(_BEFORE * rate), int(_AFTER * rate)
+    first, last = max(int((about - reach) * rate), begin), min(int((about + reach) * rate), sharp.size - end)
+    if earlier.size < 2 or last <= first:
+        return about, 0.0
+    places, _ = _aligned(sharp, rate, times[earlier])
+    cuts = _cuts(sharp, rate, places, _BEFORE, _AFTER)
+    mean = cuts.mean(axis=0)
+    match = np.correlate(sharp[first - begin : last + end], mean, "valid")
+    peak = int(match.argmax())
+    own = sharp[first + peak - begin : first + peak + end]
+    alike = match[peak] / np.sqrt((own @ own) * (mean @ mean) + np.finfo(float).tiny)
+    loud = match[peak] / max(float(cuts[-1] @ mean), np.finfo(float).tiny)
+    return float(times[earlier[-1]] + (first + peak - places[-1]) / rate), float(alike * min(loud, 1.0))
 
 
 def _likeness(cuts: FloatArray) -> FloatArray:
@@ -55,8 +119,8 @@ def _likeness(cuts: FloatArray) -> FloatArray:
     return np.asarray((cuts * others).sum(axis=1) / scale)
 
 
-def _between(one: FloatArray, two: FloatArray, rate: float, guess: float) -> float:
-    """Return how much later the second of two clicks begins, each of modes m with factors of its own.
+def _agreement(one: FloatArray, two: FloatArray, rate: float, lags: FloatArray) -> FloatArray:
+    """Return how well lags of the second of two clicks explain both, each of modes m with factors of its own.
 
     The factors a_m, b_m are real, so near a mode the cross-spectrum has the phase of a_m b_m exp(-i w d), and its
     square that of exp(-2 i w d) whatever their signs: of all lags d only the true one suits all modes.
@@ -68,16 +132,12 @@ def _between(one: FloatArray, two: FloatArray, rate: float, guess: float) -> flo
         spectrum = rfft(each, size)
         cross = spectrum * np.conj(cross)
         noise = float((each[:quiet] ** 2).mean()) * each.size
-        weight *= np.maximum(np.abs(spectrum) ** 2 - 4.0 * noise, 0.0)
+        weight *= np.maximum(np.abs(spectrum) ** 2 - _NOISES * noise, 0.0)
     frequency = np.arange(cross.size) * rate / size
     inside = (frequency > _BAND[0]) & (frequency < _BAND[1]) & (weight > 0.0)
-    lags = np.arange(-_FARTHEST, _FARTHEST, _STEP)
-    if not inside.any():
-        return guess
     phase = 2.0 * np.angle(cross[inside]) + 4.0 * np.pi * np.outer(lags, frequency[inside])
     weight = weight[inside] ** 0.25
-    agree = np.cos(phase) @ (weight / weight.sum())
-    return float(lags[np.argmax(agree - _PULL * np.log1p(((lags - guess) / _NEAR) ** 2))])
+    return np.asarray(np.cos(phase) @ (weight / max(float(weight.sum()), np.finfo(float).tiny)))
 
 
 def _aligned(sound: FloatArray, rate: float, times: FloatArray) -> tuple[IntArray, FloatArray]:

@@ -194,6 +194,24 @@ def regularity(times: FloatArray, orders: IntArray) -> Regularity:
     return best
 
 
+def alternation_misfit(times: FloatArray, orders: IntArray, offsets: FloatArray) -> FloatArray:
+    """Return the squares by which ln(y_(n+1) / y_n) of either side scatters, were one side later by some offsets [s].
+
+    An offset changes all intervals by as much; sides that differ and tilts change long intervals more than short ones.
+    """
+    whole = np.flatnonzero(np.diff(orders) == 1)
+    intervals = np.diff(times)[whole] + np.outer(offsets, 1.0 - 2.0 * (orders[whole] % 2))
+    pairs = np.flatnonzero(np.diff(whole) == 1)
+    sides = np.column_stack([np.ones(pairs.size), orders[whole[pairs]] % 2])
+    rest = np.eye(pairs.size) - sides @ np.linalg.pinv(sides)
+    best = np.full(offsets.size, np.inf)
+    for y in np.linspace(0.1, 0.98, 23):
+        half_p = np.arctanh(y) / intervals.max(axis=1, keepdims=True)
+        fall = half_cycle_fall(np.maximum(intervals, 1e-3), half_p)
+        best = np.minimum(best, ((np.diff(fall)[:, pairs] @ rest) ** 2).sum(axis=1))
+    return best
+
+
 def why_no_rocking(
     times: FloatArray, found: RockingSequence, contrasts: FloatArray, strengths: FloatArray
 ) -> str | None:

@@ -2,15 +2,18 @@
 
 import numpy as np
 
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, IntArray
 from rocking.errors import MeasurementError
 from rocking.identification.measurement import ImpactTimes
-from rocking.identification.readers.clicks import HeardClicks, find_clicks
-from rocking.identification.readers.onsets import onsets
+from rocking.identification.readers.clicks import find_clicks
+from rocking.identification.readers.onsets import onsets, revised, sharpened
 from rocking.identification.readers.recording import Recording
-from rocking.identification.readers.rocking_sequence import RockingSequence, find_sequence, why_no_rocking
+from rocking.identification.readers.rocking_sequence import find_sequence, why_no_rocking
 
 _PIECES = 2000
+_UNHEARD = 3.0
+"""Contrast of an impact that only its likeness to others tells."""
+
 _ALIKE = 0.45
 """Between what 80 rocking bodies have, .69 at least at 8 dB, and speech taken for one, .24 at most."""
 
@@ -23,16 +26,21 @@ def impacts_heard(recording: Recording) -> ImpactTimes:
     found = find_sequence(clicks.times, _evidence(clicks.contrasts), np.maximum(clicks.strengths, 0.3), length)
     if found is None:
         raise recording.error("fewer than three clicks stand out of its noise; nearer to the body, or a quieter room?")
-    times, alike = onsets(clicks.sound, recording.rate, clicks.times[found.members], found.orders % 2)
-    if np.any(np.diff(times) <= 0.0):
-        times = clicks.times[found.members]
-    why = why_no_rocking(times, found, clicks.contrasts, clicks.strengths)
+    rate, rough, orders, members = recording.rate, clicks.times[found.members], found.orders, found.members
+    sharp, white = sharpened(clicks.sound, rate, rough)
+    times, alike = onsets(sharp, white, rate, rough, orders)
+    why = why_no_rocking(times if np.all(np.diff(times) > 0.0) else rough, found, clicks.contrasts, clicks.strengths)
     if not why and alike < _ALIKE:
         why = f"its clicks are not alike (median correlation {alike:.2f}, at least {_ALIKE}): no two feet made them"
     if why:
         raise recording.error(f"this is no sound of a rocking body: {why}")
-    sure = 1.0 / (1.0 + np.exp(-_evidence(clicks.contrasts)[found.members] - 2.0))
-    doubts, loudness = _doubts(recording, clicks, found, times), _loudness(channel, recording.rate)
+    rough, orders, members = revised(sharp, rate, rough, orders, members)
+    times, _ = onsets(sharp, white, rate, rough, orders)
+    if np.any(np.diff(times) <= 0.0):
+        times = rough
+    contrasts = np.where(members < 0, _UNHEARD, clicks.contrasts[members])
+    sure = 1.0 / (1.0 + np.exp(-_evidence(contrasts) - 2.0))
+    doubts, loudness = _doubts(recording, contrasts, orders, times), _loudness(channel, rate)
     return ImpactTimes(times, None, np.clip(sure, 0.01, 1.0), recording.name, doubts, loudness)
 
 
@@ -51,14 +59,14 @@ def _evidence(contrasts: FloatArray) -> FloatArray:
     return np.clip(5.0 * np.log(contrasts / 3.2), -4.0, 4.0)
 
 
-def _doubts(recording: Recording, clicks: HeardClicks, found: RockingSequence, times: FloatArray) -> tuple[str, ...]:
+def _doubts(recording: Recording, contrasts: FloatArray, orders: IntArray, times: FloatArray) -> tuple[str, ...]:
     doubts = []
-    for order in np.setdiff1d(np.arange(found.orders[-1]), found.orders):
-        before = int(np.flatnonzero(found.orders < order)[-1])
+    for order in np.setdiff1d(np.arange(orders[-1]), orders):
+        before = int(np.flatnonzero(orders < order)[-1])
         doubts.append(f"an impact seems to be missing between {times[before]:.3f} and {times[before + 1]:.3f} s")
     if recording.clipped:
         doubts.append(f"the sound is clipped {recording.clipped} times: record it at a lower level")
-    faint = clicks.contrasts[found.members] < 3.2
+    faint = contrasts < 3.2
     if faint.any():
         doubts.append(f"{int(faint.sum())} of {faint.size} impacts hardly stand out of noise and echoes")
     return tuple(doubts)
