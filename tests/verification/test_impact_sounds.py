@@ -1,6 +1,7 @@
 """Impacts heard in rooms: every one found, none added, and what is no rocking refused.
 
-The sounds are those of tests/rocking_sounds.py; the detector was tuned on seeds 10000 to 10029 alone. With
+The sounds are those of tests/rocking_sounds.py; the detector was tuned on seeds 10000 to 10059 and 20000 to 20119, and
+its smallest score on the rain of seed 700097. With
 ROCKING_CAMPAIGN=1 there are 60 rooms at each level and 100 sounds of each other kind; otherwise a few of them.
 """
 
@@ -16,6 +17,7 @@ from rocking_sounds import RATE, no_rocking, wav
 from rocking.errors import MeasurementError
 from rocking.identification.readers import read_measurement
 from rocking.identification.readers.recording import Recording
+from rocking.identification.readers.rocking_sequence import alternation_misfit
 from rocking.identification.readers.sound import impacts_heard
 
 pytestmark = pytest.mark.verifies(room="evidence")
@@ -49,16 +51,17 @@ def errors_of(runs, decibels):
 @pytest.mark.verifies(
     "computed anew",
     "impacts of random bodies in random rooms, 11 each, at 25, 15 and 8 dB above the noise",
-    within="0.9 of the rooms complete, 0.8 at 8 dB; half of the onsets to 5e-5 s, 1e-4 s at 8 dB",
+    within="0.95 of the rooms complete, 0.9 at 8 dB; half of the onsets to 5e-5 s, 1e-4 s at 8 dB",
     control="test_a_plain_threshold_does_not_do",
 )
-@pytest.mark.parametrize(("decibels", "share", "median"), [(25.0, 0.9, 5e-5), (15.0, 0.9, 5e-5), (8.0, 0.8, 1e-4)])
+@pytest.mark.parametrize(("decibels", "share", "median"), [(25.0, 0.95, 5e-5), (15.0, 0.95, 5e-5), (8.0, 0.9, 1e-4)])
 def test_impacts_are_found(decibels, share, median):
     """Reverberation, hum and clipping: all impacts are found, none is added, and half of the onsets are close.
 
-    Of a few rooms one more may fail, since a share of six says little. In the campaign 57, 55 and 51 of 60 rooms were
-    complete (the aim is 59, 58 and 50), with .04, .17 and .95 ms root mean square (the aim is .15), half of the onsets
-    within .02, .02 and .03 ms: in one run at 15 dB and eight at 8 dB one foot is off against the other.
+    Of a few rooms one more may fail, since a share of six says little. In the campaign 59, 60 and 58 of 60 rooms were
+    complete (the aim is 59, 58 and 50), from seed 800000 on 60, 60 and 58; .04, .48 and .64 ms root mean square, there
+    .07, .07 and .25 ms (the aim is .15), half of the onsets within .02, .02 and .03 ms: in one run at 15 dB and seven
+    at 8 dB, there one and six, one foot or some of its impacts are off against the other.
     """
     errors = errors_of(ROOMS, decibels)
     assert errors.shape[0] >= share * ROOMS - (0 if CAMPAIGN else 1)
@@ -77,14 +80,24 @@ def test_a_plain_threshold_does_not_do():
     assert good <= 1
 
 
-@pytest.mark.verifies(
-    "behaviour", "clapping, metronomes, rain, speech", within="0.95 of rain and speech refused, all of the others"
-)
+@pytest.mark.verifies("closed form", "T = (2/p) atanh y of two sides, one foot heard later", within="2e-4 s")
+@pytest.mark.parametrize("offset", [0.0, 3e-3, -6e-3])
+def test_the_law_tells_by_how_much_a_foot_is_late(offset):
+    """An offset is told from sides that differ: y falls by .93 and .86 in turn, p is not known."""
+    y = 0.8 * np.cumprod([1.0] + [0.93, 0.86] * 4 + [0.93])
+    times = np.concatenate(([0.0], np.cumsum(2.0 / 2.5 * np.arctanh(y))))
+    times[1::2] += offset
+    offsets = np.arange(-0.012, 0.012, 1e-4)
+    found = offsets[alternation_misfit(times, np.arange(times.size), offsets).argmin()]
+    assert found == pytest.approx(-offset, abs=2e-4)  # p is tried in steps, offsets too
+
+
+@pytest.mark.verifies("behaviour", "clapping, metronomes, rain, speech", within="all refused")
 @pytest.mark.parametrize("kind", ["clapping", "metronome", "rain", "speech"])
 def test_what_is_no_rocking_is_refused(kind):
     """Clapping, a metronome, rain and speech are no rocking, and the refusal says why.
 
-    The aim is 100 of 100 of each: 99 of rain and 97 of speech were refused before clicks had to be alike.
+    The campaign refused 100 of 100 of each, as is the aim.
     """
     refusals = []
     for seed in range(FIRST, FIRST + OTHERS):
@@ -92,7 +105,7 @@ def test_what_is_no_rocking_is_refused(kind):
             heard(no_rocking(kind, seed))
         except MeasurementError as refusal:
             refusals.append(str(refusal))
-    assert len(refusals) >= (0.95 if kind in ("rain", "speech") else 1.0) * OTHERS
+    assert len(refusals) == OTHERS
     assert all(re.search("no sound of a rocking body|fewer than three clicks", words) for words in refusals)
 
 
