@@ -142,7 +142,7 @@ class Prediction:
         far = f"slides by {1000.0 * self.sliding_beyond:g} mm or more"
         both = [_said("rocks", self.chances["uplift"]), _said(far, self.chances["sliding"])]
         found = [self.verdict, *(f"I{each[1:]}." for each in both)]
-        if given := self.beside.items():
+        if self.beside:
             others = (
                 f"{percent(c.value)} ({percent(c.low)} to {percent(c.high)}, {n})" for n, c in self.beside.items()
             )
