@@ -21,7 +21,7 @@ from scipy.special import stdtrit
 
 from rocking.bodies import Body
 from rocking.bodies.formats import FORMATS
-from rocking.conventions import FEET
+from rocking.conventions import FEET, NORMAL_95
 from rocking.errors import InvalidValueError, RockingError
 from rocking.identification import Identification, IntervalEstimate, ModelComparison, identify, read_measurement
 from rocking.identification.readers.reader import ENDINGS, SOUNDS
@@ -52,7 +52,6 @@ _TEXTS = {
     "doubts": "what else there is to say against it",
     "question": "hash of the file and of what was asked of it",
 }
-_REACH = 1.96  # of a 95 % interval, in standard deviations
 _FEW, _EVERY = 12, 1.0  # trials for which no process is started; seconds after which the table is written again
 
 
@@ -178,10 +177,10 @@ class IdentifiedTrials:
         if len(good) < 2:
             return None
         ln, common = np.log([row["r"] for row in good]), np.array([row["common"] for row in good])
-        within = np.log([row["r_high"] / row["r_low"] for row in good]) / (2.0 * _REACH)
+        within = np.log([row["r_high"] / row["r_low"] for row in good]) / (2.0 * NORMAL_95)
         between = float(stdtrit(ln.size - 1, 0.975)) * float(ln.std(ddof=1))
-        own = _REACH * math.sqrt(float(np.mean(np.maximum(within**2 - common**2, 0.0))))
-        reach = math.hypot(max(between, own) / math.sqrt(ln.size), _REACH * math.sqrt(float(np.mean(common**2))))
+        own = NORMAL_95 * math.sqrt(float(np.mean(np.maximum(within**2 - common**2, 0.0))))
+        reach = math.hypot(max(between, own) / math.sqrt(ln.size), NORMAL_95 * math.sqrt(float(np.mean(common**2))))
         middle = float(ln.mean())
         return IntervalEstimate(*(math.exp(middle + each) for each in (0.0, -reach, reach)))
 
