@@ -15,7 +15,7 @@ from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
-    from rocking.motions.flatfile import Flatfile
+    from rocking.motions.flatfiles import Flatfile
     from rocking.motions.selection import Selection
 
 _MOST_PROCESSES = 8  # that are started where nobody says how many
@@ -71,7 +71,7 @@ def motions(
     from rocking.cli.arguments import Arguments, as_typed, is_file
     from rocking.cli.motion import parsed_periods
     from rocking.dynamics.settings import processors
-    from rocking.motions.flatfile import PERIODS, flatfile
+    from rocking.motions.flatfiles import PERIODS, flatfile
     from rocking.spec.document import MotionTable
     from rocking.spec.reading import CommandFiles, checked, is_pattern
     from rocking.spec.record_sets import record_set

@@ -1,9 +1,10 @@
 """What shakes: records, pulses, synthetic motions, and what is measured on them."""
 
+from typing import TYPE_CHECKING
+
+from rocking.lazy import exports
 from rocking.motions import pulses, synthetic
 from rocking.motions.components import rotated, rotd_pga, with_vertical
-from rocking.motions.flatfile import Flatfile, flatfile
-from rocking.motions.fourier import fourier_amplitudes
 from rocking.motions.integrals import (
     arias_intensity,
     ground_displacement,
@@ -29,7 +30,6 @@ from rocking.motions.intensity import (
     spectral_measure,
 )
 from rocking.motions.motion import GroundMotion
-from rocking.motions.pipeline import processed
 from rocking.motions.processing import (
     bandpassed,
     demeaned,
@@ -42,11 +42,16 @@ from rocking.motions.processing import (
     trimmed_to_significant,
 )
 from rocking.motions.pulse import Pulse
-from rocking.motions.rotd import rotd_spectrum
 from rocking.motions.segments import Segments as Segments  # what engines integrate
-from rocking.motions.selection import Selection, selected
 from rocking.motions.spectrum import ResponseSpectrum, response_spectrum
-from rocking.motions.target_spectra import TargetSpectrum, target_spectrum
+
+if TYPE_CHECKING:
+    from rocking.motions.flatfiles import Flatfile, flatfile
+    from rocking.motions.fourier import fourier_amplitudes
+    from rocking.motions.pipeline import processed
+    from rocking.motions.rotd import rotd_spectrum
+    from rocking.motions.selection import Selection, selected
+    from rocking.motions.target_spectra import TargetSpectrum, target_spectrum
 
 __all__ = [
     "Flatfile",
@@ -97,3 +102,19 @@ __all__ = [
     "trimmed_to_significant",
     "with_vertical",
 ]
+
+# of sets of records, which a response does not need
+_HOMES = {
+    "flatfiles": ("Flatfile", "flatfile"),
+    "fourier": ("fourier_amplitudes",),
+    "pipeline": ("processed",),
+    "rotd": ("rotd_spectrum",),
+    "selection": ("Selection", "selected"),
+    "target_spectra": ("TargetSpectrum", "target_spectrum"),
+}
+
+__getattr__, _ = exports(__name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names})
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from rocking.motions.flatfile import Flatfile
+    from rocking.motions.flatfiles import Flatfile
     from rocking.motions.selection import Selection
 
 _DAMPING = 0.05
