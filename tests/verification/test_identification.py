@@ -11,7 +11,7 @@ from benchmarks import identification
 
 import rocking as rk
 from rocking.identification import ImpactTimes, identify
-from rocking.identification.design import bound
+from rocking.identification.design import bound, one_impact_bound, peaks_bound, settling_bound
 from rocking.identification.half_cycles import duration, overturning_speed, peak
 from rocking.identification.posterior import Noise, posterior
 from rocking.identification.state_space import FREQUENCY, MEAN, SHARED, SPEED, START, Clicks, Model
@@ -46,30 +46,6 @@ def test_intervals_hold_the_truth(rows):
 def test_a_constant_coefficient_is_noticed(rows):
     """Least squares with one r that never scatters holds the truth in 32 % (of 400), though nothing disturbs it."""
     assert identification.coverage(rows)["constant"] < 0.45
-
-
-def settling_bound(coefficient, ratio, impacts=None):
-    """Return the least standard deviation of r from the times of small impacts, t_inf - D r^n, n = 0..impacts.
-
-    ratio: noise of a time over D. Without `impacts` there are infinitely many, and when it comes to rest is known.
-    """
-    if impacts is None:
-        return float(ratio * (1.0 - coefficient**2) ** 1.5)  # Eq. 276
-    n = np.arange(impacts + 1.0)
-    slopes = np.column_stack([np.ones_like(n), -(coefficient**n), -n * coefficient ** (n - 1.0)])
-    return float(ratio * np.sqrt(np.linalg.inv(slopes.T @ slopes)[2, 2]))
-
-
-def one_impact_bound(frequency_parameter, before, after, noise):
-    """Return the least standard deviation of ln r from the times before, at and after one impact; p is known."""
-    a, b = (frequency_parameter / np.sinh(frequency_parameter * each) for each in (after, before))
-    return float(noise * np.sqrt(2.0 * (a * a + a * b + b * b)))  # Eq. 277
-
-
-def peaks_bound(before, after, noise):
-    """Return the least standard deviation of ln r from the peaks before and after it, over alpha, and their noise."""
-    parts = [(1.0 - f) / (1.0 - (1.0 - f) ** 2) for f in (before, after)]
-    return float(noise * np.hypot(parts[0], parts[1]))  # Eq. 278
 
 
 @pytest.mark.verifies(

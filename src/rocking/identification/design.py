@@ -11,6 +11,30 @@ from rocking.identification import half_cycles, state_space
 from rocking.identification.state_space import MEAN, SHARED, SPEED, START, Clicks, Model
 
 
+def settling_bound(coefficient: float, ratio: float, impacts: int | None = None) -> float:
+    """Return the least standard deviation of r from the times of small impacts, t_inf - D r^n, n = 0..impacts.
+
+    ratio: noise of a time over D. Without `impacts` there are infinitely many, and when it comes to rest is known.
+    """
+    if impacts is None:
+        return float(ratio * (1.0 - coefficient**2) ** 1.5)  # Eq. 276
+    n = np.arange(impacts + 1.0)
+    slopes = np.column_stack([np.ones_like(n), -(coefficient**n), -n * coefficient ** (n - 1.0)])
+    return float(ratio * np.sqrt(np.linalg.inv(slopes.T @ slopes)[2, 2]))
+
+
+def one_impact_bound(frequency_parameter: float, before: float, after: float, noise: float) -> float:
+    """Return the least standard deviation of ln r from the times before, at and after one impact; p is known."""
+    a, b = (frequency_parameter / np.sinh(frequency_parameter * each) for each in (after, before))
+    return float(noise * np.sqrt(2.0 * (a * a + a * b + b * b)))  # Eq. 277
+
+
+def peaks_bound(before: float, after: float, noise: float) -> float:
+    """Return the least standard deviation of ln r from the peaks before and after it, over alpha, and their noise."""
+    parts = [(1.0 - f) / (1.0 - (1.0 - f) ** 2) for f in (before, after)]
+    return float(noise * np.hypot(parts[0], parts[1]))  # Eq. 278
+
+
 @dataclass(frozen=True)
 class Design:
     """What an experiment would tell.
