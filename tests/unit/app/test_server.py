@@ -19,7 +19,7 @@ from rocking.app.server import DataFolder, FolderInUseError, check_host, listen,
 from rocking.app.settings import ServerSettings
 from rocking.cli import main
 from rocking.errors import InvalidValueError
-from rocking.evidence import calibrate
+from rocking.evidence import hierarchy
 from rocking.evidence.store import data_folder
 
 pytestmark = pytest.mark.timed
@@ -255,10 +255,10 @@ def test_origin_of_the_page():
 def test_warm_up_leaves_nothing_to_fit():
     """Afterwards the calibration is there, and an answer on the impact of a block."""
     warm_up.warm_up()
-    fits = calibrate.cache_info().misses
+    fits = hierarchy._calibrated.cache_info().misses
     warm_up._impact()
-    assert calibrate.cache_info().currsize == 1
-    assert calibrate.cache_info().misses == fits
+    assert hierarchy._calibrated.cache_info().currsize >= 1
+    assert hierarchy._calibrated.cache_info().misses == fits
 
 
 def test_what_is_not_installed_is_left_out(monkeypatch):

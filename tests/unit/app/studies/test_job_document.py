@@ -87,7 +87,8 @@ def test_a_vertical_part_in_a_file_is_refused_unread(file, map_job):
 
 def test_only_keys_that_are_known_to_name_no_file_are_taken(map_job, monkeypatch):
     """The keys of motions are a list of what is allowed: one that is not on it, perhaps a new one, is refused."""
-    assert MotionTable.model_fields.keys() - MOTION_KEYS == {"records", "vertical_file", "x", "y", "z"}
+    refused = {"records", "vertical_file", "x", "y", "z", "process", "target", "mirrored", "periods"}
+    assert MotionTable.model_fields.keys() - MOTION_KEYS == refused
     motion = {"synthetic": "pulse-like", "count": 2, "pga": 4.0}
     JobDocument.of(map_job(motions=motion))
     monkeypatch.setattr(job_document, "MOTION_KEYS", MOTION_KEYS - {"pga"})
