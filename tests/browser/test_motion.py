@@ -94,13 +94,12 @@ def test_components_are_chosen_and_the_vertical_one_is_drawn(view: Any, tmp_path
     way(view, "Record file")
     view.get_by_test_id("record-file").set_input_files(path)
     needs = view.get_by_test_id("record-needs")
-    needs.get_by_label("Unit of the accelerations").select_option("m/s2")
-    needs.get_by_label("Horizontal component").select_option("column 2")
+    needs.get_by_label("Horizontal component").select_option("horizontal")
     needs.get_by_role("button", name="Read it so").click()
     held = view.get_by_test_id("record-held")
-    held.get_by_label("Vertical component").select_option("column 3")
+    held.get_by_label("Vertical component").select_option("vertical")
     view.locator("[data-testid=motion-traces] figcaption", has_text="Vertical acceleration").wait_for()
-    assert inputs(view)["motion"]["vertical"] == "column 3"
+    assert inputs(view)["motion"]["vertical"] == "vertical"
 
 
 def test_a_file_that_is_no_record_is_refused_in_words(view: Any) -> None:
@@ -121,19 +120,18 @@ def test_components_can_be_chosen_after_a_reload(view: Any, tmp_path: Path) -> N
     way(view, "Record file")
     view.get_by_test_id("record-file").set_input_files(path)
     needs = view.get_by_test_id("record-needs")
-    needs.get_by_label("Unit of the accelerations").select_option("m/s2")
-    needs.get_by_label("Horizontal component").select_option("column 2")
+    needs.get_by_label("Horizontal component").select_option("horizontal")
     needs.get_by_role("button", name="Read it so").click()
     held = view.get_by_test_id("record-held")
     expect(held.locator(".record-name")).to_be_focused()
     view.reload()
     vertical = held.get_by_label("Vertical component")
-    expect(vertical.locator("option")).to_have_text(["none", "column 3"])
+    expect(vertical.locator("option")).to_have_text(["none", "vertical"])
     vertical.focus()
-    vertical.select_option("column 3")
-    expect(held.get_by_label("Horizontal component").locator("option")).to_have_text(["column 2"])
+    vertical.select_option("vertical")
+    expect(held.get_by_label("Horizontal component").locator("option")).to_have_text(["horizontal"])
     expect(held.get_by_label("Vertical component")).to_be_focused()
-    assert inputs(view)["motion"]["vertical"] == "column 3"
+    assert inputs(view)["motion"]["vertical"] == "vertical"
 
 
 def test_a_clash_of_components_is_undone_in_the_page(view: Any, tmp_path: Path) -> None:
@@ -143,19 +141,18 @@ def test_a_clash_of_components_is_undone_in_the_page(view: Any, tmp_path: Path) 
     way(view, "Record file")
     view.get_by_test_id("record-file").set_input_files(path)
     needs = view.get_by_test_id("record-needs")
-    needs.get_by_label("Unit of the accelerations").select_option("m/s2")
-    needs.get_by_label("Horizontal component").select_option("column 2")
+    needs.get_by_label("Horizontal component").select_option("horizontal")
     needs.get_by_role("button", name="Read it so").click()
     expect(view.get_by_test_id("record-held").locator(".record-name")).to_be_visible()
     found = inputs(view)
-    found["motion"] |= {"vertical": "column 2"}
+    found["motion"] |= {"vertical": "horizontal"}
     view.evaluate("(given) => sessionStorage.setItem('rocking.inputs', JSON.stringify(given))", found)
     view.reload()
     expect(view.get_by_test_id("motion-refusal")).not_to_be_empty()
     held = view.get_by_test_id("record-held")
-    expect(held.get_by_label("Horizontal component").locator("option")).to_have_text(["column 2", "column 3"])
-    expect(held.get_by_label("Vertical component").locator("option")).to_have_text(["none", "column 2", "column 3"])
-    held.get_by_label("Horizontal component").select_option("column 3")
+    expect(held.get_by_label("Horizontal component").locator("option")).to_have_text(["horizontal", "vertical"])
+    expect(held.get_by_label("Vertical component").locator("option")).to_have_text(["none", "horizontal", "vertical"])
+    held.get_by_label("Horizontal component").select_option("vertical")
     expect(view.get_by_test_id("motion-refusal")).to_be_empty()
 
 
