@@ -2,15 +2,12 @@
 
 import { svg } from "/app/dom.js";
 
-// the calibrated model is drawn as a band, so that the server states no colour for it
-const CALIBRATED = { name: "calibrated", short_name: "calibrated", colour: "#8A8A8A", dash: [] };
-
-const models = new Map([[CALIBRATED.name, CALIBRATED]]);
+const models = new Map();
 
 /** Learn the models that the server has; done once, before anything is drawn. */
 export const learnModels = (told) => {
   models.clear();
-  for (const model of [...told, CALIBRATED]) models.set(model.name, model);
+  for (const model of told) models.set(model.name, model);
 };
 
 const SPARE = [
