@@ -9,7 +9,7 @@ import rocking as rk
 from rocking.conventions import g
 from rocking.studies import MotionList, SyntheticSet, minimum_overturning_acceleration
 from rocking.studies.code_methods import CODE_METHODS, compare_code_methods
-from rocking.studies.code_methods.method import Shaking, Stances
+from rocking.studies.code_methods.method import BodySides, Shaking
 
 pytestmark = pytest.mark.verifies(room="studies")
 
@@ -40,20 +40,20 @@ FLAT = Spectrum((rk.GroundMotion([0.0, 1.0, 0.0], 0.1),))
                       control="test_another_model_of_impact_has_another_coefficient")  # fmt: skip
 def test_the_coefficient_of_asce_is_housners():
     """C_R of rectangles is Housner's coefficient of restitution, and the damping is that of two impacts a cycle."""
-    stances = Stances.of(BLOCKS)
-    found = ASCE.restitution(stances)
+    sides = BodySides.of(BLOCKS)
+    found = ASCE.restitution(sides)
     expected = [rk.coefficient_of_restitution(block, "housner") for block in BLOCKS]
     np.testing.assert_allclose(found, np.transpose([expected, expected]), rtol=1e-14)
-    beta = ASCE.damping(stances)
+    beta = ASCE.damping(sides)
     np.testing.assert_allclose(np.exp(-2.0 * math.pi * beta / np.sqrt(1.0 - beta**2)), found**2, rtol=1e-13)
 
 
 @pytest.mark.verifies("negative control")
 def test_another_model_of_impact_has_another_coefficient():
     """KED is not what ASCE's C_R says; a body so squat that C_R is not above zero has no capacity."""
-    found = ASCE.restitution(Stances.of(BLOCKS))[:, 0]
+    found = ASCE.restitution(BodySides.of(BLOCKS))[:, 0]
     assert (np.abs(found - [rk.coefficient_of_restitution(block, "ked") for block in BLOCKS]) > 1e-3).all()
-    squat = Stances.of([rk.Block(width=1.0, height=0.6)])
+    squat = BodySides.of([rk.Block(width=1.0, height=0.6)])
     assert np.isnan(ASCE.damping(squat)).all()
     assert np.isnan(ASCE.capacity(squat, FLAT)).all()
 
@@ -62,23 +62,23 @@ def test_another_model_of_impact_has_another_coefficient():
                       control="within")  # fmt: skip
 def test_the_capacity_of_asce_is_a_work():
     """Of a slender block 2 g f1 / theta falls from nearly twice to once what lifts it, and f_e is that of the work."""
-    stances, rotations = Stances.of([rk.Block(width=0.02, height=1.0)]), np.linspace(0.1, 1.0, 10)
-    alpha = stances.angle[0, 0]
-    capacity = np.array([ASCE.oscillator(stances, ratio * stances.angle)[1][0, 0] for ratio in rotations])
+    sides, rotations = BodySides.of([rk.Block(width=0.02, height=1.0)]), np.linspace(0.1, 1.0, 10)
+    alpha = sides.angle[0, 0]
+    capacity = np.array([ASCE.oscillator(sides, ratio * sides.angle)[1][0, 0] for ratio in rotations])
     # the tolerance holds terms of alpha^2 = 4e-4
     np.testing.assert_allclose(capacity, g * alpha * (2.0 - rotations), rtol=0.01)
     assert not np.allclose(capacity, 2.0 * g * alpha, rtol=0.01)
-    needle = Stances.of([rk.MassPoints([(0.0, 1e9)], [1.0], (-1.0, 1.0))])  # no digits cancel
+    needle = BodySides.of([rk.MassPoints([(0.0, 1e9)], [1.0], (-1.0, 1.0))])  # no digits cancel
     assert ASCE.oscillator(needle, needle.angle)[1] == pytest.approx(g * needle.angle, rel=1e-9)
     # half the stiffness times theta^2 is the work m g R (1 - cos) that the rotation needs: K = I_O omega^2
-    side, stances = CABINET.side("right"), Stances.of([CABINET])
+    side, sides = CABINET.side("right"), BodySides.of([CABINET])
     alpha, size = side.slenderness_angle, side.semi_diagonal
     for theta in alpha * rotations:
-        period, _ = ASCE.oscillator(stances, np.full((1, 2), theta))
+        period, _ = ASCE.oscillator(sides, np.full((1, 2), theta))
         work = side.mass * g * size * (math.cos(alpha - theta) - math.cos(alpha))
         stiffness = side.moment_of_inertia * (2.0 * math.pi / period[0, 0]) ** 2
         assert 0.5 * stiffness * theta**2 == pytest.approx(work, rel=1e-12)
-    flat = ASCE.capacity(Stances.of([BLOCKS[2]]), FLAT)
+    flat = ASCE.capacity(BodySides.of([BLOCKS[2]]), FLAT)
     alpha = BLOCKS[2].slenderness_angle
     assert flat[0, 0] == pytest.approx(2.0 * g * (1.0 / math.cos(alpha) - 1.0) / alpha, rel=1e-12)
 
@@ -86,14 +86,14 @@ def test_the_capacity_of_asce_is_a_work():
 @pytest.mark.verifies("closed form", "both published forms of the velocity", within="2.5 %", control="within")
 def test_both_forms_of_ishiyamas_velocity_agree():
     """The form with R is exact for rectangles; 10 B / sqrt(H), in cm, is its slender limit but for rounding of 10.2."""
-    found = ISHIYAMA.velocity(Stances.of(BLOCKS))[:, 0]
+    found = ISHIYAMA.velocity(BodySides.of(BLOCKS))[:, 0]
     for block, velocity in zip(BLOCKS, found, strict=True):
         alpha, size = block.slenderness_angle, block.semi_diagonal
         form = 0.4 * math.sqrt(8.0 * g * size / 3.0 * (1.0 - math.cos(alpha)) / math.cos(alpha) ** 2)
         assert velocity == pytest.approx(form, rel=1e-13)
     slender = rk.Block(width=0.02, height=1.0)
     in_cm = 10.0 * 2.0 / math.sqrt(100.0)
-    (velocity,) = ISHIYAMA.velocity(Stances.of([slender]))[:, 0]
+    (velocity,) = ISHIYAMA.velocity(BodySides.of([slender]))[:, 0]
     assert 100.0 * velocity == pytest.approx(in_cm, rel=0.025)  # 0.4 sqrt(2 g / 3) is 10.2 in cm and s
     assert 100.0 * velocity != pytest.approx(in_cm, rel=0.01)
 
@@ -102,7 +102,7 @@ def test_both_forms_of_ishiyamas_velocity_agree():
 @pytest.mark.parametrize("block", BLOCKS[1:], ids=str)
 def test_an_impulse_of_that_velocity_overturns(block):
     """A push so short that it is one jump of the ground's velocity overturns just above v / 0.4, and not below."""
-    (velocity,) = ISHIYAMA.velocity(Stances.of([block]))[:, 0] / 0.4
+    (velocity,) = ISHIYAMA.velocity(BodySides.of([block]))[:, 0] / 0.4
     time = 1e-5
     ends = [
         rk.simulate(block, rk.pulses.rectangular(factor * velocity / time, time), 0.0).outcome.name
@@ -117,7 +117,7 @@ def test_an_impulse_of_that_velocity_overturns(block):
 def test_housners_pulse_overturns_as_the_engine_says(duration):
     """The acceleration solves Housner's equation, and is the least that overturns in the linear equations."""
     block = BLOCKS[2]
-    (found,) = PULSE.acceleration(Stances.of([block]), np.array(duration))[:, 0]
+    (found,) = PULSE.acceleration(BodySides.of([block]), np.array(duration))[:, 0]
     ratio = found / (g * block.slenderness_angle)
     assert math.cosh(block.frequency_parameter * duration) == pytest.approx(
         1.0 + 0.5 / (ratio * (ratio - 1.0)), rel=1e-12
@@ -138,7 +138,7 @@ def test_both_branches_of_kaneko_and_hayashi_meet():
         quick = 0.01 * 10.0 * 100.0 * block.width / math.sqrt(height) * (1.0 + ratio) ** 2.5 * 2.0 * math.pi
         assert slow / quick == pytest.approx(published, rel=1e-3)
         found = [
-            float(KANEKO.acceleration(Stances.of([block]), np.array(factor * published))[0, 0])
+            float(KANEKO.acceleration(BodySides.of([block]), np.array(factor * published))[0, 0])
             for factor in (0.5, 0.998, 1.002, 2.0)
         ]
         assert found[:2] == pytest.approx([slow, slow], rel=1e-13)
@@ -151,15 +151,15 @@ def test_the_worse_side_of_a_body_counts():
     """A body and its mirror image have one capacity, the lesser of both sides; motions twice as strong have half."""
     shaking = Shaking.of([rk.pulses.sine(2.0, 0.7), rk.pulses.cosine(1.5, 0.4)])
     twice = Shaking.of([motion.scaled(2.0) for motion in shaking.motions])
-    stances, mirrored = (Stances.of([body]) for body in (CABINET, CABINET.mirrored()))
+    sides, mirrored = (BodySides.of([body]) for body in (CABINET, CABINET.mirrored()))
     for method in CODE_METHODS.values():
-        sides = method.of_sides(stances, shaking)
+        sides = method.of_sides(sides, shaking)
         worse = sides.min(axis=2)
         assert (sides.max(axis=2) > 1.05 * worse).all()
-        capacity = method.capacity(stances, shaking)
-        np.testing.assert_allclose(capacity, worse if method.holds(stances, shaking).all() else np.nan, rtol=1e-15)
+        capacity = method.capacity(sides, shaking)
+        np.testing.assert_allclose(capacity, worse if method.holds(sides, shaking).all() else np.nan, rtol=1e-15)
         np.testing.assert_allclose(method.capacity(mirrored, shaking), capacity, rtol=1e-12)
-        np.testing.assert_allclose(method.capacity(stances, twice), 0.5 * capacity, rtol=1e-12)
+        np.testing.assert_allclose(method.capacity(sides, twice), 0.5 * capacity, rtol=1e-12)
 
 
 @pytest.mark.verifies("behaviour")
@@ -171,8 +171,8 @@ def test_outside_its_domain_a_method_says_nothing():
     bodies = [slender, squat, tee, CABINET]
     level = rk.GroundMotion([0.0, 2.0, -2.0, 0.0], 0.1)
     jolted = rk.GroundMotion([0.0, 2.0, -2.0, 0.0], 0.1, vertical=[0.0, 1.0, -1.0, 0.0])
-    stances = Stances.of(bodies)
-    said = {name: ~np.isnan(each.capacity(stances, Shaking.of([level, jolted]))) for name, each in CODE_METHODS.items()}
+    sides = BodySides.of(bodies)
+    said = {name: ~np.isnan(each.capacity(sides, Shaking.of([level, jolted]))) for name, each in CODE_METHODS.items()}
     assert said.pop("asce-43").tolist() == [[True, True, True, False], [False] * 4]
     assert said.pop("kaneko-hayashi").tolist() == [[True, True, False, False]] * 2
     assert said.pop("housner-pulse").tolist() == [[True, False, True, True]] * 2  # CABINET's weaker side: 17.3 degrees

@@ -21,7 +21,7 @@ from rocking.prediction.mechanics import FRICTION, parts, several
 from rocking.prediction.uncertain import Uncertain
 from rocking.restitution import RestitutionModel, model, models
 from rocking.studies.code_methods import CODE_METHODS
-from rocking.studies.code_methods.method import Shaking, Stances
+from rocking.studies.code_methods.method import BodySides, Shaking
 from rocking.studies.margins import Margins
 from rocking.studies.motion_sets import MotionList
 
@@ -119,7 +119,7 @@ def assess(
     given = FRICTION[0] if friction is None else friction
     coefficient = float(Uncertain.of("friction", given, *FRICTION[1:]).quantile(np.array([0.5]))[0])
     sliding = _margin(body, kept, chosen[worst[0]], {**options, "friction": coefficient})
-    stances, shaking = Stances.of([body], gravity), Shaking.of(kept)
+    sides, shaking = BodySides.of([body], gravity), Shaking.of(kept)
     prediction = predict(
         body, whole, restitution=known.pop("predicted", None), friction=friction, gravity=gravity, threads=threads,
         progress=progress, **known,
@@ -129,7 +129,7 @@ def assess(
         body=body, motions=tuple(plane), records=records, models=found, refused=refused,
         friction=coefficient, sliding=sliding,
         lifts=np.array([lifting_factor(body, each, gravity) for each in plane]),
-        capacities={name: each.capacity(stances, shaking)[:, 0] for name, each in CODE_METHODS.items()},
+        capacities={name: each.capacity(sides, shaking)[:, 0] for name, each in CODE_METHODS.items()},
         prediction=prediction,
         remedies=remedies(
             body, plane, margin, gravity, {name: chosen[name] for name in worst}, falls=lowest <= margin

@@ -10,7 +10,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies import compare_code_methods
 from rocking.studies.code_methods import CODE_METHODS
 from rocking.studies.code_methods.comparison import _quantiles
-from rocking.studies.code_methods.method import Stances
+from rocking.studies.code_methods.method import BodySides
 
 SMALL, LARGE = (rk.Block(width=0.2 * height, height=height) for height in (0.6, 6.0))
 PULSES = [rk.pulses.sine(1.0, period) for period in (0.3, 0.4, 0.5, 0.6, 0.8, 1.2)]
@@ -80,7 +80,7 @@ def test_every_method_says_where_it_stands(method):
 def test_what_is_refused():
     box = rk.dynamics.SpatialBody.box(width=0.3, depth=0.3, height=1.0)
     with pytest.raises(InvalidValueError, match="code methods know plane bodies"):
-        Stances.of([box])
+        BodySides.of([box])
     with pytest.raises(InvalidValueError, match="code methods know plane bodies"):
         compare_code_methods(box, PULSES)
     with pytest.raises(InvalidValueError, match="at least one body"):

@@ -34,7 +34,7 @@ _JITTER, _DROPPED = 0.02, 1.5
 
 
 @dataclass(frozen=True)
-class Asked:
+class ReaderOptions:
     """What was asked for beside a file."""
 
     kind: str | None = None
@@ -76,10 +76,10 @@ class MeasuredTable:
             raise self.source.error(None, f"{what}={name!r:.60} names {len(called)} of {self.listed()}")
         return called[0]
 
-    def times(self, asked: Asked) -> int | None:
+    def times(self, options: ReaderOptions) -> int | None:
         """Return where the times are, by their name."""
-        if asked.time_column is not None:
-            return self.place("time_column", asked.time_column)
+        if options.time_column is not None:
+            return self.place("time_column", options.time_column)
         called = [place for place, name in enumerate(self.names) if _NAMED_TIME.fullmatch(name.strip())]
         if len(called) > 1:
             raise self.source.error(None, f"several columns are called a time; say time_column= one of {self.listed()}")
@@ -102,48 +102,50 @@ class MeasuredTable:
         return ", ".join(map(repr, self.names))
 
 
-def impact_list(source: Source, asked: Asked) -> ImpactTimes:
+def impact_list(source: Source, options: ReaderOptions) -> ImpactTimes:
     """Return the times of impacts that a column lists."""
-    if asked.height is not None:
+    if options.height is not None:
         raise source.error(None, "a list of times takes no height=")
     table = MeasuredTable.of(source)
-    name = asked.column if asked.column is not None else asked.time_column
-    place = table.place("column", name) if name is not None else table.times(asked)
+    name = options.column if options.column is not None else options.time_column
+    place = table.place("column", name) if name is not None else table.times(options)
     if place is None:
         if len(table.names) > 1:
             raise source.error(None, f"which column has the times of impacts? Say column= one of {table.listed()}")
         place = 0
-    unit = table.unit(place, asked.unit if asked.unit is not None else asked.time_unit, "unit")
+    unit = table.unit(place, options.unit if options.unit is not None else options.time_unit, "unit")
     factor = TIME_UNITS[checks.one_of("unit of the times", unit, TIME_UNITS)]
     return ImpactTimes(_increasing(table, place, factor), source=source.name)
 
 
-def motion_series(source: Source, asked: Asked) -> RotationSeries | ImpactTimes:
+def motion_series(source: Source, options: ReaderOptions) -> RotationSeries | ImpactTimes:
     """Return how a body turned, by one column against the times; times alone can be those of impacts only."""
     table = MeasuredTable.of(source)
-    at = table.times(asked)
-    if len(table.names) == 1 and asked.kind is None and (at is not None or table.units[0] in TIME_UNITS):
-        return impact_list(source, asked)
+    at = table.times(options)
+    if len(table.names) == 1 and options.kind is None and (at is not None or table.units[0] in TIME_UNITS):
+        return impact_list(source, options)
     if at is None:
         raise source.error(None, f"which column is the time? Call it time [s], or say time_column= of {table.listed()}")
-    factor = TIME_UNITS[checks.one_of("unit of the times", table.unit(at, asked.time_unit, "time_unit"), TIME_UNITS)]
+    factor = TIME_UNITS[checks.one_of("unit of the times", table.unit(at, options.time_unit, "time_unit"), TIME_UNITS)]
     others = [place for place in range(len(table.names)) if place != at]
-    if asked.column is None and len(others) != 1:
+    if options.column is None and len(others) != 1:
         raise source.error(None, f"which column was measured? Say column= one of {table.listed()}")
-    place = others[0] if asked.column is None else table.place("column", asked.column)
-    unit = table.unit(place, asked.unit, "unit")
-    kind = _kind(table, unit, asked.kind)
-    if (kind in _NEEDS_HEIGHT) != (asked.height is not None):
-        raise source.error(None, f"{kind}: {'give' if asked.height is None else 'takes no'} height= of the sensor [m]")
+    place = others[0] if options.column is None else table.place("column", options.column)
+    unit = table.unit(place, options.unit, "unit")
+    kind = _kind(table, unit, options.kind)
+    if (kind in _NEEDS_HEIGHT) != (options.height is not None):
+        raise source.error(
+            None, f"{kind}: {'give' if options.height is None else 'takes no'} height= of the sensor [m]"
+        )
     time = _increasing(table, at, factor)
     values = table.values[:, place] * UNITS[kind][unit]
     doubts = clock_doubts(time)
     if kind == "angular velocity":
         return RotationSeries(time, angular_velocity=values, source=source.name, doubts=doubts)
     if kind == "displacement":
-        values = rotation_of_displacement(values, checks.length("height", asked.height))
+        values = rotation_of_displacement(values, checks.length("height", options.height))
     elif kind == "acceleration":
-        values, said = rotation_of_acceleration(time, values, checks.length("height", asked.height))
+        values, said = rotation_of_acceleration(time, values, checks.length("height", options.height))
         doubts += said
     felt = kind == "acceleration"
     return RotationSeries(time, rotation=values, source=source.name, doubts=doubts, from_acceleration=felt)
@@ -165,13 +167,13 @@ def clock_doubts(time: FloatArray) -> tuple[str, ...]:
     return tuple(doubts)
 
 
-def _kind(table: MeasuredTable, unit: str, asked: str | None) -> str:
+def _kind(table: MeasuredTable, unit: str, options: str | None) -> str:
     kinds = [kind for kind, units in UNITS.items() if unit in units]
     if not kinds:
         known = ", ".join(unit for units in UNITS.values() for unit in units)
         raise table.source.error(None, f"unit {unit!r} is none of {known}")
-    if asked not in (None, kinds[0]):
-        raise table.source.error(None, f"{unit} is a unit of {kinds[0]}, kind={asked!r} was asked for")
+    if options not in (None, kinds[0]):
+        raise table.source.error(None, f"{unit} is a unit of {kinds[0]}, kind={options!r} was asked for")
     return kinds[0]
 
 

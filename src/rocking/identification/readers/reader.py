@@ -6,7 +6,7 @@ from pathlib import Path
 from rocking import checks
 from rocking.errors import MeasurementError, RecordError, RockingError
 from rocking.identification.measurement import ImpactTimes, RotationSeries
-from rocking.identification.readers.columns import Asked, impact_list, motion_series
+from rocking.identification.readers.columns import ReaderOptions, impact_list, motion_series
 from rocking.identification.readers.compressed import COMPRESSED, read_compressed
 from rocking.identification.readers.sound import impacts_heard, refuse_sound
 from rocking.identification.readers.wav import read_wav
@@ -80,10 +80,10 @@ def read_measurement(
     """
     kind = None if kind is None else checks.one_of("kind", kind, KINDS)
     path = Path(path)
-    asked = Asked(kind, column, unit, time_column, time_unit, height)
+    options = ReaderOptions(kind, column, unit, time_column, time_unit, height)
     try:
         source = Source.of_path(path)
-        return _reader(path, kind)(source, asked)
+        return _reader(path, kind)(source, options)
     except RecordError as error:  # from what reads the columns of ground motions too
         raise MeasurementError(str(error)) from error
     except RockingError:
@@ -93,7 +93,7 @@ def read_measurement(
         raise MeasurementError(what) from error
 
 
-def _reader(path: Path, kind: str | None) -> Callable[[Source, Asked], Measurement]:
+def _reader(path: Path, kind: str | None) -> Callable[[Source, ReaderOptions], Measurement]:
     suffix = path.suffix.lower()
     if suffix in _NOT_DECODED:
         raise refuse_sound(path.name, suffix)
@@ -108,8 +108,8 @@ def _reader(path: Path, kind: str | None) -> Callable[[Source, Asked], Measureme
     return impact_list if kind == "times" else motion_series
 
 
-def _heard(source: Source, asked: Asked) -> ImpactTimes:
-    if given := asked.names():
+def _heard(source: Source, options: ReaderOptions) -> ImpactTimes:
+    if given := options.names():
         raise MeasurementError(f"{source.name}: a sound takes no {given}: these are for tables")
     wav = source.name.lower().endswith(".wav")
     return impacts_heard((read_wav if wav else read_compressed)(source.content, source.name))

@@ -10,8 +10,8 @@ import numpy as np
 
 from rocking.motions.formats import headers, numbers
 from rocking.motions.formats.column_text import unit_named
+from rocking.motions.formats.header_values import after, header_text, header_value, side_by_side
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
-from rocking.motions.formats.said import after, said, side_by_side, text_said
 
 _HEADER = 16
 
@@ -32,20 +32,20 @@ class Csmnc(RecordFormat):
         first = after(source, "PRE-EVENT TIME:", self.top)
         while first < len(source.lines) and not re.search(r"\d", source.lines[first]):
             first += 1
-        stated = said(source, first, "(?:UN)?CORRECTED", r"\w+\s+UNIT:\s*(\S+)")[1]
+        stated = header_value(source, first, "(?:UN)?CORRECTED", r"\w+\s+UNIT:\s*(\S+)")[1]
         unit = unit_named(source, None, stated)
         if unit is None:
             raise source.error(None, f"unit CM/SEC/SEC expected, found {stated[:20]!r}")
         unit = headers.acceleration_unit(source, unit, units)
-        points = said(
+        points = header_value(
             source, first, r"NO\. OF POINTS:", r"(\d{1,9})\s+EQUALLY SPACED INTERVALS OF:\s*(\d*\.?\d+)\s*SEC"
         )
         step = headers.step_between_samples(source, float(points[2]), time_step)
-        peak = said(
+        peak = header_value(
             source, first, "PEAK VALUE:", r"([-+]?\d*\.?\d+)\s+AT\s+(\d*\.?\d+)\s*SEC\s+DURATION:\s*(\d*\.?\d+)\s*SEC"
         )
-        name = text_said(source, first, r"COMP\.") or "acceleration"
-        texts = {"date": source.lines[1], "event": source.lines[2], "station": text_said(source, first, "STATION:")}
+        name = header_text(source, first, r"COMP\.") or "acceleration"
+        texts = {"date": source.lines[1], "event": source.lines[2], "station": header_text(source, first, "STATION:")}
         about = Record(self.name, (Component(name, np.empty(0), unit, step),), "", metadata_of(**texts))
         record = side_by_side(source, about, first, int(points[1]), (peak[1],))
         (part,) = record.components

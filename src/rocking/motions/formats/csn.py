@@ -10,8 +10,8 @@ from typing import ClassVar
 import numpy as np
 
 from rocking.motions.formats import headers
+from rocking.motions.formats.header_values import after, header_text, header_value, side_by_side
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
-from rocking.motions.formats.said import after, said, side_by_side, text_said
 
 
 class Csn(RecordFormat):
@@ -33,18 +33,20 @@ class Csn(RecordFormat):
             if not text.startswith("#"):
                 raise source.error(line, "a comment expected, before the first sample")
         unit = headers.acceleration_unit(source, "m/s2", units)
-        rate = float(said(source, first, r"# *Tasa de muestreo[^:\d]*:?", r"(\d+\.?\d*)\s*(?:muestras|Hz|sps)\S*.*")[1])
+        rate = float(
+            header_value(source, first, r"# *Tasa de muestreo[^:\d]*:?", r"(\d+\.?\d*)\s*(?:muestras|Hz|sps)\S*.*")[1]
+        )
         step = headers.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, time_step)
         found = sum(1 for text in source.lines[first:] if text.strip())
         # not in the description; where a line speaks of samples it must be understood
         if any(re.search(r"\bmuestras\b", text) and "Tasa" not in text for text in source.lines[:first]):
-            stated = said(source, first, r"# *N\S*mero de muestras\s*:?", r"\d{1,9}")[0]
+            stated = header_value(source, first, r"# *N\S*mero de muestras\s*:?", r"\d{1,9}")[0]
             headers.check_count(source, int(stated), found)
-        place = text_said(source, first, r"# *Esta\S*").split()
+        place = header_text(source, first, r"# *Esta\S*").split()
         name = place[-1] if len(place) > 1 else "acceleration"
         metadata = metadata_of(
             station=place[0].strip(",") if place else "",
-            starttime=text_said(source, first, r"# *Tiempo[^:]*:").rstrip("Z"),
+            starttime=header_text(source, first, r"# *Tiempo[^:]*:").rstrip("Z"),
         )
         about = Record(self.name, (Component(name, np.empty(0), unit, step),), "", metadata)
         return side_by_side(source, about, first, found)

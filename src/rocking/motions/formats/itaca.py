@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.header_values import after, header_text, header_value, side_by_side
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
-from rocking.motions.formats.said import after, said, side_by_side, text_said
 
 _KEYS = {
     "event": "Event Date & Time",
@@ -36,14 +36,14 @@ class Itaca(RecordFormat):
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         first = after(source, r"Acc\w+ time series in\b", self.top)
-        said(source, first, r"Acc\w+ time series in", "m/s/s")
+        header_value(source, first, r"Acc\w+ time series in", "m/s/s")
         unit = headers.acceleration_unit(source, "m/s2", units)
-        step = float(said(source, first, r"Time Increment \(s\)\s*:", r"\d*\.?\d+")[0])
+        step = float(header_value(source, first, r"Time Increment \(s\)\s*:", r"\d*\.?\d+")[0])
         step = headers.step_between_samples(source, step, time_step)
-        count = int(said(source, first, r"Number of Data\s*:", r"\d{1,9}")[0])
-        peak = said(source, first, r"PGA \(m/s/s\)\s*:", r"[-+]?\d*\.?\d+(?:E[-+]\d+)?")[0]
-        name = text_said(source, first, r"Orientation\s*:") or "acceleration"
-        metadata = metadata_of(**{key: text_said(source, first, rf"{word}\s*:") for key, word in _KEYS.items()})
+        count = int(header_value(source, first, r"Number of Data\s*:", r"\d{1,9}")[0])
+        peak = header_value(source, first, r"PGA \(m/s/s\)\s*:", r"[-+]?\d*\.?\d+(?:E[-+]\d+)?")[0]
+        name = header_text(source, first, r"Orientation\s*:") or "acceleration"
+        metadata = metadata_of(**{key: header_text(source, first, rf"{word}\s*:") for key, word in _KEYS.items()})
         about = Record(self.name, (Component(name, np.empty(0), unit, step),), "", metadata)
         return side_by_side(source, about, first, count, (peak,), (_PER_LINE, _WIDTH))
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from rocking.errors import RecordError
 from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.header_values import after, columns_of, header_text, header_value, side_by_side
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
-from rocking.motions.formats.said import after, columns_of, said, side_by_side, text_said
 
 _PEAK = r"\(([^()]+)\)\s*([-+]?\d*\.?\d+)"
 _KEYS = {"event": "EARTHQUAKE DATE", "station": "PLACE", "station number": "STATION ID", "Record Time": "RECORD TIME"}
@@ -32,10 +32,10 @@ class Nsmn(RecordFormat):
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         first = after(source, r"\s*N\w*-S\w*\s+E\w*-W\w*\s+U\w*-D\w*\s*$", self.top)
-        count = int(said(source, first, r"NUMBER OF DATA\s*:", r"\d{1,9}")[0])
-        stated = float(said(source, first, r"SAMPLING INTERVAL \(sec\)\s*:", r"\d*\.?\d+")[0])
+        count = int(header_value(source, first, r"NUMBER OF DATA\s*:", r"\d{1,9}")[0])
+        stated = float(header_value(source, first, r"SAMPLING INTERVAL \(sec\)\s*:", r"\d*\.?\d+")[0])
         step = headers.step_between_samples(source, stated, time_step)
-        found = said(source, first, r"(?:RAW |CORRECTED )?PGA VALUES", rf"\(gal\)\s*:\s*((?:{_PEAK}\s*){{3}})")
+        found = header_value(source, first, r"(?:RAW |CORRECTED )?PGA VALUES", rf"\(gal\)\s*:\s*((?:{_PEAK}\s*){{3}})")
         unit = headers.acceleration_unit(source, "gal", units)
         peaks = re.findall(_PEAK, found[1])
         names = source.lines[first - 1].split()
@@ -43,7 +43,7 @@ class Nsmn(RecordFormat):
             raise source.error(
                 first - 1, f"the peaks are of {', '.join(name for name, _ in peaks)}, the columns of others"
             )
-        metadata = {key: text_said(source, first, rf"{word}\s*:") for key, word in _KEYS.items()}
+        metadata = {key: header_text(source, first, rf"{word}\s*:") for key, word in _KEYS.items()}
         metadata = metadata_of(**{key.replace(" ", "_"): text for key, text in metadata.items()})
         about = Record(self.name, tuple(Component(name, np.empty(0), unit, step) for name in names), "", metadata)
         return side_by_side(source, about, first, count, [peak for _, peak in peaks])

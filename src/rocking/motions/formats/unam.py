@@ -9,8 +9,8 @@ from typing import ClassVar
 import numpy as np
 
 from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.header_values import after, columns_of, header_text, header_value, side_by_side
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
-from rocking.motions.formats.said import after, columns_of, said, side_by_side, text_said
 
 _RULE = "---------+" * 8
 _TOP = 150
@@ -32,17 +32,17 @@ class Unam(RecordFormat):
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         head = after(source, "DATOS DE ACELERACION", _TOP)
         first = after(source, r"-{9}\+", head + 10)
-        channels = int(said(source, head, r"NUMERO DE CANALES\s*:", r"0?[1-9]|1[0-2]")[0])
+        channels = int(header_value(source, head, r"NUMERO DE CANALES\s*:", r"0?[1-9]|1[0-2]")[0])
         counts = _listed(source, head, r"NUM\. TOTAL DE MUESTRAS", channels, r"\d{1,9}")
         steps = _listed(source, head, "INTERVALO DE MUESTREO", channels, r"\d*\.?\d+")
         names = _listed(source, head, "ORIENTACION", channels, r"[^/]*")
         peaks = _listed(source, head, r"ACEL\. MAX\.\s*\(Gal\)", channels, r"[-+]?\d*\.?\d+")
         if len(set(counts)) > 1 or len({float(one) for one in steps}) > 1:
             raise source.error(None, "channels of different length or step are not read")
-        said(source, head, r"UNIDADES DE LOS DATOS\s*:", r"(?:Gal|cm/s/s|cm/s\^?2)\b.*")
+        header_value(source, head, r"UNIDADES DE LOS DATOS\s*:", r"(?:Gal|cm/s/s|cm/s\^?2)\b.*")
         unit = headers.acceleration_unit(source, "gal", units)
         step = headers.step_between_samples(source, float(steps[0]), time_step)
-        form = said(source, head, r"FORMATO DATOS[^:]*:", r".*")[0]
+        form = header_value(source, head, r"FORMATO DATOS[^:]*:", r".*")[0]
         across, width = numbers.fortran_form(source, head, form)
         if across != channels:
             raise source.error(None, f"{channels} channels are stated, and samples in {form[:20]}")
@@ -53,7 +53,7 @@ class Unam(RecordFormat):
             "station": r"NOMBRE DE LA ESTACION\s*:",
             "magnitude": r"MAGNITUD\(ES\)\s*:",
         }
-        metadata = metadata_of(**{key: text_said(source, head, word) for key, word in texts.items()})
+        metadata = metadata_of(**{key: header_text(source, head, word) for key, word in texts.items()})
         about = Record(self.name, tuple(Component(name, np.empty(0), unit, step) for name in names), "", metadata)
         return side_by_side(source, about, first, int(counts[0]), peaks, (across, width))
 
@@ -84,7 +84,7 @@ def _listed(source: Source, last: int, key: str, channels: int, form: str) -> li
     words: list[str] = []
     for which in ("C1-C6", "C7-C12"):
         if len(words) < channels:
-            words += said(source, last, rf"{key},?\s*{which}[^:]*:", r"/.*")[0][1:].split("/")
+            words += header_value(source, last, rf"{key},?\s*{which}[^:]*:", r"/.*")[0][1:].split("/")
     words = [word.strip() for word in words]
     if len(words) != channels or not all(re.fullmatch(form, word) for word in words):
         raise source.error(

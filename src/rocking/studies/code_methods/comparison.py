@@ -14,7 +14,7 @@ from rocking.conventions import BoolArray, FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import measure as measure_of
 from rocking.statistics.counts import LEAST_CLUSTERS, share_interval
-from rocking.studies.code_methods.method import CodeMethod, Shaking, Stances
+from rocking.studies.code_methods.method import BodySides, CodeMethod, Shaking
 from rocking.studies.code_methods.methods import CODE_METHODS
 from rocking.studies.fragility.subject import checked_levels
 from rocking.studies.margins import Margins
@@ -298,7 +298,7 @@ def compare_code_methods(
         raise InvalidValueError("bodies must be at least one body, got none")
     chosen = tuple(CODE_METHODS[checks.one_of("methods", each, list(CODE_METHODS))] for each in methods or CODE_METHODS)
     gravity = options.get("gravity")
-    stances = Stances.of(several) if gravity is None else Stances.of(several, gravity)
+    sides = BodySides.of(several) if gravity is None else BodySides.of(several, gravity)
     kept = MotionList([motions[k] for k in range(len(motions))] if isinstance(motions, MotionSet) else motions)
     shaking, level = Shaking.of(kept), measure_of(measure)
     at = None if levels is None else checked_levels("levels", levels, level.unit)
@@ -310,7 +310,7 @@ def compare_code_methods(
         levels=("as they are",)
         if at is None
         else tuple(f"{level.name} = {value:g} {level.unit}".removesuffix(" -") for value in at),
-        capacity=np.array([each.capacity(stances, shaking) for each in chosen]),
+        capacity=np.array([each.capacity(sides, shaking) for each in chosen]),
         overturning=np.stack([each.least for each in cases], axis=1),
         factors=np.stack([each.factors for each in cases], axis=1),
         overturned=np.stack([each.overturned for each in cases], axis=1),

@@ -18,7 +18,7 @@ from rocking.motions.spectrum import response_spectrum
 
 
 @dataclass(frozen=True)
-class Stances:
+class BodySides:
     """Bodies seen from either foot, one row a body, right and left in a column each."""
 
     half_width: FloatArray  # horizontal distance b from the foot to the centre of mass [m]
@@ -27,7 +27,7 @@ class Stances:
     gravity: float = g  # [m/s2]
 
     @classmethod
-    def of(cls, bodies: Sequence[Body], gravity: float = g) -> "Stances":
+    def of(cls, bodies: Sequence[Body], gravity: float = g) -> "BodySides":
         """Return what the methods see of plane bodies; gravity: [m/s2]."""
         for body in bodies:
             if not isinstance(body, Body):
@@ -123,12 +123,12 @@ class CodeMethod(ABC):
     example: ClassVar[str] = "none of the source was at hand"  # with what numbers of the source it was compared
 
     @abstractmethod
-    def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
+    def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
         """Return the factor on every motion at which the limit is reached.
 
         Parameters
         ----------
-        stances, shaking
+        sides, shaking
             As for `capacity`.
 
         Returns
@@ -137,12 +137,12 @@ class CodeMethod(ABC):
             Of a shape that fits (motions, bodies, 2) [-].
         """
 
-    def holds(self, stances: Stances, shaking: Shaking) -> BoolArray:
+    def holds(self, sides: BodySides, shaking: Shaking) -> BoolArray:
         """Return whether a body under a motion is in the domain.
 
         Parameters
         ----------
-        stances, shaking
+        sides, shaking
             As for `capacity`.
 
         Returns
@@ -152,13 +152,13 @@ class CodeMethod(ABC):
         """
         return np.ones((1, 1), dtype=np.bool_)
 
-    def capacity(self, stances: Stances, shaking: Shaking) -> FloatArray:
+    def capacity(self, sides: BodySides, shaking: Shaking) -> FloatArray:
         """Return the factor on every motion up to which a body is called safe.
 
         Parameters
         ----------
-        stances : Stances
-            Bodies, as ``Stances.of(bodies)``.
+        sides : BodySides
+            Bodies, as ``BodySides.of(bodies)``.
         shaking : Shaking
             Motions, as ``Shaking.of(motions)``.
 
@@ -167,6 +167,6 @@ class CodeMethod(ABC):
         ndarray, shape (motions, bodies)
             Of the worse side; NaN outside the domain [-].
         """
-        shape = (len(shaking.motions), *stances.slope.shape)
-        worse = np.broadcast_to(self.of_sides(stances, shaking), shape).min(axis=2)
-        return np.where(self.holds(stances, shaking), worse, np.nan)
+        shape = (len(shaking.motions), *sides.slope.shape)
+        worse = np.broadcast_to(self.of_sides(sides, shaking), shape).min(axis=2)
+        return np.where(self.holds(sides, shaking), worse, np.nan)

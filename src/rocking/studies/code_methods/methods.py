@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray
-from rocking.studies.code_methods.method import CodeMethod, Shaking, Stances
+from rocking.studies.code_methods.method import BodySides, CodeMethod, Shaking
 
 
 class StaticOverturning(CodeMethod):
@@ -18,9 +18,9 @@ class StaticOverturning(CodeMethod):
     reading = "certain: it is the equilibrium of moments about the foot"
     example = "closed form: the acceleration of uplift"
 
-    def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
+    def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
         """Eq. 294."""
-        return stances.uplift / shaking.acceleration  # Eq. 294
+        return sides.uplift / shaking.acceleration  # Eq. 294
 
 
 class ItalianLinearKinematic(CodeMethod):
@@ -37,9 +37,9 @@ class ItalianLinearKinematic(CodeMethod):
     )
     behaviour_factor = 2.0  # q [-]
 
-    def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
+    def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
         """Eq. 295."""
-        return self.behaviour_factor * stances.uplift / shaking.acceleration  # Eq. 295
+        return self.behaviour_factor * sides.uplift / shaking.acceleration  # Eq. 295
 
 
 class AsceRocking(CodeMethod):
@@ -61,35 +61,35 @@ class AsceRocking(CodeMethod):
     )
     example = "closed form: C_R of a rectangle is Housner's coefficient"
 
-    def holds(self, stances: Stances, shaking: Shaking) -> BoolArray:
+    def holds(self, sides: BodySides, shaking: Shaking) -> BoolArray:
         """Symmetric, and without vertical motion."""
-        return np.asarray(stances.symmetric & ~shaking.vertical)
+        return np.asarray(sides.symmetric & ~shaking.vertical)
 
     @staticmethod
-    def restitution(stances: Stances) -> FloatArray:
+    def restitution(sides: BodySides) -> FloatArray:
         """Return C_R of every side [-]."""
-        a = stances.slope
-        return 1.0 - 2.0 * a**2 / stances.inertia  # Eq. 296
+        a = sides.slope
+        return 1.0 - 2.0 * a**2 / sides.inertia  # Eq. 296
 
-    def damping(self, stances: Stances) -> FloatArray:
+    def damping(self, sides: BodySides) -> FloatArray:
         """Return beta_e of every side; NaN where C_R is not above zero [-]."""
-        r = self.restitution(stances)
+        r = self.restitution(sides)
         gamma = -2.0 * np.log(np.where(r > 0.0, r, np.nan))
         return np.asarray(gamma / np.hypot(2.0 * math.pi, gamma))  # Eq. 297
 
     @staticmethod
-    def oscillator(stances: Stances, rotation: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def oscillator(sides: BodySides, rotation: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return period [s] and capacity [m/s2] at a rotation of every side [rad]."""
-        a, h = stances.slope, stances.height
+        a, h = sides.slope, sides.height
         half = 0.5 * rotation
         f1 = 2.0 * np.sin(half) * (a * np.cos(half) - np.sin(half))  # cos + a sin - 1, to all digits of slender bodies
-        work = 2.0 * stances.gravity * f1
-        period = 2.0 * math.pi * rotation * np.sqrt(stances.inertia * h / work)  # Eq. 298
+        work = 2.0 * sides.gravity * f1
+        period = 2.0 * math.pi * rotation * np.sqrt(sides.inertia * h / work)  # Eq. 298
         return period, work / rotation  # Eq. 299
 
-    def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
+    def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
         """Eqs. 296 to 299, at the rotation that overturns."""
-        beta, (period, capacity) = self.damping(stances), self.oscillator(stances, stances.angle)
+        beta, (period, capacity) = self.damping(sides), self.oscillator(sides, sides.angle)
         found = np.full((len(shaking.motions), *beta.shape), np.nan)
         alike = np.round(beta, 12)  # sides of one damping share their spectra
         for value in np.unique(alike[np.isfinite(alike)]):
@@ -114,16 +114,16 @@ class IshiyamaCriteria(CodeMethod):
     )
     share = 0.4  # of the velocity of a single impulse that overturns [-]
 
-    def velocity(self, stances: Stances) -> FloatArray:
+    def velocity(self, sides: BodySides) -> FloatArray:
         """Return the ground velocity below which a body stands, by side [m/s]."""
-        alpha, p = stances.angle, stances.frequency_parameter
-        impulse = 2.0 * np.sin(0.5 * alpha) * stances.gravity / (p * np.cos(alpha))
+        alpha, p = sides.angle, sides.frequency_parameter
+        impulse = 2.0 * np.sin(0.5 * alpha) * sides.gravity / (p * np.cos(alpha))
         return np.asarray(self.share * impulse)  # Eq. 300
 
-    def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
+    def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
         """Eq. 300; both must be passed."""
-        lifts = stances.uplift / shaking.acceleration
-        return np.maximum(lifts, self.velocity(stances) / shaking.velocity)
+        lifts = sides.uplift / shaking.acceleration
+        return np.maximum(lifts, self.velocity(sides) / shaking.velocity)
 
 
 class KanekoHayashi(CodeMethod):
@@ -138,23 +138,23 @@ class KanekoHayashi(CodeMethod):
         "be confirmed; f_b is taken where both branches meet, 15.61 for its 15.6"
     )
 
-    def holds(self, stances: Stances, shaking: Shaking) -> BoolArray:
+    def holds(self, sides: BodySides, shaking: Shaking) -> BoolArray:
         """Rectangles."""
-        return stances.rectangle
+        return sides.rectangle
 
     @staticmethod
-    def acceleration(stances: Stances, frequency: FloatArray) -> FloatArray:
+    def acceleration(sides: BodySides, frequency: FloatArray) -> FloatArray:
         """Return A_R50 of every side; frequency: of the floor's motion [Hz]. In m and s its 10 is 1 [m/s2]."""
-        ratio = stances.slope
-        width, height = 2.0 * stances.half_width, 2.0 * stances.height
-        slow = stances.gravity * ratio * (1.0 + ratio)
+        ratio = sides.slope
+        width, height = 2.0 * sides.half_width, 2.0 * sides.height
+        slow = sides.gravity * ratio * (1.0 + ratio)
         quick = width / np.sqrt(height) * (1.0 + ratio) ** 2.5 * 2.0 * math.pi * frequency
         return np.maximum(slow, quick)  # Eq. 301
 
-    def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
+    def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
         """Eq. 301; a motion that is scaled keeps its frequency."""
         frequency = shaking.acceleration / (2.0 * math.pi * shaking.velocity)
-        return self.acceleration(stances, frequency) / shaking.acceleration
+        return self.acceleration(sides, frequency) / shaking.acceleration
 
 
 class HousnerPulse(CodeMethod):
@@ -172,19 +172,19 @@ class HousnerPulse(CodeMethod):
 
     widest = math.radians(20.0)  # alpha [rad]
 
-    def holds(self, stances: Stances, shaking: Shaking) -> BoolArray:
+    def holds(self, sides: BodySides, shaking: Shaking) -> BoolArray:
         """Slender on the weaker side."""
-        return np.asarray(stances.angle.min(axis=1) <= self.widest)
+        return np.asarray(sides.angle.min(axis=1) <= self.widest)
 
     @staticmethod
-    def acceleration(stances: Stances, duration: FloatArray) -> FloatArray:
+    def acceleration(sides: BodySides, duration: FloatArray) -> FloatArray:
         """Return the acceleration of a pulse of some duration [s] that just overturns, by side [m/s2]."""
-        ratio = 0.5 * (1.0 + 1.0 / np.tanh(0.5 * stances.frequency_parameter * duration))
-        return np.asarray(ratio * stances.gravity * stances.angle)  # Eq. 302
+        ratio = 0.5 * (1.0 + 1.0 / np.tanh(0.5 * sides.frequency_parameter * duration))
+        return np.asarray(ratio * sides.gravity * sides.angle)  # Eq. 302
 
-    def of_sides(self, stances: Stances, shaking: Shaking) -> FloatArray:
+    def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
         """Eq. 302; a motion that is scaled keeps its duration."""
-        return self.acceleration(stances, shaking.velocity / shaking.acceleration) / shaking.acceleration
+        return self.acceleration(sides, shaking.velocity / shaking.acceleration) / shaking.acceleration
 
 
 CODE_METHODS: dict[str, CodeMethod] = {

@@ -12,7 +12,7 @@ from rocking.motions.formats.record import Component, Record, Source
 _LONGEST = 200  # characters of a header line that patterns look at
 
 
-def said(source: Source, last: int, key: str, value: str) -> re.Match[str]:
+def header_value(source: Source, last: int, key: str, value: str) -> re.Match[str]:
     """Return what the one line above `last` that begins with a key says, of which a pattern must make sense."""
     begins = re.compile(rf"\s*{key}\s*(.*?)\s*", re.IGNORECASE)
     found = [(line, hit) for line, text in enumerate(source.lines[:last]) if (hit := begins.fullmatch(text[:_LONGEST]))]
@@ -31,10 +31,10 @@ def _plain(pattern: str) -> str:
     return re.sub(r"\\s[*+]|\\S[*+]?|\\|\(\?:|\[.*", "", pattern).strip(" :*")
 
 
-def text_said(source: Source, last: int, key: str) -> str:
+def header_text(source: Source, last: int, key: str) -> str:
     """Return what a line says in words; nothing where there is none or several."""
     try:
-        return said(source, last, key, ".*")[0]
+        return header_value(source, last, key, ".*")[0]
     except RecordError:
         return ""
 
