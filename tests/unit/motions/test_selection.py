@@ -1,5 +1,7 @@
 """Target spectra against the printed tables, and records scaled to them in closed form."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -124,6 +126,18 @@ def test_fourier_amplitude_of_a_sine():
     assert amplitudes[2 * at] < 1e-9
     # smoothing spreads it over its neighbours, and leaves what is flat alone
     assert fourier_amplitudes(GroundMotion([1.0] + [0.0] * 999, 0.01), [1.0, 5.0])[1] == pytest.approx([0.01, 0.01])
+
+
+def test_smoothing_has_the_window_of_konno_and_ohmachi():
+    """One line of a spectrum is smeared over its neighbours as (sin x / x)^4 of x = b lg(f / fc) says."""
+    line, wanted, b = 5.0, 5.3, 20.0
+    time = np.arange(1000) * 0.01
+    smooth = fourier_amplitudes(GroundMotion(3.0 * np.sin(2.0 * np.pi * line * time), 0.01), [wanted], b)[1]
+    weights = []
+    for frequency in (0.1 * k for k in range(1, 501)):
+        x = b * math.log10(frequency / wanted)
+        weights.append((math.sin(x) / x) ** 4 if abs(x) > 1e-9 else 1.0)
+    assert smooth == pytest.approx([15.0 * weights[49] / sum(weights)], rel=1e-9)
 
 
 def test_flatfile():
