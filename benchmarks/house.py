@@ -21,6 +21,7 @@ FLOORS = (
     ("outcome", "checks", "plausibility", "portable"),
     ("quantities",),
     ("tables", "statistics"),
+    ("exported",),
     ("bodies", "motions"),
     ("restitution", "examples"),
     ("dynamics",),

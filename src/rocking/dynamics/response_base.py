@@ -1,7 +1,7 @@
 """What the responses of every mechanics share: how they end, in words, in files, and how long a motion lasts."""
 
 import math
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,7 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
+from rocking.exported import Exported
 from rocking.lazy import presenter
 from rocking.motions.pulse import Motion, Pulse
 from rocking.motions.segments import Segments
@@ -18,8 +19,6 @@ from rocking.outcome import Outcome, Status
 from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
     from matplotlib.figure import Figure
 
     from rocking.tables import Table
@@ -33,8 +32,10 @@ def motion_provenance(motion: Any) -> str:
 _ROUNDING = 1e-9
 
 
-class ResponseBase(ABC):
+class ResponseBase(Exported):
     """One history: how it ends, in words, in a picture, and on its way out."""
+
+    _blank = False
 
     settings: Settings
     trajectory: Any  # what the engine returned: outcome, status, overturning_time, still_rocking, engine
@@ -157,81 +158,6 @@ class ResponseBase(ABC):
         settings = {f"setting_{name}": value for name, value in self.settings.stated.items()}
         beside = {row: Table(row, columns(values)) for row, values in self._beside.items()}
         return Table("time", columns(self._samples), ended | self._facts | settings, beside, no_unit="-")
-
-    def to_xarray(self) -> "xr.Dataset":
-        """Return the response as a labelled dataset with units and provenance.
-
-        Returns
-        -------
-        xarray.Dataset
-            Samples over `time`, impacts over `impact`, and intervals over `interval` where the response has them.
-        """
-        from rocking.tables import to_dataset
-
-        return to_dataset(self.exported())
-
-    def to_dataframe(self) -> "pd.DataFrame":
-        """Return the samples as a table.
-
-        Returns
-        -------
-        pandas.DataFrame
-            One row a sample, units in the column names.
-        """
-        from rocking.tables import to_dataframe
-
-        return to_dataframe(self.exported())
-
-    def to_csv(self, path: str | Path) -> Path:
-        """Write the samples as comma-separated values.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from rocking.tables import target_of, to_csv
-
-        return to_csv(self.exported(), target_of(path), blank=False)
-
-    def to_mat(self, path: str | Path) -> Path:
-        """Write a file that MATLAB loads.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from rocking.tables import target_of, to_mat
-
-        return to_mat(self.exported(), target_of(path))
-
-    def to_netcdf(self, path: str | Path) -> Path:
-        """Write a netCDF file, which xarray and MATLAB open.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from rocking.tables import target_of, to_netcdf
-
-        return to_netcdf(self.to_xarray(), target_of(path))
 
     def animate(self, path: str | Path, **options: Any) -> Path:
         """Write the response as it moves.

@@ -10,12 +10,10 @@ import numpy as np
 from rocking.conventions import FEET, NORMAL_95, Foot, percent
 from rocking.evidence import recommendation_words as words
 from rocking.evidence.judgement import Judgement, Standing, TrackRecord
+from rocking.exported import Exported
 from rocking.outcome import Outcome
 
 if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
-
     from rocking.tables import Table
 
 
@@ -139,7 +137,7 @@ class Overturned:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Recommendation:
+class Recommendation(Exported):
     """Which restitution model to use for a body, and how sure that is.
 
     Parameters
@@ -277,27 +275,3 @@ class Recommendation:
             "advice": " ".join(self.advice),
         }
         return Table("model", columns, provenance)
-
-    def to_xarray(self) -> "xr.Dataset":
-        """Return the models as a labelled dataset.
-
-        Returns
-        -------
-        xarray.Dataset
-            Over `model`, with units; what is recommended is in its attributes.
-        """
-        from rocking.tables import to_dataset
-
-        return to_dataset(self.exported())
-
-    def to_dataframe(self) -> "pd.DataFrame":
-        """Return the models as a table.
-
-        Returns
-        -------
-        pandas.DataFrame
-            One row a model, units in the column names.
-        """
-        from rocking.tables import to_dataframe
-
-        return to_dataframe(self.exported())

@@ -11,6 +11,7 @@ from rocking.bodies import Body
 from rocking.conventions import FEET, FloatArray, Foot
 from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError, RockingError
+from rocking.exported import Exported
 from rocking.identification.design import Design
 from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.posterior import Mixture
@@ -18,7 +19,6 @@ from rocking.lazy import presenter
 from rocking.restitution import RestitutionModel, implied, models
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.figure import Figure
 
     from rocking.tables import Table
@@ -159,7 +159,7 @@ class ForcedRocking:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Identification:
+class Identification(Exported):
     """What a measurement of rocking says about restitution.
 
     Parameters
@@ -384,35 +384,6 @@ class Identification:
             provenance |= {f"{name}{end}": getattr(getattr(self, name), key) for key, end, _ in _ENDS}
         beside = {"model": Table("model", compared), "sample": Table("sample", left)}
         return Table("impact", columns, provenance, beside)
-
-    def to_xarray(self) -> "xr.Dataset":
-        """Return what each impact took as a labelled dataset.
-
-        Returns
-        -------
-        xarray.Dataset
-            Over `impact`, the models over `model`, what is left over over `sample`; the mean is an attribute.
-        """
-        from rocking.tables import to_dataset
-
-        return to_dataset(self.exported())
-
-    def to_csv(self, path: str | Path) -> Path:
-        """Write what each impact took as comma-separated values.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from rocking.tables import target_of, to_csv
-
-        return to_csv(self.exported(), target_of(path))
 
 
 def impulses(body: Body, coefficients: dict[Foot, IntervalEstimate]) -> dict[Foot, IntervalEstimate]:

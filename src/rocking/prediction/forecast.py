@@ -1,20 +1,17 @@
 """What is foreseen of a body: probabilities with their intervals, which input matters, what cannot be predicted."""
 
 import math
-import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rocking.conventions import FloatArray, percent
+from rocking.exported import Exported
 from rocking.statistics.shares import VarianceShare
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from rocking.tables import Table
 
 _VERDICTS = (
@@ -80,7 +77,7 @@ class Growth:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Prediction:
+class Prediction(Exported):
     """What is foreseen of a body of which not everything is known.
 
     Parameters
@@ -221,37 +218,6 @@ class Prediction:
             **{f"probability_of_{name}": chance.value for name, chance in self.chances.items()},
         }  # fmt: skip
         return Table("motion", columns, provenance, {"input": Table("input", beside)})
-
-    def to_xarray(self) -> "xr.Dataset":
-        """Return the probabilities as a labelled dataset.
-
-        Returns
-        -------
-        xarray.Dataset
-            Over `motion`, the shares over `input`, with units; the verdict and what was assumed are attributes.
-        """
-        from rocking.tables import to_dataset
-
-        return to_dataset(self.exported())
-
-    def to_csv(self, path: str | os.PathLike[str]) -> Path:
-        """Write the probabilities under each motion as CSV.
-
-        Parameters
-        ----------
-        path : str or path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from rocking.tables import target_of, to_csv
-
-        target = target_of(path)
-        to_csv(self.exported(), target)
-        return target
 
 
 def _said(word: str, chance: Chance) -> str:
