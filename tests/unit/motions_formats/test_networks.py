@@ -147,6 +147,7 @@ DAMAGES = {
     ),
     "nsmn": (
         ("NUMBER OF DATA          : 3", "NUMBER OF DATA          : 4", "states 4 samples, the file holds 3"),
+        ("DATA          : 3", "DATA          : 3\nNUMBER OF DATA : 3", "one header line that begins with .*, found 2"),
         ("(E-W) 2.163827", "(E-W) 2.163837", "peak of E-W of 2.16384"),
         ("    0.000909 ", "             ", "3 numbers a line expected|2 numbers a line"),
         ("VALUES (gal)", "VALUES (g)", "cannot be understood"),
