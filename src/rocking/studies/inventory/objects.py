@@ -1,6 +1,8 @@
 """One object of an inventory: what a tape measure says, and the two plane bodies that it stands for."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Literal
 
 from rocking import checks
@@ -53,6 +55,16 @@ class InventoryObject:
     solid : Solid, optional
         The body itself, standing as it does, where more is known than its size, which it then gives: it moves in three
         dimensions, and without friction it does not slide.
+    shape : {"box", "round"}
+        Of its outline from above; a round one has its diameter as width and depth.
+    consequence : {"low", "medium", "high"}
+        How bad it is if it falls.
+    photo : Path, optional
+        Where a picture of it is.
+    approximate : mapping of str to float, optional
+        Half the width of the interval of a size that is not known well, by the name of the field [m].
+    remarks : tuple of str
+        What was assumed of it, or left aside, in one sentence each.
 
     Raises
     ------
@@ -79,6 +91,11 @@ class InventoryObject:
     row: int = 0
     friction: float | None = None
     solid: Solid | None = None
+    shape: Literal["box", "round"] = "box"
+    consequence: Literal["low", "medium", "high"] = "medium"
+    photo: Path | None = None
+    approximate: Mapping[str, float] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         word: object = self.name

@@ -175,12 +175,15 @@ class Inventory:
         Columns that were not read.
     source : str
         Name of the file.
+    language : str
+        In which its header is written, and its report is: ``en``, ``de``, ``it`` and more.
     """
 
     objects: tuple[InventoryObject, ...]
     not_assessed: tuple[NotAssessed, ...] = ()
     ignored: tuple[str, ...] = ()
     source: str = "objects"
+    language: str = "en"
 
 
 def read_inventory(
