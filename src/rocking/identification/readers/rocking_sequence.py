@@ -20,6 +20,9 @@ _FALL, _FALL_SPREAD = -0.22, 0.12
 _SCATTER = 0.035
 """Standard deviation of ln(y_(n+2) / y_n) about its mean: each impact takes its own share, 1 to 3 %."""
 
+_LAW_SCATTER = 0.015
+"""Standard deviation of ln(y_(n+1) / y_n), where sequences are compared."""
+
 _FADING_SCATTER = 1.0
 """Standard deviation of the logarithm of the power of a click about that of the last one on the same side, faded."""
 
@@ -196,21 +199,26 @@ def regularity(times: FloatArray, orders: IntArray) -> Regularity:
     return best
 
 
-def alternation_misfit(times: FloatArray, orders: IntArray, offsets: FloatArray) -> FloatArray:
-    """Return the squares by which ln(y_(n+1) / y_n) of either side scatters, were one side later by some offsets [s].
+def law_misfit(times: FloatArray, orders: IntArray, loose: float = 0.0) -> FloatArray:
+    """Return the squares by which ln(y_(n+1) / y_n) of either side scatters over the usual ones, of times in rows.
 
-    An offset changes all intervals by as much; sides that differ and tilts change long intervals more than short ones.
+    Offsets of one side change all its intervals as much; sides that differ and tilts change long ones more than short
+    ones. With `loose` one side may be later or earlier by about that much [s], at no other cost.
     """
     whole = np.flatnonzero(np.diff(orders) == 1)
-    intervals = np.diff(times)[whole] + np.outer(offsets, 1.0 - 2.0 * (orders[whole] % 2))
     pairs = np.flatnonzero(np.diff(whole) == 1)
-    sides = np.column_stack([np.ones(pairs.size), orders[whole[pairs]] % 2])
-    rest = np.eye(pairs.size) - sides @ np.linalg.pinv(sides)
-    best = np.full(offsets.size, np.inf)
+    intervals, sign = np.maximum(np.diff(times)[:, whole], 1e-3), 1.0 - 2.0 * (orders[whole] % 2)
+    best = np.full(len(times), np.inf)
     for y in np.linspace(0.1, 0.98, 23):
         half_p = np.arctanh(y) / intervals.max(axis=1, keepdims=True)
-        fall = half_cycle_fall(np.maximum(intervals, 1e-3), half_p)
-        best = np.minimum(best, ((np.diff(fall)[:, pairs] @ rest) ** 2).sum(axis=1))
+        change = np.pad(np.diff(half_cycle_fall(intervals, half_p))[:, pairs], ((0, 0), (0, 1)))
+        later = np.diff(sign * 2.0 * half_p[0] / np.sinh(2.0 * half_p[0] * intervals[0]))[pairs]
+        design = np.zeros((pairs.size + 1, 3))
+        design[:-1, 0], design[:-1, 1] = 1.0, sign[pairs]
+        if loose:
+            design[:, 2] = np.append(later, _LAW_SCATTER / loose)
+        rest = change @ (np.eye(pairs.size + 1) - design @ np.linalg.pinv(design))
+        best = np.minimum(best, ((rest / _LAW_SCATTER) ** 2).sum(axis=1))
     return best
 
 
