@@ -19,7 +19,7 @@ _BEFORE, _AFTER, _LONG, _REACH = 0.004, 0.030, 0.060, 0.012
 _QUIET, _RINGING = 0.012, 0.100
 _PICK_BEFORE, _PICK_AFTER, _PICK_STEP = 0.016, 0.006, 1e-4
 _RISES, _LOUDER = (1e-4, 5e-4, 1e-3, 2e-3), np.geomspace(0.3, 3000.0, 14)
-_ROUNDS, _PEAKS, _APART = 6, 10, 5e-4
+_ROUNDS, _PEAKS, _APART, _RIVAL = 6, 10, 5e-4, 0.25
 _EQUALISED = 0.1
 _FARTHEST, _STEP, _NOISES = 0.010, 1e-5, 2.0
 _INDEPENDENT, _LOOSE = 25.0, 3e-3  # independent numbers of a click; how well feet are tied before that is looked at [s]
@@ -50,11 +50,11 @@ def onsets(
     """Return when impacts at about some times began [s], how alike those on the same of two feet are, how sure the tie.
 
     That is the median correlation of a click with the sum of the others, 1 at most, and the standard deviation of the
-    time between the two feet [s].
+    time between the two feet [s]. A time is nan where another of the same click is as likely.
     """
     feet = [here for foot in (0, 1) if (here := np.flatnonzero(orders % 2 == foot)).size]
     found, alike, picks, means = times.copy(), np.ones(times.size), [], []
-    all_places = _chosen(sharp, rate, times, orders, feet)
+    all_places, unsure = _chosen(sharp, rate, times, orders, feet)
     for here in feet:
         places = all_places[here]
         alike[here] = _likeness(_cuts(sharp, rate, places, _BEFORE, _AFTER))
@@ -74,6 +74,7 @@ def onsets(
     later = float(share @ off)  # the mean has the least square error where several ties are likely
     found[feet[0]] -= 0.5 * later
     found[feet[1]] += 0.5 * later
+    found[unsure] = np.nan
     return found, float(np.median(alike)), float(np.sqrt(share @ (off - later) ** 2))
 
 
@@ -157,13 +158,17 @@ def _agreement(one: FloatArray, two: FloatArray, rate: float, lags: FloatArray) 
     return np.asarray(np.cos(phase) @ (weight / max(float(weight.sum()), np.finfo(float).tiny)))
 
 
-def _chosen(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, feet: list[IntArray]) -> IntArray:
+def _chosen(
+    sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, feet: list[IntArray]
+) -> tuple[IntArray, IntArray]:
     """Return the samples at which clicks on the same foot match, by the law of rocking where several are as likely.
+
+    Also which clicks have another place that is hardly less likely.
 
     A mode that rings for long matches a period or two late nearly as well, which the law often tells, loose as it is.
     """
 
-    def law(places: FloatArray) -> FloatArray:
+    def law(places: IntArray) -> FloatArray:
         placed = places / rate
         for here in feet:
             placed[:, here] -= np.median(placed[:, here] - times[here], axis=1, keepdims=True)
@@ -189,10 +194,12 @@ def _chosen(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray,
         moved = np.repeat(places[None], len(moves), axis=0)
         moved[np.arange(len(moves)), [move[0] for move in moves]] += [move[1] for move in moves]
         score = law(moved) + [move[2] for move in moves]
-        if not score.argmax():
+        best = int(score.argmax())
+        places = moved[best]
+        if not best:
             break
-        places = moved[int(score.argmax())]
-    return places
+    rivals = np.flatnonzero(score > score[best] - _RIVAL)
+    return places, np.array([moves[each][0] for each in rivals if each != best], dtype=np.int64)
 
 
 def _evidence(correlation: FloatArray) -> FloatArray:

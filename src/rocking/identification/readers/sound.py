@@ -17,6 +17,9 @@ _UNHEARD = 3.0
 _TIED = 3e-4
 """Standard deviation of the time between both feet that is told [s]: that of times whose reader states none."""
 
+_FEWEST = 4
+"""Times that identification needs."""
+
 _ALIKE = 0.45
 """Between what 80 rocking bodies have, .69 at least at 8 dB, and speech taken for one, .24 at most."""
 
@@ -39,6 +42,10 @@ def impacts_heard(recording: Recording) -> ImpactTimes:
         raise recording.error(f"this is no sound of a rocking body: {why}")
     rough, orders, members = revised(sharp, rate, rough, orders, members)
     times, _, tied = onsets(sharp, white, rate, rough, orders)
+    known = np.isfinite(times)
+    if known.sum() < _FEWEST:
+        raise recording.error(f"{known.sum()} of its {known.size} clicks can be told in time only; nearer to the body?")
+    times, rough, orders, members = times[known], rough[known], orders[known] - orders[known][0], members[known]
     if np.any(np.diff(times) <= 0.0):
         times = rough
     contrasts = np.where(members < 0, _UNHEARD, clicks.contrasts[members])
