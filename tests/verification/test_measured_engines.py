@@ -20,13 +20,13 @@ R = 0.92
 STILL = {"x": rk.GroundMotion([0.0] * 3, 0.01)}
 
 
-def on_bed(frequency, damping, points, jitter):
+def on_bed(frequency, damping, points, jitter, **known):
     """What a bed with a frequency [Hz] says of a block, and the mean coefficient of its peaks after the first."""
     law = KelvinVoigt(BLOCK.mass * (2.0 * np.pi * frequency) ** 2, damping_ratio=damping)
     bed = ContactBed.uniform(BLOCK, points, law)
     rocked = bed_free_rocking(BLOCK, bed, rotation=0.6 * BLOCK.slenderness_angle, peaks=12)
     times = rocked.touches + jitter * np.random.default_rng(points).normal(size=rocked.touches.size)
-    return identify(ImpactTimes(times), BLOCK, size_error=0.005), float(np.exp(np.log(rocked.coefficients[1:]).mean()))
+    return identify(ImpactTimes(times), BLOCK, size_error=0.005, **known), float(np.exp(np.log(rocked.coefficients[1:]).mean()))
 
 
 @pytest.mark.verifies(
@@ -39,6 +39,18 @@ def test_impacts_on_a_bed_tell_its_coefficient(damping, points):
     found, own = on_bed(1500.0, damping, points, 2e-4)
     assert not found.refused
     assert found.mean.low < own < found.mean.high < found.mean.low + 0.005
+
+
+@pytest.mark.verifies(
+    "second engine", "beds that change with the speed, heard to 0.02 ms, with a trend", within="the interval",
+    control="test_a_bed_that_changes_with_the_speed_is_told",
+)  # fmt: skip
+@pytest.mark.parametrize(("frequency", "damping", "points"), [(400.0, 1.0, 2), (1500.0, 0.3, 11), (1500.0, 1.0, 41)])
+def test_the_mean_with_a_trend_is_that_of_the_impacts(frequency, damping, points):
+    """Within an interval narrower than 0.001: at the speed of the first impact it was off by as much and more."""
+    found, own = on_bed(frequency, damping, points, 2e-5, tilt=0.0, trend=True)
+    assert not found.refused
+    assert found.mean.low < own < found.mean.high < found.mean.low + 0.001
 
 
 @pytest.mark.verifies("negative control")

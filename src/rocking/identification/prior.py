@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import Foot, IntArray
+from rocking.conventions import FloatArray, Foot, IntArray
 from rocking.errors import InvalidValueError
 from rocking.identification import state_space
 from rocking.identification.state_space import SHARED, Model
@@ -82,8 +82,8 @@ class Knowledge:
         """Return on which side the body stands in each half cycle: 0 right, 1 left."""
         return (np.arange(count) + (self.first == "left")) % 2
 
-    def model(self, sides: IntArray, start: float, speed: float, frequency: tuple[float, float]) -> Model:
-        """Return the model of a path; start, speed: about when it begins, and ln of its speed; frequency: of ln p."""
+    def model(self, sides: IntArray, start: float, speeds: FloatArray, frequency: tuple[float, float]) -> Model:
+        """Return the model of a path; start, speeds: about when it begins, and ln of its speeds; frequency: of ln p."""
         mean, deviation = np.zeros(len(SHARED)), np.zeros(len(SHARED))
         p = np.array([math.exp(frequency[0])] * 2)
         slender = math.sqrt(2.0) * self.size_error
@@ -93,7 +93,7 @@ class Knowledge:
         else:
             p = np.array([self.body.side(foot).frequency_parameter for foot in ("right", "left")])
         mean[state_space.START], deviation[state_space.START] = start, 1.0
-        mean[state_space.SPEED], deviation[state_space.SPEED] = speed, 2.0
+        mean[state_space.SPEED], deviation[state_space.SPEED] = speeds[0], 2.0
         mean[state_space.MEAN], deviation[state_space.MEAN] = -0.1, 0.2
         deviation[state_space.HALF] = 0.5 * self.asymmetry
         deviation[state_space.FREQUENCY] = frequency[1]
@@ -101,4 +101,5 @@ class Knowledge:
         deviation[state_space.SLENDERNESS] = slender
         deviation[state_space.TREND] = 0.05 if self.trend else 0.0
         deviation[state_space.DAMPING] = 0.02 if self.damping else 0.0
-        return Model(sides, self.slenderness_angles, (float(p[0]), float(p[1])), mean, deviation, speed)
+        middle = float(speeds[:-1].mean())  # of the impacts: their mean is that of the coefficient with a trend too
+        return Model(sides, self.slenderness_angles, (float(p[0]), float(p[1])), mean, deviation, middle)

@@ -104,7 +104,7 @@ def fit_series(series: RotationSeries, known: Knowledge, scatter: float | None) 
     if known.body is None:
         frequency = min(known.frequencies, key=lambda each: _misfit(each, crossings, known, rows))
     speeds = speeds_between(crossings, np.arange(crossings.size), known, frequency[0])
-    model = known.model(known.sides(speeds.size), float(crossings[0]), float(speeds[0]), frequency)
+    model = known.model(known.sides(speeds.size), float(crossings[0]), speeds, frequency)
     fixed = scatter if scatter is not None else 0.03
     spread = np.array([float(np.ptp(row.values)) * 0.02 for row in rows])
     begin: Callable[[FloatArray], FloatArray] = lambda s: start(model, speeds, s)  # noqa: E731
@@ -179,7 +179,7 @@ def _middle(values: FloatArray) -> float:
 def _misfit(frequency: tuple[float, float], crossings: FloatArray, known: Knowledge, rows: tuple[Row, ...]) -> float:
     """How far the first half cycle is from what was measured, for a frequency parameter."""
     speeds = speeds_between(crossings, np.arange(crossings.size), known, frequency[0])
-    model = known.model(known.sides(speeds.size), float(crossings[0]), float(speeds[0]), frequency)
+    model = known.model(known.sides(speeds.size), float(crossings[0]), speeds, frequency)
     path = model.path(start(model, speeds, np.array([0.03])), np.array([0.03]))
     residual = SampledSeries(rows, model.sides).residuals(path)[0]
     return float((residual**2).sum())

@@ -43,7 +43,7 @@ def fit_times(measurement: ImpactTimes, known: Knowledge, scatter: float | None)
     first = int(track.impacts[0])
     observer = Clicks(times, track.impacts - first)
     speeds = speeds_between(times, observer.impacts, known, frequency[0])
-    model = known.model(known.sides(speeds.size), float(times[0]), float(speeds[0]), frequency)
+    model = known.model(known.sides(speeds.size), float(times[0]), speeds, frequency)
     return TimesFit(track, posterior(model, observer, scatter, noise, lambda s: start(model, speeds, s)))
 
 
