@@ -93,6 +93,17 @@ def test_the_law_tells_by_how_much_a_foot_is_late(offset):
     assert found == pytest.approx(-offset, abs=2e-4)  # p is tried in steps, offsets too
 
 
+@pytest.mark.verifies("behaviour", "one click 8 ms late, or one foot 2 ms", within="a factor of 10")
+def test_the_law_tells_a_late_click_from_a_late_foot():
+    """With feet that may be apart, a late foot costs next to nothing, and one late click much."""
+    y = 0.8 * np.cumprod([1.0] + [0.93, 0.86] * 4 + [0.93])
+    times = np.concatenate(([0.0], np.cumsum(2.0 / 2.5 * np.arctanh(y))))
+    late = np.zeros((3, times.size))
+    late[1, 1::2], late[2, 8] = 2e-3, 8e-3
+    exact, foot, click = law_misfit(times + late, np.arange(times.size), 3e-3)
+    assert 10.0 * max(exact, foot) < click
+
+
 @pytest.mark.verifies("behaviour", "clapping, metronomes, rain, speech", within="all refused")
 @pytest.mark.parametrize("kind", ["clapping", "metronome", "rain", "speech"])
 def test_what_is_no_rocking_is_refused(kind):

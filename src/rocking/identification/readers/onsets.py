@@ -69,7 +69,7 @@ def onsets(
     likely = _AGREED * _agreement(means[0], means[1], rate, off + apart[0]) - 0.5 * np.minimum(law - law.min(), _MOST)
     for weight, pick in zip(_PICKED, apart - apart[0], strict=True):
         likely -= weight * np.log1p(((off - pick) / _NEAR) ** 2)  # a pick may fail
-    share = np.exp(likely - likely.max())
+    share = np.exp(likely - likely.max())  # Eq. 401
     share /= share.sum()
     later = float(share @ off)  # the mean has the least square error where several ties are likely
     found[feet[0]] -= 0.5 * later
@@ -172,7 +172,8 @@ def _chosen(
         placed = places / rate
         for here in feet:
             placed[:, here] -= np.median(placed[:, here] - times[here], axis=1, keepdims=True)
-        return np.asarray(-0.5 * _FAILS * np.log1p(law_misfit(placed, orders, _LOOSE) / _FAILS))
+        misfit = law_misfit(placed, orders, _LOOSE)
+        return np.asarray(-0.5 * _FAILS * np.log1p(misfit / _FAILS))  # Eq. 400
 
     tried, alike = [], []
     for rows in product(*(_arrangements(sharp, rate, times[here]) for here in feet)):
