@@ -26,7 +26,9 @@ def on_bed(frequency, damping, points, jitter, **known):
     bed = ContactBed.uniform(BLOCK, points, law)
     rocked = bed_free_rocking(BLOCK, bed, rotation=0.6 * BLOCK.slenderness_angle, peaks=12)
     times = rocked.touches + jitter * np.random.default_rng(points).normal(size=rocked.touches.size)
-    return identify(ImpactTimes(times), BLOCK, size_error=0.005, **known), float(np.exp(np.log(rocked.coefficients[1:]).mean()))
+    return identify(ImpactTimes(times), BLOCK, size_error=0.005, **known), float(
+        np.exp(np.log(rocked.coefficients[1:]).mean())
+    )
 
 
 @pytest.mark.verifies(

@@ -22,7 +22,11 @@ _RISES, _LOUDER = (1e-4, 5e-4, 1e-3, 2e-3), np.geomspace(0.3, 3000.0, 14)
 _ROUNDS, _PEAKS, _APART, _RIVAL = 6, 10, 5e-4, 0.25
 _EQUALISED = 0.1
 _FARTHEST, _STEP, _NOISES = 0.010, 1e-5, 2.0
-_INDEPENDENT, _FAILS, _LOOSE = 25.0, 10.0, 3e-3  # independent numbers of a click; how well feet are tied before that is looked at [s]
+_INDEPENDENT, _FAILS, _LOOSE = (
+    25.0,
+    10.0,
+    3e-3,
+)  # independent numbers of a click; how well feet are tied before that is looked at [s]
 _AGREED, _PICKED, _NEAR, _MOST = 30.0, (0.6, 0.9), 3e-4, 30.0
 """Weights of what ties the feet: of modes that agree, and of the picks in the white and the sharp sound, with which the
 right tie of 207 rooms at 8 dB is likeliest."""
