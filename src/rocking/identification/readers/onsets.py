@@ -19,7 +19,7 @@ _BEFORE, _AFTER, _LONG, _REACH = 0.004, 0.030, 0.060, 0.012
 _QUIET, _RINGING = 0.012, 0.100
 _PICK_BEFORE, _PICK_AFTER, _PICK_STEP = 0.016, 0.006, 1e-4
 _RISES, _LOUDER = (1e-4, 5e-4, 1e-3, 2e-3), np.geomspace(0.3, 3000.0, 14)
-_ROUNDS, _PEAKS, _APART, _RIVAL = 6, 10, 5e-4, 0.25
+_ROUNDS, _PEAKS, _APART, _RIVAL, _FAR = 6, 10, 5e-4, 0.25, 2e-3
 _EQUALISED = 0.1
 _FARTHEST, _STEP, _NOISES = 0.010, 1e-5, 2.0
 _INDEPENDENT, _FAILS, _LOOSE = (
@@ -167,7 +167,7 @@ def _chosen(
 ) -> tuple[IntArray, IntArray]:
     """Return the samples at which clicks on the same foot match, by the law of rocking where several are as likely.
 
-    Also which clicks have another place that is hardly less likely.
+    Also which clicks have another place, milliseconds away, that is hardly less likely.
 
     A mode that rings for long matches a period or two late nearly as well, which the law often tells, loose as it is.
     """
@@ -204,7 +204,8 @@ def _chosen(
         if not best:
             break
     rivals = np.flatnonzero(score > score[best] - _RIVAL)
-    return places, np.array([moves[each][0] for each in rivals if each != best], dtype=np.int64)
+    far = [moves[each][0] for each in rivals if abs(moves[each][1] - moves[best][1]) > _FAR * rate]
+    return places, np.array(far, dtype=np.int64)
 
 
 def _evidence(correlation: FloatArray) -> FloatArray:
