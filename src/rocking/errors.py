@@ -13,6 +13,7 @@ _EXTRAS = {
     "h5py": "netcdf",
     "obspy": "obspy",
     "soundfile": "sound",
+    "cv2": "video",
     "openpyxl": "excel",
     "pyarrow": "parquet",
     "distributed": "dask",

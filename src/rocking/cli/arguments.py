@@ -29,7 +29,7 @@ _AS_TYPED = (
     (re.compile(r'\b(repair|surface)="(\w+)"'), r"--set body.\1=\2"),
     (re.compile(r"\b(base_tolerance|up|wall)="), r"--set body.\1="),
     (re.compile(r"\b(up|repair|surface|wall|base_tolerance) must be"), r"body.\1 must be"),
-    (re.compile(r"\b(kind|column|unit|time_column|time_unit)="), r"--set measurement.\1="),
+    (re.compile(r"\b(kind|column|unit|time_column|time_unit|region|frame_rate)="), r"--set measurement.\1="),
     (re.compile(r"\b(give|takes no) height= of the sensor"), r"\1 --set measurement.height= of the sensor"),
     (re.compile(r"\btrend=True"), "--set identify.trend=true"),
     (re.compile(r"^threads must be"), "--threads must be"),

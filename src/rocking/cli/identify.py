@@ -1,4 +1,4 @@
-"""`rocking identify`: the coefficient of restitution from a sound or another measurement, or from a folder of them."""
+"""`rocking identify`: the coefficient of restitution from a sound, a video, a table, or a folder of them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -63,7 +63,7 @@ def identify(
     ] = None,
     record: Annotated[
         str | None,
-        typer.Argument(help="What was measured: sound (.wav, .flac), table (.csv, .txt, .xlsx), or a folder."),
+        typer.Argument(help="What was measured: sound (.wav, .flac), video (.mp4), table (.csv, .xlsx), or a folder."),
     ] = None,
     motion: Annotated[
         list[str] | None, typer.Option(help="Record of the ground under it, or a pulse, if it did not rock freely.")

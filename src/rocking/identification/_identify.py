@@ -31,6 +31,7 @@ from rocking.motions.pulse import Motion
 
 _SHARE, _OF_ALL, _AFTER = 0.66, 0.5, 1.0  # of times; seconds, after which nobody hears the last impacts any more
 _ADVANTAGE, _MOST_SCATTER, _UNLIKELY, _EXPLAINED = 5.0, 0.12, 1e-4, 0.9
+_STRANGE, _FOREIGN = 4.0, 6.0  # standard deviations of p and the slenderness angle: doubted, refused
 
 
 def identify(  # noqa: PLR0913 - what is known beside the measurement
@@ -153,6 +154,12 @@ def _of_series(measurement: RotationSeries, known: Knowledge) -> Identification:
         refused.append(f"rocking explains {100.0 * (1.0 - total):.0f} % of the motion only")
     first: Foot = "right" if found.posterior.model.sides[0] == 0 else "left"
     doubts = list(measurement.doubts)
+    far = float(np.linalg.norm(found.posterior.average(found.posterior.u)[[FREQUENCY, SLENDERNESS]]))
+    if known.body is not None and far > _STRANGE:
+        words = (
+            f"it moves as a body of other sizes would, by {far:.2g} standard deviations of size_error; another clock?"
+        )
+        (refused if far > _FOREIGN else doubts).append(words)
     result = _result(
         measurement, known, found.posterior, first, refused, doubts, independent=found.independent, advantage=math.nan
     )

@@ -333,13 +333,17 @@ class PredictTable(JobTable):
 class MeasurementTable(JobTable):
     """What was measured of a body that rocks freely: a file, or a folder in which every file is a trial."""
 
-    file: Text = Field(description="sound, table of times or rotations, or a folder of them")
-    kind: str | None = _key("sound, times, rotation, displacement, angular velocity or acceleration")
+    file: Text = Field(description="sound, video, table of times or rotations, or a folder of them")
+    kind: str | None = _key("sound, video, times, rotation, displacement, angular velocity or acceleration")
     column: str | None = _key("name of the column, where a table has several")
     unit: str | None = _key("unit of the column, where the table states none")
     time_column: str | None = _key("name of the column of times; that called time if not given")
     time_unit: str | None = _key("unit of the times, s or ms, where the table states none")
     height: Positive | None = _key("height of the sensor above the base, for a displacement or an acceleration [m]")
+    region: list[float] | None = _key(
+        "of a video, where the body is at rest, if not found by what moves: left, top, width, height [pixels]"
+    )
+    frame_rate: Positive | None = _key("of a video played more slowly than it was taken, as it was taken [1/s]")
 
 
 class IdentifyTable(JobTable):

@@ -3,6 +3,7 @@
 import io
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -43,10 +44,13 @@ class ReaderOptions:
     time_column: str | None = None
     time_unit: str | None = None
     height: float | None = None
+    region: Sequence[float] | None = None
+    frame_rate: float | None = None
 
-    def names(self) -> str:
-        """Return which were given, the kind apart, in words."""
-        return ", ".join(one.name for one in fields(self) if one.name != "kind" and getattr(self, one.name) is not None)
+    def names(self, *beside: str) -> str:
+        """Return which were given, the kind and others apart, in words."""
+        given = (one.name for one in fields(self) if getattr(self, one.name) is not None)
+        return ", ".join(name for name in given if name not in ("kind", *beside))
 
 
 @dataclass(frozen=True, eq=False)

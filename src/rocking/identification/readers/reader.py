@@ -1,6 +1,6 @@
 """Read a measurement from a file: the suffix says what it is, and columns and units are never guessed."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from rocking import checks
@@ -9,24 +9,25 @@ from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.readers.columns import ReaderOptions, impact_list, motion_series
 from rocking.identification.readers.compressed import COMPRESSED, read_compressed
 from rocking.identification.readers.sound import impacts_heard, refuse_sound
+from rocking.identification.readers.video import VIDEOS, rotation_seen
 from rocking.identification.readers.wav import read_wav
 from rocking.motions.formats.record import Source
 
 Measurement = ImpactTimes | RotationSeries
 
-_NOT_DECODED = (".m4a", ".mp4", ".aac", ".3gp", ".amr", ".wma")
+_NOT_DECODED = (".m4a", ".aac", ".3gp", ".amr", ".wma")
 
 _TABLES = (".csv", ".tsv", ".txt", ".dat", ".xlsx")
 
 SOUNDS = (".wav", *COMPRESSED, *_NOT_DECODED)
-ENDINGS = (*SOUNDS, *_TABLES)
+ENDINGS = (*SOUNDS, *VIDEOS, *_TABLES)
 """Of files that hold a sound, or any measurement, or seem to."""
 
-KINDS = ("sound", "times", "rotation", "displacement", "angular velocity", "acceleration")
+KINDS = ("sound", "video", "times", "rotation", "displacement", "angular velocity", "acceleration")
 """What a file may hold."""
 
 
-def read_measurement(
+def read_measurement(  # noqa: PLR0913 - what may be said of a file
     path: str | Path,
     *,
     kind: str | None = None,
@@ -35,16 +36,19 @@ def read_measurement(
     time_column: str | None = None,
     time_unit: str | None = None,
     height: float | None = None,
+    region: Sequence[float] | None = None,
+    frame_rate: float | None = None,
 ) -> Measurement:
     r"""Return what was measured of a body that rocks freely: the times of its impacts, or how it turned.
 
     Parameters
     ----------
     path : str or Path
-        A sound (.wav; .flac, .ogg, .mp3 with soundfile), or a table with a line of names (.csv, .tsv, .txt, .xlsx).
+        A sound (.wav; .flac, .ogg, .mp3 with soundfile), a video (.mp4, .mov, .avi, .mkv, .webm with OpenCV), or a
+        table with a line of names (.csv, .tsv, .txt, .xlsx).
     kind : str, optional
-        One of `KINDS`: what the file holds. A sound needs none, nor does a table whose column says so by its unit:
-        rad and deg are a rotation, rad/s and deg/s an angular velocity, lengths a displacement, g and m/s2 an
+        One of `KINDS`: what the file holds. A sound or a video needs none, nor does a table whose column says so by its
+        unit: rad and deg are a rotation, rad/s and deg/s an angular velocity, lengths a displacement, g and m/s2 an
         acceleration; the times of impacts are asked for by "times".
     column, unit : str, optional
         Name of the column and its unit, where the table has several beside the time or states no unit in brackets.
@@ -52,6 +56,10 @@ def read_measurement(
         The same for the times, "s" or "ms"; if not given, the column that is called time, with its unit.
     height : float, optional
         Height of the sensor above the base, for a displacement or an acceleration, both positive to the right [m].
+    region : sequence of float, optional
+        Of a video, where the body is at rest: left, top, width, height; if not given, what moves is followed [pixels].
+    frame_rate : float, optional
+        Of a video that is played more slowly than it was taken, with which it was taken [1/s].
 
     Returns
     -------
@@ -66,7 +74,7 @@ def read_measurement(
     InvalidValueError
         If there is no kind or unit of that name, or a value is outside its range.
     MissingExtraError
-        If soundfile or openpyxl is needed and not installed.
+        If soundfile, OpenCV or openpyxl is needed and not installed.
 
     Examples
     --------
@@ -80,8 +88,12 @@ def read_measurement(
     """
     kind = None if kind is None else checks.one_of("kind", kind, KINDS)
     path = Path(path)
-    options = ReaderOptions(kind, column, unit, time_column, time_unit, height)
+    options = ReaderOptions(kind, column, unit, time_column, time_unit, height, region, frame_rate)
     try:
+        if path.suffix.lower() in VIDEOS:
+            return _filmed(path, options)
+        if (region, frame_rate) != (None, None):
+            raise MeasurementError(f"{path.name}: is no video, and takes no region= or frame_rate=")
         source = Source.of_path(path)
         return _reader(path, kind)(source, options)
     except RecordError as error:  # from what reads the columns of ground motions too
@@ -104,8 +116,20 @@ def _reader(path: Path, kind: str | None) -> Callable[[Source, ReaderOptions], M
     if sound:
         return _heard
     if suffix not in _TABLES:
-        raise MeasurementError(f"{path.name}: the name must end in .wav, {', '.join((*COMPRESSED, *_TABLES))}")
+        raise MeasurementError(f"{path.name}: the name must end in .wav, {', '.join((*COMPRESSED, *VIDEOS, *_TABLES))}")
+    if kind == "video":
+        raise MeasurementError(f"{path.name}: is no video by its ending, kind='video' was asked for")
     return impact_list if kind == "times" else motion_series
+
+
+def _filmed(path: Path, options: ReaderOptions) -> RotationSeries:
+    if options.kind not in (None, "video"):
+        raise MeasurementError(
+            f"{path.name}: is a video by its ending, kind={options.kind!r} was asked for; save its sound as WAV"
+        )
+    if given := options.names("region", "frame_rate"):
+        raise MeasurementError(f"{path.name}: a video takes no {given}: these are for tables")
+    return rotation_seen(path, options.region, options.frame_rate)
 
 
 def _heard(source: Source, options: ReaderOptions) -> ImpactTimes:
