@@ -11,7 +11,7 @@ from rocking.conventions import BoolArray, FloatArray
 from rocking.errors import InvalidValueError, MeasurementError
 from rocking.identification.measurement import RotationSeries
 from rocking.identification.readers.columns import clock_doubts
-from rocking.identification.readers.video_track import Film, Track
+from rocking.identification.readers.video_track import Film, PoseTrack
 from rocking.motions.formats.foreign import ForeignReader
 from rocking.motions.formats.record import Source
 
@@ -40,11 +40,11 @@ def rotation_seen(path: Path, region: Sequence[float] | None, frame_rate: float 
             "where the body is, region= [left, top, width, height] in pixels"
         )
     body = _above_base(moving) if region is None else _stated(film, region)
-    track = Track.of(film, body)
+    track = PoseTrack.of(film, body)
     if track is None:
         raise film.error("what moves in it shows too few edges; more light, or a marker on the body?")
     for _ in range(_ROUNDS if region is None else 0):
-        track = Track.of(film, track.own) or track
+        track = PoseTrack.of(film, track.own) or track
     a, b = track.first, track.last
     if b - a < _FEWEST:
         raise film.error(
@@ -67,7 +67,7 @@ def rotation_seen(path: Path, region: Sequence[float] | None, frame_rate: float 
 
 def _camera(film: Film, around: BoolArray, first: int, last: int) -> tuple[FloatArray, list[str]]:
     """Return how what stands still turns in the picture, zero if it does not, and what there is to say."""
-    still, none = Track.of(film, around), np.zeros(last - first)
+    still, none = PoseTrack.of(film, around), np.zeros(last - first)
     if still is None:
         return none, ["nothing but the body shows edges: whether the camera stood still is not known"]
     if still.first > first or still.last < last:

@@ -22,6 +22,7 @@ _BLUR = 1.0  # before slopes are taken [pixels]
 _SLOPE, _FLAT = 0.16, 0.1  # noise of slopes over that of pixels, after the blur; slopes that are none
 _QUIET = 0.2  # for which the picture at rest is averaged [s]
 _ALIKE, _OUTSIDE = 0.3, 0.05  # below the usual correlation; share of pixels
+_EDGE = 4  # of a frame, which is left as soon as anything moves [pixels]
 _HUBER = 2.0  # times the median
 
 
@@ -63,13 +64,15 @@ class Film:
         return float(np.median(self.changes)) * math.sqrt(math.pi / 4.0)
 
 
-class Picture:
+class RestPicture:
     """Pixels of a picture that show edges, and how each changes as the picture turns and shifts, or its light."""
 
     def __init__(self, picture: FloatArray, mask: BoolArray, noise: float) -> None:
         smooth = ndimage.gaussian_filter(picture, _BLUR)
         down, across = np.gradient(smooth)
-        steep = np.where(mask, np.hypot(down, across), 0.0)
+        inner = np.zeros(mask.shape, np.bool_)
+        inner[_EDGE:-_EDGE, _EDGE:-_EDGE] = True
+        steep = np.where(mask & inner, np.hypot(down, across), 0.0)
         order = np.argsort(steep, axis=None)[::-1][:_PIXELS]
         order = order[steep.ravel()[order] > max(1.0, 0.1 * steep.max())]
         self.places = np.column_stack(np.unravel_index(order, mask.shape)).astype(float)
@@ -116,7 +119,7 @@ class Picture:
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
+class PoseTrack:
     """How a picture turns and shifts from frame to frame, from the quiet ones in both directions until it is lost."""
 
     poses: FloatArray  # n, 3: rotation, clockwise [rad], and shift to the right and down [pixels]
@@ -125,9 +128,9 @@ class Track:
     own: BoolArray  # pixels that go with it rather than stand still
 
     @classmethod
-    def of(cls, film: Film, mask: BoolArray) -> "Track | None":
+    def of(cls, film: Film, mask: BoolArray) -> "PoseTrack | None":
         """Return it, or None if the pixels of the mask show too few edges."""
-        picture = Picture(film.rest, mask, film.noise)
+        picture = RestPicture(film.rest, mask, film.noise)
         if not picture.usable:
             return None
         middle = (film.quiet.start + film.quiet.stop) // 2

@@ -109,7 +109,7 @@ def test_what_cannot_be_followed_is_refused_or_told(tmp_path):
             read_measurement(path)
     with pytest.raises(MeasurementError, match="nothing moves"):
         read_measurement(made(tmp_path / "still.mp4", lambda f, t: other))
-    hidden = made(tmp_path / "hidden.mp4", lambda f, t: np.where((np.arange(160) < 110) & (t < 0.5), 90.0, f))
+    hidden = made(tmp_path / "hidden.mp4", lambda f, t: np.where((abs(np.arange(160) - 80) < 30) & (t < 0.5), 90.0, f))
     series = read_measurement(hidden, region=[70, 30, 20, 65])
     assert "the body is lost before" in " ".join(series.doubts)
     assert series.time[0] > 0.4
@@ -124,7 +124,6 @@ def test_what_cannot_be_followed_is_refused_or_told(tmp_path):
         ({"region": [1, 2]}, InvalidValueError, "region must be four numbers"),
         ({"region": [60, 30, float("nan"), 20]}, InvalidValueError, "region must be"),
         ({"frame_rate": 0.0}, InvalidValueError, "frame_rate must be"),
-        ({"region": [0, 0, 20, 20]}, MeasurementError, "too few edges|lost|followed|nothing"),
     ],
 )
 def test_what_a_video_does_not_take(trial, given, error, words):
