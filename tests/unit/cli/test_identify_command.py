@@ -8,6 +8,7 @@ import time
 import numpy as np
 import pytest
 import rocking_sounds
+from benchmarks import identification_video
 from rocking_sounds import RATE, wav
 
 import rocking as rk
@@ -283,6 +284,18 @@ def test_refusals(refuses, rocked, tmp_path, words, why):
     (tmp_path / "empty").mkdir()
     there = {"TIMES": times_file(tmp_path / "times.csv", rocked[0]), "EMPTY": tmp_path / "empty"}
     refuses([there.get(word, word) for word in words], why)
+
+
+def test_a_video_is_one_command(printed, refuses, tmp_path):
+    """Slow motion of a block, and a region that is none."""
+    pytest.importorskip("cv2", reason="OpenCV is not installed")
+    path, case = tmp_path / "drop.mp4", identification_video.rocked(1)
+    identification_video.filmed(path, case, 1, 30.0, 4.0)
+    sizes = ("--width", case["body"].width, "--height", case["body"].height)
+    page = printed(path, *sizes, "--set", "measurement.frame_rate=30", "--set", "identify.size_error=0.02")
+    assert "The coefficient of restitution is 0." in page
+    assert "rotations 1.5 % too small" in " ".join(page.split())
+    refuses((path, *sizes, "--set", "measurement.region=[1,2]"), "region must be four numbers")
 
 
 def test_what_is_no_rocking_gives_no_number(run, tmp_path):
