@@ -20,7 +20,7 @@ BODY = rk.Block(width=0.2, height=0.8, mass=30.0, centre=(0.104, 0.39))
 def test_intervals_hold_the_truth():
     """Of three bodies, two at 60 frames/s and one at 240, one 95 % interval may miss; rotations err by 1 mrad."""
     pytest.importorskip("cv2", reason="OpenCV is not installed")
-    rows = [identification_video.identified(*case) for case in ((0, 60.0, 4.0), (1, 60.0, 4.0), (7, 240.0, 2.2))]
+    rows = [identification_video.identified(*case) for case in ((0, 60.0, 3.0), (1, 60.0, 3.0), (7, 240.0, 1.8))]
     assert not any(row["refused"] for row in rows)
     assert sum(row["mean"] for row in rows) >= 2
     assert max(row["error"] for row in rows) < 1e-3
