@@ -7,9 +7,10 @@ import numpy as np
 
 from rocking import checks, conventions
 from rocking.assessment.answer import BodyAssessment, ModelMargin
+from rocking.assessment.in_space import DIRECTIONS, SolidHistories, numbered
 from rocking.assessment.remedies import CALIBRATED, lifting_factor, remedies
 from rocking.bodies import Body, Solid
-from rocking.conventions import FEET, IntArray
+from rocking.conventions import FEET, FloatArray, IntArray
 from rocking.dynamics.parameters import RockingParameters
 from rocking.errors import InvalidValueError, RockingError
 from rocking.evidence import restitution_distribution
@@ -31,8 +32,8 @@ ENDS = {"low": 0.025, "high": 0.975}
 MOST_ASKED = 50.0
 """Largest factor on the motions that remedies may be asked to hold, that up to which margins are looked for [-]."""
 
-DIRECTIONS = 12
-"""Over half a turn, into which two components are turned; both ways round make it a whole one."""
+IN_SPACE = CALIBRATED, "ked", "housner"
+"""Models that say something of solids, where nobody names others."""
 
 
 def assess(
@@ -55,15 +56,16 @@ def assess(
 
     Parameters
     ----------
-    body : Block, Section or MassPoints
-        The body in its plane; a solid by ``solid.in_plane(azimuth)``.
+    body : Block, Section, MassPoints or Solid
+        A body in its plane; or a solid, which stands in space on the vertices of its hull, in the pose into which it
+        settles. Code methods and remedies of a solid are those of ``solid.in_plane`` over its nearest edge.
     motions : GroundMotion, Pulse, or mapping with x, y and z, or a sequence of them
-        With y, the body is turned to both components in 12 directions.
+        With y, the body is turned to both components in 12 directions; a solid is with one component too.
     restitution : str, float, RestitutionModel or a sequence of them, optional
         Names, models and coefficients; if not given all registered models, and of the calibrated one its mean and
-        both ends of its 95 % interval [-].
+        both ends of its 95 % interval; of a solid "calibrated", "ked", "housner" and coefficients [-].
     friction : as for `predict`
-        Coefficient of friction; histories that slide take its median [-].
+        Coefficient of friction; histories that slide, and all of a solid, take its median [-].
     margin : float
         Factor on the motions that remedies must hold, up to 50 [-].
     gravity : float
@@ -74,7 +76,7 @@ def assess(
         Called with the number of histories done since the last call.
     **known
         What else is known of the body, as for `predict`: ``base``, ``centre``, ``polarity``, ``azimuth``, ``count``,
-        ``seed`` and more; also its ``restitution`` as ``predicted``.
+        ``seed`` and more; also its ``restitution`` as ``predicted``. With a number as azimuth it is not turned.
 
     Returns
     -------
@@ -84,7 +86,7 @@ def assess(
     Raises
     ------
     InvalidValueError
-        If the body is not plane, a motion is zero throughout, or a value is outside its range.
+        If it is no body, a motion is zero throughout, or a value is outside its range.
 
     Examples
     --------
@@ -93,48 +95,57 @@ def assess(
     >>> found.verdict
     'It does not lift: it overturns under none of 1 motion, with none of 2 restitutions, either way round.'
     """
-    if not isinstance(body, Body):
-        raise InvalidValueError(
-            f"assess takes a plane body, got {body!r:.60}; a solid stands in a plane by in_plane(azimuth)"
-        )
+    checks.of_kind("body", body, (Body, Solid), "a Block, Section, MassPoints or Solid")
     checks.within("margin", margin, 0.0, MOST_ASKED, open_low=True)
     margin, gravity = float(margin), checks.positive("gravity", gravity, "m/s2")
     if isinstance(restitution, (str, int, float, RestitutionModel)):
         restitution = [restitution]
     whole = several(motions)
-    plane, records = in_the_plane(whole, known.get("azimuth"))
-    if flat := next((each for each in plane if not each.peak > 0.0), None):
-        raise InvalidValueError(f"motion {flat.name!r} is zero throughout: nothing would move")
-    kept, options = MotionList(plane), {"gravity": gravity, "threads": threads, "progress": progress}
-
-    found, refused, chosen = dict[str, ModelMargin](), dict[str, str](), choices(body, restitution)
-    for name, choice in chosen.items():
-        try:
-            found[name] = _margin(body, kept, choice, options)
-        except RockingError as error:
-            refused[name] = str(error)
-    if not found:
-        raise InvalidValueError(f"no restitution says anything of this body: {'; '.join(refused.values())}")
-    worst = sorted(found, key=lambda name: np.nan_to_num(found[name].lowest, nan=np.inf))
     given = FRICTION[0] if friction is None else friction
     coefficient = float(Uncertain.of("friction", given, *FRICTION[1:]).quantile(np.array([0.5]))[0])
-    sliding = _margin(body, kept, chosen[worst[0]], {**options, "friction": coefficient})
-    sides, shaking = BodySides.of([body], gravity), Shaking.of(kept)
+    options = {"gravity": gravity, "threads": threads, "progress": progress}
+    space: SolidHistories | None = None
+    moving: Sequence[Any]
+    if isinstance(body, Solid):
+        space = SolidHistories(body, whole, known.get("azimuth"), coefficient, options)
+        flat, moving, records, body, whole = space.body, space.motions, space.records, space.standing.solid, space.given
+        plane = [each.in_plane for each in space.motions]
+        asked = IN_SPACE if restitution is None else restitution
+        restitution = [each.removesuffix("-3d") if isinstance(each, str) else each for each in asked]
+    else:
+        plane, records = in_the_plane(whole, known.get("azimuth"))
+        flat, moving = body, plane
+    if still := next((each for each in plane if not each.peak > 0.0), None):
+        raise InvalidValueError(f"motion {still.name!r} is zero throughout: nothing would move")
+    different = list({id(each): each for each in plane}.values())
+    place = [next(k for k, other in enumerate(different) if other is each) for each in plane]
+    kept = MotionList(different)
+    lifts = np.array([lifting_factor(flat, each, gravity) for each in plane]) if space is None else space.lifts()
+
+    chosen = choices(flat, restitution)
+    found, beside, refused = _margins(flat, kept, chosen, options, space, lifts)
+    worst = sorted(found, key=lambda name: np.nan_to_num(found[name].lowest, nan=np.inf))
+    lowest = float(np.nanmin([*(each.lowest for each in beside.values()), np.inf]))
+    standing = None
+    if space is None:
+        sliding = _margin(flat, kept, chosen[worst[0]], {**options, "friction": coefficient})
+    else:
+        sliding = found[worst[0]]
+        standing = space.fallen(sliding, *_told(worst[0], chosen[worst[0]]), lowest)
+    sides, shaking = BodySides.of([flat], gravity), Shaking.of(kept)
     prediction = predict(
         body, whole, restitution=known.pop("predicted", None), friction=friction, gravity=gravity, threads=threads,
         progress=progress, **known,
     )  # fmt: skip
-    lowest = min((each.lowest for each in found.values() if not np.isnan(each.lowest)), default=np.inf)
     return BodyAssessment(
-        body=body, motions=tuple(plane), records=records, models=found, refused=refused,
-        friction=coefficient, sliding=sliding,
-        lifts=np.array([lifting_factor(body, each, gravity) for each in plane]),
-        capacities={name: each.capacity(sides, shaking)[:, 0] for name, each in CODE_METHODS.items()},
+        body=flat, motions=tuple(moving), records=records, models=found, refused=refused,
+        friction=coefficient, sliding=sliding, lifts=lifts,
+        capacities={name: each.capacity(sides, shaking)[place, 0] for name, each in CODE_METHODS.items()},
         prediction=prediction,
         remedies=remedies(
-            body, plane, margin, gravity, {name: chosen[name] for name in worst}, falls=lowest <= margin
+            flat, different, margin, gravity, {name: chosen[name] for name in worst}, falls=lowest <= margin
         ),
-        gravity=gravity,
+        gravity=gravity, standing=standing,
     )  # fmt: skip
 
 
@@ -151,10 +162,9 @@ def in_the_plane(motions: Any, azimuth: Any = None) -> tuple[list[GroundMotion],
             turned = {f", {np.degrees(a):.0f} deg": rotated(along, across, float(a))[0] for a in angles}
         for words, each in turned.items():
             name = f"{along.name}{words}"
-            many = sum(other.name.partition(" (no. ")[0] == name for other in found)
             vertical = each.vertical if upright is None else with_vertical(each, sampled(upright)).vertical
             samples = each.acceleration if vertical is None else each.acceleration[: len(vertical)]
-            called = f"{name} (no. {many + 1})" if many else name
+            called = numbered(name, found)
             found.append(GroundMotion(samples, each.time_step, vertical, called, each.metadata, each.provenance))
             records.append(k)
     return found, np.array(records)
@@ -175,6 +185,32 @@ def choices(body: Body, given: Sequence[Any] | None) -> Mapping[str, Any]:
             one = model(each)
             named[one.label] = one
     return named
+
+
+def _told(name: str, choice: Any) -> tuple[Any, float]:
+    """Return a restitution by its name as `predict` takes it of a solid, and the probability of its distribution."""
+    what, _, end = name.partition(", ")
+    if what == CALIBRATED:
+        return None, ENDS.get(end, 0.5)
+    return (choice if isinstance(choice, float) else what), 0.5
+
+
+def _margins(
+    body: Body, motions: MotionList, chosen: Mapping[str, Any], options: dict[str, Any],
+    space: SolidHistories | None, lifts: FloatArray,
+) -> tuple[dict[str, ModelMargin], dict[str, ModelMargin], dict[str, str]]:  # fmt: skip
+    """Return the margins, those of the plane body beside a solid, and what says nothing of it, by restitution."""
+    found, beside, refused = dict[str, ModelMargin](), dict[str, ModelMargin](), dict[str, str]()
+    for name, choice in chosen.items():
+        try:
+            flat = _margin(body, motions, choice, options)
+            found[name] = flat if space is None else space.margin(flat, *_told(name, choice), lifts)
+            beside[name] = flat
+        except RockingError as error:
+            refused[name] = str(error)
+    if not found:
+        raise InvalidValueError(f"no restitution says anything of this body: {'; '.join(refused.values())}")
+    return found, beside, refused
 
 
 def _margin(body: Body, motions: MotionList, restitution: Any, options: dict[str, Any]) -> ModelMargin:

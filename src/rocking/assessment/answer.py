@@ -9,11 +9,20 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rocking.assessment.remedies import Remedies, millimetres
-from rocking.bodies import Body
+from rocking.bodies import Body, Solid
+from rocking.bodies.equilibria import Pass, StablePose
 from rocking.conventions import FEET, FloatArray, IntArray, g, percent
-from rocking.motions.motion import GroundMotion
 from rocking.prediction import Prediction
 from rocking.studies.code_methods.comparison import AT_MOST
+
+
+def just_above(factor: float) -> float:
+    """Return a factor above one that was found between two that are a thousandth apart, or is that of the motion."""
+    return factor if factor == 1.0 else 1.001 * factor
+
+
+def _degrees(angle: float) -> str:
+    return f"{math.degrees(angle) % 360.0:.0f} deg"
 
 
 def upwards(value: float, digits: int = 3) -> float:
@@ -46,6 +55,92 @@ class ModelMargin:
         known = self.least[~np.isnan(self.least)]
         return float(known.min()) if known.size else math.nan
 
+    @property
+    def place(self) -> tuple[int, int]:
+        """Way round and motion of the least factor."""
+        way, motion = np.unravel_index(int(np.argmin(np.nan_to_num(self.least, nan=np.inf))), self.least.shape)
+        return int(way), int(motion)
+
+
+@dataclass(frozen=True, eq=False)
+class StandingSolid:
+    """A solid as it stands, the plane body beside it, and how it falls at the least factor that overturns it.
+
+    Parameters
+    ----------
+    solid : Solid
+        As it stands.
+    pose : StablePose
+        The pose in which it does.
+    plane : float
+        Direction of the plane body, outwards over the edge over which it lifts first, from the solid's x axis [rad].
+    reach : float
+        How far that edge is from under the centre [m].
+    weakest : bool
+        Whether that is its nearest edge; one that the ground moves it towards otherwise.
+    way_out : Pass, optional
+        The lowest pass into another pose; None where there is none.
+    in_plane : float
+        Least factor that overturns the plane body, which does not slide [-].
+    falls_towards : float
+        Direction in which it leans when it falls, from its own x axis; NaN where nothing overturns it [rad].
+    slides : float
+        How far its points slide in that history [m].
+    restitution : str, float or FixedPosition
+        What an impact costs in it, as `simulate` takes it.
+    turned : float
+        Azimuth of the solid's x axis in it [rad].
+    """
+
+    solid: Solid
+    pose: StablePose
+    plane: float
+    reach: float
+    weakest: bool
+    way_out: Pass | None
+    in_plane: float = math.nan
+    falls_towards: float = math.nan
+    slides: float = math.nan
+    restitution: Any = None
+    turned: float = 0.0
+
+    @property
+    def words(self) -> tuple[str, str]:
+        """Where it is weakest and how firmly it stands, and how it falls, in words."""
+        towards, out = _degrees(self.plane), self.way_out
+        how = "It is weakest" if self.weakest else "As it stands to the ground's motion it lifts first"
+        weak = (
+            f"{how} towards {towards}, counter-clockwise from its x axis: the edge of its base there is "
+            f"{self.reach:.3g} m from under its centre, which is {self.pose.height:.3g} m high. "
+        )
+        falls = (
+            "" if math.isnan(self.falls_towards) else f"At its margin it falls towards {_degrees(self.falls_towards)}. "
+        )
+        if out is not None:
+            falls += (
+                f"Its centre must rise by {1e3 * out.rise:.3g} mm ({out.energy:.3g} J) at least to topple it, towards "
+                f"{_degrees(out.azimuth)}. "
+            )
+        margin = "no factor overturns it" if math.isinf(self.in_plane) else f"its margin is {self.in_plane:.3g}"
+        return weak, f"{falls}As a plane body along {towards}, which does not slide: {margin}."
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return it as plain values.
+
+        Returns
+        -------
+        dict
+            SI units; NaN where something does not exist.
+        """
+        out, pose = self.way_out, self.pose
+        return {
+            "plane_azimuth_rad": self.plane, "plane_is_weakest": self.weakest, "centre_height_m": pose.height,
+            "edge_m": self.reach, "barrier_m": pose.barrier,
+            "barrier_J": math.nan if out is None else out.energy,
+            "barrier_azimuth_rad": math.nan if out is None else out.azimuth,
+            "least_factor_in_plane": self.in_plane, "falls_towards_rad": self.falls_towards, "slides_m": self.slides,
+        }  # fmt: skip
+
 
 class Lowest(NamedTuple):
     """The least factor of all, and whose it is."""
@@ -63,19 +158,19 @@ class BodyAssessment:
     Parameters
     ----------
     body : Body
-        The body.
-    motions : tuple of GroundMotion
-        The motions in its plane; of two components every direction that was tried.
+        The body; of a solid the plane body beside it.
+    motions : tuple of GroundMotion, or of Components
+        The motions in its plane; of two components, and of a solid, every direction that was tried.
     records : ndarray, shape (motions,)
         Of which motion that was given each is a direction, by number.
     models : dict of str to ModelMargin
-        By the name of the restitution, without sliding.
+        By the name of the restitution, without sliding; of a solid with the friction.
     refused : dict of str to str
         Models that say nothing of the body, and why.
     friction : float
         Coefficient of friction of `sliding` [-].
     sliding : ModelMargin
-        With the model of the least margin, where it may also slide, hop and fly.
+        With the model of the least margin, where it may also slide, hop and fly, as solids always may.
     lifts : ndarray, shape (motions,)
         Factor on each motion from which on it lifts [-].
     capacities : dict of str to ndarray
@@ -86,10 +181,12 @@ class BodyAssessment:
         What would help.
     gravity : float
         Acceleration of gravity [m/s2].
+    standing : StandingSolid, optional
+        The solid that it is about; none of a plane body.
     """
 
     body: Body
-    motions: tuple[GroundMotion, ...]
+    motions: tuple[Any, ...]
     records: IntArray
     models: Mapping[str, ModelMargin]
     refused: Mapping[str, str]
@@ -100,14 +197,14 @@ class BodyAssessment:
     prediction: Prediction
     remedies: Remedies
     gravity: float = g
+    standing: StandingSolid | None = None
 
     @cached_property
     def lowest(self) -> Lowest:
         """The least factor on any motion that overturns it without sliding, with any model."""
         name = min(self.models, key=lambda each: (math.isnan(self.models[each].lowest), self.models[each].lowest))
-        least = np.where(np.isnan(self.models[name].least), np.inf, self.models[name].least)
-        way, motion = np.unravel_index(int(np.argmin(least)), least.shape)
-        return Lowest(self.models[name].lowest, name, int(motion), bool(way))
+        way, motion = self.models[name].place
+        return Lowest(self.models[name].lowest, name, motion, bool(way))
 
     def by_record(self, values: FloatArray, worst: np.ufunc = np.fmax) -> FloatArray:
         """Return what is worst in any direction of each motion that was given.
@@ -173,7 +270,8 @@ class BodyAssessment:
             return "Margin to overturning: not known."
         if math.isinf(factor):
             return f"No factor on {self._this} that was tried overturns it."
-        name, way = self.motions[motion].name, ", mirrored" if mirrored else ""
+        turned = "mirrored" if self.standing is None else "turned half round"
+        name, way = self.motions[motion].name, f", {turned}" if mirrored else ""
         pga = factor * self.motions[motion].peak
         on = "this record" if len(self.motions) == 1 else name
         asked, here = self.remedies.margin, self.models[model].overturned[motion]
@@ -205,6 +303,8 @@ class BodyAssessment:
             if not self.body.is_symmetric
             else f"The centre is {side.half_width:.3g} m from either foot and {side.centre_height:.3g} m above it. ",
         ]
+        if self.standing is not None:
+            found[0] = self.standing.words[0]
         found[0] += (
             f"It lifts from {side.uplift_acceleration / g:.3g} g, at {self.lifts[first]:.3g} times "
             f"{self.motions[first].name}."
@@ -216,10 +316,14 @@ class BodyAssessment:
                 f"What an impact costs moves the margin from {margins[low]:.3g} ({low}) to {margins[high]:.3g} "
                 f"({high})."
             )
+        if self.standing is not None:
+            found.append(self.standing.words[1])
         slope = side.half_width / side.centre_height
         slid = self.sliding.lowest
         words = "no factor that was tried overturns it" if math.isinf(slid) else f"a margin of {slid:.3g}"
         words = "no history has a result" if math.isnan(slid) else words
+        if self.standing is not None and not math.isnan(self.standing.slides):
+            words = f"by {millimetres(self.standing.slides)} mm at the least factor"
         slides = "before it lifts" if self.friction < slope else "only while it rocks, if at all"
         found.append(f"With a friction of {self.friction:.3g} (b/h = {slope:.3g}) it slides {slides}: {words}.")
         shares = {name: each for name, each in self.prediction.shares.items() if each.total > 0.0}
@@ -236,6 +340,8 @@ class BodyAssessment:
         """What would help, in words."""
         remedy = self.remedies
         ask = self._this if remedy.margin == 1.0 else f"{remedy.margin:g} times {self._this}"
+        if self.standing is not None:
+            ask += f" as a plane body along {_degrees(self.standing.plane)}"
         if not remedy.needed:
             return (f"Nothing: it does not lift under {ask}.",)
         both = " and ".join(
@@ -314,7 +420,7 @@ class BodyAssessment:
         return {
             "verdict": self.verdict,
             "sentences": list(self.sentences),
-            "body": repr(self.body),
+            "body": repr(self.body if self.standing is None else self.standing.solid),
             "motions": [each.name for each in self.motions],
             "records": self.records,
             "lowest": {**self.lowest._asdict(), "motion": self.motions[self.lowest.motion].name},
@@ -325,4 +431,5 @@ class BodyAssessment:
             "code_methods": dict(self.capacities),
             "remedies": asdict(self.remedies),
             "prediction": self.prediction.as_dict(),
+            **({} if self.standing is None else {"solid": self.standing.as_dict()}),
         }

@@ -102,11 +102,14 @@ class AssessmentAnswer:
             page.line(words, style=style)
         page.line()
         head = ("restitution", "r left, right", "overturns under", "least factor")
-        with_friction = (f"{found.lowest.model}, friction {found.friction:.3g}", found.sliding)
-        page.table(head, [_row(found, name, each) for name, each in (*found.models.items(), with_friction)], head[:1])
+        rows = [*found.models.items()]
+        if found.standing is None:
+            rows.append((f"{found.lowest.model}, friction {found.friction:.3g}", found.sliding))
+        page.table(head, [_row(found, name, each) for name, each in rows], head[:1])
         page.warn(f"{name}: {why}" for name, why in found.refused.items())
         page.line()
-        head = ("code method", "calls safe", "these overturn", "up to factor")
+        method = "code method" if found.standing is None else "code method, plane body"
+        head = (method, "calls safe", "these overturn", "up to factor")
         page.table(head, [
             (name, *((f"{safe} of {of}", str(fell), f"{least:.3g}") if of else ("outside its domain", "-", "-")))
             for name, of, safe, fell, least in found.code_rows

@@ -37,6 +37,7 @@ class Endings:
     sliding: FloatArray  # how far it slid [m]
     overturning: FloatArray  # 1 where it overturned
     peak: FloatArray  # largest rotation, without its sign [rad]
+    direction: FloatArray | None = None  # of a body in space, in which it leant when it fell, from x to y [rad]
 
 
 class Mechanics(ABC):

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from rocking.bodies import MassPoints, Solid
 from rocking.conventions import FloatArray, percent
 from rocking.dynamics.hull import HullBody, HullSettings, fast_engine, standing
 from rocking.dynamics.hull.histories import HullRows
+from rocking.dynamics.hull.restitution import FixedPosition
 from rocking.dynamics.settings import processors
 from rocking.dynamics.space.attitude import product, turn
 from rocking.dynamics.space.ground import ground_of
@@ -69,13 +71,13 @@ class SpaceMechanics(Mechanics):
             raise InvalidValueError("polarity is of plane bodies: in space azimuth turns a body to either side")
         if solid.equilibria().settling((0.0, 0.0, -1.0)).down[2] > _UPRIGHT:
             solid = solid.settled()
-        self._gravity, self._solid, found = gravity, solid, solid.equilibria()
-        self._pose, self._mass, self._flat = found.settling((0.0, 0.0, -1.0)), found.mass, found.flatness
-        turned = self._pose.rotation
-        self._corners, self._surface = (times(each, turned.T) for each in (found.hull.vertices, found.surface))
-        self._inertia = times(times(turned, solid.local_moments.inertia), turned.T)
+        self._gravity, self.solid, found = gravity, solid, solid.equilibria()
+        self.pose, self._mass, self._flat = found.settling((0.0, 0.0, -1.0)), found.mass, found.flatness
+        turned = self.pose.rotation
+        self.corners, self._surface = (times(each, turned.T) for each in (found.hull.vertices, found.surface))
+        self.inertia = times(times(turned, solid.local_moments.inertia), turned.T)
         self._shapes: dict[tuple[float, float], _Shape] = {}
-        radius, height = float(np.linalg.norm(self._pose.support, axis=1).mean()), self._pose.height
+        radius, height = float(np.linalg.norm(self.pose.support, axis=1).mean()), self.pose.height
         turn_round = 2.0 * math.pi
         self.assumed += solid.assumed
         self._take({
@@ -86,6 +88,20 @@ class SpaceMechanics(Mechanics):
         })  # fmt: skip
         self._set_restitution(given.get("restitution"))
         self.assumed += NOT_SAMPLED
+
+    def with_restitution(self, told: Any) -> "SpaceMechanics":
+        """Return the same with other impacts."""
+        other = copy(self)
+        other.inputs = {name: each for name, each in self.inputs.items() if name != "restitution"}
+        other.assumed = [*self.assumed]
+        other._set_restitution(told)
+        return other
+
+    def law(self, level: float) -> Any:
+        """Return what an impact costs at a probability of its distribution, as `simulate` takes it."""
+        named = {fast_engine.HOUSNER: "housner", fast_engine.KED: "ked"}
+        value = float(self.inputs["restitution"].quantile(np.array([level]))[0])
+        return named.get(self._law) or (FixedPosition(value) if self._law == fast_engine.POSITION else value)
 
     def _set_restitution(self, told: Any) -> None:
         """Take a law of impacts, and the distribution of its number."""
@@ -106,12 +122,12 @@ class SpaceMechanics(Mechanics):
 
     def _measured(self) -> tuple[FloatArray, str]:
         """Return quantiles of the position k of the impulse, as measured, over the nearest edge of the base."""
-        support, nearest = self._pose.support, int(np.argmin(self._pose.edge_distances))
+        support, nearest = self.pose.support, int(np.argmin(self.pose.edge_distances))
         chord = np.roll(support, -1, axis=0)[nearest] - support[nearest]
         edge = np.append(chord / np.linalg.norm(chord), 0.0)
         reach = support @ np.array([edge[1], -edge[0]])  # outward across the edge
-        new, old, height = float(reach.max()), float(-reach.min()), self._pose.height
-        inertia = float(edge @ self._inertia @ edge)
+        new, old, height = float(reach.max()), float(-reach.min()), self.pose.height
+        inertia = float(edge @ self.inertia @ edge)
         # the body may be wider than its base, so no block has its moments: two equal masses about the centre have
         far, half = math.sqrt(inertia / self._mass), 0.5 * self._mass
         plane = MassPoints([(old - far, height), (old + far, height)], [half, half], feet=(0.0, old + new))
@@ -147,14 +163,15 @@ class SpaceMechanics(Mechanics):
         known = found["status"] == Status.GOOD.code
         pairs = zip(shapes, found["pose"].tolist(), strict=True)
         elsewhere = np.array([shape.left(pose) for shape, pose in pairs], dtype=np.float64)
-        columns = (np.isfinite(found["first_uplift"]), found["sliding_distance"], elsewhere, found["peak_tilt"])
+        columns = (np.isfinite(found["first_uplift"]), found["sliding_distance"], elsewhere, found["peak_tilt"],
+                   found["direction"])  # fmt: skip
         return Endings(*(np.where(known, each, np.nan) for each in columns))
 
     def _shape(self, base: float, centre: float) -> "_Shape":
         """Return the body with a base and a centre, as it stands."""
         key = (base, centre)
         if key not in self._shapes:
-            points, height = self._corners.copy(), self._pose.height
+            points, height = self.corners.copy(), self.pose.height
             if base > 0.0:
                 near = self._surface[self._surface[:, 2] + height <= max(base, self._flat)]
                 points = np.concatenate([points, near])
@@ -164,7 +181,7 @@ class SpaceMechanics(Mechanics):
                 far = np.linalg.norm(points[corners, :2], axis=1, keepdims=True)
                 points[corners, :2] *= 1.0 + np.maximum(base / far, -0.9)
             middle = np.array([0.0, 0.0, (centre - 1.0) * height])
-            self._shapes[key] = _Shape(HullBody(points, self._mass, middle, self._inertia, self._solid))
+            self._shapes[key] = _Shape(HullBody(points, self._mass, middle, self.inertia, self.solid))
         return self._shapes[key]
 
 

@@ -8,21 +8,25 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rocking import checks
-from rocking.assessment import BodyAssessment, ModelMargin
+from rocking.assessment import BodyAssessment, ModelMargin, StandingSolid
+from rocking.assessment.answer import just_above
+from rocking.assessment.in_space import DIRECTIONS, POINTS
 from rocking.assessment.remedies import ASSUMED, CALIBRATED
 from rocking.bodies.body import assumed_rows
 from rocking.conventions import FEET, g
-from rocking.dynamics import Response, simulate
+from rocking.dynamics import simulate
 from rocking.evidence.measurements import provenance
+from rocking.motions.components import leading
 from rocking.motions.intensity import measure
-from rocking.motions.motion import GroundMotion
 from rocking.outcome import Outcome
 from rocking.plots.assessment import assessment_picture
 from rocking.plots.body import body_picture
+from rocking.plots.equilibria import equilibria_picture
 from rocking.plots.ground_motion import ground_motion_picture
 from rocking.plots.prediction import prediction_picture
 from rocking.plots.response import response_picture
-from rocking.reports.document import Cell, Document, Pair, Paragraph, Picture, ReportSection, ReportTable, table
+from rocking.plots.spatial import spatial_picture
+from rocking.reports.document import Block, Cell, Document, Pair, Paragraph, Picture, ReportSection, ReportTable, table
 from rocking.reports.render import write_report
 from rocking.reports.response_document import _sides
 from rocking.restitution import models
@@ -30,6 +34,15 @@ from rocking.studies.code_methods import CODE_METHODS, LEFT_OUT
 from rocking.tables import target_of
 from rocking.version import SOFTWARE
 
+_PLANE = "plane body"
+_IN_SPACE = (
+    "Histories: the ground is level, body and floor are rigid, the solid touches with all vertices of its hull, where "
+    f"it may slide, hop and fly; it is turned into {2 * DIRECTIONS} directions unless its azimuth is known. The least "
+    f"factor is looked for at {POINTS} levels in equal ratios, from what lifts the body up to 50 times that or the "
+    "largest acceleration on record, then by halvings: a thinner stretch below may have been missed. It overturned "
+    "where it ends in another pose, more than 10 degrees away. Code methods and remedies are those of a plane body, "
+    "which the table of the body states: what happens in space alone they do not see.",
+)
 _SEARCHED = (
     "Histories: the ground is level, body and floor are rigid, the body stands on two feet. The least factor is looked "
     "for at 64 levels in equal ratios, from what lifts the body up to 50 times that or the largest acceleration on "
@@ -70,13 +83,15 @@ def assessment_report(
         If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
     """
     checks.of_kind("found", found, BodyAssessment, "a BodyAssessment")
-    target, drawn = target_of(path), governing_history(found)
+    target, drawn, solid = target_of(path), governing_history(found), found.standing
     pictures: dict[str, Callable[[], Any]] = {
-        "body": lambda: body_picture(found.body),
+        "body": lambda: body_picture(found.body) if solid is None else equilibria_picture(solid.solid, solid.pose),
         "margins": lambda: assessment_picture(found),
         "prediction": lambda: prediction_picture(found.prediction),
-        "motion": lambda: ground_motion_picture(drawn.motion),
-        "response": lambda: response_picture(drawn.history, found.friction),
+        "motion": lambda: ground_motion_picture(leading(drawn.motion)),
+        "response": lambda: (
+            response_picture(drawn.history, found.friction) if solid is None else spatial_picture(drawn.history)
+        ),
     }
     signed = {"project": project, "author": author, "date": date}
     write_report(assessment_document(found, name, signed, drawn), pictures, target)
@@ -86,20 +101,22 @@ def assessment_report(
 class Drawn(NamedTuple):
     """The history that is drawn, of which motion, and which it is in words."""
 
-    history: Response
-    motion: GroundMotion
+    history: Any
+    motion: Any
     words: str
 
 
 def governing_history(found: BodyAssessment) -> Drawn:
     """Return a history that overturns: under a motion as it is, that of the least margin first, or at the margin."""
     factor, model, motion, mirrored = found.lowest
+    if found.standing is not None:
+        return _governing_solid(found, found.standing)
     fell = [(name, k) for name, each in found.models.items() for k in np.flatnonzero(each.overturned == 1.0).tolist()]
     at, how = 1.0, "as it is"
     if fell:
         model, motion = min(fell, key=lambda one: (one[1] != motion, one[0] != model))
-    elif math.isfinite(factor):  # just above what was found between two factors that are a thousandth apart
-        at, how = 1.001 * factor, f"at {factor:.3g} times, the least factor that was found to overturn it"
+    elif math.isfinite(factor):
+        at, how = just_above(factor), f"at {factor:.3g} times, the least factor that was found to overturn it"
     pair = found.models[model].coefficients
     swapped = {foot: pair[other] for foot, other in zip(FEET, FEET[::-1], strict=True)}
     for twin in (mirrored, not mirrored):
@@ -112,6 +129,19 @@ def governing_history(found: BodyAssessment) -> Drawn:
                  f"The body{' mirrored,' if twin else ''} under {name} {how}, with {model}")  # fmt: skip
 
 
+def _governing_solid(found: BodyAssessment, solid: StandingSolid) -> Drawn:
+    """Return the history of a solid at its least factor; under the first motion as it is where there is none."""
+    factor, model, motion, _ = found.lowest
+    at, how = (just_above(factor), f"at {factor:.3g} times") if math.isfinite(factor) else (1.0, "as it is")
+    moved = found.motions[motion]
+    history = simulate(
+        solid.solid.turned(solid.turned), moved.parts, solid.restitution, friction=found.friction, scale=at,
+        gravity=found.gravity, tolerance=1e-8,
+    )  # fmt: skip
+    azimuth = f"{math.degrees(solid.turned) % 360.0:.0f}"
+    return Drawn(history, moved, f"The solid, its x axis at {azimuth} deg, under {moved.name} {how}, with {model}")
+
+
 def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str], drawn: Drawn) -> Document:
     """Return the content of the report of an assessment."""
     some = (found.fallen > 0.0).any() or found.lowest.factor < 1.0
@@ -119,6 +149,7 @@ def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str]
     margins = Picture("margins", "Least factor on each motion that overturns; code methods over it, unsafe above 1")
     how_likely = Picture("prediction", "How likely it overturns and rocks under each motion, and what decides it")
     motion = Picture("motion", f"{drawn.motion.name}: the ground, and its response spectrum for 5 % damping", 74)
+    searched = _SEARCHED[:1] if found.standing is None else _IN_SPACE
     under = f"{drawn.words}: {drawn.history.summary}"
     picture = [how_likely] if found.prediction.chances["overturning"].value > 0.0 else []
     sections = [
@@ -127,11 +158,11 @@ def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str]
         ReportSection("What to do", [*map(_led, found.to_do)]),
         ReportSection("How likely is it?", [*map(Paragraph, found.prediction.sentences), *picture]),
         ReportSection("Code methods beside it", [_codes(found)]),
-        ReportSection("The body", [Pair(Picture("body", "The body on its feet O and O'"), _body(found))]),
+        ReportSection("The body", _about(found)),
         ReportSection("The governing motion and history", [motion, Picture("response", under, 80)]),
         ReportSection("What is known, and what was assumed", [
             table("", ["input", "drawn from"], found.prediction.inputs.items()),
-            *map(_led, (*_SEARCHED, *ASSUMED, *found.prediction.assumed)),
+            *map(_led, (*searched, *_SEARCHED[1:], *ASSUMED, *found.prediction.assumed)),
             *(Paragraph(why, f"{model} says nothing of this body:", "fair") for model, why in found.refused.items()),
         ]),
         ReportSection("References", [*map(_led, _references(found))]),
@@ -150,12 +181,14 @@ def _models(found: BodyAssessment) -> ReportTable:
         (name, *(f"{each.coefficients[foot]:.3f}" for foot in ("left", "right")),
          Cell(f"{found.falls(each)} of {found.fallen.size}", "bad" if found.falls(each) else "good"),
          f"{each.lowest:.3g}")
-        for name, each in (*found.models.items(), _with_friction(found))
+        for name, each in (*found.models.items(), *_with_friction(found))
     ]  # fmt: skip
     note = (
         "r: velocity after an impact over velocity before. Least factor: on any motion, either way round; inf where "
         "none that was tried overturns. The calibrated model's ends are those of 95 % for a single body."
     )
+    if found.standing is not None:
+        note += f" Histories in space with a friction of {found.friction:.3g}; r: in the plane of its {_PLANE}."
     head = ["restitution", "r left [-]", "r right [-]", "overturns under", "least factor [-]"]
     return table("With each model of restitution", head, rows, note)
 
@@ -180,8 +213,10 @@ def _motions(found: BodyAssessment) -> ReportTable:
     return table("Under each motion", head, rows, note)
 
 
-def _with_friction(found: BodyAssessment) -> tuple[str, ModelMargin]:
-    return f"{found.lowest.model}, friction {found.friction:.3g}", found.sliding
+def _with_friction(found: BodyAssessment) -> list[tuple[str, ModelMargin]]:
+    """Return the row of the history that slides; none of a solid, of which all may."""
+    row = f"{found.lowest.model}, friction {found.friction:.3g}", found.sliding
+    return [row] if found.standing is None else []
 
 
 def _led(words: str) -> Paragraph:
@@ -205,7 +240,17 @@ def _codes(found: BodyAssessment) -> ReportTable:
     return table("", ["method", "calls safe", "of these overturn", "up to [-]"], rows, note)
 
 
-def _body(found: BodyAssessment) -> ReportTable:
+def _about(found: BodyAssessment) -> list[Block]:
+    if found.standing is None:
+        return [Pair(Picture("body", "The body on its feet O and O'"), _body(found))]
+    return [
+        *map(Paragraph, found.standing.words),
+        Picture("body", "How much the centre must rise to topple it, by direction; what it stands on, and its sides"),
+        _body(found, f"The {_PLANE} of {math.degrees(found.standing.plane) % 360.0:.0f} deg"),
+    ]
+
+
+def _body(found: BodyAssessment, title: str = "") -> ReportTable:
     body = found.body
     rows = [
         ("mass", f"{body.mass:.5g} kg"), *assumed_rows(body),
@@ -214,7 +259,7 @@ def _body(found: BodyAssessment) -> ReportTable:
         ("moment of inertia", f"{body.moment_of_inertia:.5g} kg m\N{SUPERSCRIPT TWO} about the centre"),
         *_sides(body, found.gravity),
     ]  # fmt: skip
-    return table("", ["quantity", "value"], rows)
+    return table(title, ["quantity", "value"], rows)
 
 
 def _references(found: BodyAssessment) -> list[str]:

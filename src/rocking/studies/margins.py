@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking import plausibility
 from rocking.bodies import Body
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, IntArray
 from rocking.motions.intensity import measure as measure_of
 from rocking.studies.fragility.subject import Responses, Subject
 from rocking.studies.histories import Histories, results_of
@@ -72,18 +72,43 @@ def _least(subject: Subject, overturned: Callable[[Subject, Histories, tuple[int
     """Return the least factor on each motion that was found to overturn; infinite if none, NaN without a result."""
     peaks, lifts = measure_of("pga").values(subject.motions, subject.scale), subject.scale.threshold
     light = not subject.are_horizontal
-    highest = min(REACH * lifts, max(plausibility.LARGEST_PGA, 4.0 * lifts))
-    grid = np.geomspace((0.1 if light else 1.0) * lifts, highest, POINTS) / peaks[:, None]
-    fell = overturned(subject, subject.product(grid), grid.shape)
+    grid = np.geomspace((0.1 if light else 1.0) * lifts, highest(lifts), POINTS) / peaks[:, None]
+    return first_to_fall(
+        grid, lambda rows, factors: overturned(subject, subject.table(rows, factors), factors.shape), POINTS
+    )
+
+
+def highest(lifts: float) -> float:
+    """Return the largest acceleration at which it is looked for what overturns, of that which lifts [m/s2]."""
+    return min(REACH * lifts, max(plausibility.LARGEST_PGA, 4.0 * lifts))
+
+
+def first_to_fall(
+    grid: FloatArray, overturned: Callable[[IntArray, FloatArray], FloatArray], together: int
+) -> FloatArray:
+    """Return the least factor that was found to overturn; infinite if none did, NaN without a result.
+
+    grid: factors of each row, upwards; overturned: says it of numbers of rows, each with its factor; together: so many
+    factors are tried at once of the rows of which none overturned yet.
+    """
+    count, points = grid.shape
+    fell = np.zeros(grid.shape)
+    for begin in range(0, points, together):
+        part = slice(begin, begin + together)
+        some = np.flatnonzero(~(fell == 1.0).any(axis=1))
+        if some.size:
+            tried = grid[some, part]
+            numbers = np.repeat(some, tried.shape[1])
+            fell[some, part] = overturned(numbers, tried.ravel()).reshape(tried.shape)
     first = np.argmax(fell == 1.0, axis=1)
-    rows = np.arange(len(peaks))
+    rows = np.arange(count)
     found = np.where(fell[rows, first] == 1.0, grid[rows, first], np.inf)
     low, high = grid[rows, np.maximum(first - 1, 0)], found
     some = np.flatnonzero(np.isfinite(found) & (first > 0))
     for _ in range(HALVINGS if some.size else 0):
         middle = np.sqrt(low[some] * high[some])
-        falls = overturned(subject, subject.table(some, middle), middle.shape) == 1.0
+        falls = overturned(some, middle) == 1.0
         high[some], low[some] = np.where(falls, middle, high[some]), np.where(falls, low[some], middle)
     high[some] = np.sqrt(low[some] * high[some])
-    before = np.where(np.isfinite(found), first, POINTS)[:, None] > np.arange(POINTS)
+    before = np.where(np.isfinite(found), first, points)[:, None] > np.arange(points)
     return np.where((np.isnan(fell) & before).any(axis=1), np.nan, high)

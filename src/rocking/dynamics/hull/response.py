@@ -15,6 +15,7 @@ from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.histories import start_of
 from rocking.dynamics.hull.history import HullEventKind, HullHistory, HullSettings
 from rocking.dynamics.hull.law import law_on_hull
+from rocking.dynamics.hull.restitution import FixedPosition
 from rocking.dynamics.hull.vectors import unit
 from rocking.dynamics.response_base import ResponseBase, motion_provenance
 from rocking.dynamics.settings import Settings
@@ -52,7 +53,8 @@ def response_on_hull(
 ) -> "HullResponse":
     """Return how a body in space moves that may rock, slide, hop and fall; without components, when it is let go."""
     # duration: how long to follow the body at least [s]; if not given, until it rests after the motion
-    made, law = HullBody.of(body), law_on_hull(restitution)
+    made = HullBody.of(body)
+    law = restitution if isinstance(restitution, FixedPosition) else law_on_hull(restitution)
     scale = checks.within("scale", scale, -1e6, 1e6)
     start = started(start, math.sqrt(settings.gravity / made.size))
     until = np.inf if duration is None else checks.positive("duration", duration, "s")

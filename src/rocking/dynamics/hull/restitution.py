@@ -27,6 +27,9 @@ class FixedPosition:
     def __post_init__(self) -> None:
         object.__setattr__(self, "k", checks.within("k", self.k, 0.0, 1.0))
 
+    def __str__(self) -> str:
+        return f"impulse at k = {self.k:.3g}"
+
 
 def law_of(restitution: Any, body: HullBody, base: int) -> ImpulseLaw:
     """Return k of every step, from the name of a model, a k, or the coefficient of a landing of the whole base."""
