@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking import checks, conventions
 from rocking.assessment.answer import BodyAssessment, ModelMargin
-from rocking.assessment.in_space import DIRECTIONS, SolidHistories, numbered
+from rocking.assessment.in_space import SolidHistories, numbered
 from rocking.assessment.remedies import CALIBRATED, lifting_factor, remedies
 from rocking.bodies import Body, Solid
 from rocking.conventions import FEET, FloatArray, IntArray
@@ -31,6 +31,9 @@ ENDS = {"low": 0.025, "high": 0.975}
 
 MOST_ASKED = 50.0
 """Largest factor on the motions that remedies may be asked to hold, that up to which margins are looked for [-]."""
+
+DIRECTIONS = 12
+"""Over half a turn, into which two components are turned; both ways round make it a whole one."""
 
 IN_SPACE = CALIBRATED, "ked", "housner"
 """Models that say something of solids, where nobody names others."""
@@ -60,7 +63,7 @@ def assess(
         A body in its plane; or a solid, which stands in space on the vertices of its hull, in the pose into which it
         settles. Code methods and remedies of a solid are those of ``solid.in_plane`` over its nearest edge.
     motions : GroundMotion, Pulse, or mapping with x, y and z, or a sequence of them
-        With y, the body is turned to both components in 12 directions; a solid is with one component too.
+        With y, the body is turned to both components in 12 directions; a solid in 6, with one component too.
     restitution : str, float, RestitutionModel or a sequence of them, optional
         Names, models and coefficients; if not given all registered models, and of the calibrated one its mean and
         both ends of its 95 % interval; of a solid "calibrated", "ked", "housner" and coefficients [-].
@@ -132,6 +135,7 @@ def assess(
     else:
         sliding = found[worst[0]]
         standing = space.fallen(sliding, *_told(worst[0], chosen[worst[0]]), lowest)
+    falls = max(lowest, sliding.lowest) if space else lowest
     sides, shaking = BodySides.of([flat], gravity), Shaking.of(kept)
     prediction = predict(
         body, whole, restitution=known.pop("predicted", None), friction=friction, gravity=gravity, threads=threads,
@@ -143,7 +147,7 @@ def assess(
         capacities={name: each.capacity(sides, shaking)[place, 0] for name, each in CODE_METHODS.items()},
         prediction=prediction,
         remedies=remedies(
-            flat, different, margin, gravity, {name: chosen[name] for name in worst}, falls=lowest <= margin
+            flat, different, margin, gravity, {name: chosen[name] for name in worst}, falls=falls <= margin
         ),
         gravity=gravity, standing=standing,
     )  # fmt: skip

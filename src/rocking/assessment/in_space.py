@@ -19,11 +19,12 @@ from rocking.prediction.mechanics import parts
 from rocking.prediction.space import SpaceMechanics
 from rocking.studies.margins import first_to_fall, highest
 
-DIRECTIONS = 12
-"""Over half a turn, into which two components are turned; both ways round make it a whole one."""
+DIRECTIONS = 6
+"""Over half a turn, into which a solid is turned; both ways round make it a whole one."""
 
-POINTS, TOGETHER = 32, 8
-"""Factors at which the least that overturns a solid is looked for, from that which lifts it on, so many at once."""
+POINTS, REACH, TOGETHER = 24, 20.0, 8
+"""Factors at which the least that overturns it is looked for, up to so many times that which lifts it, so many at once:
+a history in space takes a thousand times as long as one in the plane."""
 
 TURN, SAME = 2.0 * math.pi, 1e-9
 
@@ -78,10 +79,11 @@ class SolidHistories:
                 towards = 0.5 * TURN * step / DIRECTIONS if fixed is None else fixed + plane
                 along = x
                 if each.y is not None or fixed is not None:
-                    across = (
-                        x.changed("none across it", acceleration=0.0 * x.acceleration) if each.y is None else each.y
-                    )
-                    along = rotated(x, across, towards)[0]
+                    y = x.changed("none", acceleration=0.0 * x.acceleration) if each.y is None else each.y
+                    pair = [
+                        part.changed("cut", acceleration=part.acceleration[: min(len(x), len(y))]) for part in (x, y)
+                    ]
+                    along, _ = rotated(*pair, towards)
                 name = f"{each.x.name}, {math.degrees(towards):.0f} deg" if fixed is None else each.x.name
                 called = numbered(name, self.motions)
                 whole = along if z is None else with_vertical(along, z)
@@ -124,7 +126,7 @@ class SolidHistories:
         """
         mechanics, ways, count = self._mechanics.with_restitution(told), self.ways, len(self.motions)
         peaks = np.array([each.peak for each in self.motions])
-        grid = np.array([np.geomspace(f, highest(f * a) / a, POINTS) for f, a in zip(lifts, peaks, strict=True)])
+        grid = np.array([np.geomspace(f, highest(f * a, REACH) / a, POINTS) for f, a in zip(lifts, peaks, strict=True)])
 
         def overturned(rows: IntArray, factors: FloatArray) -> FloatArray:
             return self._run(mechanics, level, rows, factors)[0]

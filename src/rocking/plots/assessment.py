@@ -70,8 +70,9 @@ def _margins(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
     axes.set_ylim(order.size - 0.5, -0.5)
     axes.set_xlabel("factor on the motion [-]")
     if order.size <= _MOST_NAMES:
-        names = [found.motions[k].name for k in order]
-        axes.set_yticks(range(order.size), [plain(name if len(name) <= 34 else f"{name[:31]}...") for name in names])
+        names = (found.motions[k].name for k in order)
+        short = [plain(name if len(name) <= 34 else f"{name[:21]}...{name[-10:]}") for name in names]
+        axes.set_yticks(range(order.size), short)
     else:
         axes.set_yticks([])
         axes.set_ylabel(f"{found.several}, the most dangerous first")

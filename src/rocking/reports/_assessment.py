@@ -10,7 +10,7 @@ import numpy as np
 from rocking import checks
 from rocking.assessment import BodyAssessment, ModelMargin, StandingSolid
 from rocking.assessment.answer import just_above
-from rocking.assessment.in_space import DIRECTIONS, POINTS
+from rocking.assessment.in_space import DIRECTIONS, POINTS, REACH
 from rocking.assessment.remedies import ASSUMED, CALIBRATED
 from rocking.bodies.body import assumed_rows
 from rocking.conventions import FEET, g
@@ -37,8 +37,9 @@ from rocking.version import SOFTWARE
 _PLANE = "plane body"
 _IN_SPACE = (
     "Histories: the ground is level, body and floor are rigid, the solid touches with all vertices of its hull, where "
-    f"it may slide, hop and fly; it is turned into {2 * DIRECTIONS} directions unless its azimuth is known. The least "
-    f"factor is looked for at {POINTS} levels in equal ratios, from what lifts the body up to 50 times that or the "
+    f"it may slide, hop and fly; it is turned into {2 * DIRECTIONS} directions unless its azimuth is known: behind a "
+    "motion's name stands where its weakest side then faces, from x towards y. The least factor is looked for at "
+    f"{POINTS} levels in equal ratios, from what lifts the body up to {REACH:g} times that or the "
     "largest acceleration on record, then by halvings: a thinner stretch below may have been missed. It overturned "
     "where it ends in another pose, more than 10 degrees away. Code methods and remedies are those of a plane body, "
     "which the table of the body states: what happens in space alone they do not see.",
@@ -148,7 +149,9 @@ def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str]
     mark = "bad" if (found.fallen == 1.0).any() else "fair" if some else "good"
     margins = Picture("margins", "Least factor on each motion that overturns; code methods over it, unsafe above 1")
     how_likely = Picture("prediction", "How likely it overturns and rocks under each motion, and what decides it")
-    motion = Picture("motion", f"{drawn.motion.name}: the ground, and its response spectrum for 5 % damping", 74)
+    motion = Picture(
+        "motion", f"{leading(drawn.motion).name}: the ground, and its response spectrum for 5 % damping", 74
+    )
     searched = _SEARCHED[:1] if found.standing is None else _IN_SPACE
     under = f"{drawn.words}: {drawn.history.summary}"
     picture = [how_likely] if found.prediction.chances["overturning"].value > 0.0 else []
@@ -199,7 +202,7 @@ def _motions(found: BodyAssessment) -> ReportTable:
              for k in np.unique(found.records)]  # fmt: skip
     count = len(found.models)
     rows = [
-        (found.motions[j].name, f"{found.motions[j].peak / g:.3g}", f"{measure('pgv').of(found.motions[j]):.3g}",
+        (found.motions[j].name, f"{found.motions[j].peak / g:.3g}", f"{_pgv(found.motions[j]):.3g}",
          f"{found.lifts[j]:.3g}", f"{least[j]:.3g}",
          Cell(f"{fallen * count:.0f} of {count}", "bad" if fallen > 0.0 else "good"))
         for j, fallen in sorted(zip(worst, found.fallen, strict=True), key=lambda pair: least[pair[0]])
@@ -211,6 +214,10 @@ def _motions(found: BodyAssessment) -> ReportTable:
     )
     head = ["motion", "PGA [g]", "PGV [m/s]", "lifts at [-]", "overturns at [-]", "models that fall at 1"]
     return table("Under each motion", head, rows, note)
+
+
+def _pgv(motion: Any) -> float:
+    return measure("pgv").of(leading(motion))
 
 
 def _with_friction(found: BodyAssessment) -> list[tuple[str, ModelMargin]]:

@@ -78,9 +78,9 @@ def _least(subject: Subject, overturned: Callable[[Subject, Histories, tuple[int
     )
 
 
-def highest(lifts: float) -> float:
-    """Return the largest acceleration at which it is looked for what overturns, of that which lifts [m/s2]."""
-    return min(REACH * lifts, max(plausibility.LARGEST_PGA, 4.0 * lifts))
+def highest(lifts: float, reach: float = REACH) -> float:
+    """Return up to which acceleration it is looked for what overturns, of that which lifts [m/s2]."""
+    return min(reach * lifts, max(plausibility.LARGEST_PGA, 4.0 * lifts))
 
 
 def first_to_fall(
