@@ -18,6 +18,7 @@ from rocking.assessment.remedies import (
     still,
     tension,
 )  # fmt: skip
+from rocking.bodies.solid import Solid, box
 from rocking.conventions import g
 
 pytestmark = pytest.mark.verifies(room="studies")
@@ -122,3 +123,52 @@ def test_isolators_keep_it_from_lifting():
 
     assert answered(period)[0] == pytest.approx(far, rel=1e-3)
     assert answered(period)[1] <= capacity < answered(before)[1]
+
+
+DEEP = rk.Block(width=0.5, height=1.8, depth=4.0, density=600.0)
+SHAKEN = rk.GroundMotion(4.0 * np.sin(2.0 * np.pi * TIME / 0.9) * (TIME < 0.9), 0.005)
+UPRIGHT = rk.GroundMotion(np.cos(2.0 * np.pi * TIME / 0.4) * (TIME < 0.8), 0.005)
+ALONE = {"friction": 10.0, "count": 4, "shares": False}
+
+
+def least_factors(body, **known):
+    """The least factor by restitution of a body that hardly slides, under one horizontal component and a vertical."""
+    found = rk.assess(body, {"x": SHAKEN, "z": UPRIGHT}, ["housner", "ked", 0.9], **ALONE, **known)
+    return {name: each.lowest for name, each in found.models.items()}, found
+
+
+@pytest.mark.verifies("second engine", "the plane engine's margins of the plane body", within="3e-3",
+                      control="test_a_deep_prism_shaken_along_its_depth_has_other_margins")  # fmt: skip
+def test_a_deep_prism_has_the_margins_of_the_plane_body():
+    """A box as deep as eight widths, shaken across its depth, overturns in space from the factor of the plane body
+    on, to the width of the last brackets of both searches (2e-3 and 1e-3), and lifts from the same."""
+    solid, in_space = least_factors(Solid.from_section(DEEP), azimuth=0.0)
+    plane, alone = least_factors(DEEP)
+    assert solid == pytest.approx(plane, rel=3e-3)
+    assert in_space.lifts == pytest.approx(alone.lifts, rel=1e-12)
+    assert in_space.capacities["static"] == pytest.approx(alone.capacities["static"], rel=1e-12)
+    assert in_space.remedies.tension == pytest.approx(alone.remedies.tension, rel=1e-9)
+
+
+@pytest.mark.verifies("negative control")
+def test_a_deep_prism_shaken_along_its_depth_has_other_margins():
+    """Negative control: the same box turned a quarter round stands up to several times that, and says so."""
+    solid, found = least_factors(Solid.from_section(DEEP), azimuth=0.5 * np.pi)
+    plane, _ = least_factors(DEEP)
+    assert all(solid[name] > 5.0 * plane[name] for name in plane)
+    assert not found.standing.weakest
+
+
+@pytest.mark.verifies("closed form", "moments about the edge, g d / (h a |cos|)", within="1e-12", control="within")
+def test_a_turned_solid_lifts_over_its_edge():
+    """A box at an azimuth to one component lifts over the edge whose moment is first, an edge and not a corner; the
+    reference engine sees it stand just below."""
+    solid, turn = Solid(box(0.5, 0.8, 1.5)), 0.7
+    found = rk.assess(solid, SHAKEN, 0.9, azimuth=turn, **ALONE)
+    over = [g * half / (0.75 * SHAKEN.peak * abs(part)) for half, part in ((0.25, np.cos(turn)), (0.4, np.sin(turn)))]
+    assert found.lifts == pytest.approx([min(over)], rel=1e-12)
+    assert abs(found.lifts[0] - g * solid.in_plane(-turn).side("right").half_width / (0.75 * SHAKEN.peak)) > 0.1
+    moving = [
+        rk.simulate(solid.turned(turn), SHAKEN, 0.9, friction=10.0, scale=k * min(over)).outcome for k in (0.999, 1.01)
+    ]
+    assert [each is rk.Outcome.NO_UPLIFT for each in moving] == [True, False]

@@ -1,7 +1,7 @@
 """Does it stand? Histories with every model, margins, a probability, code methods, and what to do, in one answer."""
 
 from rocking.assessment._assess import assess
-from rocking.assessment.answer import BodyAssessment, ModelMargin, StandingSolid
+from rocking.assessment.answer import BodyAssessment, ModelMargin
 from rocking.assessment.remedies import LengthChange, Remedies
 
-__all__ = ["BodyAssessment", "LengthChange", "ModelMargin", "Remedies", "StandingSolid", "assess"]
+__all__ = ["BodyAssessment", "LengthChange", "ModelMargin", "Remedies", "assess"]

@@ -64,45 +64,20 @@ class ModelMargin:
 
 @dataclass(frozen=True, eq=False)
 class StandingSolid:
-    """A solid as it stands, the plane body beside it, and how it falls at the least factor that overturns it.
-
-    Parameters
-    ----------
-    solid : Solid
-        As it stands.
-    pose : StablePose
-        The pose in which it does.
-    plane : float
-        Direction of the plane body, outwards over the edge over which it lifts first, from the solid's x axis [rad].
-    reach : float
-        How far that edge is from under the centre [m].
-    weakest : bool
-        Whether that is its nearest edge; one that the ground moves it towards otherwise.
-    way_out : Pass, optional
-        The lowest pass into another pose; None where there is none.
-    in_plane : float
-        Least factor that overturns the plane body, which does not slide [-].
-    falls_towards : float
-        Direction in which it leans when it falls, from its own x axis; NaN where nothing overturns it [rad].
-    slides : float
-        How far its points slide in that history [m].
-    restitution : str, float or FixedPosition
-        What an impact costs in it, as `simulate` takes it.
-    turned : float
-        Azimuth of the solid's x axis in it [rad].
-    """
+    """A solid as it stands, the plane body beside it, and how it falls at the least factor that overturns it."""
 
     solid: Solid
     pose: StablePose
+    # direction of the plane body, outwards over the edge over which the solid lifts first, from its x axis [rad]
     plane: float
-    reach: float
-    weakest: bool
-    way_out: Pass | None
-    in_plane: float = math.nan
-    falls_towards: float = math.nan
-    slides: float = math.nan
-    restitution: Any = None
-    turned: float = 0.0
+    reach: float  # how far that edge is from under the centre [m]
+    weakest: bool  # whether that is its nearest edge; one that the ground moves it towards otherwise
+    way_out: Pass | None  # the lowest pass into another pose
+    in_plane: float = math.nan  # least factor that overturns the plane body, which does not slide [-]
+    falls_towards: float = math.nan  # in which direction it leans when it falls, from its x axis [rad]
+    slides: float = math.nan  # how far its points slide in that history [m]
+    restitution: Any = None  # what an impact costs in it, as `simulate` takes it
+    turned: float = 0.0  # azimuth of the solid's x axis in it [rad]
 
     @property
     def words(self) -> tuple[str, str]:
@@ -125,13 +100,7 @@ class StandingSolid:
         return weak, f"{falls}As a plane body along {towards}, which does not slide: {margin}."
 
     def as_dict(self) -> dict[str, Any]:
-        """Return it as plain values.
-
-        Returns
-        -------
-        dict
-            SI units; NaN where something does not exist.
-        """
+        """Return it as plain values, SI units; NaN where something does not exist."""
         out, pose = self.way_out, self.pose
         return {
             "plane_azimuth_rad": self.plane, "plane_is_weakest": self.weakest, "centre_height_m": pose.height,

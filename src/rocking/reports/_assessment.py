@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rocking import checks
-from rocking.assessment import BodyAssessment, ModelMargin, StandingSolid
-from rocking.assessment.answer import just_above
+from rocking.assessment import BodyAssessment, ModelMargin
+from rocking.assessment.answer import StandingSolid, just_above
 from rocking.assessment.in_space import DIRECTIONS, POINTS, REACH
 from rocking.assessment.remedies import ASSUMED, CALIBRATED
 from rocking.bodies.body import assumed_rows
@@ -17,7 +17,7 @@ from rocking.conventions import FEET, g
 from rocking.dynamics import simulate
 from rocking.evidence.measurements import provenance
 from rocking.motions.components import leading
-from rocking.motions.intensity import measure
+from rocking.motions.intensity import measure, sampled
 from rocking.outcome import Outcome
 from rocking.plots.assessment import assessment_picture
 from rocking.plots.body import body_picture
@@ -217,7 +217,7 @@ def _motions(found: BodyAssessment) -> ReportTable:
 
 
 def _pgv(motion: Any) -> float:
-    return measure("pgv").of(leading(motion))
+    return measure("pgv").of(sampled(leading(motion)))
 
 
 def _with_friction(found: BodyAssessment) -> list[tuple[str, ModelMargin]]:

@@ -13,7 +13,6 @@ import rocking.assessment.remedies
 from rocking.assessment._assess import DIRECTIONS, choices, in_the_plane
 from rocking.assessment.answer import millimetres, upwards
 from rocking.assessment.remedies import Landings, changed, remedies
-from rocking.bodies.solid import Solid, box
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
 from rocking.studies import SyntheticSet
@@ -182,9 +181,9 @@ def test_no_history_with_a_result(monkeypatch):
 
 
 def test_what_makes_no_sense_is_refused():
-    """A solid, a motion that is zero, a margin of zero, an unknown model."""
-    with pytest.raises(InvalidValueError, match="in_plane"):
-        rk.assess(Solid(box(1.0, 1.0, 3.0)), record(3.0))
+    """What is no body, a motion that is zero, a margin of zero, an unknown model."""
+    with pytest.raises(InvalidValueError, match="MassPoints or Solid"):
+        rk.assess("cabinet", record(3.0))
     with pytest.raises(InvalidValueError, match="zero throughout"):
         rk.assess(CABINET, rk.GroundMotion([0.0, 0.0], 0.01))
     with pytest.raises(InvalidValueError, match="margin must be"):

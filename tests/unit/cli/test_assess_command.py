@@ -58,6 +58,27 @@ def test_a_question_in_a_file(answered, tmp_path):
     assert list(found["models"]) == ["ked"]
 
 
+def test_a_solid(printed, answered, tmp_path):
+    """A solid has the same page, in space, with the plane body's code methods; one azimuth is one direction."""
+    file = tmp_path / "tower.toml"
+    file.write_text('units = "m"\n[[solid.part]]\nbox = { width = 0.5, depth = 0.9, height = 1.5 }\n', "utf-8")
+    quick = (file, *QUICK, "sine:amplitude=4,period=0.8", "--set", "predict.azimuth=0.3")
+    page = printed(*quick)
+    for words in (
+        "code method, plane body",
+        "It is weakest towards 0 deg",
+        "of 1 motion, with",
+        "r = 0.85",
+        "Assumed: ",
+    ):
+        assert words in page
+    assert ", friction 0.55" not in page  # all of it slides, not one row
+    assert len(page.splitlines()) < 50
+    found = answered(*quick)
+    assert found["solid"]["edge_m"] == pytest.approx(0.25)
+    assert set(found["models"]) == {"ked", "r = 0.85"}
+
+
 @pytest.mark.parametrize(
     ("words", "why"),
     [

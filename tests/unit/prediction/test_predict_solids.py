@@ -144,7 +144,7 @@ def test_a_prediction_of_a_solid():
 def test_a_body_put_down_at_a_slant_stands_where_it_settles():
     """A block given on one of its long sides is a low block."""
     lying = SpaceMechanics(Solid(Part(box(2.0, 0.5, 0.5), 1000.0)), shaking(), KNOWN, rk.conventions.g)
-    assert lying._pose.height == pytest.approx(0.25, abs=1e-12)
+    assert lying.pose.height == pytest.approx(0.25, abs=1e-12)
 
 
 @pytest.mark.parametrize(
