@@ -218,6 +218,16 @@ class Arguments:
                 )
         return body, [*positional, *(motions or ())]
 
+    @property
+    def several(self) -> list[str]:
+        """The words of motions where they are of several: two words, a folder, a pattern or a list of records."""
+        from rocking.spec.reading import CommandFiles
+        from rocking.spec.record_sets import is_set
+
+        _, words = self.body_and_motions()
+        several = len(words) > 1 or any(is_set(word, CommandFiles(Path())) for word in words)
+        return words if several and not any(word[:2] in {"x=", "y=", "z="} for word in words) else []
+
     def body_table(self, file: str | None) -> Tables:
         values = {name: self.options.get(name) for name in ("width", "height", "depth", "density", *_KNOWN)}
         if values["centre"] is not None:

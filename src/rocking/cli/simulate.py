@@ -2,6 +2,7 @@
 
 import math
 import sys
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -9,14 +10,18 @@ import typer
 
 from rocking import plausibility
 from rocking.bodies import Body
-from rocking.cli import options
+from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, hinted, parsed_sets, with_sets
 from rocking.cli.exports import PICTURES, Export, Exports, draw
-from rocking.cli.page import deliver
+from rocking.cli.page import Page, bar, deliver
+from rocking.conventions import g
 from rocking.errors import InvalidValueError
-from rocking.spec.document import ResponseDocument, ResponseTable
+from rocking.motions.components import leading
+from rocking.outcome import Outcome
+from rocking.spec.construction import any_body_of, motions_of
+from rocking.spec.document import MotionTable, ResponseDocument, ResponseTable, ResponseTables
 from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
-from rocking.spec.response import response_problem
+from rocking.spec.response import problem_of, response_problem
 
 if TYPE_CHECKING:
     from rocking.spec.response import ResponseProblem
@@ -57,7 +62,14 @@ EXPORTS = {
 def simulate(
     context: typer.Context,
     body: options.BodyFile = None,
-    record: options.Record = None,
+    record: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="Record file, file#COMPONENT, or a pulse such as sine:amplitude=3,period=0.8; of several, a folder, a "
+            "pattern or LIST.csv a row each.",
+            autocompletion=completion.pulses,
+        ),
+    ] = None,
     motion: options.Motion = None,
     free: Annotated[float | None, options.key(ResponseTable, "free")] = None,
     restitution: options.Restitution = "ked",
@@ -89,6 +101,13 @@ def simulate(
     else:
         arguments = Arguments(context, *_TABLES)
         length, acceleration = arguments.length, arguments.acceleration
+        if words := arguments.several:
+            if out:
+                raise InvalidValueError(
+                    f"--out is of one record, and {words[0][:100]} is of several: --json has them all"
+                )
+            deliver(_each(arguments, words, quiet=as_json), as_json=as_json)
+            return
         problem = _problem(arguments)
     if problem.free is not None and isinstance(problem.body, Body):
         _check_share(problem.body, problem.free, "response.free" if file else "--free")
@@ -129,6 +148,75 @@ def _problem(arguments: Arguments) -> "ResponseProblem":
             scale = arguments.options["scale"] if arguments.spelt("scale") else None
             tables["motion"] = {**motion, **arguments.table("motion", {"scale": scale}, keys={"scale"})}
         return response_problem(checked(ResponseDocument, tables), CommandFiles(Path()))
+
+
+def _each(arguments: Arguments, words: list[str], *, quiet: bool) -> "SeveralAnswer":
+    """Return the responses to motions, each by itself."""
+    from rocking.cli.study import in_lists
+
+    body, _ = arguments.body_and_motions()
+    if arguments.options["free"] is not None:
+        raise InvalidValueError(f"give a motion or --free, not both; got {words[0][:100]!r}")
+    files = CommandFiles(Path())
+    with hinted(body, words[0]):
+        own = {name: arguments.options[name] for name in ("friction", "bounce")}
+        tables = {
+            "response": arguments.table("response", own), "restitution": _restitution(arguments),
+            "settings": arguments.sets.get("settings", {}),
+        }  # fmt: skip
+        scale = arguments.table("motion", {"scale": arguments.options["scale"]}, keys={"scale"})
+        named = [checked(MotionTable, {**in_lists(arguments.motion_table(word)), **scale}) for word in words]
+        made = any_body_of(arguments.body_table(body), files)
+        motions = motions_of(named, files, paired=not isinstance(made, Body))
+        problem = problem_of(checked(ResponseTables, tables), made, motions[0], scale=1.0, inputs=files)
+        with bar("histories", len(motions), quiet=quiet) as progress:
+            found = []
+            for k in range(len(motions)):
+                found.append(replace(problem, motion=motions[k]).answer())
+                progress(1)
+    return SeveralAnswer([motions[k] for k in range(len(motions))], found)
+
+
+@dataclass(frozen=True)
+class SeveralAnswer:
+    """How a body ends under each of several motions, with one restitution."""
+
+    motions: list[Any]
+    responses: list[Any]
+
+    def facts(self) -> dict[str, Any]:
+        pairs = zip(self.motions, self.responses, strict=True)
+        rows = [
+            {"motion": leading(motion).name, "peak_acceleration_m_s2": motion.peak,
+             "outcome": each.outcome.name.lower(), "peak_rotation_rad": _peak(each), "impacts": int(each.impacts.size)}
+            for motion, each in pairs
+        ]  # fmt: skip
+        return {"overturned": self._fell, "motions": rows}
+
+    @property
+    def _fell(self) -> int:
+        return sum(each.outcome is Outcome.OVERTURNED for each in self.responses)
+
+    def show(self, page: Page) -> None:
+        count = len(self.motions)
+        page.line(f"It overturns under {self._fell} of {count} motion{'s' * (count != 1)}.", "bold")
+        page.line()
+        head = ("motion", "PGA g", "outcome", "peak deg", "impacts")
+        rows = []
+        for row in self.facts()["motions"]:
+            peak = "-" if row["outcome"] == "overturned" else f"{math.degrees(row['peak_rotation_rad']):.4g}"
+            pga, outcome = f"{row['peak_acceleration_m_s2'] / g:.3g}", row["outcome"].replace("_", " ")
+            rows.append((row["motion"], pga, outcome, peak, f"{row['impacts']}"))
+        page.table(head, rows, ("motion", "outcome"), dense=True)
+        page.line()
+        page.line(
+            "One motion alone shows more; how likely it is to overturn: rocking predict; its margin: rocking assess."
+        )
+
+
+def _peak(response: Any) -> float:
+    """Return the largest rotation of a plane body, or tilt of one in space [rad]."""
+    return abs(float(response.peak_tilt if hasattr(response, "peak_tilt") else response.peak_rotation))
 
 
 def _restitution(arguments: Arguments) -> dict[str, Any]:

@@ -64,6 +64,11 @@ def body_and_motion(arguments: Arguments, kind: str, own: dict[str, Any], restit
     _, named = arguments.body_and_motions()
     if not named:
         raise InvalidValueError(NO_MOTION)
+    if several := arguments.several:
+        raise InvalidValueError(
+            f"this is of one motion, and {' '.join(several)[:100]} is of several: rocking fragility says in which "
+            "share of them a body overturns, rocking predict how likely it is, rocking simulate under which it does"
+        )
     return of_body(arguments, kind, own, restitution, [in_lists(arguments.of_body(named))])
 
 

@@ -303,7 +303,7 @@ def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None, *, raw:
         if (inputs.folder / table.record).is_dir():
             raise InvalidValueError(
                 f"{table.record} is a folder, and one record is wanted; "
-                "assess, codes, fragility, inventory, motions and predict take sets"
+                "assess, codes, fragility, inventory, motions, predict and simulate take sets"
             )
         return (_unprocessed if raw else _record)(inputs.file(table.record), table, inputs)
     member = table.member or 0

@@ -182,7 +182,7 @@ REFUSALS = [
     (("--density", "-5"), "density"),
     (("--units", "g"), "a pulse takes no --units"),
     (("--no-such-option",), "No such option"),
-    (("--motion", PULSE), "one motion along x"),
+    (("--motion", PULSE), "this is of one motion"),
 ]
 LACKING = [
     (SIZE, "what moves the ground?"),

@@ -164,7 +164,7 @@ REFUSED = {
     "no folder": (["no/where:1"], "no such file"),
     "folder": (
         ["."],
-        "is a folder, and one record is wanted; assess, codes, fragility, inventory, motions and predict take",
+        "is a folder, and one record is wanted; assess, codes, fragility, inventory, motions, predict and",
     ),
     "long": (["x" * 5000], "no such file"),
     "unknown pulse": (["sin:amplitude=3"], "no pulse named 'sin'"),

@@ -94,9 +94,25 @@ def test_other_commands_take_sets(run, folder, tmp_path):
     assert "12 records" in run("fragility", job)[1]
 
 
+def test_simulate_has_a_row_for_each_record(run, folder):
+    """A folder gives a row a record, each the response of that record alone; two pulses two."""
+    code, out, _ = run("simulate", *BLOCK, folder, "--json")
+    rows = json.loads(out)
+    assert code == 0
+    assert len(rows["motions"]) == 6
+    assert rows["overturned"] == sum(row["outcome"] == "overturned" for row in rows["motions"])
+    one = json.loads(run("simulate", *BLOCK, f"{folder}/RSN1_A000.AT2", "--json")[1])
+    peaks = [row["peak_rotation_rad"] for row in rows["motions"]]
+    assert any(peak == pytest.approx(abs(one["peak_rotation_rad"])) for peak in peaks)
+    code, out, _ = run("simulate", *BLOCK, "sine:amplitude=1,period=0.8", "sine:amplitude=9,period=0.8")
+    assert "It overturns under 1 of 2 motions." in out
+    assert "no uplift" in out
+
+
 def test_what_is_no_set_is_refused(refuses, folder):
     """One record is wanted, a pattern with a damaged file, a target without records, and options of earlier."""
-    refuses(["simulate", *BLOCK, folder], "is a folder, and one record is wanted")
+    refuses(["map", *BLOCK, folder], "this is of one motion")
+    refuses(["motion", folder], "one record is wanted")
     refuses(["fragility", *BLOCK, str(folder / "*.at2")], "damaged.at2")
     refuses(["motions", folder / "nothing"], "no such file or folder")
     refuses(["motions", folder, "--set", "motion.count=2"], "goes with target")

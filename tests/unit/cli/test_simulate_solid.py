@@ -143,7 +143,7 @@ def test_a_history_without_a_result_is_refused(run, body, monkeypatch):
 
 REFUSED = {
     "no motion": ([], "what moves the ground?"),
-    "two motions": ([SINE, "--motion", SINE], "one motion along x, please"),
+    "two motions": (["--motion", f"x={SINE}", "--motion", f"x={SINE}"], "one motion along x, please"),
     "free": (["--free", "0.5"], "so it takes no free"),
     "width": ([SINE, "--width", "1"], "give a body file or dimensions, not both"),
     "bounce": ([SINE, "--friction", "0.4", "--bounce", "0.2"], "so it takes no bounce"),
