@@ -80,10 +80,9 @@ class SolidHistories:
                 along = x
                 if each.y is not None or fixed is not None:
                     y = x.changed("none", acceleration=0.0 * x.acceleration) if each.y is None else each.y
-                    pair = [
-                        part.changed("cut", acceleration=part.acceleration[: min(len(x), len(y))]) for part in (x, y)
-                    ]
-                    along, _ = rotated(*pair, towards)
+                    least = min(len(x), len(y))
+                    first, second = (part.changed("cut", acceleration=part.acceleration[:least]) for part in (x, y))
+                    along, _ = rotated(first, second, towards)
                 name = f"{each.x.name}, {math.degrees(towards):.0f} deg" if fixed is None else each.x.name
                 called = numbered(name, self.motions)
                 whole = along if z is None else with_vertical(along, z)
