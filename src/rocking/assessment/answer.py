@@ -342,6 +342,8 @@ class BodyAssessment:
                 f"Isolators of a period of {period:.3g} s or more keep it from lifting; they move by "
                 f"{millimetres(far)} mm at that period."
             )
+        if self.standing is not None:
+            found.append("All of this is of that plane body: in space it may fall over another edge.")
         return tuple(found)
 
     @property

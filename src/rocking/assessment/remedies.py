@@ -152,8 +152,10 @@ def remedies(
     changes = {}
     for name, most in (("out", out), ("down", down)):
         try:
-            landings = Landings(body, restitutions) if falls else None
-            stands = _least(body, motions, margin, gravity, landings, name=name, most=most) if landings else 0.0
+            with warnings.catch_warnings():  # nobody typed how low a centre is that is tried
+                warnings.simplefilter("ignore", PlausibilityWarning)
+                landings = Landings(body, restitutions) if falls else None
+                stands = _least(body, motions, margin, gravity, landings, name=name, most=most) if landings else 0.0
             changes[name] = LengthChange(stands, most)
         except GeometryError as error:
             changes[name] = LengthChange(np.nan, most, str(error))
