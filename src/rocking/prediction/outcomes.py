@@ -10,7 +10,8 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.studies.inventory.reading import MOST_BYTES, DecimalMark, rows_of
+from rocking.studies.inventory.cells import DecimalMark
+from rocking.studies.inventory.sheets import MOST_BYTES, rows_of
 
 EVENTS = {"overturned": "overturning", "rocked": "uplift", "slid": "sliding"}
 """Columns of what was seen, and what a prediction calls it."""

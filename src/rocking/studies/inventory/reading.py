@@ -1,164 +1,28 @@
-"""Inventories from CSV files: columns by name with the unit in it, each row checked by itself."""
+"""Inventories from files: their columns by the words of the header, each row checked by itself."""
 
-import csv
-import difflib
-import io
-import re
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path, PureWindowsPath
 from typing import Any
 
-from rocking import checks
 from rocking.bodies import Block, Section, Solid
 from rocking.bodies.formats import read_body
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import InvalidValueError, RockingError
+from rocking.studies.inventory import header_words
+from rocking.studies.inventory.cells import DecimalMark, Measure, count_of, is_missing, measure, parts
+from rocking.studies.inventory.columns import (
+    LENGTHS, SIZES, TEXTS, UNITS, Header, InventoryColumn, check_header, header_of, mapping_of, plain, words_of,
+)  # fmt: skip
 from rocking.studies.inventory.objects import InventoryObject, NotAssessed
+from rocking.studies.inventory.sheets import (
+    ENCODINGS, MOST_BYTES, Cell, Row, Sheet, rows_of, sheets_in, tables_of, texts_in,
+)  # fmt: skip
 
-LENGTHS = ("width", "depth", "height", "base_width", "base_depth", "centre_of_mass_height")
-"""Columns that are lengths; the name of the column ends with the unit, as in ``width_cm``."""
-
-REQUIRED = ("name", "width", "depth", "height")
-"""Columns that an inventory must have."""
-
-WEIGHTS = {"kg": 1.0, "g": 0.001, "t": 1000.0, "lb": 0.45359237}
-"""Units of the column of weights [kg]."""
-
-WORDS = ("name", "count", "note", "friction", "body_file", "units")
-"""Columns without a unit."""
-
-_MEASURES = (*LENGTHS, "base", "weight")
-_ALIASES = {"mass": "weight", "centre_of_gravity": "centre_of_mass_height", "com_height": "centre_of_mass_height"}
-_FIELDS = {"weight": ("mass",), "base": ("base_width", "base_depth")}
-
-# a column of such a name may decide the verdict: not to read it needs the user's word, not a guess
-_TELLING = frozenset({
-    "base", "foot", "feet", "centre", "gravity", "mass", "diameter", "height", "width", "depth", "weight",
-})  # fmt: skip
-
-
-@dataclass(frozen=True)
-class InventoryColumn:
-    """What a column holds."""
-
-    fields: tuple[str, ...]  # fields of `InventoryObject` that it gives: a base without a direction gives both
-    factor: float  # what turns its numbers into SI units
-    title: str  # its name in the file
-
-
-def columns_of(titles: Sequence[str], source: str) -> tuple[list[InventoryColumn | None], tuple[str, ...]]:
-    """Return what the columns of a file hold, None for one that is not read; and the names of these.
-
-    >>> columns, ignored = columns_of(["name", "base_cm", "room"], "list.csv")
-    >>> columns[1].fields, ignored
-    (('base_width', 'base_depth'), ('room',))
-    """
-    columns = [_column(title, source) for title in titles]
-    fields = [field for column in columns if column for field in column.fields]
-    for each in fields:
-        if fields.count(each) > 1:
-            raise InvalidValueError(f"{source}: two columns give the {each.replace('_', ' ')}; leave one")
-    pairs = zip(titles, columns, strict=True)
-    return columns, tuple(title.strip() for title, column in pairs if column is None and title.strip())
-
-
-def _split(title: str) -> tuple[str, str]:
-    """Return what a column holds, and its unit."""
-    plain = title.strip().casefold().replace("center", "centre")
-    for mark in "()[]":
-        plain = plain.replace(mark, " ")
-    words = "_".join(plain.replace("_", " ").replace("-", " ").split())
-    stem, _, unit = words.rpartition("_")
-    whole, stem = _ALIASES.get(words, words), _ALIASES.get(stem, stem)
-    return (stem, unit) if stem in _MEASURES and whole not in _MEASURES else (whole, "")
-
-
-def _column(title: str, source: str) -> InventoryColumn | None:
-    stem, unit = _split(title)
-    if stem in _MEASURES:
-        units = WEIGHTS if stem == "weight" else LENGTH_UNITS
-        if unit not in units:
-            known = ", ".join(f"{stem}_{each}" for each in units)
-            raise InvalidValueError(f"{source}: column {title.strip()!r} must name its unit: {known}")
-        return InventoryColumn(_FIELDS.get(stem, (stem,)), units[unit], title.strip())
-    if stem in WORDS:
-        return InventoryColumn((stem,), 1.0, title.strip())
-    _refuse_measure(title.strip(), stem, source)
-    return None
-
-
-def _refuse_measure(title: str, words: str, source: str) -> None:
-    """Refuse an unknown column that looks like a measure: the verdict might hang on it."""
-    stem, _, unit = words.rpartition("_")
-    measured = bool(stem) and (unit in LENGTH_UNITS or unit in WEIGHTS)
-    close = difflib.get_close_matches(stem or words, _MEASURES, n=1, cutoff=0.8)
-    if not (measured or close or _TELLING.intersection(words.split("_"))):
-        return
-    near = close or difflib.get_close_matches(stem or words, _MEASURES, n=3, cutoff=0.5) or _MEASURES
-    names = ", ".join(f"{each}_{'kg' if each == 'weight' else 'cm'}" for each in near)
-    raise InvalidValueError(
-        f"{source}: column {title!r} is not known but looks like a measure; {names}? "
-        "Rename it, or leave it out if it is none"
-    )
-
-
-_NUMBER = re.compile(r"[+-]?[0-9]+(?:([.,])([0-9]+))?(?:[eE][+-]?[0-9]+)?")
-# three digits after the mark could be thousands, unless what is before cannot be
-_THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}[.,][0-9]{3}")
-
-
-class DecimalMark:
-    """What separates the decimals in a table, found in all of its numbers together.
-
-    ``12,5`` can only be a decimal comma; ``1,234`` could be a thousand, and so could ``1.234``. Either is taken only
-    where the same mark stands for decimals elsewhere in the table and the other does not. Where commas part the fields,
-    decimals have points, and ``1.234`` is taken unless a decimal comma contradicts it.
-
-    >>> mark = DecimalMark(["12,5", "1,234", "7"])
-    >>> mark.number("width_cm", "1,234")
-    1.234
-    """
-
-    def __init__(self, cells: Iterable[str], *, comma_delimited: bool = False) -> None:
-        marks = set()
-        for cell in cells:
-            match = _NUMBER.fullmatch(cell.strip())
-            if match and match[1] and not _THOUSANDS.fullmatch(cell.strip()):
-                marks.add(match[1])
-        self.commas, self.points, self.comma_delimited = "," in marks, "." in marks, comma_delimited
-
-    def number(self, name: str, cell: str) -> float:
-        """Return the number in a cell, in the unit of the column."""
-        text = cell.strip()
-        match = _NUMBER.fullmatch(text)
-        if not match:
-            raise InvalidValueError(
-                f"{name} must be one number such as 12.5, without unit and without separators of thousands, "
-                f"got {text[:40]!r}"
-            )
-        settled = (
-            self.commas and not self.points
-            if match[1] == ","
-            else not self.commas and (self.points or self.comma_delimited)
-        )
-        if _THOUSANDS.fullmatch(text) and not settled:
-            digits = text.replace(match[1], "")
-            decimal = text.replace(",", ".")
-            raise InvalidValueError(
-                f"{name} is ambiguous: {text!r} could be {decimal} or {digits}; write {decimal}0 or {digits}"
-            )
-        return checks.number(name, float(text.replace(",", ".")))
-
-
-MOST_ROWS, MOST_BYTES = 100_000, 64 << 20
-"""No inventory is longer, no file larger: it is something else."""
-
-_LONGEST_HEADER = 10_000
-_TEXTS = ("name", "note", "body_file", "units")
-_DELIMITERS = (",", ";", "\t")
-# the line by which Excel is told, and tells, what separates the fields
-_SEPARATOR = re.compile(r'"?sep=(.)"?[ \t]*(?=\r?\n|$)', re.IGNORECASE)
+_HIGHEST_HEADER = 50  # rows of titles above it
+_TOTALS = words_of(header_words.TOTALS)
+_SHAPES = {**dict.fromkeys(words_of(header_words.ROUND), "round"), **dict.fromkeys(words_of(header_words.BOX), "box")}
+_CONSEQUENCES = {word: level for level, text in header_words.CONSEQUENCES.items() for word in words_of(text)}
 
 
 @dataclass(frozen=True)
@@ -174,7 +38,7 @@ class Inventory:
     ignored : tuple of str
         Columns that were not read.
     source : str
-        Name of the file.
+        Name of the file, with its table if it has several, or its encoding if that was assumed.
     language : str
         In which its header is written, and its report is: ``en``, ``de``, ``it`` and more.
     """
@@ -187,18 +51,25 @@ class Inventory:
 
 
 def read_inventory(
-    path: str | Path, encoding: str = "utf-8-sig", find: Callable[[str], Path] | None = None
+    path: str | Path,
+    encoding: str | None = None,
+    find: Callable[[str], Path] | None = None,
+    columns: str | Mapping[str, str] | None = None,
 ) -> Inventory:
-    """Return the inventory in a CSV file.
+    """Return the inventory in a workbook or a CSV file.
 
     Parameters
     ----------
     path : str or Path
-        The file.
-    encoding : str
-        Encoding of the text, such as ``cp1252`` for older spreadsheets.
+        The file: .xlsx, .ods, or text with commas, semicolons or tabs.
+    encoding : str, optional
+        Encoding of a text, such as ``cp1252``; told from the text if not given, and said in `Inventory.source` unless
+        it is Unicode.
     find : callable, optional
-        Where a body file is that the list names; beside the list if not given.
+        Where a body file or a photo is that the list names; beside the list if not given.
+    columns : str or mapping of str to str, optional
+        What columns are that are not understood, by their titles: ``"Objekt=name, Maß B=width_cm, Rahmenbreite="``; one
+        that is nothing is not read.
 
     Returns
     -------
@@ -209,33 +80,50 @@ def read_inventory(
     ------
     InvalidValueError
         If the file as a whole cannot be understood.
+    MissingExtraError
+        If openpyxl is not installed, of .xlsx.
     """
     path = Path(path)
     if path.stat().st_size > MOST_BYTES:
         raise InvalidValueError(
             f"{path.name}: an inventory must be below {MOST_BYTES >> 20} MiB; another kind of file?"
         )
-    try:
-        text = path.read_bytes().decode(encoding)
-    except (UnicodeDecodeError, LookupError) as error:
-        raise InvalidValueError(
-            f'{path.name} is not text in {encoding}: save it as "CSV UTF-8", or name its encoding, such as cp1252'
-        ) from error
-    return parse_inventory(text, path.name, find or (lambda name: path.parent / name))
+    content, mapped = path.read_bytes(), mapping_of(columns)
+    find = find or (lambda name: path.parent / name)
+    sheets = sheets_in(content, path.name)
+    if sheets is None:
+        texts = [(text, name) for text, name in texts_in(content, path.name, encoding)]
+        return _of_texts(texts, path.name, mapped, find)
+    lists = [(_header_at([cells for _, cells in sheet.rows], mapped), sheet) for sheet in sheets]
+    whole = [(found, sheet) for found, sheet in lists if found and not found[1].missing]
+    if len(whole) > 1:
+        names = ", ".join(sheet.source for _, sheet in whole)
+        raise InvalidValueError(f"{path.name}: more than one table is a list: {names}; keep one, or make a file of each")
+    if not whole:
+        raise _no_header(path.name, [(found, sheet.rows) for found, sheet in lists])
+    ((at, header), sheet) = whole[0]  # type: ignore[misc]
+    return _Reader(sheet, at, header, mapped, find).inventory()
 
 
-def parse_inventory(text: str, source: str = "objects", find: Callable[[str], Path] | None = None) -> Inventory:
+def parse_inventory(
+    text: str,
+    source: str = "objects",
+    find: Callable[[str], Path] | None = None,
+    columns: str | Mapping[str, str] | None = None,
+) -> Inventory:
     r"""Return the inventory in a text.
 
     Parameters
     ----------
     text : str
-        Lines of CSV with commas, semicolons or tabs between the fields; the first names the columns. Before it may
-        stand Excel's own, such as ``sep=;``.
+        Lines of CSV with commas, semicolons or tabs between the fields; one of the first names the columns. Before it
+        may stand titles, and Excel's own line, such as ``sep=;``.
     source : str
         What to call it.
     find : callable, optional
-        Where a body file is that a row names; without it none may be named.
+        Where a body file or a photo is that a row names; without it none may be named.
+    columns : str or mapping of str to str, optional
+        As for `read_inventory`.
 
     Returns
     -------
@@ -245,95 +133,255 @@ def parse_inventory(text: str, source: str = "objects", find: Callable[[str], Pa
     Raises
     ------
     InvalidValueError
-        If there is no header with the columns needed, or a column is named twice, without its unit, or is unknown
-        and looks like a measure.
+        If there is no header with the columns needed, or two columns give the same measure, or one names no unit or is
+        unknown and looks like a measure.
 
     Examples
     --------
-    >>> found = parse_inventory("name;width_cm;depth_cm;height_cm\nvase;12,5;12,5;60\nbox;?;20;30")
-    >>> found.objects[0].width, found.not_assessed[0].row
-    (0.125, 3)
+    >>> found = parse_inventory("Objekt;Breite (cm);Tiefe (cm);Höhe\nVase;12,5;ca. 12;60 cm\nKiste;?;20;30 cm")
+    >>> found.objects[0].width, found.objects[0].approximate, found.not_assessed[0].row, found.language
+    (0.125, {'depth': 0.006}, 3, 'de')
     """
-    lines = text.removeprefix("\ufeff")
-    allowed: tuple[str, ...] = _DELIMITERS
-    if separator := _SEPARATOR.match(lines):
-        lines, allowed = lines[separator.end() :], (separator[1],)
-    delimiter = _delimiter(lines, allowed, source)
-    rows = rows_of(lines, delimiter, source)
-    columns, ignored = columns_of(rows[0][1], source)
-    body = [(line, cells) for line, cells in rows[1:] if any(cell.strip() for cell in cells)]
-    numeric = [k for k, column in enumerate(columns) if column and column.fields[0] not in _TEXTS]
-    numbers = (cells[k] for _, cells in body for k in numeric if k < len(cells))
-    mark = DecimalMark(numbers, comma_delimited=delimiter == ",")
-    name = next(k for k, column in enumerate(columns) if column and column.fields == ("name",))
-    objects, refused = [], []
-    for line, cells in body:
-        try:
-            objects.append(_object(line, cells, columns, mark, find))
-        except RockingError as error:
-            refused.append(NotAssessed(line, "".join(cells[name : name + 1]).strip(), str(error)))
-    if not objects and not refused:
-        raise InvalidValueError(f"{source}: an inventory needs at least one row below its header")
-    return Inventory(tuple(objects), tuple(refused), ignored, source)
+    return _of_texts([(text, "")], source, mapping_of(columns), find)
 
 
-def _delimiter(text: str, allowed: tuple[str, ...], source: str) -> str:
-    first = next((line for line in text.splitlines() if line.strip()), "")[:_LONGEST_HEADER]
-    fits = []
-    for mark in allowed:
-        if mark in _DELIMITERS:
-            stems = {_split(title)[0] for title in next(csv.reader([first], delimiter=mark))}  # whatever the units
-            fits += [mark] * (stems.issuperset(REQUIRED) or stems.issuperset({"name", "body_file"}))
-    if len(fits) == 1:
-        return fits[0]
-    raise InvalidValueError(
-        f"{source}: the first line must name the columns name, width_cm, depth_cm, height_cm (or _mm, _m, _in, _ft) "
-        f"with commas, semicolons or tabs between, got {first[:100]!r}"
+def _of_texts(
+    texts: Sequence[tuple[str, str]], source: str, mapped: Mapping[str, str], find: Callable[[str], Path] | None
+) -> Inventory:
+    """Return the inventory of a text that may be read in several ways: that of which most columns are understood."""
+    ways = [
+        (_header_at(first, mapped), lines, delimiter, f"{source} ({name})" if name in ENCODINGS else source)
+        for text, name in texts for delimiter, first, lines in tables_of(text)
+    ]  # fmt: skip
+    whole = [way for way in ways if way[0] and not way[0][1].missing]
+    if not whole:
+        raise _no_header(source, [(way[0], [(1, list(row)) for row in way[1].splitlines()[:1]]) for way in ways])
+    found, lines, delimiter, called = max(whole, key=lambda way: len(way[0][1].known) if way[0] else 0)
+    rows: list[Row] = [(line, list(cells)) for line, cells in rows_of(lines, delimiter, source)]
+    again = _header_at([cells for _, cells in rows], mapped)
+    assert found and again
+    return _Reader(Sheet(called, rows, delimiter), *again, mapped, find).inventory()
+
+
+_Found = tuple[int, Header] | None
+
+
+def _header_at(rows: Sequence[Sequence[Cell]], mapped: Mapping[str, str]) -> _Found:
+    """Return the first row that names what a list must have, or the one that names most, and what it means."""
+    best: _Found = None
+    for at, row in enumerate(rows[:_HIGHEST_HEADER]):
+        found = header_of([text_of(cell) for cell in row], mapped)
+        if not found.missing:
+            return at, found
+        if best is None or len(found.known) > len(best[1].known):
+            best = at, found
+    return best
+
+
+def _no_header(source: str, tried: Sequence[tuple[_Found, Sequence[Row]]]) -> InvalidValueError:
+    best = max((found[1] for found, _ in tried if found), key=lambda header: len(header.known), default=None)
+    if best and len(best.known) > 1:
+        titles = ", ".join(f"{each.title!r:.40} as {each.stem}" for each in best.columns if each)
+        return InvalidValueError(
+            f"{source}: no {' and no '.join(best.missing)} in the header, only {titles}; say what another column is, "
+            f'as in columns "Maß B=width_cm"'
+        )
+    first = next((text_of(cell) for _, rows in tried for _, row in rows[:1] for cell in row), "")
+    return InvalidValueError(
+        f"{source}: the first line must name the columns name, width_cm, depth_cm, height_cm (or _mm, _m, _in, _ft; or "
+        f"their words in {', '.join(header_words.HEADERS)}) with commas, semicolons or tabs between, got {first[:100]!r}"
     )
 
 
-def rows_of(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]]]:
-    """Return the rows of CSV that are not empty before the first, with the line on which each begins."""
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
-    rows: list[tuple[int, list[str]]] = []
-    line = 1
-    try:
-        for cells in reader:
-            if rows or any(cell.strip() for cell in cells):
-                rows.append((line, cells))
-            line = reader.line_num + 1
-            if len(rows) > MOST_ROWS:
-                raise InvalidValueError(f"{source}: a list must have at most {MOST_ROWS} rows")
-    except csv.Error as error:
-        raise InvalidValueError(f"{source}: not a table, line {line}: {error}; a quotation mark left open?") from error
-    return rows
+def text_of(cell: Cell) -> str:
+    """Return what a cell shows.
+
+    >>> text_of(12.0), text_of(" a ")
+    ('12', 'a')
+    """
+    if isinstance(cell, str):
+        return cell.strip()
+    return str(int(cell)) if cell == int(cell) else repr(cell)
 
 
-def _object(
-    line: int,
-    cells: Sequence[str],
-    columns: Sequence[InventoryColumn | None],
-    mark: DecimalMark,
-    find: Callable[[str], Path] | None,
-) -> InventoryObject:
-    if len(cells) != len(columns):
-        hint = "a decimal comma between commas?" if len(cells) > len(columns) else "a separator missing?"
-        raise InvalidValueError(f"it has {len(cells)} fields, the header {len(columns)}; {hint}")
-    values: dict[str, object] = {"row": line}
-    for column, cell in zip(columns, cells, strict=True):
-        if column is None or not cell.strip():
-            continue
-        values |= dict.fromkeys(column.fields, _value(column, cell, mark))
-    titles = {field: column.title for column in columns if column for field in column.fields}
-    name, units = values.pop("body_file", None), values.pop("units", None)
-    if name is not None:
-        if stated := sorted({*LENGTHS, "mass"} & set(values)):
-            raise InvalidValueError(f"its body file says what it is: leave {titles[stated[0]]} empty")
-        values |= _body(str(name), units, find)
-    for each in REQUIRED:
-        if each not in values:
-            raise InvalidValueError(f"{titles.get(each, each)} is empty")
-    return InventoryObject(**values)  # type: ignore[arg-type]
+@dataclass
+class _Reader:
+    """A table, its header, and what is known of its cells."""
+
+    sheet: Sheet
+    at: int  # which row is the header
+    header: Header
+    mapped: Mapping[str, str]
+    find: Callable[[str], Path] | None
+
+    def inventory(self) -> Inventory:
+        source, titles = self.sheet.source, [text_of(cell) for cell in self.sheet.rows[self.at][1]]
+        if odd := [own for own in self.mapped if plain(own) not in map(plain, titles)]:
+            raise InvalidValueError(f"{source}: columns: no {odd[0]!r:.60} among {', '.join(filter(None, titles))[:300]}")
+        self.rows = [(line, row) for line, row in self.sheet.rows[self.at + 1 :] if any(text_of(cell) for cell in row)]
+        self._check_units()
+        wordless = [title for k, title in enumerate(titles) if not any(map(str.isdigit, "".join(self._column(k))))]
+        check_header(self.header, titles, source, [*wordless, *(own for own, ours in self.mapped.items() if not ours)])
+        columns = self.header.columns
+        numbers = (text for k, column in enumerate(columns) if column and column.stem not in TEXTS for text in self._column(k))
+        self.mark = DecimalMark(numbers, comma_delimited=self.sheet.delimiter == ",")
+        objects, refused = [], []
+        for line, row in self.rows:
+            if self._is_total(row):
+                continue
+            try:
+                objects.append(self._object(line, row))
+            except RockingError as error:
+                refused.append(NotAssessed(line, self._text(row, "name"), str(error)))
+        if not objects and not refused:
+            raise InvalidValueError(f"{source}: an inventory needs at least one row below its header")
+        ignored = tuple(title for title, column in zip(titles, columns, strict=True) if column is None and title)
+        return Inventory(tuple(objects), tuple(refused), ignored, source, self.header.language)
+
+    def _column(self, place: int) -> Iterator[str]:
+        """Yield the texts of a column; numbers of spreadsheets have no mark."""
+        return (cell if isinstance(cell, str) else str(int(cell)) for _, row in self.rows for cell in row[place : place + 1])
+
+    def _text(self, row: Sequence[Cell], stem: str) -> str:
+        pairs = zip(self.header.columns, row, strict=False)
+        return next((text_of(cell) for column, cell in pairs if column and column.stem == stem), "")
+
+    def _check_units(self) -> None:
+        """Refuse lengths without a unit; weights without one decide nothing, and are not read."""
+        if "units" in self.header.known:
+            return
+        columns = list(self.header.columns)
+        for k, column in enumerate(columns):
+            if column is None or column.factor or column.stem not in {*LENGTHS, "weight"}:
+                continue
+            if any(cell.replace(".", "").replace(",", "").isdigit() for cell in map(str.strip, self._column(k))):
+                if column.stem != "weight":
+                    known = ", ".join(f"{column.stem}_{each}" for each in LENGTH_UNITS)
+                    raise InvalidValueError(f"{self.sheet.source}: column {column.title!r} must name its unit: {known}")
+                columns[k] = None
+        self.header = replace(self.header, columns=tuple(columns))
+
+    def _is_total(self, row: Sequence[Cell]) -> bool:
+        first = plain(next(filter(None, map(text_of, row)), ""))
+        pairs = zip(self.header.columns, row, strict=False)
+        measured = any(column and column.stem in {*SIZES, "size"} and text_of(cell) for column, cell in pairs)
+        return not measured and any(first == word or first.startswith(f"{word} ") for word in _TOTALS)
+
+    def _object(self, line: int, row: Sequence[Cell]) -> InventoryObject:
+        columns = self.header.columns
+        if len(row) != len(columns):
+            hint = "a decimal comma between commas?" if len(row) > len(columns) else "a separator missing?"
+            raise InvalidValueError(f"it has {len(row)} fields, the header {len(columns)}; {hint}")
+        found = _Values(row=line)
+        unit = UNITS.get(plain(self._text(row, "units")), "")
+        for column, cell in zip(columns, row, strict=True):
+            if column and text_of(cell):
+                self._read(found, column, cell, column.factor or LENGTH_UNITS.get(unit))
+        self._settle(found)
+        return InventoryObject(**found.fields, approximate=found.approximate, remarks=tuple(found.remarks))
+
+    def _read(self, found: "_Values", column: InventoryColumn, cell: Cell, factor: float | None) -> None:
+        stem, title, fields = column.stem, column.title, column.fields
+        if stem in TEXTS:
+            found.fields[stem] = text_of(cell)
+        elif stem == "count":
+            found.optional("count", count_of(cell), f"{title} {cell!r:.40} is no number of pieces: one is taken")
+        elif is_missing(cell):
+            found.unknown |= dict.fromkeys(fields or SIZES, f"{title} is {cell!r:.40}")
+            if stem in {"base", "base_width", "base_depth", "base_diameter", "centre_of_mass_height"}:
+                found.remarks.append(f"{title} is {cell!r:.40}: as if none were given")
+        elif stem == "size":
+            for side, one in parts(title, cell, fields, factor, self.mark, self.header.language).items():
+                found.take((side,), one, title, cell)
+        elif stem in LENGTHS:
+            one = measure(title, cell, factor, self.mark)
+            found.take(("diameter",) if one.across and stem in {"width", "depth"} else fields, one, title, cell)
+        else:
+            try:
+                found.fields[fields[0]] = measure(title, cell, 1.0 if stem == "friction" else column.factor, self.mark).value
+            except InvalidValueError as error:
+                found.remarks.append(f"{stem} was left aside: {error}")
+
+    def _settle(self, found: "_Values") -> None:
+        """Bring what a row says to the fields of an object; what decides nothing is left aside with a remark."""
+        fields, remarks = found.fields, found.remarks
+        name, units = fields.pop("body_file", None), fields.pop("units", None)
+        if name:
+            if stated := [each for each in (*LENGTHS, "mass") if each in fields]:
+                raise InvalidValueError(f"its body file says what it is: leave {found.titles.get(stated[0], stated[0])} empty")
+            fields |= _body(str(name), units, self.find)
+        found.settle_shape()
+        for each in ("width", "depth", "height"):
+            if each not in fields:
+                title = next((c.title for c in self.header.columns if c and each in c.fields), each)
+                raise InvalidValueError(found.unknown.get(each, f"{title} is empty"))
+        if not fields.get("name"):
+            fields["name"] = f"line {fields['row']}"
+            remarks.append("it has no name")
+        if (word := fields.pop("consequence", None)) and not is_missing(word):
+            found.optional("consequence", _CONSEQUENCES.get(plain(word)), f"consequence {word!r:.40} is not low, medium or high: medium is taken")
+        if photo := fields.pop("photo", None):
+            found.optional("photo", _photo(photo, self.find), f"photo {photo!r:.80} is no picture beside the list")
+        size = {each: fields[each] for each in ("width", "depth", "height")}
+        for each in {"mass", "count", "friction"} & fields.keys():
+            try:
+                InventoryObject(name="thing", **size, **{each: fields[each]})
+            except InvalidValueError as error:
+                del fields[each]
+                remarks.append(f"{each.replace('mass', 'weight')} was left aside: {error}")
+
+
+class _Values:
+    """What the cells of a row say."""
+
+    def __init__(self, row: int) -> None:
+        self.fields: dict[str, Any] = {"row": row}
+        self.titles: dict[str, str] = {}
+        self.unknown: dict[str, str] = {}
+        self.approximate: dict[str, float] = {}
+        self.remarks: list[str] = []
+
+    def take(self, fields: Sequence[str], one: Measure, title: str, cell: Cell) -> None:
+        self.fields |= dict.fromkeys(fields, one.value)
+        self.titles |= dict.fromkeys(fields, title)
+        if one.half_width:
+            self.approximate |= dict.fromkeys(fields, one.half_width)
+            what = " and ".join(fields).replace("_", " ")
+            self.remarks.append(f"{title} {cell!r:.60}: {what} taken as {one.value:.4g} m, give or take {one.half_width:.2g} m")
+
+    def optional(self, field: str, value: Any, remark: str) -> None:
+        if value is None:
+            self.remarks.append(remark)
+        else:
+            self.fields[field] = value
+
+    def settle_shape(self) -> None:
+        """Bring a diameter, or a shape that is said to be round, to width and depth."""
+        fields, word = self.fields, self.fields.pop("shape", "")
+        shape = _SHAPES.get(plain(word))
+        if word and shape is None and not is_missing(word):
+            self.remarks.append(f"shape {word!r:.40} is not round or rectangular: a box of its size is taken")
+        if (across := fields.pop("diameter", None)) is not None:
+            other = next((way for way in ("width", "depth") if abs(fields.get(way, across) - across) > 1e-9 * across), None)
+            if shape == "box" or other:
+                against = f"the shape {word!r:.40}" if shape == "box" else f"another {other}"
+                raise InvalidValueError(f"it has a {self.titles['diameter']} and {against}: leave one out")
+            fields |= {"width": across, "depth": across}
+            if (half := self.approximate.pop("diameter", 0.0)):
+                self.approximate |= {"width": half, "depth": half}
+            shape = "round"
+        if shape != "round" or "solid" in fields:
+            return
+        sides = [way for way in ("width", "depth") if way in fields]
+        if len(sides) == 1:
+            (own,), (other,) = sides, {"width", "depth"} - set(sides)
+            fields[other] = fields[own]
+            if own in self.approximate:
+                self.approximate[other] = self.approximate[own]
+        if len(sides) == 2 and fields["width"] != fields["depth"]:
+            self.remarks.append("it is said to be round, and its width is not its depth: a box of its size is taken")
+        else:
+            fields["shape"] = "round"
 
 
 def _body(name: str, units: Any, find: Callable[[str], Path] | None) -> dict[str, object]:
@@ -349,12 +397,19 @@ def _body(name: str, units: Any, find: Callable[[str], Path] | None) -> dict[str
     return {"solid": body, **dict(zip(("width", "depth", "height"), size.tolist(), strict=True))}
 
 
-def _value(column: InventoryColumn, cell: str, mark: DecimalMark) -> object:
-    if column.fields[0] in _TEXTS:
-        return cell.strip()
-    number = mark.number(column.title, cell) * column.factor
-    if column.fields != ("count",):
-        return number
-    if number != int(number):
-        raise InvalidValueError(f"count must be a whole number, got {cell.strip()!r:.40}")
-    return int(number)
+def _photo(name: str, find: Callable[[str], Path] | None) -> Path | None:
+    """Return where a picture is; None if it is none, or not beside the list or in a folder there."""
+    parts_of = PureWindowsPath(name).parts
+    if find is None or PureWindowsPath(name).anchor or name.startswith("/") or ".." in parts_of:
+        return None
+    try:
+        from PIL import Image
+
+        path = find("/".join(parts_of))
+        if not path.resolve().is_relative_to(path.parents[len(parts_of) - 1].resolve()):
+            return None
+        with Image.open(path) as picture:
+            picture.verify()
+    except Exception:  # a damaged picture raises whatever its reader trips over
+        return None
+    return path

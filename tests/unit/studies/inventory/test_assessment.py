@@ -227,7 +227,7 @@ def test_table_and_plain_values_agree(quakes):
         assert float(line["overturned, high [%]"]) == pytest.approx(100.0 * item["overturned_interval"][1], abs=0.005)
         assert float(line["uplift acceleration [g]"]) == pytest.approx(item["uplift_acceleration_m_s2"] / G, abs=5e-5)
         assert line["in words"] == item["in_words"]
-    assert lines[2]["in words"].startswith("not assessed: width_cm must be one number")
+    assert lines[2]["in words"].startswith("not assessed: width_cm is '?'")
     assert plain["counts"] == {"red": 1, "amber": 0, "green": 1, "not_assessed": 1}
     assert plain["hazard"]["number_of_motions"] == 60
     assert any("Sliding is not assessed" in each for each in plain["assumptions"])

@@ -1,6 +1,7 @@
 """Inventories from files: columns, units, decimals, rows that are refused, and the objects they make."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -10,7 +11,7 @@ from rocking.bodies import Block
 from rocking.errors import InvalidValueError
 from rocking.studies.inventory import InventoryObject, parse_inventory, read_inventory
 from rocking.studies.inventory.objects import DIRECTIONS
-from rocking.studies.inventory.reading import DecimalMark
+from rocking.studies.inventory.cells import DecimalMark
 
 HEAD = "name,width_cm,depth_cm,height_cm"
 GOOD = "vase,20,25,100"
@@ -59,11 +60,16 @@ def test_every_column():
 @pytest.mark.parametrize(
     ("row", "words"),
     [
-        (",20,25,100", "name_or_title is empty"),
         ("x,,25,100", "width_cm is empty"),
         ("x,20,25", "it has 3 fields, the header 4; a separator missing"),
         ("x,20,5,25,100", "a decimal comma between commas"),
-        ("x,20 cm,25,100", "without unit"),
+        ("x,20 stone,25,100", "with a unit of m, cm, mm"),
+        ("x,20 30,25,100", "must be one number"),
+        ("x,130-120,25,100", "from the smaller to the larger"),
+        ("x,#REF!,25,100", "width_cm is '#REF!'"),
+        ("x,?,25,100", "width_cm is '?'"),
+        ("x,2024-05-12,25,100", "a date"),
+        ("x,1/0,25,100", "must be one number"),
         ("x,abc,25,100", "must be one number"),
         ("x,nan,25,100", "must be one number"),
         ("x,inf,25,100", "must be one number"),
@@ -82,8 +88,6 @@ def test_every_column():
 )
 def test_bad_row_is_reported_and_touches_no_other(row, words):
     """The row is named with its line and the reason; the rows around it are read as if it were not there."""
-    if row.startswith(","):
-        words = "name is empty"
     found = parse_inventory(f"{HEAD}\n{GOOD}\n{row}\nbox,30,30,60")
     assert [one.name for one in found.objects] == ["vase", "box"]
     assert found.objects[0] == only(f"{HEAD}\n{GOOD}")
@@ -97,17 +101,38 @@ def test_bad_row_is_reported_and_touches_no_other(row, words):
     [
         ("base_width_cm", "21", "at most the width"),
         ("centre_of_mass_height_cm", "120", "below the height"),
-        ("weight_kg", "1e7", "wrong unit of the weight"),
-        ("count", "1.5", "count must be a whole number"),
-        ("count", "1e300", "count must be a whole number"),
-        ("count", "0", "count must be a whole number"),
+        ("base_width_cm", "abc", "must be one number"),
     ],
 )
-def test_bad_optional_value(column, value, words):
-    """A value that does not fit the others makes the row one that is not assessed."""
+def test_bad_value_that_decides(column, value, words):
+    """A base or centre that does not fit the others makes the row one that is not assessed."""
     found = parse_inventory(f"{HEAD},{column}\n{GOOD},{value}\n{GOOD},")
     assert len(found.objects) == 1
     assert words in found.not_assessed[0].reason
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "words"),
+    [
+        ("weight_kg", "1e7", "wrong unit of the weight"),
+        ("weight_kg", "heavy", "weight was left aside"),
+        ("count", "1.5", "no number of pieces"),
+        ("count", "1e300", "no number of pieces"),
+        ("count", "many", "no number of pieces"),
+        ("count", "0", "count must be a whole number"),
+        ("friction", "smooth", "friction was left aside"),
+        ("friction", "-1", "friction was left aside"),
+        ("consequence", "***", "medium is taken"),
+        ("photo", "no-such.jpg", "no picture beside the list"),
+        ("shape", "oval", "a box of its size is taken"),
+        ("base_cm", "?", "as if none were given"),
+    ],
+)
+def test_bad_value_that_does_not_decide(column, value, words):
+    """What does not change how an object rocks is left aside with a remark, and the object is assessed."""
+    first, second = parse_inventory(f"{HEAD},{column}\n{GOOD},{value}\n{GOOD},").objects
+    assert words in " ".join(first.remarks)
+    assert replace(first, remarks=(), row=3) == second
 
 
 @pytest.mark.parametrize(
@@ -118,15 +143,16 @@ def test_bad_optional_value(column, value, words):
         ("name,width,depth,height\nvase,20,25,100", "'width' must name its unit: width_m, width_cm"),
         (HEAD, "at least one row"),
         (f"{HEAD},width_mm\n{GOOD},200", "two columns give the width"),
-        (f"{HEAD},name\n{GOOD},x", "two columns give the name"),
         (f"{HEAD},base_width\n{GOOD},10", "must name its unit: base_width_m"),
         (f"{HEAD},base_width_km\n{GOOD},10", "must name its unit"),
-        (f"{HEAD},weight_stone\n{GOOD},10", "must name its unit: weight_kg"),
         (f"{HEAD},base_widht_cm\n{GOOD},10", "base_width_cm\\?"),
         (f"{HEAD},wieght_kg\n{GOOD},10", "weight_kg\\?"),
         (f"{HEAD},foot_width_cm\n{GOOD},10", "'foot_width_cm' is not known but looks like a measure; "),
-        (f"{HEAD},diameter\n{GOOD},10", "'diameter' is not known but looks like a measure; "),
-        (f"{HEAD},Durchmesser_mm\n{GOOD},10", "looks like a measure"),
+        (f"{HEAD},diameter\n{GOOD},10", "'diameter' must name its unit"),
+        (f"{HEAD},Rahmenbreite\n{GOOD},10", "looks like a measure"),
+        (f"{HEAD},Sockel\n{GOOD},10", "'Sockel' is not known but looks like a measure"),
+        (f"{HEAD},length_cm\n{GOOD},10", "'length_cm' is not known but looks like a measure, beside width and depth"),
+        ("Objekt;Breite cm;Farbe\nx;1;2", "no depth and no height in the header, only 'Objekt' as name"),
         (f"{HEAD},gross (kg)\n{GOOD},10", "looks like a measure"),
         (f"{HEAD},centre of area\n{GOOD},10", "looks like a measure"),
         (f"{HEAD},base\n{GOOD},10", "'base' must name its unit: base_m"),
@@ -216,13 +242,14 @@ def test_the_line_that_excel_writes_first(line, mark, end):
 
 
 def test_encodings(tmp_path):
-    """A list from an older spreadsheet is refused with the remedy, and read with its encoding named."""
+    """A list from an older spreadsheet is read, the encoding that was assumed is said; one that is named is taken."""
     path = tmp_path / "objects.csv"
     path.write_bytes(f"{HEAD}\nfigurine en gr\u00e8s,20,25,100".encode("cp1252"))
     with pytest.raises(InvalidValueError, match="CSV UTF-8"):
-        read_inventory(path)
-    assert read_inventory(path, "cp1252").objects[0].name == "figurine en gr\u00e8s"
-    assert read_inventory(path, "cp1252").source == "objects.csv"
+        read_inventory(path, "utf-8")
+    found = read_inventory(path)
+    assert (found.objects[0].name, found.source) == ("figurine en gr\u00e8s", "objects.csv (cp1252)")
+    assert read_inventory(path, "cp1252").source == "objects.csv (cp1252)"
     with pytest.raises(InvalidValueError, match="name its encoding"):
         read_inventory(path, "no-such")
 

@@ -1,0 +1,246 @@
+"""Lists in files: a workbook or text of any encoding to rows of cells, none larger than it should be."""
+
+import contextlib
+import csv
+import io
+import itertools
+import re
+import zipfile
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from datetime import date, time
+from typing import Any
+from xml.parsers import expat
+
+from rocking.errors import InvalidValueError, RockingError, extra
+
+MOST_ROWS, MOST_BYTES = 100_000, 64 << 20
+"""No inventory is longer, no file larger, packed or unpacked: it is something else."""
+
+MOST_COLUMNS, _MOST_LINES, _MOST_SHEETS = 200, 1 << 20, 50
+
+Cell = str | float
+"""Text, or a number of a spreadsheet; an empty cell is an empty text."""
+
+Row = tuple[int, list[Cell]]
+"""The line on which it begins, and its cells."""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A table of a file."""
+
+    source: str  # of which file, and which table or encoding of it
+    rows: list[Row]
+    delimiter: str = ""  # of text
+
+
+def sheets_in(content: bytes, source: str) -> Iterator[Sheet] | None:
+    """Return the tables of a workbook; None for a file that is none."""
+    if content.startswith(b"\xd0\xcf\x11\xe0"):
+        raise InvalidValueError(f"{source}: an old .xls, or locked by a password; save it as .xlsx, .ods or CSV UTF-8")
+    if not content.startswith(b"PK\x03\x04"):
+        return None
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            names, size = archive.namelist(), sum(each.file_size for each in archive.infolist())
+            if size > MOST_BYTES:
+                raise InvalidValueError(f"{source}: unpacked it is larger than {MOST_BYTES >> 20} MiB; save it as CSV")
+            if "xl/workbook.xml" in names:
+                found = list(_of_excel(archive, content))
+            elif "content.xml" in names:
+                found = _of_open_document(archive.read("content.xml"))
+            else:
+                raise InvalidValueError(f"{source}: neither .xlsx nor .ods; save it as one of them, or as CSV UTF-8")
+    except (RockingError, ModuleNotFoundError):
+        raise
+    except Exception as error:  # damaged files raise whatever their readers trip over
+        raise InvalidValueError(
+            f"{source}: a damaged workbook ({type(error).__name__}); open it in a spreadsheet and save it again"
+        ) from error
+    several = len(found) > 1
+    return (
+        Sheet(f"{source} ({name})" if several else source, _filled(rows, merged, source)) for name, rows, merged in found
+    )
+
+
+_Merged = list[tuple[int, int, int]]  # first line, column, and last line
+
+
+def _of_excel(archive: zipfile.ZipFile, content: bytes) -> Iterator[tuple[str, Iterable[Row], _Merged]]:
+    book = extra("openpyxl", "reading a workbook").load_workbook(io.BytesIO(content), read_only=True, data_only=True)
+    for sheet in book.worksheets[:_MOST_SHEETS]:
+        if sheet.sheet_state != "visible":
+            continue
+        lines = sheet.iter_rows(max_row=_MOST_LINES, max_col=MOST_COLUMNS, values_only=True)
+        rows = ((line, [_cell(value) for value in values]) for line, values in enumerate(lines, start=1))
+        text = archive.read(sheet._worksheet_path)
+        marks = itertools.islice(re.finditer(rb'<mergeCell ref="([A-Z]{1,3})(\d{1,7}):[A-Z]{1,3}(\d{1,7})"', text), MOST_ROWS)
+        merged = [(int(mark[2]), _place(mark[1]), int(mark[3])) for mark in marks]
+        yield sheet.title, _held(rows), merged
+
+
+def _place(letters: bytes) -> int:
+    place = 0
+    for letter in letters:
+        place = 26 * place + letter - 64
+    return place - 1
+
+
+def _cell(value: Any) -> Cell:
+    if value is None:
+        return ""
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return float(value) if abs(value) < 1e300 else str(value)
+    if isinstance(value, (date, time)):
+        return value.isoformat().removesuffix("T00:00:00")
+    return str(value).strip()
+
+
+def _of_open_document(content: bytes) -> list[tuple[str, Iterable[Row], _Merged]]:
+    reader = _OpenDocument()
+    parser = expat.ParserCreate()
+    parser.StartElementHandler, parser.EndElementHandler = reader.start, reader.end
+    parser.CharacterDataHandler, parser.StartDoctypeDeclHandler = reader.characters, reader.doctype
+    parser.Parse(content, True)
+    return [(name, rows, merged) for name, rows, merged in reader.tables]
+
+
+class _OpenDocument:
+    """What ``content.xml`` says, element by element; its tables may repeat cells and rows a million times."""
+
+    def __init__(self) -> None:
+        self.tables: list[tuple[str, list[Row], _Merged]] = []
+        self.line, self.row, self.text, self.depth = 0, [], [], 0  # type: ignore[var-annotated]
+        self.cell: dict[str, str] | None = None
+
+    def doctype(self, *_: Any) -> None:
+        raise InvalidValueError("an .ods with a document type of its own is not read")
+
+    def start(self, tag: str, given: dict[str, str]) -> None:
+        if tag == "table:table" and len(self.tables) < _MOST_SHEETS:
+            self.tables.append((given.get("table:name", ""), [], []))
+            self.line = 0
+        elif tag == "table:table-row":
+            self.row, self.repeated = [], int(given.get("table:number-rows-repeated", 1))
+        elif tag in {"table:table-cell", "table:covered-table-cell"}:
+            self.cell, self.text = given, []
+        elif tag == "office:annotation":
+            self.depth += 1
+        elif tag == "text:p" and self.text and not self.depth:
+            self.text.append(" ")
+
+    def characters(self, text: str) -> None:
+        if self.cell is not None and not self.depth:
+            self.text.append(text)
+
+    def end(self, tag: str) -> None:
+        if tag == "office:annotation":
+            self.depth -= 1
+        elif tag in {"table:table-cell", "table:covered-table-cell"} and self.cell is not None:
+            self._close()
+        elif tag == "table:table-row" and self.tables:
+            _, rows, _ = self.tables[-1]
+            blank = not any(cell != "" for cell in self.row)
+            for k in range(0 if blank else min(self.repeated, MOST_ROWS + 1 - len(rows))):
+                rows.append((self.line + k + 1, list(self.row)))
+            self.line += self.repeated
+
+    def _close(self) -> None:
+        given, text = self.cell or {}, "".join(self.text).strip()
+        self.cell = None
+        spanned = int(given.get("table:number-rows-spanned", 1))
+        if spanned > 1 and self.tables:
+            self.tables[-1][2].append((self.line + 1, len(self.row), self.line + spanned))
+        value: Cell = text
+        if given.get("office:value-type") in {"float", "currency"} and not text.startswith("#"):
+            value = _cell(float(given.get("office:value", "nan")))
+        elif given.get("office:value-type") == "date":
+            value = given.get("office:date-value", text)
+        many = min(int(given.get("table:number-columns-repeated", 1)), MOST_COLUMNS - len(self.row))
+        self.row += [value] * many
+
+
+def _held(rows: Iterable[Row]) -> list[Row]:
+    """Return the rows that are not empty."""
+    held = (row for row in rows if any(cell != "" for cell in row[1]))
+    return list(itertools.islice(held, MOST_ROWS + 1))
+
+
+def _filled(rows: Iterable[Row], merged: _Merged, source: str) -> list[Row]:
+    """Return rows of the same width, what cells that are merged downwards say in each of their rows."""
+    rows = list(rows)
+    _check_number(rows, source)
+    width = max((len(cells) for _, cells in rows), default=0)
+    table = {line: cells + [""] * (width - len(cells)) for line, cells in rows}
+    for first, place, last in merged:
+        if first in table and place < width:
+            for line in range(first + 1, min(last, first + MOST_ROWS) + 1):
+                if line in table:
+                    table[line][place] = table[first][place]
+    return list(table.items())
+
+
+def _check_number(rows: list[Row], source: str) -> None:
+    if len(rows) > MOST_ROWS:
+        raise InvalidValueError(f"{source}: a list must have at most {MOST_ROWS} rows")
+
+
+ENCODINGS = ("cp1252", "cp1253", "cp1254", "gb18030", "mac_roman")
+"""Of older spreadsheets; which one it is the words of the header tell."""
+
+
+def texts_in(content: bytes, source: str, encoding: str | None) -> Iterator[tuple[str, str]]:
+    """Yield what a text file may say, with its encoding: one where it is stated or can be told, or several."""
+    marks = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
+    told = encoding or next((name for mark, name in marks.items() if content.startswith(mark)), None)
+    if told is None and 5 * content[:2000].count(0) > len(content[:2000]):
+        told = "utf-16-le" if content[1:2] == b"\0" else "utf-16-be"
+    found = 0
+    for name in (told,) if told else ("utf-8", *ENCODINGS):
+        with contextlib.suppress(UnicodeDecodeError, LookupError, ValueError):
+            text = content.decode(name)
+            found += 1
+            yield text, name
+            if name == "utf-8":
+                return
+    if not found:
+        raise InvalidValueError(
+            f"{source} is not text in {told or 'any encoding of spreadsheets'}: "
+            'save it as "CSV UTF-8", or name its encoding, such as cp1252'
+        )
+
+
+_DELIMITERS = (",", ";", "\t")
+# the line by which Excel is told, and tells, what separates the fields
+_SEPARATOR = re.compile(r'"?sep=(.)"?[ \t]*(?=\r?\n|$)', re.IGNORECASE)
+_BEGINNING, _LONGEST_LINE = 50, 10_000
+
+
+def tables_of(text: str) -> Iterator[tuple[str, list[list[str]], str]]:
+    """Yield each delimiter that a text may have, the rows of its beginning by it, and the text."""
+    lines, allowed = text.removeprefix("\ufeff"), _DELIMITERS
+    if separator := _SEPARATOR.match(lines):
+        lines, allowed = lines[separator.end() :], (separator[1],)  # type: ignore[assignment]
+    first = [line[:_LONGEST_LINE] for line in itertools.islice(io.StringIO(lines), _BEGINNING)]
+    for delimiter in allowed:
+        if delimiter in _DELIMITERS:
+            with contextlib.suppress(csv.Error):
+                yield delimiter, list(csv.reader(first, delimiter=delimiter)), lines
+
+
+def rows_of(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]]]:
+    """Return the rows of CSV that are not empty before the first, with the line on which each begins."""
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    rows: list[tuple[int, list[str]]] = []
+    line = 1
+    try:
+        for cells in reader:
+            if rows or any(cell.strip() for cell in cells):
+                rows.append((line, cells))
+            line = reader.line_num + 1
+            if len(rows) > MOST_ROWS:
+                raise InvalidValueError(f"{source}: a list must have at most {MOST_ROWS} rows")
+    except csv.Error as error:
+        raise InvalidValueError(f"{source}: not a table, line {line}: {error}; a quotation mark left open?") from error
+    return rows
