@@ -67,7 +67,6 @@ def cor(
             autocompletion=completion.every_model,
         ),
     ] = None,
-    eta: Annotated[float, typer.Option(help="Interface factor in (0, 1] on every model.")] = 1.0,
     identities: Annotated[
         bool, typer.Option("--identities", help="Also try the identities of mechanics on every model.")
     ] = False,
@@ -85,16 +84,12 @@ def cor(
     arguments = Arguments(context, "body", "settings")
     if odd := sorted(set(arguments.sets.get("settings", {})) - {"gravity"}):
         raise InvalidValueError(f"--set settings.{odd[0]}: an impact takes gravity only")
-    if recommend and eta != 1.0:
-        raise InvalidValueError(
-            "--recommend says what was measured, with its interface; --eta is what you know of yours: leave one out"
-        )
     subject, gravity = _body(arguments, quiet=as_json)
     length = arguments.length or "m"
     if isinstance(subject, Solid):
         from rocking.cli.solids import SolidAnswer
 
-        plane = {"--onto": onto != "both", "--eta": eta != 1.0, "--identities": identities}
+        plane = {"--onto": onto != "both", "--identities": identities}
         plane["--out stages=FILE"] = "stages" in exports.names
         if stated := [name for name, there in plane.items() if there]:
             raise InvalidValueError(
@@ -106,7 +101,7 @@ def cor(
         from rocking.reports.body_facts import ImpactAnswer
 
         models = None if restitution is None else [_model(text) for text in restitution]
-        impact = ImpactAnswer.of(subject, models, onto=onto, eta=eta, gravity=gravity, identities=identities)
+        impact = ImpactAnswer.of(subject, models, onto=onto, gravity=gravity, identities=identities)
         answer = PlaneAnswer(impact, length, recommended(subject, models=models) if recommend else None)
     deliver(answer, exports, as_json=as_json)
 
@@ -121,7 +116,7 @@ def _model(text: str) -> Any:
 def _body(arguments: Arguments, *, quiet: bool) -> tuple[Any, float]:
     """Return the body and the gravity [m/s2], of a file of a response too; JSON stays alone on its stream."""
     word, sets = arguments.options["body"], arguments.sets
-    beside = ("onto", "restitution", "eta", "identities")
+    beside = ("onto", "restitution", "identities")
     if file := document_file(arguments.context, word, ("response",), beside, "has a table [body] and "):
         with located(word):
             made = _made(with_sets(tables_in(file) or {}, sets), InputFiles(file.parent))

@@ -22,8 +22,9 @@ _STYLES = {"GREEN": "bold green", "AMBER": "bold yellow", "RED": "bold red"}
 def inventory(
     context: typer.Context,
     objects: Annotated[
-        Path, typer.Argument(help="CSV file with the columns name, width_cm, depth_cm, height_cm and more.")
+        Path, typer.Argument(help="List as .xlsx, .ods or CSV: name, width, depth, height and more, with units.")
     ],
+    columns: Annotated[str | None, options.key(InventoryTable, "columns")] = None,
     pga: Annotated[str | None, options.key(InventoryTable, "pga", rich_help_panel=_SHAKING)] = None,
     pgv: Annotated[str | None, options.key(InventoryTable, "pgv", rich_help_panel=_SHAKING)] = None,
     motion: Annotated[
@@ -118,7 +119,9 @@ def _problem(context: typer.Context) -> "StudyProblem":
         raise InvalidValueError("give --pga or --pgv, not both: motions are scaled to one of them")
     with as_typed():
         table = arguments.table(
-            "inventory", {"objects": str(options["objects"]), **levels}, {"objects": str(options["objects"])}
+            "inventory",
+            {"objects": str(options["objects"]), "columns": options["columns"], **levels},
+            {"objects": str(options["objects"])}
         )
         synthetic = family(arguments, {"synthetic": FAMILY, "count": COUNT, "seed": SEED})
         if synthetic is not None and not {"pga", "pgv"} & set(table):

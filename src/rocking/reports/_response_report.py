@@ -55,7 +55,7 @@ def response_report(
         raise InvalidValueError(f"a report needs a result: {response.summary}")
     friction = friction if isinstance(friction, Assumed) else checks.positive("friction", friction)
     gravity = response.settings.gravity
-    impact = ImpactAnswer.of(response.body, None, onto="both", eta=1.0, gravity=gravity, identities=False)
+    impact = ImpactAnswer.of(response.body, None, onto="both", gravity=gravity, identities=False)
     motion = (
         response.motion if response.motion is None or response.scale == 1.0 else response.motion.scaled(response.scale)
     )

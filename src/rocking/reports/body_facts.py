@@ -93,15 +93,14 @@ class ImpactAnswer:
         models: list[RestitutionModel] | None,
         *,
         onto: str,
-        eta: float,
         gravity: float,
         identities: bool,
     ) -> "ImpactAnswer":
-        """Compute the tables with an interface factor eta [-] under a gravity [m/s2]."""
+        """Compute the tables under a gravity [m/s2]."""
         if onto not in (*FEET, "both"):
             raise InvalidValueError(f'onto must be "left", "right" or "both", got {onto!r}')
         gravity = checks.positive("gravity", gravity, "m/s2")
-        tables = {foot: coefficient_table(body, models, onto=foot, eta=eta) for foot in FEET if onto in (foot, "both")}
+        tables = {foot: coefficient_table(body, models, onto=foot) for foot in FEET if onto in (foot, "both")}
         if len(tables) == 2 and _same(tables["left"], tables["right"]):
             del tables["left"]
         foot = next(reversed(tables))

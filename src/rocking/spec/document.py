@@ -262,8 +262,11 @@ class ThresholdsTable(JobTable):
 class InventoryTable(JobTable):
     """A list of objects, and how strong the shaking is: a number with its unit, such as 0.3g."""
 
-    objects: Text = _key("CSV file with the columns name, width_cm, depth_cm, height_cm and more", ...)
-    encoding: Text = _key("encoding of the CSV file; cp1252 for some spreadsheets", "utf-8-sig")
+    objects: Text = _key("list as .xlsx, .ods or CSV: name, width, depth, height and more, each with its unit", ...)
+    encoding: Text | None = _key("encoding of a CSV file, such as cp1252; told from the file if left out")
+    columns: Text | dict[str, str] | None = _key(
+        'what columns are, by their titles: "Objekt=name, Maß B=width_cm, Rahmenbreite="; nothing leaves one out'
+    )
     pga: Text | None = _key("peak ground acceleration of every motion: 0.3g, 2.9m/s2")
     pgv: Text | None = _key("peak ground velocity in its place: 25cm/s, 0.25m/s")
     thresholds: ThresholdsTable = Field(

@@ -178,6 +178,7 @@ def inventory_of(
             problem.inputs.file(table.objects),
             table.encoding,
             lambda name: problem.inputs.file((folder / name).as_posix()),
+            table.columns,
         )
         texts = {"PGA": table.pga, "PGV": table.pgv}
         level = next((IntensityLevel.of(kind, text) for kind, text in texts.items() if text is not None), None)

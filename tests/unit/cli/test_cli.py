@@ -49,11 +49,11 @@ def test_cor_json_and_csv(run, tmp_path):
 def test_cor_options(run, own, tmp_path):
     """Unit, angle, one foot, chosen models, interface factor, identities, own model and picture all do their work."""
     picture = tmp_path / "body.svg"
-    words = ["--restitution", f"{own}:Mine", "--restitution", "ked", "--identities", "--eta", "0.9", "--out", picture]
+    words = ["--restitution", f"{own}:Mine", "--restitution", "0.9*ked", "--identities", "--out", picture]
     words += ["--out", f"stages={tmp_path / 'stages.png'}"]
     code, out, err = run("cor", "--width", 100, "--height", 400, "--units", "cm", "--onto", "left", *words)
     assert (code, err) == (0, "")
-    assert "0.450000" in out
+    assert "0.500000" in out
     assert f"{0.9 * 0.9473668350323697:.6f}" in out
     assert "coincident pivots: violated" in out
     assert "94.1 % stage 1" in out  # cos^2 alpha at h/b = 4 is 16/17
@@ -78,7 +78,7 @@ REFUSED = {
     f"{SIZE} --restitution kde": "no restitution model named 'kde'",
     f"{SIZE} --units gal": "one of m, cm, mm, ft, in",
     "cor missing.toml": "missing.toml: there is no such file",
-    f"{SIZE} --eta 1.5": "eta must be in (0, 1]",
+    f"{SIZE} --restitution 1.5*ked": "eta must be in (0, 1]",
     f"{SIZE} --onto up": 'onto must be "left"',
     f"{SIZE} --set settings.gravity=0": "settings.gravity must be a number > 0",
     f"{SIZE} --out a.bmp": ".png, .svg or .pdf",
@@ -191,7 +191,6 @@ def test_cor_says_which_model_to_use(run):
     assert "recommendation" not in json.loads(run(*words, "--json")[1])
     for more, sentence in (
         (("--restitution", "fixed:r=0.9"), "a value given by hand"),
-        (("--eta", 0.9), "leave one out"),
     ):
         code, out, err = run(*words, "--recommend", *more)
         assert (code, out) == (2, "")

@@ -181,7 +181,6 @@ REFUSED = {
     "tolerance": (["a.stl", "--units", "mm", "--set", "body.base_tolerance=-1"], "body.base_tolerance must be > 0 m"),
     "size": (["a.stl", "--units", "mm", "--width", "1"], "give a body file or dimensions, not both"),
     "foot": (["a.stl", "--units", "mm", "--onto", "left"], "it takes no --onto"),
-    "eta": (["a.stl", "--units", "mm", "--eta", "0.9"], "it takes no --eta"),
     "stages": (
         ["a.stl", "--units", "mm", "--identities", "--out", "stages=s.png"],
         "it takes no --identities, --out stages=FILE",

@@ -122,7 +122,7 @@ def _facts(inputs: ImpactRequest) -> dict[str, Any]:
     # a homogeneous block is the same on both sides; what is the same is told once
     onto = "right" if inputs.onto == "both" and isinstance(body, Block) and body.known is None else inputs.onto
     coefficients = ImpactAnswer.of(
-        body, None, onto=onto, eta=1.0, gravity=inputs.settings.gravity or g, identities=False
+        body, None, onto=onto, gravity=inputs.settings.gravity or g, identities=False
     )
     facts = impact_facts(coefficients)
     facts["body"] |= {"name": inputs.body.name, **outline_facts(body)}

@@ -109,7 +109,7 @@ class Evaluation:
     @cached_property
     def impact(self) -> ImpactAnswer:
         """Coefficients under every model."""
-        return ImpactAnswer.of(self.body, None, onto=self.onto, eta=1.0, gravity=self.gravity, identities=False)
+        return ImpactAnswer.of(self.body, None, onto=self.onto, gravity=self.gravity, identities=False)
 
     @property
     def foot(self) -> Foot:

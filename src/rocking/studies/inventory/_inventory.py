@@ -1,6 +1,6 @@
 """The front door: an inventory assessed, as a labelled dataset."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -50,6 +50,7 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     thresholds: Thresholds | None = None,
     gravity: float = g,
     friction: float | None = None,
+    columns: str | Mapping[str, str] | None = None,
     **options: Any,
 ) -> "xr.Dataset":
     """Return which objects of a list stay standing at a level of shaking, the worst first.
@@ -57,8 +58,9 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     Parameters
     ----------
     objects : str, Path, Inventory or sequence of InventoryObject
-        A CSV file with the columns ``name``, ``width_cm``, ``depth_cm``, ``height_cm`` and more, or the objects. Scans
-        and other bodies in space are named in a column ``body_file``, beside the list, with ``units`` of a mesh.
+        A list as .xlsx, .ods or CSV with the columns ``name``, ``width_cm``, ``depth_cm``, ``height_cm`` and more, in
+        English, German, Italian, Spanish, Greek, Chinese or Turkish; or the objects. Scans and other bodies in space
+        are named in a column ``body_file``, beside the list, with ``units`` of a mesh.
     motions : str, Hazard, GroundMotion or sequence of GroundMotion
         The family of synthetic motions, or records; each acts in either direction by itself.
     restitution : str, RestitutionModel, float or mapping
@@ -77,6 +79,8 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
         Coefficient of friction where a row has none of its own: objects slide, rock and fall in three dimensions, each
         under every motion along its width and along its depth. Without one a box rocks in a plane, and a body of a file
         does not slide [-].
+    columns : str or mapping of str to str, optional
+        What columns of a list are that are not understood, by their titles: ``"Objekt=name, Maß B=width_cm"``.
     **options
         ``threads`` of the fast engine, and ``progress``, told how many histories have been computed since it was last
         called.
@@ -102,7 +106,9 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     >>> ranking["object"].values[[0, -1]].tolist(), ranking["light"].values[[0, -1]].tolist()
     (['tall clock', 'low stone chest'], ['red', 'green'])
     """
-    everything = read_inventory(objects) if isinstance(objects, (str, Path)) else objects
+    if columns is not None and not isinstance(objects, (str, Path)):
+        raise InvalidValueError("columns are those of a file: leave them out beside objects")
+    everything = read_inventory(objects, columns=columns) if isinstance(objects, (str, Path)) else objects
     hazard = _hazard(motions, pga, pgv, count, seed)
     how = {"restitution": restitution, "thresholds": thresholds, "gravity": gravity, "friction": friction}
     assessment = assess(everything, hazard, **how, **options)
