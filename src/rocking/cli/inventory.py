@@ -121,7 +121,7 @@ def _problem(context: typer.Context) -> "StudyProblem":
         table = arguments.table(
             "inventory",
             {"objects": str(options["objects"]), "columns": options["columns"], **levels},
-            {"objects": str(options["objects"])}
+            {"objects": str(options["objects"])},
         )
         synthetic = family(arguments, {"synthetic": FAMILY, "count": COUNT, "seed": SEED})
         if synthetic is not None and not {"pga", "pgv"} & set(table):
@@ -162,6 +162,8 @@ class InventoryAnswer:
             page.rich(line)
             note = f"{advice(verdict, assessment)} {model_note(verdict, assessment)}"
             page.line(f"{'':12} {note}".rstrip(), "dim")
+            if verdict.item.remarks:
+                page.line(f"{'':12} Noted: {'; '.join(verdict.item.remarks)}.", "dim")
         for refused in assessment.not_assessed:
             page.line(f"     not assessed: {refused.name or 'no name'}, line {refused.row}: {refused.reason}")
         lights = assessment.thresholds.sentences().items()

@@ -189,9 +189,7 @@ def test_cor_says_which_model_to_use(run):
     assert told["envelope"] == list(found.envelope)
     assert [row["model"] for row in told["models"]] == [each.name for each in found.models]
     assert "recommendation" not in json.loads(run(*words, "--json")[1])
-    for more, sentence in (
-        (("--restitution", "fixed:r=0.9"), "a value given by hand"),
-    ):
+    for more, sentence in ((("--restitution", "fixed:r=0.9"), "a value given by hand"),):
         code, out, err = run(*words, "--recommend", *more)
         assert (code, out) == (2, "")
         assert sentence in err

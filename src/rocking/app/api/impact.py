@@ -121,9 +121,7 @@ def _facts(inputs: ImpactRequest) -> dict[str, Any]:
     body = body_from(inputs.body)
     # a homogeneous block is the same on both sides; what is the same is told once
     onto = "right" if inputs.onto == "both" and isinstance(body, Block) and body.known is None else inputs.onto
-    coefficients = ImpactAnswer.of(
-        body, None, onto=onto, gravity=inputs.settings.gravity or g, identities=False
-    )
+    coefficients = ImpactAnswer.of(body, None, onto=onto, gravity=inputs.settings.gravity or g, identities=False)
     facts = impact_facts(coefficients)
     facts["body"] |= {"name": inputs.body.name, **outline_facts(body)}
     rows = [row for table in coefficients.tables.values() for row in table]

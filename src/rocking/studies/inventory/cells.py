@@ -1,5 +1,7 @@
 """Measures in cells: a number with or without its unit, about or between two, or none; and one of several parts."""
 
+# ruff: noqa: RUF001 - signs and words of other alphabets are meant
+
 import re
 import unicodedata
 from collections.abc import Iterable, Sequence
@@ -101,7 +103,7 @@ def measure(title: str, cell: Cell, factor: float | None, mark: DecimalMark) -> 
     if _NUMBER.fullmatch(cell.strip()):
         return Measure(mark.number(title, cell) * _named(title, cell, factor))
     text = _tidied(cell)
-    across = text.startswith("ø") or text.startswith("dm ")
+    across = text.startswith(("ø", "dm "))
     text = re.sub(r"^(?:ø|dm )\s*", "", text)
     text, about = _without_about(text)
     if match := _GIVE_OR_TAKE.fullmatch(text):
@@ -136,13 +138,15 @@ def _quantity(title: str, text: str, factor: float | None, mark: DecimalMark, be
     pairs = _PAIR.findall(text) if re.fullmatch(_QUANTITY, text) else []
     units = [_MARKS.get(word) or UNITS.get(plain(word), word) for _, word in pairs]
     factors = [FACTORS.get(unit, 0.0) for unit in units]
-    if not pairs or (len(pairs) > 1 and (sorted(set(factors), reverse=True) != factors or len(pairs) > 2 or 0.0 in factors)):
+    if not pairs or (
+        len(pairs) > 1 and (sorted(set(factors), reverse=True) != factors or len(pairs) > 2 or 0.0 in factors)
+    ):
         hint = "; a date, which a spreadsheet made of a number?" if _DATE.fullmatch(text) else ""
         raise InvalidValueError(
             f"{title} must be one number such as 12.5, 120 cm, ca. 120 or 120-130, without separators of thousands, "
             f"got {text[:40]!r}{hint}"
         )
-    if (odd := next((unit for unit, one in zip(units, factors, strict=True) if unit and not one), "")):
+    if odd := next((unit for unit, one in zip(units, factors, strict=True) if unit and not one), ""):
         raise InvalidValueError(f"{title} must be one number with a unit of {', '.join(FACTORS)}, got {odd[:20]!r}")
     if not units[0] and (other := next((word for _, word in _PAIR.findall(beside) if word), "")):
         factors[0] = FACTORS.get(_MARKS.get(other) or UNITS.get(plain(other), ""), 0.0) or _named(title, text, factor)
@@ -195,10 +199,12 @@ def parts(
         if not labels[k] and left:
             labels[k] = left.pop(0)
     if not pieces or "" in labels or len(set(labels)) < len(labels) or left:
-        raise InvalidValueError(
-            f"{title}: {text[:40]!r} does not say what is height, width and depth: write the order into the header, or "
-            f'say it: columns "{title}=height x width x depth cm"'
-        )
+        why = (
+            f"its header names {len(order)} parts" if order
+            else "which is the height? Write the order into the header, or say it: columns "
+            f'"{title}=height x width x depth cm"'
+        )  # fmt: skip
+        raise InvalidValueError(f"{title} must have its parts in a known order, got {text[:40]!r}; {why}")
     last = _PAIR.findall(pieces[-1].lstrip("~"))
     unit = next((word for _, word in reversed(last) if word), "")
     found = {}
@@ -227,5 +233,3 @@ def count_of(cell: Cell) -> int | None:
 
 
 _PAIRS = words_of(header_words.PAIRS)
-
-

@@ -1,9 +1,11 @@
 """What the columns of a list hold: by the words of its header, in the language that knows most of them."""
 
+# ruff: noqa: RUF001 - signs and words of other alphabets are meant
+
 import difflib
 import re
 import unicodedata
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from rocking.conventions import LENGTH_UNITS
@@ -18,7 +20,7 @@ WEIGHTS = {"kg": 1.0, "g": 0.001, "t": 1000.0, "lb": 0.45359237}
 """Units of the column of weights [kg]."""
 
 FACTORS = LENGTH_UNITS | WEIGHTS
-TEXTS = ("name", "note", "body_file", "units", "shape", "consequence", "photo")
+TEXTS = ("name", "note", "body_file", "units", "shape", "consequence", "photo", "number")
 """Columns whose cells are no numbers."""
 
 _MEASURES = (*LENGTHS, "weight")
@@ -82,7 +84,7 @@ class Header:
     def missing(self) -> list[str]:
         """What a list must have and this one does not."""
         known = self.known
-        missing = [] if "name" in known else ["name"]
+        missing = [] if {"name", "number"} & known else ["name"]
         if "body_file" in known or {"diameter", "height"} <= known or ("size" in known and "height" not in known):
             return missing
         wanted = ("width", "height") if {"width", "shape"} <= known else ("width", "depth", "height")
@@ -112,7 +114,7 @@ def _stem(title: str, language: str) -> tuple[str, str]:
 def order_of(title: str, language: str = "en") -> tuple[str, ...]:
     """Return the order of the parts of a measure that a title states.
 
-    >>> order_of("Maße (HxBxT) in cm"), order_of("height × width × depth"), order_of("Maße")
+    >>> order_of("Maße (HxBxT) in cm"), order_of("height*width*depth"), order_of("Maße")
     (('height', 'width', 'depth'), ('height', 'width', 'depth'), ())
     """
     tokens = plain(re.sub(r"[×✕*/]", " x ", re.sub(r"(?i)(?<=\b[a-zø])x(?=[a-zø]\b|[a-zø]x)", " x ", title))).split()
@@ -152,15 +154,12 @@ def header_of(titles: Sequence[str], mapped: Mapping[str, str] | None = None) ->
     known = {field for each in columns if each for field in each.fields}
     if "length" in known:
         side = next((way for way in ("width", "depth") if way not in known), "length")
-        columns = [each and replace(each, fields=tuple(side if f == "length" else f for f in each.fields)) for each in columns]
+        columns = [
+            each and replace(each, fields=tuple(side if f == "length" else f for f in each.fields)) for each in columns
+        ]
     stems = [each.stem if each else "" for each in columns]
-    measured = {"width", "height"} <= set(stems)
     for k, each in enumerate(columns):
-        if each and each.stem == "number" and "name" not in stems:  # an inventory number names what has no other name
-            columns[k], stems[k] = replace(each, stem="name", fields=("name",)), "name"
-        elif each and (each.stem == "number" or (each.stem == "size" and measured)):
-            columns[k] = None
-        elif each and each.stem not in _MEASURES and each.stem in stems[:k]:
+        if each and each.stem not in _MEASURES and each.stem in stems[:k]:
             columns[k] = None  # the first of several is taken
     return Header(tuple(columns), language)
 
@@ -170,8 +169,10 @@ def _column(title: str, meant: str, language: str) -> InventoryColumn | None:
     order = order_of(meant, language)
     if order:
         stem = "size"
-        unit = unit or next((UNITS[word] for word in reversed(plain(meant).split()) if word in UNITS and len(word) > 1), "")
-    if not stem or (stem == "weight" and unit not in WEIGHTS):
+        unit = unit or next(
+            (UNITS[word] for word in reversed(plain(meant).split()) if word in UNITS and len(word) > 1), ""
+        )
+    if not stem:
         return None
     if stem in _MEASURES or stem == "size":
         if unit and unit not in (WEIGHTS if stem == "weight" else LENGTH_UNITS):
@@ -183,14 +184,15 @@ def _column(title: str, meant: str, language: str) -> InventoryColumn | None:
 
 def check_header(header: Header, titles: Sequence[str], source: str, dismissed: Collection[str] = ()) -> None:
     """Refuse a field that two columns give, and an unknown column that looks like a measure: it might decide."""
-    fields = [field for each in header.columns if each for field in each.fields]
+    fields = [field for each in header.columns if each and each.stem != "size" for field in each.fields]
     for each in fields:
         if fields.count(each) > 1:
             raise InvalidValueError(f"{source}: two columns give the {each.replace('_', ' ')}; leave one")
     if "length" in fields:
         title = next(each.title for each in header.columns if each and "length" in each.fields)
         raise InvalidValueError(
-            f"{source}: column {title!r:.60} is not known but looks like a measure, beside width and depth; {_remedy(title)}"
+            f"{source}: column {title!r:.60} is not known but looks like a measure, beside width and depth; "
+            f"{_remedy(title)}"
         )
     passed = {plain(title) for title in dismissed}
     for title, column in zip(titles, header.columns, strict=True):
@@ -219,7 +221,9 @@ def _refuse_measure(title: str, source: str, language: str) -> None:
     near = difflib.get_close_matches(own, _MEASURES, n=1, cutoff=0.8)
     near = near or difflib.get_close_matches(own, _MEASURES, n=3, cutoff=0.5) or list(_MEASURES)
     names = ", ".join(f"{each}_{'kg' if each == 'weight' else 'cm'}" for each in near)
-    raise InvalidValueError(f"{source}: column {title!r:.60} is not known but looks like a measure; {names}? {_remedy(title)}")
+    raise InvalidValueError(
+        f"{source}: column {title!r:.60} is not known but looks like a measure; {names}? {_remedy(title)}"
+    )
 
 
 def mapping_of(text: str | Mapping[str, str] | None) -> dict[str, str]:
@@ -230,19 +234,18 @@ def mapping_of(text: str | Mapping[str, str] | None) -> dict[str, str]:
     """
     if text is None:
         return {}
-    pairs: Iterable[tuple[str, str]] = (
-        text.items() if isinstance(text, Mapping)
-        else [(own, ours) for own, mark, ours in (part.rpartition("=") for part in text.split(",") if part.strip()) if mark or _bad(part)]
-    )  # fmt: skip
-    found = {str(own).strip(): str(ours).strip() for own, ours in pairs}
-    for own, ours in found.items():
-        if not own or (ours and _column(own, ours, "en") is None and _stem(ours, "en")[0] != "weight"):
+    if not isinstance(text, Mapping):
+        parts = [part.rpartition("=") for part in text.split(",") if part.strip()]
+        if odd := next((ours for _, mark, ours in parts if not mark), ""):
             raise InvalidValueError(
-                f"columns: {own!r:.60} cannot be {ours!r:.60}; ours are {', '.join((*TEXTS, 'count', 'friction'))}, and with a unit, "
-                f"as in width_cm: {', '.join(_MEASURES)}, or an order such as height x width x depth cm"
+                f'columns must say own title = ours, as in "Objekt=name, Maß B=width_cm", got {odd.strip()!r:.60}'
+            )
+        text = {own: ours for own, _, ours in parts}
+    found = {str(own).strip(): str(ours).strip() for own, ours in text.items()}
+    for own, ours in found.items():
+        if not own or (ours and _column(own, ours, "en") is None):
+            raise InvalidValueError(
+                f"columns: {own!r:.60} cannot be {ours!r:.60}; ours are {', '.join((*TEXTS, 'count', 'friction'))}, "
+                f"and with a unit, as in width_cm: {', '.join(_MEASURES)}, or an order: height x width x depth cm"
             )
     return found
-
-
-def _bad(part: str) -> bool:
-    raise InvalidValueError(f'columns must say own title = ours, as in "Objekt=name, Maß B=width_cm", got {part.strip()!r:.60}')

@@ -1,5 +1,7 @@
 """Words of lists in seven languages: of headers, by what the column holds; and of cells. Data alone."""
 
+# ruff: noqa: E501, RUF001 - rows of a table; signs and words of other alphabets are meant
+
 HEADERS: dict[str, dict[str, str]] = {
     "en": {
         "name": "name, object, title, item, object name, designation",

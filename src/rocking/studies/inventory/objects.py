@@ -35,9 +35,9 @@ _CHORDS, _LEVELS = 32, 16
 class InventoryObject:
     """A rigid object that stands freely on level ground.
 
-    In either direction it is a rectangle of its outer size, or a cylinder if it is round. If the base is smaller than the body, the feet stand
-    inside. If the height of the centre of mass is known, the mass below it and the mass above it are each spread
-    evenly, in the one ratio that puts the centre there. The weight does not change how it rocks.
+    In either direction it is a rectangle of its outer size, or a cylinder if it is round. If the base is smaller than
+    the body, the feet stand inside. If the height of the centre of mass is known, the mass below it and the mass above
+    it are each spread evenly, in the one ratio that puts the centre there. The weight does not change how it rocks.
 
     Parameters
     ----------
@@ -125,15 +125,18 @@ class InventoryObject:
             object.__setattr__(self, "mass", self._checked_mass(self.mass))
         if self.friction is not None:
             checks.within("friction", self.friction, 0.0, NEVER_SLIDES)
+        self._check_words()
+        count: object = self.count
+        if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= 1_000_000:
+            raise InvalidValueError(f"count must be a whole number in [1, 1000000], got {count!r:.40}")
+
+    def _check_words(self) -> None:
         for name, words in (("shape", ("box", "round")), ("consequence", ("low", "medium", "high"))):
             checks.one_of(name, getattr(self, name), words)
         if self.shape == "round" and abs(self.width - self.depth) > 1e-9 * self.width:
             raise InvalidValueError(
                 f"width and depth of a round object must be its diameter, got {self.width:g} m and {self.depth:g} m"
             )
-        count: object = self.count
-        if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= 1_000_000:
-            raise InvalidValueError(f"count must be a whole number in [1, 1000000], got {count!r:.40}")
 
     def base(self, direction: Direction) -> float:
         """Return the size of the base in a direction.

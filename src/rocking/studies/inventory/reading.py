@@ -2,27 +2,41 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path, PureWindowsPath
-from typing import Any
+from pathlib import Path
 
-from rocking.bodies import Block, Section, Solid
-from rocking.bodies.formats import read_body
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import InvalidValueError, RockingError
 from rocking.studies.inventory import header_words
-from rocking.studies.inventory.cells import DecimalMark, Measure, count_of, is_missing, measure, parts
+from rocking.studies.inventory.cells import DecimalMark, count_of, is_missing, measure, parts
 from rocking.studies.inventory.columns import (
-    LENGTHS, SIZES, TEXTS, UNITS, Header, InventoryColumn, check_header, header_of, mapping_of, plain, words_of,
+    LENGTHS,
+    SIZES,
+    TEXTS,
+    UNITS,
+    Header,
+    InventoryColumn,
+    check_header,
+    header_of,
+    mapping_of,
+    plain,
+    words_of,
 )  # fmt: skip
 from rocking.studies.inventory.objects import InventoryObject, NotAssessed
+from rocking.studies.inventory.rows import RowValues, body_of
 from rocking.studies.inventory.sheets import (
-    ENCODINGS, MOST_BYTES, Cell, Row, Sheet, rows_of, sheets_in, tables_of, texts_in,
+    ENCODINGS,
+    MOST_BYTES,
+    Cell,
+    Row,
+    Sheet,
+    rows_of,
+    sheets_in,
+    tables_of,
+    texts_in,
 )  # fmt: skip
 
 _HIGHEST_HEADER = 50  # rows of titles above it
 _TOTALS = words_of(header_words.TOTALS)
-_SHAPES = {**dict.fromkeys(words_of(header_words.ROUND), "round"), **dict.fromkeys(words_of(header_words.BOX), "box")}
-_CONSEQUENCES = {word: level for level, text in header_words.CONSEQUENCES.items() for word in words_of(text)}
 
 
 @dataclass(frozen=True)
@@ -98,10 +112,12 @@ def read_inventory(
     whole = [(found, sheet) for found, sheet in lists if found and not found[1].missing]
     if len(whole) > 1:
         names = ", ".join(sheet.source for _, sheet in whole)
-        raise InvalidValueError(f"{path.name}: more than one table is a list: {names}; keep one, or make a file of each")
+        raise InvalidValueError(
+            f"{path.name}: more than one table is a list: {names}; keep one, or make a file of each"
+        )
     if not whole:
         raise _no_header(path.name, [(found, sheet.rows) for found, sheet in lists])
-    ((at, header), sheet) = whole[0]  # type: ignore[misc]
+    ((at, header), sheet) = whole[0]
     return _Reader(sheet, at, header, mapped, find).inventory()
 
 
@@ -159,7 +175,8 @@ def _of_texts(
     found, lines, delimiter, called = max(whole, key=lambda way: len(way[0][1].known) if way[0] else 0)
     rows: list[Row] = [(line, list(cells)) for line, cells in rows_of(lines, delimiter, source)]
     again = _header_at([cells for _, cells in rows], mapped)
-    assert found and again
+    assert found is not None
+    assert again is not None
     return _Reader(Sheet(called, rows, delimiter), *again, mapped, find).inventory()
 
 
@@ -189,7 +206,7 @@ def _no_header(source: str, tried: Sequence[tuple[_Found, Sequence[Row]]]) -> In
     first = next((text_of(cell) for _, rows in tried for _, row in rows[:1] for cell in row), "")
     return InvalidValueError(
         f"{source}: the first line must name the columns name, width_cm, depth_cm, height_cm (or _mm, _m, _in, _ft; or "
-        f"their words in {', '.join(header_words.HEADERS)}) with commas, semicolons or tabs between, got {first[:100]!r}"
+        f"their words in {', '.join(header_words.HEADERS)}) with commas, semicolons or tabs between, got {first[:99]!r}"
     )
 
 
@@ -217,13 +234,17 @@ class _Reader:
     def inventory(self) -> Inventory:
         source, titles = self.sheet.source, [text_of(cell) for cell in self.sheet.rows[self.at][1]]
         if odd := [own for own in self.mapped if plain(own) not in map(plain, titles)]:
-            raise InvalidValueError(f"{source}: columns: no {odd[0]!r:.60} among {', '.join(filter(None, titles))[:300]}")
+            raise InvalidValueError(
+                f"{source}: columns: no {odd[0]!r:.60} among {', '.join(filter(None, titles))[:300]}"
+            )
         self.rows = [(line, row) for line, row in self.sheet.rows[self.at + 1 :] if any(text_of(cell) for cell in row)]
         self._check_units()
         wordless = [title for k, title in enumerate(titles) if not any(map(str.isdigit, "".join(self._column(k))))]
         check_header(self.header, titles, source, [*wordless, *(own for own, ours in self.mapped.items() if not ours)])
         columns = self.header.columns
-        numbers = (text for k, column in enumerate(columns) if column and column.stem not in TEXTS for text in self._column(k))
+        numbers = (
+            text for k, column in enumerate(columns) if column and column.stem not in TEXTS for text in self._column(k)
+        )
         self.mark = DecimalMark(numbers, comma_delimited=self.sheet.delimiter == ",")
         objects, refused = [], []
         for line, row in self.rows:
@@ -232,7 +253,7 @@ class _Reader:
             try:
                 objects.append(self._object(line, row))
             except RockingError as error:
-                refused.append(NotAssessed(line, self._text(row, "name"), str(error)))
+                refused.append(NotAssessed(line, self._text(row, "name") or self._text(row, "number"), str(error)))
         if not objects and not refused:
             raise InvalidValueError(f"{source}: an inventory needs at least one row below its header")
         ignored = tuple(title for title, column in zip(titles, columns, strict=True) if column is None and title)
@@ -240,7 +261,9 @@ class _Reader:
 
     def _column(self, place: int) -> Iterator[str]:
         """Yield the texts of a column; numbers of spreadsheets have no mark."""
-        return (cell if isinstance(cell, str) else str(int(cell)) for _, row in self.rows for cell in row[place : place + 1])
+        return (
+            cell if isinstance(cell, str) else str(int(cell)) for _, row in self.rows for cell in row[place : place + 1]
+        )
 
     def _text(self, row: Sequence[Cell], stem: str) -> str:
         pairs = zip(self.header.columns, row, strict=False)
@@ -272,7 +295,7 @@ class _Reader:
         if len(row) != len(columns):
             hint = "a decimal comma between commas?" if len(row) > len(columns) else "a separator missing?"
             raise InvalidValueError(f"it has {len(row)} fields, the header {len(columns)}; {hint}")
-        found = _Values(row=line)
+        found = RowValues(row=line)
         unit = UNITS.get(plain(self._text(row, "units")), "")
         for column, cell in zip(columns, row, strict=True):
             if column and text_of(cell):
@@ -280,7 +303,7 @@ class _Reader:
         self._settle(found)
         return InventoryObject(**found.fields, approximate=found.approximate, remarks=tuple(found.remarks))
 
-    def _read(self, found: "_Values", column: InventoryColumn, cell: Cell, factor: float | None) -> None:
+    def _read(self, found: "RowValues", column: InventoryColumn, cell: Cell, factor: float | None) -> None:
         stem, title, fields = column.stem, column.title, column.fields
         if stem in TEXTS:
             found.fields[stem] = text_of(cell)
@@ -298,30 +321,33 @@ class _Reader:
             found.take(("diameter",) if one.across and stem in {"width", "depth"} else fields, one, title, cell)
         else:
             try:
-                found.fields[fields[0]] = measure(title, cell, 1.0 if stem == "friction" else column.factor, self.mark).value
+                found.fields[fields[0]] = measure(
+                    title, cell, 1.0 if stem == "friction" else column.factor, self.mark
+                ).value
             except InvalidValueError as error:
                 found.remarks.append(f"{stem} was left aside: {error}")
 
-    def _settle(self, found: "_Values") -> None:
+    def _settle(self, found: "RowValues") -> None:
         """Bring what a row says to the fields of an object; what decides nothing is left aside with a remark."""
         fields, remarks = found.fields, found.remarks
         name, units = fields.pop("body_file", None), fields.pop("units", None)
         if name:
             if stated := [each for each in (*LENGTHS, "mass") if each in fields]:
-                raise InvalidValueError(f"its body file says what it is: leave {found.titles.get(stated[0], stated[0])} empty")
-            fields |= _body(str(name), units, self.find)
+                raise InvalidValueError(
+                    f"its body file says what it is: leave {found.titles.get(stated[0], stated[0])} empty"
+                )
+            fields |= body_of(str(name), units, self.find)
         found.settle_shape()
         for each in ("width", "depth", "height"):
             if each not in fields:
+                ways = [each, *(["diameter"] if each != "height" else [])]
                 title = next((c.title for c in self.header.columns if c and each in c.fields), each)
-                raise InvalidValueError(found.unknown.get(each, f"{title} is empty"))
+                raise InvalidValueError(next(filter(None, map(found.unknown.get, ways)), f"{title} is empty"))
+        number = fields.pop("number", None) or f"line {fields['row']}"  # names what has no name
         if not fields.get("name"):
-            fields["name"] = f"line {fields['row']}"
+            fields["name"] = number
             remarks.append("it has no name")
-        if (word := fields.pop("consequence", None)) and not is_missing(word):
-            found.optional("consequence", _CONSEQUENCES.get(plain(word)), f"consequence {word!r:.40} is not low, medium or high: medium is taken")
-        if photo := fields.pop("photo", None):
-            found.optional("photo", _photo(photo, self.find), f"photo {photo!r:.80} is no picture beside the list")
+        found.settle_words(self.find)
         size = {each: fields[each] for each in ("width", "depth", "height")}
         for each in {"mass", "count", "friction"} & fields.keys():
             try:
@@ -329,87 +355,3 @@ class _Reader:
             except InvalidValueError as error:
                 del fields[each]
                 remarks.append(f"{each.replace('mass', 'weight')} was left aside: {error}")
-
-
-class _Values:
-    """What the cells of a row say."""
-
-    def __init__(self, row: int) -> None:
-        self.fields: dict[str, Any] = {"row": row}
-        self.titles: dict[str, str] = {}
-        self.unknown: dict[str, str] = {}
-        self.approximate: dict[str, float] = {}
-        self.remarks: list[str] = []
-
-    def take(self, fields: Sequence[str], one: Measure, title: str, cell: Cell) -> None:
-        self.fields |= dict.fromkeys(fields, one.value)
-        self.titles |= dict.fromkeys(fields, title)
-        if one.half_width:
-            self.approximate |= dict.fromkeys(fields, one.half_width)
-            what = " and ".join(fields).replace("_", " ")
-            self.remarks.append(f"{title} {cell!r:.60}: {what} taken as {one.value:.4g} m, give or take {one.half_width:.2g} m")
-
-    def optional(self, field: str, value: Any, remark: str) -> None:
-        if value is None:
-            self.remarks.append(remark)
-        else:
-            self.fields[field] = value
-
-    def settle_shape(self) -> None:
-        """Bring a diameter, or a shape that is said to be round, to width and depth."""
-        fields, word = self.fields, self.fields.pop("shape", "")
-        shape = _SHAPES.get(plain(word))
-        if word and shape is None and not is_missing(word):
-            self.remarks.append(f"shape {word!r:.40} is not round or rectangular: a box of its size is taken")
-        if (across := fields.pop("diameter", None)) is not None:
-            other = next((way for way in ("width", "depth") if abs(fields.get(way, across) - across) > 1e-9 * across), None)
-            if shape == "box" or other:
-                against = f"the shape {word!r:.40}" if shape == "box" else f"another {other}"
-                raise InvalidValueError(f"it has a {self.titles['diameter']} and {against}: leave one out")
-            fields |= {"width": across, "depth": across}
-            if (half := self.approximate.pop("diameter", 0.0)):
-                self.approximate |= {"width": half, "depth": half}
-            shape = "round"
-        if shape != "round" or "solid" in fields:
-            return
-        sides = [way for way in ("width", "depth") if way in fields]
-        if len(sides) == 1:
-            (own,), (other,) = sides, {"width", "depth"} - set(sides)
-            fields[other] = fields[own]
-            if own in self.approximate:
-                self.approximate[other] = self.approximate[own]
-        if len(sides) == 2 and fields["width"] != fields["depth"]:
-            self.remarks.append("it is said to be round, and its width is not its depth: a box of its size is taken")
-        else:
-            fields["shape"] = "round"
-
-
-def _body(name: str, units: Any, find: Callable[[str], Path] | None) -> dict[str, object]:
-    """Return the body of a file, and its size."""
-    if find is None:
-        raise InvalidValueError(f"names the body file {name!r:.60}, but no file can be named here")
-    body = read_body(find(name), units=units)
-    if isinstance(body, (Block, Section)):
-        body = Solid.from_section(body)
-    if not isinstance(body, Solid):
-        raise InvalidValueError(f"{name}: mass points have no shape to stand on in three dimensions")
-    size = body.box[1] - body.box[0]
-    return {"solid": body, **dict(zip(("width", "depth", "height"), size.tolist(), strict=True))}
-
-
-def _photo(name: str, find: Callable[[str], Path] | None) -> Path | None:
-    """Return where a picture is; None if it is none, or not beside the list or in a folder there."""
-    parts_of = PureWindowsPath(name).parts
-    if find is None or PureWindowsPath(name).anchor or name.startswith("/") or ".." in parts_of:
-        return None
-    try:
-        from PIL import Image
-
-        path = find("/".join(parts_of))
-        if not path.resolve().is_relative_to(path.parents[len(parts_of) - 1].resolve()):
-            return None
-        with Image.open(path) as picture:
-            picture.verify()
-    except Exception:  # a damaged picture raises whatever its reader trips over
-        return None
-    return path

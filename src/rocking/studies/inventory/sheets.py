@@ -17,7 +17,7 @@ from rocking.errors import InvalidValueError, RockingError, extra
 MOST_ROWS, MOST_BYTES = 100_000, 64 << 20
 """No inventory is longer, no file larger, packed or unpacked: it is something else."""
 
-MOST_COLUMNS, _MOST_LINES, _MOST_SHEETS = 200, 1 << 20, 50
+MOST_COLUMNS, _MOST_LINES, _MOST_SHEETS, _MOST_MERGED = 200, 1 << 20, 50, 1000
 
 Cell = str | float
 """Text, or a number of a spreadsheet; an empty cell is an empty text."""
@@ -60,7 +60,8 @@ def sheets_in(content: bytes, source: str) -> Iterator[Sheet] | None:
         ) from error
     several = len(found) > 1
     return (
-        Sheet(f"{source} ({name})" if several else source, _filled(rows, merged, source)) for name, rows, merged in found
+        Sheet(f"{source} ({name})" if several else source, _filled(rows, merged, source))
+        for name, rows, merged in found
     )
 
 
@@ -75,7 +76,9 @@ def _of_excel(archive: zipfile.ZipFile, content: bytes) -> Iterator[tuple[str, I
         lines = sheet.iter_rows(max_row=_MOST_LINES, max_col=MOST_COLUMNS, values_only=True)
         rows = ((line, [_cell(value) for value in values]) for line, values in enumerate(lines, start=1))
         text = archive.read(sheet._worksheet_path)
-        marks = itertools.islice(re.finditer(rb'<mergeCell ref="([A-Z]{1,3})(\d{1,7}):[A-Z]{1,3}(\d{1,7})"', text), MOST_ROWS)
+        marks = itertools.islice(
+            re.finditer(rb'<mergeCell ref="([A-Z]{1,3})(\d{1,7}):[A-Z]{1,3}(\d{1,7})"', text), _MOST_MERGED
+        )
         merged = [(int(mark[2]), _place(mark[1]), int(mark[3])) for mark in marks]
         yield sheet.title, _held(rows), merged
 
@@ -175,7 +178,7 @@ def _filled(rows: Iterable[Row], merged: _Merged, source: str) -> list[Row]:
     table = {line: cells + [""] * (width - len(cells)) for line, cells in rows}
     for first, place, last in merged:
         if first in table and place < width:
-            for line in range(first + 1, min(last, first + MOST_ROWS) + 1):
+            for line in range(first + 1, min(last, first + _MOST_MERGED) + 1):
                 if line in table:
                     table[line][place] = table[first][place]
     return list(table.items())
@@ -194,10 +197,9 @@ def texts_in(content: bytes, source: str, encoding: str | None) -> Iterator[tupl
     """Yield what a text file may say, with its encoding: one where it is stated or can be told, or several."""
     marks = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
     told = encoding or next((name for mark, name in marks.items() if content.startswith(mark)), None)
-    if told is None and 5 * content[:2000].count(0) > len(content[:2000]):
-        told = "utf-16-le" if content[1:2] == b"\0" else "utf-16-be"
+    wide = ("utf-16-le", "utf-16-be") if b"\0" in content[:2000] else ()
     found = 0
-    for name in (told,) if told else ("utf-8", *ENCODINGS):
+    for name in (told,) if told else wide or ("utf-8", *ENCODINGS):
         with contextlib.suppress(UnicodeDecodeError, LookupError, ValueError):
             text = content.decode(name)
             found += 1

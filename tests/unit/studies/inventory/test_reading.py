@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from rocking.bodies import Block
 from rocking.errors import InvalidValueError
 from rocking.studies.inventory import InventoryObject, parse_inventory, read_inventory
-from rocking.studies.inventory.objects import DIRECTIONS
 from rocking.studies.inventory.cells import DecimalMark
+from rocking.studies.inventory.objects import DIRECTIONS
 
 HEAD = "name,width_cm,depth_cm,height_cm"
 GOOD = "vase,20,25,100"
