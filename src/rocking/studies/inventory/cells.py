@@ -79,7 +79,7 @@ _DATE = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}.*|[0-9]{2}:[0-9]{2}.*")
 
 
 @dataclass(frozen=True)
-class Measure:
+class CellMeasure:
     """What a cell says, in SI units."""
 
     value: float
@@ -96,26 +96,26 @@ def is_missing(cell: Cell) -> bool:
     return isinstance(cell, str) and (cell.startswith("#") or not cell.strip(" ?-–—./…") or plain(cell) in _UNKNOWN)
 
 
-def measure(title: str, cell: Cell, factor: float | None, mark: DecimalMark) -> Measure:
+def measure(title: str, cell: Cell, factor: float | None, mark: DecimalMark) -> CellMeasure:
     """Return what a cell measures; factor: of numbers without a unit, if that is known."""
     if isinstance(cell, float):
-        return Measure(checks.number(title, cell) * _named(title, cell, factor))
+        return CellMeasure(checks.number(title, cell) * _named(title, cell, factor))
     if _NUMBER.fullmatch(cell.strip()):
-        return Measure(mark.number(title, cell) * _named(title, cell, factor))
+        return CellMeasure(mark.number(title, cell) * _named(title, cell, factor))
     text = _tidied(cell)
     across = text.startswith(("ø", "dm "))
     text = re.sub(r"^(?:ø|dm )\s*", "", text)
     text, about = _without_about(text)
     if match := _GIVE_OR_TAKE.fullmatch(text):
         half = _quantity(title, match[2], factor, mark)
-        return Measure(_quantity(title, match[1], factor, mark, match[2]), half, across)
+        return CellMeasure(_quantity(title, match[1], factor, mark, match[2]), half, across)
     if match := _BETWEEN.fullmatch(text):
         low, high = _quantity(title, match[1], factor, mark, match[2]), _quantity(title, match[2], factor, mark)
         if not low < high:
             raise InvalidValueError(f"{title} must go from the smaller to the larger, got {cell!r:.40}")
-        return Measure(0.5 * (low + high), 0.5 * (high - low), across)
+        return CellMeasure(0.5 * (low + high), 0.5 * (high - low), across)
     value = _quantity(title, text, factor, mark)
-    return Measure(value, ABOUT * value if about else 0.0, across)
+    return CellMeasure(value, ABOUT * value if about else 0.0, across)
 
 
 def _tidied(cell: str) -> str:
@@ -177,7 +177,7 @@ _LABEL = re.compile(r"(ø|[^\W\d]+)\s*[.:=]?\s*(?=[~≈]|\d|(?:ca|circa|etwa)\b)
 
 def parts(
     title: str, cell: Cell, order: Sequence[str], factor: float | None, mark: DecimalMark, language: str
-) -> dict[str, Measure]:
+) -> dict[str, CellMeasure]:
     """Return the measures of a cell such as ``120 x 80 x 220 cm`` or ``H 120, Ø 30 cm``; order: what its header says.
 
     >>> found = parts("Maße", "H 120 x B 80 x T 40 cm", (), None, DecimalMark([]), "de")

@@ -117,7 +117,11 @@ def order_of(title: str, language: str = "en") -> tuple[str, ...]:
     >>> order_of("Maße (HxBxT) in cm"), order_of("height*width*depth"), order_of("Maße")
     (('height', 'width', 'depth'), ('height', 'width', 'depth'), ())
     """
-    tokens = plain(re.sub(r"[×✕*/]", " x ", re.sub(r"(?i)(?<=\b[a-zø])x(?=[a-zø]\b|[a-zø]x)", " x ", title))).split()
+    words = plain(re.sub(r"[×✕*/]", " x ", title)).split()
+    joined = re.compile(r"[a-zø](?:x[a-zø]){1,2}")
+    tokens = [
+        token for word in words for token in (" x ".join(word[::2]).split() if joined.fullmatch(word) else [word])
+    ]
     best: list[str] = []
     run: list[str] = []
     for k, token in enumerate(tokens):

@@ -8,7 +8,7 @@ from rocking.bodies import Block, Section, Solid
 from rocking.bodies.formats import read_body
 from rocking.errors import InvalidValueError
 from rocking.studies.inventory import header_words
-from rocking.studies.inventory.cells import Measure, is_missing
+from rocking.studies.inventory.cells import CellMeasure, is_missing
 from rocking.studies.inventory.columns import plain, words_of
 from rocking.studies.inventory.sheets import Cell
 
@@ -26,7 +26,7 @@ class RowValues:
         self.approximate: dict[str, float] = {}
         self.remarks: list[str] = []
 
-    def take(self, fields: Sequence[str], one: Measure, title: str, cell: Cell) -> None:
+    def take(self, fields: Sequence[str], one: CellMeasure, title: str, cell: Cell) -> None:
         for each in fields:
             if abs(self.fields.get(each, one.value) - one.value) > 1e-9 * abs(one.value):
                 raise InvalidValueError(
