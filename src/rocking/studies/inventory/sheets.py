@@ -74,7 +74,10 @@ def _of_excel(archive: zipfile.ZipFile, content: bytes) -> Iterator[tuple[str, I
         if sheet.sheet_state != "visible":
             continue
         lines = sheet.iter_rows(max_row=_MOST_LINES, max_col=MOST_COLUMNS, values_only=True)
-        rows = ((line, [_cell(value) for value in values]) for line, values in enumerate(lines, start=1))
+        rows = (
+            (line, [_cell(value) for value in values])
+            for line, values in enumerate(lines, start=1) if values.count(None) < len(values)
+        )  # fmt: skip
         text = archive.read(sheet._worksheet_path)
         marks = itertools.islice(
             re.finditer(rb'<mergeCell ref="([A-Z]{1,3})(\d{1,7}):[A-Z]{1,3}(\d{1,7})"', text), _MOST_MERGED

@@ -219,6 +219,16 @@ def test_merged_cells_and_several_sheets(tmp_path):
         read_inventory(workbook(tmp_path / "none.xlsx", {"x": [HEAD[:3], ["a", 1, 2]]}))
 
 
+def test_a_cell_far_away_is_quick(tmp_path):
+    """A workbook whose last row and column are as far away as they can be is read without them."""
+    book = Workbook()
+    for row in (HEAD, ["a", 20, 30, 90]):
+        book.active.append(row)
+    book.active.cell(900_000, 16_384, "x")
+    book.save(tmp_path / "far.xlsx")
+    assert len(read_inventory(tmp_path / "far.xlsx").objects) == 1
+
+
 def bomb(name, size):
     """Bytes of an archive that unpacks to zeros of a size."""
     file = io.BytesIO()
