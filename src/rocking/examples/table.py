@@ -178,6 +178,13 @@ _ALL = (
         ("rocking inventory objects.csv --pga 0.3g --count 80 --out objects.html",),
         ("jobs/objects.csv",),
     ),
+    Example(
+        "liste",
+        "list",
+        "a list to fill in, in German; any spreadsheet opens it",
+        ("rocking inventory liste.csv --pga 0.3g --count 80 --out liste.html",),
+        ("jobs/liste.csv",),
+    ),
     _question("block-under-a-pulse", "a cabinet under one sine, where the model of the impact decides"),
     _question("statue-let-go", "a statue that stands off its middle, let go to the left"),
     Example(

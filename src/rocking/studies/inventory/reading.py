@@ -314,8 +314,14 @@ class _Reader:
             if stem in {"base", "base_width", "base_depth", "base_diameter", "centre_of_mass_height"}:
                 found.remarks.append(f"{title} is {cell!r:.40}: as if none were given")
         elif stem == "size":
-            for side, one in parts(title, cell, fields, factor, self.mark, self.header.language).items():
-                found.take((side,), one, title, cell)
+            try:
+                sizes = parts(title, cell, fields, factor, self.mark, self.header.language)
+            except InvalidValueError as error:  # it counts where no other column says it
+                found.unknown |= dict.fromkeys(SIZES, str(error))
+                found.remarks.append(f"{title} was left aside: {error}")
+            else:
+                for side, one in sizes.items():
+                    found.take((side,), one, title, cell)
         elif stem in LENGTHS:
             one = measure(title, cell, factor, self.mark)
             found.take(("diameter",) if one.across and stem in {"width", "depth"} else fields, one, title, cell)

@@ -5,6 +5,7 @@ import csv
 import io
 import itertools
 import re
+import warnings
 import zipfile
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -42,7 +43,8 @@ def sheets_in(content: bytes, source: str) -> Iterator[Sheet] | None:
     if not content.startswith(b"PK\x03\x04"):
         return None
     try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive, warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of what openpyxl leaves aside: styles, lists to choose from
             names, size = archive.namelist(), sum(each.file_size for each in archive.infolist())
             if size > MOST_BYTES:
                 raise InvalidValueError(f"{source}: unpacked it is larger than {MOST_BYTES >> 20} MiB; save it as CSV")
