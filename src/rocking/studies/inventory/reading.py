@@ -277,7 +277,8 @@ class _Reader:
         for k, column in enumerate(columns):
             if column is None or column.factor or column.stem not in {*LENGTHS, "weight"}:
                 continue
-            if any(cell.replace(".", "").replace(",", "").isdigit() for cell in map(str.strip, self._column(k))):
+            cells = [cell.strip() for cell in self._column(k) if not is_missing(cell)]
+            if cells and all(cell.replace(".", "").replace(",", "").isdigit() for cell in cells):
                 if column.stem != "weight":
                     known = ", ".join(f"{column.stem}_{each}" for each in LENGTH_UNITS)
                     raise InvalidValueError(f"{self.sheet.source}: column {column.title!r} must name its unit: {known}")
