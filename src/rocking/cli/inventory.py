@@ -162,8 +162,6 @@ class InventoryAnswer:
             page.rich(line)
             note = f"{advice(verdict, assessment)} {model_note(verdict, assessment)}"
             page.line(f"{'':12} {note}".rstrip(), "dim")
-            if verdict.item.remarks:
-                page.line(f"{'':12} Noted: {'; '.join(verdict.item.remarks)}.", "dim")
         for refused in assessment.not_assessed:
             page.line(f"     not assessed: {refused.name or 'no name'}, line {refused.row}: {refused.reason}")
         lights = assessment.thresholds.sentences().items()

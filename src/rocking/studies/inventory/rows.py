@@ -36,12 +36,10 @@ class RowValues:
         self.titles |= dict.fromkeys(fields, title)
         if one.half_width:
             self.approximate |= dict.fromkeys(fields, one.half_width)
-            what, start = " and ".join(fields).replace("_", " "), f"{title} {cell!r:.60}: "
-            said = f"{what} taken as {one.value:.4g} m, give or take {one.half_width:.2g} m"
-            if self.remarks and self.remarks[-1].startswith(start):  # another part of it
-                self.remarks[-1] += f", {said}"
-            else:
-                self.remarks.append(start + said)
+            what = " and ".join(fields).replace("_", " ")
+            self.remarks.append(
+                f"{title} {cell!r:.60}: {what} taken as {one.value:.4g} m, give or take {one.half_width:.2g} m"
+            )
 
     def optional(self, field: str, value: Any, remark: str) -> None:
         if value is None:
