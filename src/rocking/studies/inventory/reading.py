@@ -304,7 +304,7 @@ class _Reader:
         self._settle(found)
         return InventoryObject(**found.fields, approximate=found.approximate, remarks=tuple(found.remarks))
 
-    def _read(self, found: "RowValues", column: InventoryColumn, cell: Cell, factor: float | None) -> None:
+    def _read(self, found: RowValues, column: InventoryColumn, cell: Cell, factor: float | None) -> None:
         stem, title, fields = column.stem, column.title, column.fields
         if stem in TEXTS:
             found.fields[stem] = text_of(cell)
@@ -315,14 +315,7 @@ class _Reader:
             if stem in {"base", "base_width", "base_depth", "base_diameter", "centre_of_mass_height"}:
                 found.remarks.append(f"{title} is {cell!r:.40}: as if none were given")
         elif stem == "size":
-            try:
-                sizes = parts(title, cell, fields, factor, self.mark, self.header.language)
-            except InvalidValueError as error:  # it counts where no other column says it
-                found.unknown |= dict.fromkeys(SIZES, str(error))
-                found.remarks.append(f"{title} was left aside: {error}")
-            else:
-                for side, one in sizes.items():
-                    found.take((side,), one, title, cell)
+            self._read_size(found, column, cell, factor)
         elif stem in LENGTHS:
             one = measure(title, cell, factor, self.mark)
             found.take(("diameter",) if one.across and stem in {"width", "depth"} else fields, one, title, cell)
@@ -334,7 +327,17 @@ class _Reader:
             except InvalidValueError as error:
                 found.remarks.append(f"{stem} was left aside: {error}")
 
-    def _settle(self, found: "RowValues") -> None:
+    def _read_size(self, found: RowValues, column: InventoryColumn, cell: Cell, factor: float | None) -> None:
+        try:
+            sizes = parts(column.title, cell, column.fields, factor, self.mark, self.header.language)
+        except InvalidValueError as error:  # it counts where no other column says it
+            found.unknown |= dict.fromkeys(SIZES, str(error))
+            found.remarks.append(f"{column.title} was left aside: {error}")
+            return
+        for side, one in sizes.items():
+            found.take((side,), one, column.title, cell)
+
+    def _settle(self, found: RowValues) -> None:
         """Bring what a row says to the fields of an object; what decides nothing is left aside with a remark."""
         fields, remarks = found.fields, found.remarks
         name, units = fields.pop("body_file", None), fields.pop("units", None)
