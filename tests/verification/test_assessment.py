@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 import rocking as rk
 from rocking.assessment._assess import choices
-from rocking.assessment.remedies import (
+from rocking.studies.remedies import (
     DAMPING,
     HALVINGS,
     PERIODS,

@@ -2,6 +2,6 @@
 
 from rocking.assessment._assess import assess
 from rocking.assessment.answer import BodyAssessment, ModelMargin
-from rocking.assessment.remedies import LengthChange, Remedies
+from rocking.studies.remedies import LengthChange, Remedies
 
 __all__ = ["BodyAssessment", "LengthChange", "ModelMargin", "Remedies", "assess"]

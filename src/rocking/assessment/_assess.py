@@ -8,7 +8,6 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.assessment.answer import BodyAssessment, ModelMargin
 from rocking.assessment.in_space import SolidHistories, numbered
-from rocking.assessment.remedies import CALIBRATED, lifting_factor, remedies
 from rocking.bodies import Body, Solid
 from rocking.conventions import FEET, FloatArray, IntArray
 from rocking.dynamics.parameters import RockingParameters
@@ -25,6 +24,7 @@ from rocking.studies.code_methods import CODE_METHODS
 from rocking.studies.code_methods.method import BodySides, Shaking
 from rocking.studies.margins import Margins
 from rocking.studies.motion_sets import MotionList
+from rocking.studies.remedies import CALIBRATED, lifting_factor, remedies
 
 ENDS = {"low": 0.025, "high": 0.975}
 """Of the 95 % interval of what is measured of single bodies, which are asked beside the calibrated model: quantiles."""

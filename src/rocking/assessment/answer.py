@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rocking.assessment.remedies import Remedies, millimetres
 from rocking.bodies import Body, Solid
 from rocking.bodies.equilibria import Pass, StablePose
 from rocking.conventions import FEET, FloatArray, IntArray, g, percent
 from rocking.prediction import Prediction
 from rocking.studies.code_methods.comparison import AT_MOST
+from rocking.studies.remedies import Remedies, millimetres
 
 
 def just_above(factor: float) -> float:

@@ -7,6 +7,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.evidence.measurements import DataSet
+from rocking.restitution.calibrated import scatter as scatter
 
 _erfc = np.frompyfunc(math.erfc, 1, 1)
 
@@ -33,11 +34,6 @@ def interval_log_likelihood(low: FloatArray, high: FloatArray, mean: FloatArray,
 def normal_cdf(z: FloatArray) -> FloatArray:
     """Return the cumulative distribution of the normal distribution, without what scipy takes to be imported."""
     return 0.5 * np.asarray(_erfc(-math.sqrt(0.5) * z), dtype=np.float64)
-
-
-def scatter(mean: FloatArray, floor: float, slope: float) -> FloatArray:
-    """Return the standard deviation of a measured coefficient around its prediction, floor (1 - mean)^slope [-]."""
-    return np.asarray(floor * np.maximum(1.0 - mean, 1e-6) ** slope)  # Eq. 133
 
 
 def gaussian_bic(residuals: FloatArray, parameters: int) -> float:

@@ -11,7 +11,6 @@ from rocking import checks
 from rocking.assessment import BodyAssessment, ModelMargin
 from rocking.assessment.answer import StandingSolid, just_above
 from rocking.assessment.in_space import DIRECTIONS, POINTS, REACH
-from rocking.assessment.remedies import ASSUMED, CALIBRATED
 from rocking.bodies.body import assumed_rows
 from rocking.conventions import FEET, g
 from rocking.dynamics import simulate
@@ -31,6 +30,7 @@ from rocking.reports.render import write_report
 from rocking.reports.response_document import _sides
 from rocking.restitution import models
 from rocking.studies.code_methods import CODE_METHODS, LEFT_OUT
+from rocking.studies.remedies import ASSUMED, CALIBRATED
 from rocking.tables import target_of
 from rocking.version import SOFTWARE
 

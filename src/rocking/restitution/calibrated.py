@@ -75,6 +75,28 @@ class Calibrated(InertiaModel):
         return np.asarray(sum(means))  # Eq. 293
 
 
+def scatter(mean: FloatArray, floor: float, slope: float) -> FloatArray:
+    """Return the standard deviation of a measured coefficient around its prediction, floor (1 - mean)^slope [-]."""
+    return np.asarray(floor * np.maximum(1.0 - mean, 1e-6) ** slope)  # Eq. 133
+
+
+def drawn(geometry: ImpactGeometry, which: FloatArray, level: FloatArray) -> FloatArray:
+    """Return coefficients drawn from all that the measurements leave open, each within what energy allows.
+
+    Which of the posterior's samples it is, and at which probability of the scatter about that: numbers in [0, 1) [-].
+    """
+    from scipy.special import ndtr, ndtri
+
+    samples = kept(KEPT)["samples"]
+    eta, k, floor, slope = samples[(which * len(samples)).astype(np.int64)].T
+    bound = np.sqrt(geometry.old_gyration / geometry.new_gyration)  # Eq. 29
+    mean = np.clip(eta * shifted(geometry, k), 0.0, bound)
+    deviation = scatter(mean, floor, slope)
+    low, high = ndtr(-mean / deviation), ndtr((bound - mean) / deviation)
+    r = mean + deviation * ndtri(low + (high - low) * level)
+    return np.asarray(np.round(np.clip(r, 0.0, bound), 12))  # the same on processors whose powers end otherwise
+
+
 @lru_cache(maxsize=1)
 def _nodes() -> tuple[tuple[FloatArray, ...], ...]:
     """Return the positions of the impulse among the samples, each with its mean factor before and its share behind."""

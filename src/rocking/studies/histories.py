@@ -285,10 +285,10 @@ class Product(Histories):
     ----------
     motions : MotionSet
         The motions.
-    sides : dict of str to ndarray, shape (bodies, restitutions)
-        alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left [-]; and q_right, q_left
-        (m R^2 / I_O), without which the forces of the ground are not known [-]; and share_right, share_left, of
-        the probability of a law that draws, 1 if not given [-].
+    sides : dict of str to ndarray, shape (bodies, restitutions) or (motions, bodies, restitutions)
+        The same under every motion, or for each its own: alpha_right, alpha_left [rad], p_right, p_left [rad/s],
+        r_right, r_left [-]; and q_right, q_left (m R^2 / I_O), without which the forces of the ground are not known
+        [-]; and share_right, share_left, of the probability of a law that draws, 1 if not given [-].
     scales : ndarray, shape (scales,) or (motions, scales)
         Factors on the motions, the same for all or for each its own [-].
     law, settings, engine
@@ -304,7 +304,8 @@ class Product(Histories):
         unknown = {name: np.full(shape, value) for name, value in SIDES_UNTOLD.items()}
         object.__setattr__(self, "sides", unknown | self.sides)
         shapes = {np.shape(values) for values in self.sides.values()}
-        if set(self.sides) != names or len(shapes) != 1 or len(next(iter(shapes))) != 2:
+        (size, *others) = shapes
+        if set(self.sides) != names or others or len(size) not in {2, 3} or size[:-2] not in {(), (len(self.motions),)}:
             raise InvalidValueError(f"sides must be {', '.join(sorted(names))}, each of shape (bodies, restitutions)")
         scales = np.asarray(self.scales, dtype=np.float64)
         if scales.ndim not in {1, 2} or (scales.ndim == 2 and len(scales) != len(self.motions)) or not scales.size:
@@ -318,7 +319,7 @@ class Product(Histories):
     @property
     def shape(self) -> tuple[int, int, int, int]:
         """Numbers of motions, bodies, scales and restitutions."""
-        bodies, restitutions = self.sides["p_right"].shape
+        bodies, restitutions = self.sides["p_right"].shape[-2:]
         return len(self.motions), bodies, self.scales.shape[-1], restitutions
 
     @property
@@ -336,7 +337,8 @@ class Product(Histories):
         numbers = np.arange(first, last, dtype=np.int64)
         motion, body, scale, restitution = np.unravel_index(numbers, self.shape)
         factor = self.scales[scale] if self.scales.ndim == 1 else self.scales[motion, scale]
-        values = {name: array[body, restitution] for name, array in self.sides.items()}
+        own = {2: (body, restitution), 3: (motion, body, restitution)}
+        values = {name: array[own[array.ndim]] for name, array in self.sides.items()}
         return Rows.of(last - first, motion, numbers, scale=factor, **values)
 
     def content(self) -> dict[str, Any]:

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 import rocking as rk
-import rocking.assessment.remedies
+import rocking.studies.remedies
 from rocking.assessment._assess import DIRECTIONS, choices, in_the_plane
 from rocking.assessment.answer import millimetres, upwards
-from rocking.assessment.remedies import Landings, changed, remedies
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
 from rocking.studies import SyntheticSet
 from rocking.studies.margins import Margins
+from rocking.studies.remedies import Landings, changed, remedies
 
 CABINET = rk.Block(width=0.8, height=2.2, depth=1.2, mass=650.0, centre=(0.52, 0.9))
 
@@ -66,7 +66,7 @@ def test_what_helps_is_seen_by_the_search_for_the_margin(seed, monkeypatch):
 
     assert margin(out=found.remedies.wider.stands) > 1.0
     assert margin(down=found.remedies.lower.stands) > 1.0
-    monkeypatch.setattr(rocking.assessment.remedies, "holds", lambda *_: True)  # negative control
+    monkeypatch.setattr(rocking.studies.remedies, "holds", lambda *_: True)  # negative control
     assert margin(out=remedies(CABINET, [motion], 1.0, g, {"one": 0.92}, falls=True).wider.stands) < 0.95
 
 

@@ -18,7 +18,8 @@ from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome, lost_contact
 from rocking.statistics.counts import share_interval
 from rocking.studies.histories import Product, results_of
-from rocking.studies.inventory.hazard import Hazard
+from rocking.studies.inventory.draws import Draws, restitutions, slenderest
+from rocking.studies.inventory.hazard import SEED, Hazard
 from rocking.studies.inventory.lights import Light, Thresholds
 from rocking.studies.inventory.objects import DIRECTIONS, Direction, InventoryObject, NotAssessed
 from rocking.studies.inventory.reading import Inventory
@@ -224,6 +225,8 @@ class _Assessor:
         is_housner = restitution == "housner" or getattr(restitution, "name", None) == "housner"
         beside = ("ked",) if is_housner else ("housner",)
         self.restitutions = ("calibrated", "housner", "ked") if restitution is None else (restitution, *beside)
+        # what nobody asked for by name is drawn with its scatter, for every motion another
+        self.drawn, self.draws = restitution is None, Draws(len(hazard.motions), hazard.description.get("seed", SEED))
         # nothing that was measured rocks in space: there the default is the paper's model, and both others stand beside
         self.spatial = ("ked", "housner", "ked") if restitution is None else self.restitutions
         # a wrong word is the user's slip, not that of every row: it is refused here
@@ -243,23 +246,35 @@ class _Assessor:
         """Return the histories of some objects, those that have any, and those that are refused."""
         items: list[InventoryObject] = []
         refused: list[NotAssessed] = []
-        parameters: list[RockingParameters] = []
+        columns: list[dict[str, FloatArray]] = []
         for item in objects:
             try:
-                parameters += [
-                    RockingParameters.of_body(item.body(way), restitution, self.gravity)
-                    for way in DIRECTIONS
-                    for restitution in self.restitutions
-                ]
+                columns += [self._column(item, way) for way in DIRECTIONS]
             except RockingError as error:
                 refused.append(NotAssessed(item.row, item.name, str(error)))
             else:
                 items.append(item)
         if not items:
             return None, items, refused
-        sides = {name: values.reshape(-1, len(self.labels)) for name, values in sides_of(parameters).items()}
+        sides = {name: np.stack([column[name] for column in columns], axis=-2) for name in columns[0]}
+        if not self.drawn and not any(item.approximate for item in items):
+            sides = {name: values[0] for name, values in sides.items()}  # the same under every motion
         settings = Settings(gravity=self.gravity)
         return Product(MotionList(self.hazard.motions), sides, np.ones(1), settings=settings), items, refused
+
+    def _column(self, item: InventoryObject, way: Direction) -> dict[str, FloatArray]:
+        """Return the sides of an object in a direction, under each motion by each of the models of impact."""
+        bodies = [each.body(way) for each in self.draws.bodies(item)]
+        every = sides_of([
+            RockingParameters.of_body(body, restitution, self.gravity)
+            for body in bodies for restitution in self.restitutions
+        ])  # fmt: skip
+        number = self.draws.number(len(bodies))
+        sides = {name: values.reshape(len(bodies), -1)[number] for name, values in every.items()}
+        if self.drawn:
+            for foot, r in restitutions(self.draws, bodies).items():
+                sides[f"r_{foot}"][:, 0] = r
+        return sides
 
     def verdicts(
         self, items: Sequence[InventoryObject], product: Product, results: Arrays
@@ -268,10 +283,10 @@ class _Assessor:
         shape = (len(product.motions), len(items), len(DIRECTIONS), len(self.labels))
         outcome = results["outcome"].reshape(shape)
         peak = np.abs(results["peak_rotation"].reshape(shape))
-        ratio = peak / product.sides["alpha_right"].reshape(shape[1:])
+        ratio = peak / product.sides["alpha_right"].reshape((-1, *shape[1:]))
         lost = lost_contact(results).reshape(shape)
         for k, item in enumerate(items):
-            lifts = [item.uplift_acceleration(way, self.gravity) for way in DIRECTIONS]
+            lifts = [slenderest(item).uplift_acceleration(way, self.gravity) for way in DIRECTIONS]
             yield self._verdict(item, lifts, outcome[:, k], ratio[:, k], lost[:, k])
 
     def in_space(self, item: InventoryObject) -> bool:

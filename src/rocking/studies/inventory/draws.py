@@ -1,0 +1,93 @@
+"""What is not known of an object, drawn anew for every motion: its coefficient of restitution and approximate sizes."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from rocking.bodies import Body
+from rocking.conventions import FEET, FloatArray, Foot, IntArray
+from rocking.restitution import ImpactGeometry
+from rocking.restitution.calibrated import drawn
+from rocking.studies.inventory.objects import SMALLEST, InventoryObject
+from rocking.studies.sensitivity.restitutions import uniforms
+
+STRATA = 10
+"""Bodies that stand for an object of approximate sizes: a Latin hypercube, of which each motion has one after another."""
+
+_SIZES = ("width", "depth", "height", "base_width", "base_depth", "centre_of_mass_height")
+_ROUND = {"depth": "width", "base_depth": "base_width"}
+_HIGHEST = 0.99  # of the height, for a centre of mass that is drawn
+
+
+class Draws:
+    """Numbers that hang on the seed, the motion and the name of the size alone: on no other object, thread or order."""
+
+    def __init__(self, count: int, seed: int) -> None:
+        self.count, self.seed = count, seed
+
+    def bodies(self, item: InventoryObject) -> list[InventoryObject]:
+        """Return the objects that stand for one; itself if its sizes are known."""
+        if not any(half > 0.0 for half in item.approximate.values()):
+            return [item]
+        return [_resized(item, {name: 2.0 * self._level(item, name)[k] - 1.0 for name in item.approximate})
+                for k in range(STRATA)]  # fmt: skip
+
+    def number(self, bodies: int) -> IntArray:
+        """Return which of so many bodies each motion has."""
+        return np.arange(self.count) % bodies
+
+    def restitution(self, geometry: ImpactGeometry) -> FloatArray:
+        """Return the coefficient under each motion, of one impact or one for each of them [-]."""
+        return drawn(geometry, *self._levels)
+
+    @cached_property
+    def _levels(self) -> tuple[FloatArray, FloatArray]:
+        which, level = (uniforms(self.seed, np.arange(self.count), k) for k in (0, 1))
+        return which, level
+
+    def _level(self, item: InventoryObject, name: str) -> FloatArray:
+        """Return the probabilities of a size: one in each stratum, in an order of its own; a round one has one."""
+        own = _ROUND.get(name, name) if item.shape == "round" else name
+        place = 2 + 2 * _SIZES.index(own)
+        order, within = (uniforms(self.seed, np.arange(STRATA), place + k) for k in (0, 1))
+        return np.asarray((np.argsort(order) + within) / STRATA)
+
+
+def slenderest(item: InventoryObject) -> InventoryObject:
+    """Return the object with those of its approximate sizes at which it lifts first."""
+    higher = {name: 1.0 if name in {"height", "centre_of_mass_height"} else -1.0 for name in item.approximate}
+    return _resized(item, higher) if higher else item
+
+
+def geometries(bodies: Sequence[Body], onto: Foot) -> ImpactGeometry:
+    """Return the impacts of bodies onto a foot."""
+    each = [ImpactGeometry.of_body(body, onto) for body in bodies]
+    return ImpactGeometry(*(np.array([getattr(one, name) for one in each]) for name in ImpactGeometry.__slots__))
+
+
+def chosen(geometry: ImpactGeometry, number: IntArray) -> ImpactGeometry:
+    """Return those of some of its impacts."""
+    return ImpactGeometry(*(getattr(geometry, name)[number] for name in ImpactGeometry.__slots__))
+
+
+def restitutions(draws: Draws, bodies: Sequence[Body]) -> dict[Foot, FloatArray]:
+    """Return the coefficients onto both feet under each motion, at the same probabilities [-]."""
+    number = draws.number(len(bodies))
+    return {foot: draws.restitution(chosen(geometries(bodies, foot), number)) for foot in FEET}
+
+
+def _resized(item: InventoryObject, shares: dict[str, float]) -> InventoryObject:
+    """Return an object whose sizes are moved by shares of their half widths, with what must stay smaller, smaller."""
+    given = {name: getattr(item, name) for name in _SIZES}
+    made = {
+        name: value if value is None else max(SMALLEST, value + shares.get(name, 0.0) * item.approximate.get(name, 0.0))
+        for name, value in given.items()
+    }
+    for name, most in (("base_width", made["width"]), ("base_depth", made["depth"])):
+        made[name] = None if made[name] is None else min(made[name], most)
+    if made["centre_of_mass_height"] is not None:
+        made["centre_of_mass_height"] = min(made["centre_of_mass_height"], _HIGHEST * made["height"])
+    # the weight does not change how it rocks, and need not fit every size
+    return replace(item, **made, mass=None, approximate={})
