@@ -257,6 +257,8 @@ class ThresholdsTable(JobTable):
     overturning_green: float | None = _key("share of motions that may overturn it where it is green [-]")
     overturning_red: float | None = _key("share of motions from which on it is red [-]")
     level: float | None = _key("confidence of the shares' intervals [-]")
+    low_consequence: float | None = _key("what the shares are multiplied by where a fall is of low consequence [-]")
+    high_consequence: float | None = _key("and where it is of high consequence; how much a fall weighs is its inverse [-]")
 
 
 class InventoryTable(JobTable):
@@ -269,6 +271,7 @@ class InventoryTable(JobTable):
     )
     pga: Text | None = _key("peak ground acceleration of every motion: 0.3g, 2.9m/s2")
     pgv: Text | None = _key("peak ground velocity in its place: 25cm/s, 0.25m/s")
+    language: Text | None = _key("language of the report: en, de, it; that of the list's header if not given")
     thresholds: ThresholdsTable = Field(
         default_factory=ThresholdsTable, description="where one light ends and the next begins"
     )

@@ -22,6 +22,7 @@ from rocking.studies.inventory.draws import Draws, restitutions, slenderest
 from rocking.studies.inventory.hazard import SEED, Hazard
 from rocking.studies.inventory.lights import Light, Thresholds
 from rocking.studies.inventory.objects import DIRECTIONS, Direction, InventoryObject, NotAssessed
+from rocking.studies.inventory.plan import Measures, Planner, not_computed
 from rocking.studies.inventory.reading import Inventory
 from rocking.studies.motion_sets import MotionList
 
@@ -113,6 +114,15 @@ class Assessment:
     source: str = "objects"  # name of the inventory
     ignored: tuple[str, ...] = ()  # columns of the file that were not read
     gravity: float = g  # acceleration of gravity [m/s2]
+    plan: tuple[Measures, ...] = ()  # what helps the objects that are not green, sorted by gain
+    drawn: bool = False  # whether the coefficient of restitution is drawn for every motion
+    language: str = "en"  # of the report
+
+    def pieces(self) -> dict[Light, int]:
+        """Return how many pieces show each light, the worst first."""
+        return {
+            light: sum(each.item.count for each in self.verdicts if each.light is light) for light in reversed(Light)
+        }
 
     def counts(self) -> dict[Light, int]:
         """Return how many rows, not pieces, show each light, the worst first."""
@@ -175,7 +185,7 @@ def assess(
         rulings += refused
         if product is not None:
             rulings += assessor.verdicts(items, product, results_of(product, threads=threads, progress=progress))
-    return assessor.assessment(rulings)
+    return assessor.assessment(rulings, threads)
 
 
 def assessment_plan(
@@ -329,9 +339,10 @@ class _Assessor:
     ) -> Verdict | NotAssessed:  # fmt: skip
         if (outcome == Outcome.FAILED.code).all(axis=0).any():
             return NotAssessed(item.row, item.name, "no motion could be computed in one of its directions")
+        limits = self.thresholds.of(item.consequence)
         of_model, *of_others = (
             tuple(
-                self._direction(way, lifts[j], outcome[:, j, model], ratio[:, j, model], lost[:, j, model])
+                self._direction(way, lifts[j], outcome[:, j, model], ratio[:, j, model], lost[:, j, model], limits)
                 for j, way in enumerate(DIRECTIONS)
             )
             for model in range(len(self.labels))
@@ -341,8 +352,9 @@ class _Assessor:
         return Verdict(item, of_model, tuple(of_others), interval, friction)
 
     def _direction(
-        self, way: Direction, lifts: float, outcome: np.ndarray, ratio: FloatArray, lost: FloatArray
-    ) -> DirectionResult:
+        self, way: Direction, lifts: float, outcome: np.ndarray, ratio: FloatArray, lost: FloatArray,
+        limits: Thresholds,
+    ) -> DirectionResult:  # fmt: skip
         good = outcome != Outcome.FAILED.code
         fell = outcome[good] == Outcome.OVERTURNED.code
         lifted = ~np.isin(outcome[good], [Outcome.NO_UPLIFT.code, Outcome.SLID.code])
@@ -350,14 +362,14 @@ class _Assessor:
         middle, high = (_quantile(ratio[good], fell, share) for share in (0.5, 0.84))
         counts = {"lifted": int(lifted.sum()), "overturned": int(fell.sum()), "count": int(good.sum())}
         failed = int((~good).sum())
-        light = self.thresholds.light(high_rotation=high, failed=failed, **counts)
+        light = limits.light(high_rotation=high, failed=failed, **counts)
         return DirectionResult(
             way, lifts, median_rotation=middle, high_rotation=high, light=light, failed=failed,
             lost_contact=int(np.nansum(lost)), slid=int(slid.sum()), **counts,
         )  # fmt: skip
 
-    def assessment(self, rulings: Sequence[Verdict | NotAssessed]) -> Assessment:
-        """Return verdicts and refusals of all objects, in order."""
+    def assessment(self, rulings: Sequence[Verdict | NotAssessed], threads: int | None = None) -> Assessment:
+        """Return verdicts and refusals of all objects, in order, with the plan of measures."""
         verdicts = [each for each in rulings if isinstance(each, Verdict)]
         refused = [*self.inventory.not_assessed, *(each for each in rulings if isinstance(each, NotAssessed))]
         verdicts.sort(key=lambda each: (each.worse.severity, -each.item.row), reverse=True)
@@ -365,7 +377,35 @@ class _Assessor:
         return Assessment(
             tuple(verdicts), tuple(refused), self.hazard, self.thresholds, self.labels[0], self.labels[1:],
             source=self.inventory.source, ignored=self.inventory.ignored, gravity=self.gravity,
+            plan=self._plan(verdicts, threads), drawn=self.drawn, language=self.inventory.language,
         )  # fmt: skip
+
+    def _plan(self, verdicts: Sequence[Verdict], threads: int | None) -> tuple[Measures, ...]:
+        """Return what helps each object that is not green, the largest gain first, the worse of equals first."""
+        asked = None if self.drawn else self.restitutions[0]
+        planner = Planner(self.hazard, self.draws, asked, self.gravity, threads, self._is_green)
+        wanted: list[tuple[InventoryObject, tuple[Direction, ...], float, float]] = []
+        found: list[Measures] = []
+        for each in verdicts:
+            if each.light is Light.GREEN:
+                continue
+            share, weight = each.worse.overturned_share, 1.0 / self.thresholds.factor(each.item.consequence)
+            if self.in_space(each.item):
+                found.append(not_computed(each.item, share, weight))
+            else:
+                lifted = tuple(one.direction for one in each.results if one.lifted or one.failed)
+                wanted.append((each.item, lifted, share, weight))
+        many = max(1, PIECE // (3 * len(DIRECTIONS) * len(self.hazard.motions)))
+        for first in range(0, len(wanted), many):
+            found += planner.measures(wanted[first : first + many])
+        rank = {id(each.item): place for place, each in enumerate(verdicts)}
+        return tuple(sorted(found, key=lambda each: (-each.gain, rank[id(each.item)])))
+
+    def _is_green(self, item: InventoryObject, way: Direction, outcome: np.ndarray, ratio: FloatArray) -> bool:
+        limits = self.thresholds.of(item.consequence)
+        if (outcome == Outcome.FAILED.code).all():
+            return False
+        return self._direction(way, 0.0, outcome, ratio, np.zeros(1), limits).light is Light.GREEN
 
 
 def _uplift(body: Solid, gravity: float) -> list[float]:

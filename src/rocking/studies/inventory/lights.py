@@ -1,7 +1,7 @@
 """Traffic lights: what counts as safe, in numbers that stand in every report."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from rocking import checks
@@ -9,6 +9,7 @@ from rocking.statistics.counts import share_interval
 
 # 0.07 * 100 is 7.000000000000001: seven of a hundred must reach it
 _ROUNDING = 1e-9
+_MOST = 0.99  # no share is tolerated that is larger, whatever the consequence
 
 
 class Light(Enum):
@@ -45,6 +46,8 @@ class Thresholds:
         Red from this share of motions that overturn [-].
     level : float
         Confidence of the interval [-].
+    low_consequence, high_consequence : float
+        What both shares are multiplied by for an object whose fall is of low or of high consequence [-].
 
     Raises
     ------
@@ -63,6 +66,8 @@ class Thresholds:
     overturning_green: float = 0.05
     overturning_red: float = 0.20
     level: float = 0.95
+    low_consequence: float = 2.0
+    high_consequence: float = 0.4
 
     def __post_init__(self) -> None:
         checks.within("rocking", self.rocking, 0.0, 1.0, open_low=True)
@@ -70,6 +75,47 @@ class Thresholds:
         low = self.overturning_green
         checks.within("overturning_red", self.overturning_red, low, 1.0, hint="not below overturning_green")
         checks.within("level", self.level, 0.5, 1.0, open_high=True)
+        checks.within("low_consequence", self.low_consequence, 1.0, 100.0)
+        checks.within("high_consequence", self.high_consequence, 0.0, 1.0, open_low=True)
+
+    def factor(self, consequence: str) -> float:
+        """Return by what the shares of a consequence are multiplied; how much a fall weighs is its inverse.
+
+        Parameters
+        ----------
+        consequence : {"low", "medium", "high"}
+            How bad it is if the object falls.
+
+        Returns
+        -------
+        float
+            The factor [-].
+        """
+        return {"low": self.low_consequence, "medium": 1.0, "high": self.high_consequence}[consequence]
+
+    def of(self, consequence: str) -> "Thresholds":
+        """Return the thresholds of a consequence.
+
+        Parameters
+        ----------
+        consequence : {"low", "medium", "high"}
+            How bad it is if the object falls.
+
+        Returns
+        -------
+        Thresholds
+            With its shares.
+
+        Examples
+        --------
+        >>> Thresholds().of("high").overturning_green
+        0.02
+        """
+        if consequence == "medium":
+            return self
+        factor = self.factor(consequence)
+        green, red = (min(factor * each, _MOST) for each in (self.overturning_green, self.overturning_red))
+        return replace(self, overturning_green=green, overturning_red=red, low_consequence=1.0, high_consequence=1.0)
 
     def light(self, *, lifted: int, overturned: int, count: int, high_rotation: float | None, failed: int = 0) -> Light:
         """Return the light of what was counted.
