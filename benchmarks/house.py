@@ -18,7 +18,7 @@ SOURCE, TESTS = ROOT / "src" / "rocking", ROOT / "tests"
 # rooms from the lowest up: what stands on one line does not know each other
 FLOORS = (
     ("conventions", "errors", "lazy", "version"),
-    ("outcome", "checks", "plausibility", "portable"),
+    ("language", "outcome", "checks", "plausibility", "portable"),
     ("quantities",),
     ("tables", "statistics"),
     ("exported",),

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from rocking.studies.inventory.assessment import Assessment
 
 _SHAKING = "How it shakes"
+_MOST_PLANNED = 5
 _STYLES = {"GREEN": "bold green", "AMBER": "bold yellow", "RED": "bold red"}
 
 
@@ -151,21 +152,32 @@ class InventoryAnswer:
     def show(self, page: Page) -> None:
         from rich.text import Text
 
-        from rocking.studies.inventory.table import SLIDING, advice, model_note, sentence
+        from rocking.studies.inventory import table
 
         assessment = self.assessment
-        page.line(f"{assessment.source}: {assessment.hazard.words()}, {assessment.hazard.source}")
+        say, hazard = table.words_of(assessment), assessment.hazard
+        page.line(f"{assessment.source}: {hazard.words(say.code)}, {say.translated(hazard.source)}")
         for rank, verdict in enumerate(assessment.verdicts, start=1):
             line = Text(f"{rank:3}  ")
-            line.append(f"{verdict.light.value} {verdict.light.name:<5}", style=_STYLES[verdict.light.name])
-            line.append(f"  {verdict.item.name}: {sentence(verdict, assessment)}")
+            line.append(f"{say(f'mark.{verdict.light.word}'):<7}", style=_STYLES[verdict.light.name])
+            line.append(f"  {verdict.item.name}: {table.sentence(verdict, assessment)}")
             page.rich(line)
-            note = f"{advice(verdict, assessment)} {model_note(verdict, assessment)}"
-            page.line(f"{'':12} {note}".rstrip(), "dim")
+            notes = [getattr(table, name)(verdict, assessment) for name in ("advice", "model_note", "remarks")]
+            page.line(f"{'':12} {' '.join(filter(None, notes))}", "dim")
         for refused in assessment.not_assessed:
-            page.line(f"     not assessed: {refused.name or 'no name'}, line {refused.row}: {refused.reason}")
-        lights = assessment.thresholds.sentences().items()
-        page.line("\n" + "\n".join(f"{light.name}: {text}" for light, text in lights))
+            reason, name = say.translated(refused.reason), refused.name or say("sheet.no_name")
+            page.line(f"     {say('sheet.terminal_refused', name=name, row=refused.row, reason=reason)}")
+        if plan := assessment.plan:
+            page.line(f"\n{say('plan.heading')}")
+            for k, entry in enumerate(plan[:_MOST_PLANNED], start=1):
+                page.line(f"{k:3}  {table.plan_words(entry, say)}")
+            if left := len(plan) - _MOST_PLANNED if len(plan) > _MOST_PLANNED else 0:
+                page.line(f"     {say('plan.more', count=left)}")
+        lights = assessment.thresholds.sentences(say.code).items()
+        page.line("\n" + "\n".join(f"{say(f'light.{light.word}').upper()}: {text}" for light, text in lights))
+        page.line(assessment.thresholds.conventions(say.code)[0])
         if assessment.ignored:
-            page.line(f"Columns that were not read: {', '.join(assessment.ignored)}")
-        page.line(SLIDING)
+            page.line(say("sheet.terminal_ignored", columns=", ".join(assessment.ignored)))
+        if say.asked != say.code:
+            page.line(say("no_words", code=say.asked))
+        page.line(say("limits.sliding"))

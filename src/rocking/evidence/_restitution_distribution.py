@@ -14,9 +14,9 @@ from rocking.dynamics.impact_laws import RandomRestitution
 from rocking.errors import InvalidValueError
 from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration
 from rocking.evidence.hierarchy import calibrate_hierarchy
-from rocking.evidence.likelihood import scatter
 from rocking.portable import trapezoid
 from rocking.restitution import ImpactGeometry
+from rocking.restitution.calibrated import scatter
 from rocking.restitution.implied import energy_bound
 from rocking.restitution.shifted_impulse import shifted
 from rocking.studies.sensitivity.restitutions import SampledRestitution

@@ -9,9 +9,10 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.evidence.comparison import rmse
-from rocking.evidence.likelihood import interval_log_likelihood, scatter
+from rocking.evidence.likelihood import interval_log_likelihood
 from rocking.evidence.measurements import DataSet, all_measurements
 from rocking.restitution.bed_table import DAMPING, HARDNESS, POINTS, bed_table
+from rocking.restitution.calibrated import scatter
 from rocking.restitution.impact import ImpactGeometry
 from rocking.restitution.shifted_impulse import shifted
 

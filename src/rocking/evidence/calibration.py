@@ -21,10 +21,10 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, Foot
-from rocking.evidence.likelihood import fit_scatter, interval_log_likelihood, normal_cdf, scatter
+from rocking.evidence.likelihood import fit_scatter, interval_log_likelihood, normal_cdf
 from rocking.evidence.measurements import DataSet, all_measurements
 from rocking.restitution import ImpactGeometry, Interface, RestitutionModel, ShiftedImpulse, model, models
-from rocking.restitution.calibrated import NAMES, kept
+from rocking.restitution.calibrated import NAMES, kept, scatter
 from rocking.restitution.implied import energy_bound
 from rocking.restitution.shifted_impulse import shifted
 

@@ -8,10 +8,10 @@ from rocking.bodies import Body
 from rocking.conventions import NORMAL_95, Foot
 from rocking.evidence.calibration import KEPT, PredictedCoefficient, fingerprint, geometry_of
 from rocking.evidence.hierarchy import calibrate_hierarchy
-from rocking.evidence.likelihood import fit_scatter, scatter
+from rocking.evidence.likelihood import fit_scatter
 from rocking.evidence.measurements import DataSet, all_measurements
 from rocking.restitution import Calibrated, Fixed, RestitutionModel
-from rocking.restitution.calibrated import kept
+from rocking.restitution.calibrated import kept, scatter
 
 
 def interval_for(

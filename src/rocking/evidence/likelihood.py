@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.evidence.measurements import DataSet
-from rocking.restitution.calibrated import scatter as scatter
+from rocking.restitution.calibrated import scatter
 
 _erfc = np.frompyfunc(math.erfc, 1, 1)
 

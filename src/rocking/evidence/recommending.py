@@ -16,7 +16,6 @@ from rocking.evidence.calibration import Calibration, PredictedCoefficient
 from rocking.evidence.hierarchy import calibrate_hierarchy
 from rocking.evidence.interval import interval_for
 from rocking.evidence.judgement import Judgement, Standing, TrackRecord, judge
-from rocking.evidence.likelihood import scatter
 from rocking.evidence.measurements import DataSet, all_measurements
 from rocking.evidence.recommendation import ModelForBody, Overturned, Recommendation, product
 from rocking.outcome import Outcome
@@ -30,6 +29,7 @@ from rocking.restitution import (
     implied,
     model,
 )
+from rocking.restitution.calibrated import scatter
 from rocking.restitution.impact import contact_of, is_whole_base
 from rocking.restitution.implied import energy_bound
 from rocking.restitution.shifted_impulse import shifted

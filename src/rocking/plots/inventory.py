@@ -5,10 +5,12 @@ from typing import TYPE_CHECKING, Any
 from rocking import checks
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
+from rocking.language import Language
 from rocking.plots.labels import plain, wrapped
 from rocking.plots.style import DASHED, DOUBLE, GREY, INK, PALE, in_journal_style, legend_below, new_figure, stroke
 from rocking.studies.inventory.assessment import Assessment, Verdict
 from rocking.studies.inventory.lights import Light
+from rocking.studies.inventory.table import words_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,7 +59,7 @@ def inventory_picture(assessment: Assessment) -> "Figure":
     'share of motions that overturn it [-]'
     """
     checks.of_kind("assessment", assessment, Assessment, "of an inventory")
-    verdicts = assessment.verdicts
+    verdicts, say = assessment.verdicts, words_of(assessment)
     if not 1 <= len(verdicts) <= _MOST:
         raise InvalidValueError(
             f"a picture holds 1 to {_MOST} objects, got {len(verdicts)}; the report has room for all"
@@ -69,38 +71,41 @@ def inventory_picture(assessment: Assessment) -> "Figure":
         for panel in (left, right):
             panel.axhline(row, color=PALE, linewidth=0.5, zorder=0)
             panel.tick_params(axis="y", length=0)
-        _share(left, row, verdict)
+        _share(left, row, verdict, say)
         right.plot(verdict.uplift_acceleration / g, row, "|", color=INK, markersize=7.0, markeredgewidth=1.6)
         right.hlines(row, 0.0, verdict.uplift_acceleration / g, color=GREY, linewidth=1.0)
     left.set_yticks(range(len(verdicts)), [wrapped(plain(each.item.name), 30, 1) for each in verdicts])
     left.set(xlim=(-0.1, 1.03), ylim=(len(verdicts) - 0.5, -0.5), xticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
-    left.set_xlabel("share of motions that overturn it [-]")
+    left.set_xlabel(say("picture.share"))
     left.axvline(assessment.thresholds.overturning_red, **_RED)
     right.set_xlim(left=0.0)
-    right.set_xlabel("stays still up to [g]")
+    right.set_xlabel(say("picture.still"))
     level = assessment.hazard.level
     if level is not None and level.kind == "PGA":
         right.axvline(level.value / g, **_PEAK)
-    figure.suptitle(plain(f"{assessment.hazard.words()}; {assessment.hazard.source}"), x=0.01, ha="left", fontsize=7)
+    shaking = f"{assessment.hazard.words(say.code)}; {say.translated(assessment.hazard.source)}"
+    figure.suptitle(plain(shaking), x=0.01, ha="left", fontsize=7)
     _legend(figure, assessment)
     return figure
 
 
-def _share(axes: "Axes", row: int, verdict: Verdict) -> None:
+def _share(axes: "Axes", row: int, verdict: Verdict, say: Language) -> None:
     color, shape = _LIGHTS[verdict.light]
     axes.hlines(row, *verdict.interval, color=color, linewidth=1.4, zorder=2)
     axes.plot(verdict.worse.overturned_share, row, shape, color=color, markersize=4.6, zorder=3, clip_on=False)
-    axes.text(-0.06, row, verdict.light.value, ha="center", va="center", fontsize=7, color=INK, fontweight="bold")
+    letter = say(f"letter.{verdict.light.word}")
+    axes.text(-0.06, row, letter, ha="center", va="center", fontsize=7, color=INK, fontweight="bold")
 
 
 def _legend(figure: "Figure", assessment: Assessment) -> None:
-    counts, level = assessment.counts(), assessment.hazard.level
+    counts, level, say = assessment.counts(), assessment.hazard.level, words_of(assessment)
+    said = {each: {"letter": say(f"letter.{each.word}"), "light": say(f"light.{each.word}")} for each in Light}
     mark: dict[str, Any] = {"linestyle": "none", "markersize": 4.6}
     handles = [
-        stroke(f"{light.value}: {light.word}, {counts[light]}", marker=shape, color=color, **mark)
+        stroke(say("picture.light", count=counts[light], **said[light]), marker=shape, color=color, **mark)
         for light, (color, shape) in _LIGHTS.items()
     ]
-    handles.append(stroke("red from here", **_RED))
+    handles.append(stroke(say("picture.red"), **_RED))
     if level is not None and level.kind == "PGA":
-        handles.append(stroke("peak of the shaking", **_PEAK))
+        handles.append(stroke(say("picture.peak"), **_PEAK))
     legend_below(figure, handles, 5, handlelength=1.6)

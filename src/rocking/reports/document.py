@@ -18,6 +18,7 @@ class Cell:
 
     text: str
     mark: str = "plain"  # good, fair, bad or plain: agrees, in part, does not, nothing to say
+    picture: str = ""  # name of a small picture's file, beside the others
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +98,10 @@ class Document:
         Versions and sources.
     footer : str
         Small print of every page.
+    language : str
+        In which it is, as in ISO 639-1.
+    look_at_title, sections_title : str
+        What stands above what to look at first, and what the list of sections is called.
     """
 
     title: str
@@ -106,6 +111,9 @@ class Document:
     verdict: Sequence[Paragraph] = ()
     provenance: dict[str, str] = field(default_factory=dict)
     footer: str = ""
+    language: str = "en"
+    look_at_title: str = "What to look at"
+    sections_title: str = "Sections"
 
     @property
     def tables(self) -> list[ReportTable]:
@@ -126,6 +134,8 @@ class Document:
             "title": self.title,
             "subtitle": self.subtitle,
             "footer": self.footer,
+            "language": self.language,
+            "look_at_title": self.look_at_title,
             "look_at": [list(pair) for pair in self.look_at],
             "verdict": [_plain(each) for each in self.verdict],
             "sections": [{"title": title, "blocks": blocks} for title, blocks in sections],

@@ -1,13 +1,25 @@
-"""The report of an inventory: the ranked table with its lights, and what they do and do not say."""
+"""The report of an inventory: the ranked table with its lights, the plan, and what they do and do not say."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from rocking.conventions import g
+from rocking.language import Language
 from rocking.reports.document import Cell, Document, Paragraph, ReportSection, made_with, table
 from rocking.statistics.counts import share_interval
 from rocking.studies.inventory.assessment import Assessment, DirectionResult, Verdict
-from rocking.studies.inventory.lights import Light, percent
-from rocking.studies.inventory.table import LIMITS, SLIDING, advice, model_note, rotation_words, rounded_down, sentence
+from rocking.studies.inventory.lights import Light
+from rocking.studies.inventory.table import (
+    advice,
+    limits,
+    model_note,
+    plan_header,
+    plan_row,
+    remarks,
+    rotation_words,
+    rounded_down,
+    sentence,
+    words_of,
+)
 
 MARKS = {Light.GREEN: "good", Light.AMBER: "fair", Light.RED: "bad"}
 """Colour of a light; its letter and its word stand beside."""
@@ -15,133 +27,163 @@ MARKS = {Light.GREEN: "good", Light.AMBER: "fair", Light.RED: "bad"}
 _MOST_NAMED = 5
 
 
-def inventory_document(assessment: Assessment) -> Document:
-    """Return the report of an inventory."""
-    refused = [_not_assessed(assessment)] if assessment.not_assessed else []
-    limits = ReportSection("What is not covered", [Paragraph(each) for each in LIMITS])
-    numbers, meaning, shaking = _numbers(assessment), _meaning(assessment), _shaking(assessment)
-    sections = [_ranking(assessment), *refused, numbers, meaning, shaking, limits]
-    rows = len(assessment.verdicts)
+def inventory_document(assessment: Assessment, photos: Mapping[int, str] | None = None) -> Document:
+    """Return the report of an inventory; photos: names of small pictures by the place of the object."""
+    say, sections = words_of(assessment), _Sections(assessment, photos or {})
+    level = assessment.hazard.words(say.code)
+    every = [
+        sections.ranking(), sections.plan(), sections.refused(), sections.numbers(), sections.meaning(),
+        sections.shaking(), ReportSection(say("report.limits"), [Paragraph(each) for each in limits(say)]),
+    ]  # fmt: skip
     return Document(
-        "Which objects stay standing",
-        f"{assessment.source}: {rows} object{'' if rows == 1 else 's'} assessed at {assessment.hazard.words()}",
-        [section for section in sections if section.blocks],
-        look_at=_look_at(assessment),
-        provenance={"Made with": made_with()["Made with"], "Restitution": assessment.restitution},
+        say("report.title"),
+        say("report.subtitle", source=assessment.source, count=len(assessment.verdicts), level=level),
+        [section for section in every if section.blocks],
+        look_at=look_at(assessment),
+        provenance={
+            say("report.made_with"): made_with()["Made with"],
+            say("report.restitution"): assessment.restitution,
+        },
+        language=say.code,
+        look_at_title=say("report.look_at"),
+        sections_title=say("report.sections"),
     )
 
 
-def light_words(light: Light) -> str:
+def light_mark(light: Light, say: Language) -> str:
     r"""Return a light for eyes that do not see its colour.
 
-    >>> light_words(Light.RED)
+    >>> from rocking.language import language
+    >>> light_mark(Light.RED, language("en"))
     'R\xa0RED'
     """
     # one word for the line breaker
-    return f"{light.value}\N{NO-BREAK SPACE}{light.name}"
+    return say(f"mark.{light.word}").replace(" ", "\N{NO-BREAK SPACE}")
 
 
-def _look_at(assessment: Assessment) -> list[tuple[str, str]]:
-    counts = assessment.counts()
-    lights = ", ".join(f"{number} {light.word}" for light, number in counts.items())
-    refused = len(assessment.not_assessed)
-    lines = [("The lights", lights + f", {refused} not assessed" * bool(refused))]
+def look_at(assessment: Assessment) -> list[tuple[str, str]]:
+    """Return what to look at first: a short name and a sentence each."""
+    say, rows = words_of(assessment), {light.word: number for light, number in assessment.counts().items()}
+    lights, refused = say("report.counts", **rows), len(assessment.not_assessed)
+    pieces = {light.word: number for light, number in assessment.pieces().items()}
+    if pieces != rows:
+        lights = say("report.pieces", counts=lights, pieces=sum(pieces.values()), **pieces)
+    if refused:
+        lights = say("report.counts_refused", counts=lights, count=refused)
+    lines = [(say("report.lights"), lights)]
     red = [verdict.item.name for verdict in assessment.verdicts if verdict.light is Light.RED]
     if red:
-        more = f" and {len(red) - _MOST_NAMED} more" if len(red) > _MOST_NAMED else ""
-        lines.append(("First of all", ", ".join(red[:_MOST_NAMED]) + more))
+        names, more = ", ".join(red[:_MOST_NAMED]), len(red) - _MOST_NAMED
+        lines.append((say("report.first"), say("report.names_more", names=names, count=more) if more > 0 else names))
     undecided = sum(verdict.model_decides for verdict in assessment.verdicts)
     if undecided:
-        text = f"for {undecided} object{'' if undecided == 1 else 's'} the other model of impact shows another light"
-        lines.append(("The model decides", text))
-    return [*lines, ("Not covered", SLIDING)]
+        lines.append((say("report.decides"), say("report.undecided", count=undecided)))
+    if say.asked != say.code:
+        lines.append((say("report.language"), say("no_words", code=say.asked)))
+    return [*lines, (say("report.not_covered"), say("limits.sliding"))]
 
 
-def _ranking(assessment: Assessment) -> ReportSection:
-    rows = [_ranked(rank, verdict, assessment) for rank, verdict in enumerate(assessment.verdicts, start=1)]
-    header = ["", "light", "object", "what it does", "what to do"]
-    nothing = Paragraph("No row could be assessed.", mark="bad")
-    return ReportSection("The objects", [table("The worst first", header, rows, stem="ranking") if rows else nothing])
+class _Sections:
+    """The sections of the report, in its language."""
 
+    def __init__(self, assessment: Assessment, photos: Mapping[int, str]) -> None:
+        self.assessment, self.photos, self.say = assessment, photos, words_of(assessment)
 
-def _ranked(rank: int, verdict: Verdict, assessment: Assessment) -> list[object]:
-    item = verdict.item
-    name = item.name + (f" (x {item.count})" if item.count > 1 else "") + (f", {item.note}" if item.note else "")
-    what_to_do = f"{advice(verdict, assessment)} {model_note(verdict, assessment)}".strip()
-    return [rank, _light(verdict.light), name, sentence(verdict, assessment), what_to_do]
+    def _header(self, *names: str) -> list[str]:
+        return [self.say(f"report.columns.{name}") for name in names]
 
+    def ranking(self) -> ReportSection:
+        say, rows = self.say, [self._ranked(*each) for each in enumerate(self.assessment.verdicts)]
+        header = ["", *self._header("light", "object", "does", "do")]
+        nothing = Paragraph(say("report.nothing"), mark="bad")
+        ranked = table(say("report.worst"), header, rows, stem="ranking")
+        return ReportSection(say("report.objects"), [ranked if rows else nothing])
 
-def _light(light: Light, mark: str | None = None) -> Cell:
-    return Cell(light_words(light), MARKS[light] if mark is None else mark)
+    def _ranked(self, place: int, verdict: Verdict) -> list[object]:
+        say, item = self.say, verdict.item
+        name = say("report.named", name=item.name, count=item.count) if item.count > 1 else item.name
+        if item.note:
+            name = say("report.noted", name=name, note=item.note)
+        if item.consequence != "medium":
+            name = say("report.consequence", name=name, consequence=say(f"consequence.{item.consequence}"))
+        words = [sentence(verdict, self.assessment), remarks(verdict, self.assessment)]
+        if item.photo is not None and not self.photos.get(place):
+            words.append(say("report.no_photo", file=item.photo.name))
+        what_to_do = f"{advice(verdict, self.assessment)} {model_note(verdict, self.assessment)}"
+        shown = Cell(name, picture=self.photos.get(place, ""))
+        return [place + 1, self._light(verdict.light), shown, " ".join(filter(None, words)), what_to_do.strip()]
 
+    def _light(self, light: Light, mark: str | None = None) -> Cell:
+        return Cell(light_mark(light, self.say), MARKS[light] if mark is None else mark)
 
-def _not_assessed(assessment: Assessment) -> ReportSection:
-    rows = [(each.row or "", each.name, each.reason) for each in assessment.not_assessed]
-    count = len(rows)
-    lead = Paragraph(
-        f"{count} row{'' if count == 1 else 's'} of the list could not be assessed; the others are not affected.",
-        mark="bad",
-    )
-    reasons = table("Rows and reasons", ["line", "object", "why"], rows, stem="not_assessed")
-    return ReportSection("Not assessed", [lead, reasons])
+    def plan(self) -> ReportSection:
+        say, assessment = self.say, self.assessment
+        header = [*self._header("object"), *plan_header(say)]
+        rows = [[each.item.name, *map(self._figure, plan_row(each, say))] for each in assessment.plan]
+        weights = {name: 1.0 / assessment.thresholds.factor(name) for name in ("low", "high")}
+        lead = Paragraph(say("plan.lead", **weights))
+        plan = table(say("plan.caption"), header, rows, say("plan.note"), "plan")
+        return ReportSection(say("plan.title"), [lead, plan] if rows else [])
 
+    def _figure(self, value: str | float) -> str:
+        return value if isinstance(value, str) else self.say.number(f"{value:.6g}")
 
-def _numbers(assessment: Assessment) -> ReportSection:
-    header = [
-        "object", "along", "light", "stays still up to [g]", "lifted [%]", "overturned",
-        f"{percent(assessment.thresholds.level)} interval [%]", "median", "84 %",
-        *(f"light by {name}" for name in assessment.comparisons),
-    ]  # fmt: skip
-    rows = [
-        _numbered(each, one, others, assessment)
-        for each in assessment.verdicts
-        for one, *others in zip(each.results, *each.compared, strict=True)
-    ]
-    note = (
-        "Stays still: horizontal acceleration g b/h below which nothing moves. Median, 84 %: quantiles of the peak "
-        "rotation over the slenderness angle; beyond 1 the centre of mass has passed the foot. Interval: Clopper and "
-        f"Pearson's, of the share that overturns. Impacts by {assessment.restitution}; both directions are given."
-    )
-    numbers = table("Every object in both directions", header, rows, note, "numbers")
-    return ReportSection("The numbers", [numbers] if rows else [])
+    def refused(self) -> ReportSection:
+        say = self.say
+        rows = [(each.row or "", each.name, say.translated(each.reason)) for each in self.assessment.not_assessed]
+        lead = Paragraph(say("report.refused_lead", count=len(rows)), mark="bad")
+        reasons = table(say("report.reasons"), self._header("line", "object", "why"), rows, stem="not_assessed")
+        return ReportSection(say("report.refused"), [lead, reasons] if rows else [])
 
+    def numbers(self) -> ReportSection:
+        say, assessment = self.say, self.assessment
+        header = [
+            *self._header("object", "along", "light", "still", "lifted", "overturned"),
+            say("report.columns.interval", level=100.0 * assessment.thresholds.level),
+            *self._header("median", "high"),
+            *(say("report.columns.other", name=name) for name in assessment.comparisons),
+        ]
+        rows = [
+            self._numbered(each, one, others)
+            for each in assessment.verdicts
+            for one, *others in zip(each.results, *each.compared, strict=True)
+        ]
+        note = say("report.numbers_note", restitution=assessment.restitution)
+        numbers = table(say("report.both"), header, rows, note, "numbers")
+        return ReportSection(say("report.numbers"), [numbers] if rows else [])
 
-def _numbered(
-    verdict: Verdict, one: DirectionResult, others: Sequence[DirectionResult], assessment: Assessment
-) -> list[object]:
-    low, high = share_interval(one.overturned, one.count, assessment.thresholds.level)
-    worse = " (worse)" if one is verdict.worse else ""
-    still, lifted = rounded_down(one.uplift_acceleration / g, 3), f"{100.0 * one.lifted_share:.0f}"
-    shares = f"{one.overturned} of {one.count}", f"{100.0 * low:.1f} to {100.0 * high:.1f}"
-    rotations = rotation_words(one.median_rotation), rotation_words(one.high_rotation)
-    beside = [_light(each.light, "plain" if each.light is one.light else None) for each in others]
-    name, along = verdict.item.name, f"{one.direction}{worse}"
-    return [name, along, _light(one.light), still, lifted, *shares, *rotations, *beside]
+    def _numbered(self, verdict: Verdict, one: DirectionResult, others: Sequence[DirectionResult]) -> list[object]:
+        say, level = self.say, self.assessment.thresholds.level
+        low, high = share_interval(one.overturned, one.count, level)
+        along = say(f"direction.{one.direction}")
+        still, lifted = say.number(rounded_down(one.uplift_acceleration / g, 3)), f"{100.0 * one.lifted_share:.0f}"
+        shares = (
+            say("report.overturned", overturned=one.overturned, count=one.count),
+            say("interval", low=100.0 * low, high=100.0 * high),
+        )
+        rotations = rotation_words(one.median_rotation, say), rotation_words(one.high_rotation, say)
+        beside = [self._light(each.light, "plain" if each.light is one.light else None) for each in others]
+        along = say("report.worse", way=along) if one is verdict.worse else along
+        return [verdict.item.name, along, self._light(one.light), still, lifted, *shares, *rotations, *beside]
 
+    def meaning(self) -> ReportSection:
+        say, thresholds = self.say, self.assessment.thresholds
+        sentences = thresholds.sentences(say.code).items()
+        lights = [Paragraph(words, f"{light_mark(light, say)}.", MARKS[light]) for light, words in sentences]
+        return ReportSection(say("report.meaning"), [*lights, *map(Paragraph, thresholds.conventions(say.code))])
 
-def _meaning(assessment: Assessment) -> ReportSection:
-    sentences = assessment.thresholds.sentences().items()
-    lights = [Paragraph(words, f"{light_words(light)}.", MARKS[light]) for light, words in sentences]
-    end = Paragraph("These thresholds are a convention of this report, not of a code of practice.")
-    return ReportSection("What the lights mean", [*lights, end])
-
-
-def _shaking(assessment: Assessment) -> ReportSection:
-    hazard = assessment.hazard
-    low, high = hazard.velocity()
-    blocks = [
-        Paragraph(
-            f"{hazard.source[:1].upper()}{hazard.source[1:]}; {hazard.words()}, PGV {low:.3g} to {high:.3g} m/s."
-        ),
-        Paragraph(
-            f"Impacts by {assessment.restitution}; beside it {' and '.join(assessment.comparisons)}. Where they show "
-            "different lights, the loss of energy at an impact decides, and the most careful is the prudent choice."
-        ),
-    ]
-    if hazard.synthetic:
-        plain = hazard.description
-        origin = f"Generator: {plain['generator']}. Parameters: {plain['origin']}."
-        blocks.insert(1, Paragraph(f"{origin} The same family, count and seed give the same motions."))
-    if assessment.ignored:
-        blocks.append(Paragraph(", ".join(assessment.ignored), "Columns of the list that were not read:"))
-    return ReportSection("The shaking", blocks)
+    def shaking(self) -> ReportSection:
+        say, assessment, hazard = self.say, self.assessment, self.assessment.hazard
+        low, high = hazard.velocity()
+        source, (first, *rest) = say.translated(hazard.source), assessment.comparisons
+        others = say("report.and", one=first, other=rest[0]) if rest else first
+        impacts = say(f"report.impacts{'_drawn' * assessment.drawn}", restitution=assessment.restitution, others=others)
+        source, level = f"{source[:1].upper()}{source[1:]}", hazard.words(say.code)
+        motions = say("report.hazard", source=source, level=level, low=low, high=high)
+        blocks = [Paragraph(motions), Paragraph(impacts)]
+        if hazard.synthetic:
+            origin = {name: say.translated(hazard.description[name]) for name in ("generator", "origin")}
+            blocks.insert(1, Paragraph(say("report.origin", **origin)))
+        if assessment.ignored:
+            blocks.append(Paragraph(", ".join(assessment.ignored), say("report.ignored")))
+        return ReportSection(say("report.shaking"), blocks)

@@ -9,17 +9,31 @@ from typing import Any
 
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError, extra
 from rocking.reports.inventory_document import inventory_document
+from rocking.reports.inventory_photos import thumbnails
 from rocking.reports.render import render_pdf, write_html
 from rocking.studies.inventory.assessment import Assessment
-from rocking.studies.inventory.table import HEADER, LIMITS, as_csv, as_plain, rows
+from rocking.studies.inventory.lights import Light
+from rocking.studies.inventory.table import (
+    COLUMNS,
+    as_csv,
+    as_plain,
+    header,
+    light_words,
+    limits,
+    plan_header,
+    plan_row,
+    rows,
+    words_of,
+)
+from rocking.tables import escaped
 from rocking.tables.table import written_whole
 
 STEM = "inventory"  # name of every file, before its suffix
 
-FILLS = {"G": "C6E7D6", "A": "FFE3A3", "R": "F6C1BC", "n": "E3E6EA"}
-"""Background of a light by the first letter of its words; the words stand in the cell."""
+FILLS = {Light.GREEN: "C6E7D6", Light.AMBER: "FFE3A3", Light.RED: "F6C1BC", None: "E3E6EA"}
+"""Background of a light; the words stand in the cell."""
 
-_WIDTHS = {"name": 28, "in words": 70, "what to do": 70, "note": 28, "light": 14}
+_WIDTHS = {"name": 28, "words": 70, "advice": 70, "note": 28, "light": 14, "remarks": 40}
 
 
 def write_inventory(assessment: Assessment, folder: Path) -> tuple[list[Path], list[str]]:
@@ -72,7 +86,12 @@ def inventory_json(assessment: Assessment) -> str:
 def _pdf(assessment: Assessment, path: Path) -> None:
     # the renderer leaves its source beside the pictures for a moment: not among the user's files
     with TemporaryDirectory() as folder:
-        render_pdf(inventory_document(assessment), Path(folder), path)
+        render_pdf(inventory_document(assessment, thumbnails(assessment, Path(folder))), Path(folder), path)
+
+
+def _html(assessment: Assessment, path: Path) -> None:
+    with TemporaryDirectory() as folder:
+        write_html(inventory_document(assessment, thumbnails(assessment, Path(folder))), Path(folder), path)
 
 
 def _csv(assessment: Assessment, path: Path) -> None:
@@ -81,19 +100,35 @@ def _csv(assessment: Assessment, path: Path) -> None:
 
 
 def write_spreadsheet(assessment: Assessment, path: Path) -> None:
-    """Write the table as an Excel workbook: the ranking, and the assumptions on a second sheet."""
-    book = extra("openpyxl", "the spreadsheet").Workbook()
+    """Write the table as an Excel workbook: the ranking, the plan of measures, and the assumptions."""
+    book, say = extra("openpyxl", "the spreadsheet").Workbook(), words_of(assessment)
     sheet = book.active
-    sheet.title = "Ranking"
-    _fill(sheet, [list(HEADER), *rows(assessment)])
-    _dress(sheet)
-    about = book.create_sheet("What it means")
-    lights = [[f"{light.value} {light.word}", words] for light, words in assessment.thresholds.sentences().items()]
+    sheet.title = say("sheet.ranking")
+    titles = header(say)[: len(COLUMNS)]
+    _fill(sheet, [titles, *(each[: len(COLUMNS)] for each in rows(assessment, say.code))])
+    lights = [each.light for each in assessment.verdicts]
+    _dress(sheet, [_WIDTHS.get(name, 12) for name in COLUMNS])
+    _colour(sheet, [*lights, *[None] * len(assessment.not_assessed)])
+    plan = book.create_sheet(say("sheet.plan"))
+    _fill(plan, [
+        [say("column.name"), *plan_header(say)],
+        *([escaped(each.item.name), *plan_row(each, say)] for each in assessment.plan),
+    ])  # fmt: skip
+    _dress(plan, [28, *[16] * len(plan_header(say))])
+    about = book.create_sheet(say("sheet.meaning"))
+    meaning = assessment.thresholds.sentences(say.code).items()
     hazard = assessment.hazard
-    facts = [["shaking", f"{hazard.words()}; {hazard.source}"], ["impacts", assessment.restitution]]
+    shaking = f"{hazard.words(say.code)}; {say.translated(hazard.source)}"
+    facts = [[say("sheet.shaking"), shaking], [say("sheet.impacts"), assessment.restitution]]
     if assessment.ignored:
-        facts.append(["not read", f"columns of the list: {', '.join(assessment.ignored)}"])
-    _fill(about, [*lights, *facts, *(["not covered", each] for each in LIMITS)])
+        facts.append([say("sheet.not_read"), say("sheet.ignored", columns=", ".join(assessment.ignored))])
+    _fill(about, [
+        *([light_words(light, say), words] for light, words in meaning),
+        *(["", each] for each in assessment.thresholds.conventions(say.code)),
+        *facts,
+        [say("sheet.plan"), say("plan.note")],
+        *([say("sheet.not_covered"), each] for each in limits(say)),
+    ])  # fmt: skip
     about.column_dimensions["A"].width, about.column_dimensions["B"].width = 14, 110
     whole = BytesIO()  # a workbook that a full disk cuts off complains for long after it was closed
     book.save(whole)
@@ -112,25 +147,27 @@ def _fill(sheet: Any, lines: list[list[Any]]) -> None:
                 place.value = value
 
 
-def _dress(sheet: Any) -> None:
+def _dress(sheet: Any, widths: list[int]) -> None:
     styles = extra("openpyxl.styles", "the spreadsheet")
-    for k, title in enumerate(HEADER, start=1):
+    for k, width in enumerate(widths, start=1):
+        for i in range(1, sheet.max_row + 1):
+            sheet.cell(row=i, column=k).alignment = styles.Alignment(wrap_text=True, vertical="top")
         head = sheet.cell(row=1, column=k)
         head.font = styles.Font(bold=True)
-        head.alignment = styles.Alignment(wrap_text=True, vertical="top")
-        sheet.column_dimensions[head.column_letter].width = _WIDTHS.get(title, 12)
-    light = HEADER.index("light") + 1
-    for i in range(2, sheet.max_row + 1):
-        colour = FILLS[str(sheet.cell(row=i, column=light).value)[0]]
-        sheet.cell(row=i, column=light).fill = styles.PatternFill("solid", start_color=colour)
-        for k in range(1, len(HEADER) + 1):
-            sheet.cell(row=i, column=k).alignment = styles.Alignment(wrap_text=True, vertical="top")
-    sheet.freeze_panes = "D2"
+        sheet.column_dimensions[head.column_letter].width = width
+    sheet.freeze_panes = "D2" if len(widths) == len(COLUMNS) else "B2"
     sheet.auto_filter.ref = sheet.dimensions
 
 
+def _colour(sheet: Any, lights: list[Light | None]) -> None:
+    styles = extra("openpyxl.styles", "the spreadsheet")
+    for i, light in enumerate(lights, start=2):
+        cell = sheet.cell(row=i, column=COLUMNS.index("light") + 1)
+        cell.fill = styles.PatternFill("solid", start_color=FILLS[light])
+
+
 _WRITERS: dict[str, Callable[[Assessment, Path], object]] = {
-    "html": lambda assessment, path: write_html(inventory_document(assessment), path.parent, path),
+    "html": _html,
     "pdf": _pdf,
     "xlsx": write_spreadsheet,
     "csv": _csv,

@@ -1,6 +1,7 @@
 """A report as one self-contained HTML file, or as a PDF set by Typst: nothing is fetched from elsewhere."""
 
 import json
+from base64 import b64encode
 from collections.abc import Callable, Mapping
 from functools import partial
 from importlib.resources import files
@@ -21,7 +22,9 @@ def render_html(document: Document, pictures: Path) -> str:
     kinds = {"table": ReportTable, "pair": Pair, "listing": Listing, "paragraph": Paragraph}
     environment.tests |= {name: partial(_is, kind) for name, kind in kinds.items()}
     template = environment.from_string(_template("report.html.jinja").decode())
-    html: str = template.render(document=document, svg=lambda stem: _inline(pictures, stem))
+    html: str = template.render(
+        document=document, svg=lambda stem: _inline(pictures, stem), image=lambda name: _address(pictures / name)
+    )
     return html
 
 
@@ -38,6 +41,11 @@ def _inline(folder: Path, stem: str) -> object:
     for attribute in ('id="', 'href="#', "url(#"):
         body = body.replace(attribute, f"{attribute}{stem}-")
     return Markup(body)
+
+
+def _address(jpeg: Path) -> str:
+    """Return a small picture as an address that holds it."""
+    return f"data:image/jpeg;base64,{b64encode(jpeg.read_bytes()).decode()}"
 
 
 def write_html(document: Document, pictures: Path, path: Path) -> None:

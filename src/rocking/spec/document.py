@@ -258,7 +258,7 @@ class ThresholdsTable(JobTable):
     overturning_red: float | None = _key("share of motions from which on it is red [-]")
     level: float | None = _key("confidence of the shares' intervals [-]")
     low_consequence: float | None = _key("what the shares are multiplied by where a fall is of low consequence [-]")
-    high_consequence: float | None = _key("and where it is of high consequence; how much a fall weighs is its inverse [-]")
+    high_consequence: float | None = _key("the same where a fall is of high consequence; a fall weighs the inverse [-]")
 
 
 class InventoryTable(JobTable):

@@ -1,7 +1,7 @@
 """A study of many histories: its tables, what they describe, and its answer."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -180,6 +180,8 @@ def inventory_of(
             lambda name: problem.inputs.file((folder / name).as_posix()),
             table.columns,
         )
+        if table.language is not None:
+            objects = replace(objects, language=table.language)
         texts = {"PGA": table.pga, "PGV": table.pgv}
         level = next((IntensityLevel.of(kind, text) for kind, text in texts.items() if text is not None), None)
 

@@ -105,7 +105,7 @@ def test_spreadsheet_holds_numbers_and_no_formula(assessment, tmp_path):
     openpyxl = pytest.importorskip("openpyxl")
     write_spreadsheet(assessment, tmp_path / "x.xlsx")
     book = openpyxl.load_workbook(tmp_path / "x.xlsx")
-    assert book.sheetnames == ["Ranking", "What it means"]
+    assert book.sheetnames == ["Ranking", "Measures", "What it means"]
     rows = list(book["Ranking"].iter_rows())
     assert [row[0].value for row in rows[1:]] == [1, 2, 3, 4, None]
     assert [row[1].value for row in rows[1:]] == ["R red", "A amber", "G green", "G green", "not assessed"]

@@ -141,7 +141,7 @@ def _hazard(motions: Any, pga: Any, pgv: Any, count: int | None, seed: int | Non
 def dataset_of(assessment: Assessment) -> "xr.Dataset":
     """Return an assessment as a labelled dataset."""
     xarray = extra("xarray", "inventory")
-    verdicts, sentences = assessment.verdicts, assessment.thresholds.sentences()
+    verdicts, sentences = assessment.verdicts, assessment.thresholds.sentences(assessment.language)
     names = [assessment.restitution, *assessment.comparisons]
     by_model = [[each.results for each in verdicts], *zip(*(each.compared for each in verdicts), strict=True)]
     results = [one for of_model in by_model for results in of_model for one in results]

@@ -22,7 +22,7 @@ from rocking.studies.inventory.draws import Draws, restitutions, slenderest
 from rocking.studies.inventory.hazard import SEED, Hazard
 from rocking.studies.inventory.lights import Light, Thresholds
 from rocking.studies.inventory.objects import DIRECTIONS, Direction, InventoryObject, NotAssessed
-from rocking.studies.inventory.plan import Measures, Planner, not_computed
+from rocking.studies.inventory.plan import PlanEntry, Planner
 from rocking.studies.inventory.reading import Inventory
 from rocking.studies.motion_sets import MotionList
 
@@ -114,7 +114,7 @@ class Assessment:
     source: str = "objects"  # name of the inventory
     ignored: tuple[str, ...] = ()  # columns of the file that were not read
     gravity: float = g  # acceleration of gravity [m/s2]
-    plan: tuple[Measures, ...] = ()  # what helps the objects that are not green, sorted by gain
+    plan: tuple[PlanEntry, ...] = ()  # what helps the objects that are not green, sorted by gain
     drawn: bool = False  # whether the coefficient of restitution is drawn for every motion
     language: str = "en"  # of the report
 
@@ -380,24 +380,24 @@ class _Assessor:
             plan=self._plan(verdicts, threads), drawn=self.drawn, language=self.inventory.language,
         )  # fmt: skip
 
-    def _plan(self, verdicts: Sequence[Verdict], threads: int | None) -> tuple[Measures, ...]:
+    def _plan(self, verdicts: Sequence[Verdict], threads: int | None) -> tuple[PlanEntry, ...]:
         """Return what helps each object that is not green, the largest gain first, the worse of equals first."""
         asked = None if self.drawn else self.restitutions[0]
         planner = Planner(self.hazard, self.draws, asked, self.gravity, threads, self._is_green)
         wanted: list[tuple[InventoryObject, tuple[Direction, ...], float, float]] = []
-        found: list[Measures] = []
+        found: list[PlanEntry] = []
         for each in verdicts:
             if each.light is Light.GREEN:
                 continue
             share, weight = each.worse.overturned_share, 1.0 / self.thresholds.factor(each.item.consequence)
             if self.in_space(each.item):
-                found.append(not_computed(each.item, share, weight))
+                found.append(PlanEntry(each.item, each.item.count * share, each.item.count * share * weight))
             else:
                 lifted = tuple(one.direction for one in each.results if one.lifted or one.failed)
                 wanted.append((each.item, lifted, share, weight))
         many = max(1, PIECE // (3 * len(DIRECTIONS) * len(self.hazard.motions)))
         for first in range(0, len(wanted), many):
-            found += planner.measures(wanted[first : first + many])
+            found += planner.entries(wanted[first : first + many])
         rank = {id(each.item): place for place, each in enumerate(verdicts)}
         return tuple(sorted(found, key=lambda each: (-each.gain, rank[id(each.item)])))
 

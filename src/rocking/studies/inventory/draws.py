@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from rocking.studies.inventory.objects import SMALLEST, InventoryObject
 from rocking.studies.sensitivity.restitutions import uniforms
 
 STRATA = 10
-"""Bodies that stand for an object of approximate sizes: a Latin hypercube, of which each motion has one after another."""
+"""Bodies standing for an object of approximate sizes: a Latin hypercube, which the motions take one after another."""
 
 _SIZES = ("width", "depth", "height", "base_width", "base_depth", "centre_of_mass_height")
 _ROUND = {"depth": "width", "base_depth": "base_width"}
@@ -80,14 +81,11 @@ def restitutions(draws: Draws, bodies: Sequence[Body]) -> dict[Foot, FloatArray]
 
 def _resized(item: InventoryObject, shares: dict[str, float]) -> InventoryObject:
     """Return an object whose sizes are moved by shares of their half widths, with what must stay smaller, smaller."""
-    given = {name: getattr(item, name) for name in _SIZES}
-    made = {
-        name: value if value is None else max(SMALLEST, value + shares.get(name, 0.0) * item.approximate.get(name, 0.0))
-        for name, value in given.items()
-    }
-    for name, most in (("base_width", made["width"]), ("base_depth", made["depth"])):
-        made[name] = None if made[name] is None else min(made[name], most)
-    if made["centre_of_mass_height"] is not None:
-        made["centre_of_mass_height"] = min(made["centre_of_mass_height"], _HIGHEST * made["height"])
+    made: dict[str, Any] = {
+        name: max(SMALLEST, getattr(item, name) + shares.get(name, 0.0) * item.approximate.get(name, 0.0))
+        for name in _SIZES if getattr(item, name) is not None
+    }  # fmt: skip
+    most = {"base_width": made["width"], "base_depth": made["depth"], _SIZES[-1]: _HIGHEST * made["height"]}
+    made |= {name: min(made[name], limit) for name, limit in most.items() if name in made}
     # the weight does not change how it rocks, and need not fit every size
     return replace(item, **made, mass=None, approximate={})

@@ -8,6 +8,7 @@ from typing import Any
 from rocking import checks
 from rocking.conventions import ACCELERATION_UNITS, g
 from rocking.errors import InvalidValueError
+from rocking.language import language
 from rocking.motions import peak_ground_acceleration, peak_ground_velocity
 from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.processing import scaled_to
@@ -41,9 +42,12 @@ class IntensityLevel:
         object.__setattr__(self, "value", value)
 
     def __str__(self) -> str:
-        if self.kind == "PGV":
-            return f"PGV {self.value:.4g} m/s"
-        return f"PGA {self.value / g:.4g} g"
+        return self.words()
+
+    def words(self, code: str = "en") -> str:
+        """Return the level in a language."""
+        unit = g if self.kind == "PGA" else 1.0
+        return language(code)(f"level.{self.kind.lower()}", value=self.value / unit)
 
     @classmethod
     def of(cls, kind: str, words: str) -> "IntensityLevel":
@@ -115,14 +119,15 @@ class Hazard:
         """Whether any motion has a vertical component."""
         return any(motion.vertical is not None for motion in self.motions)
 
-    def words(self) -> str:
-        """Return how strong the shaking is: the level, or the range of the records' own."""
+    def words(self, code: str = "en") -> str:
+        """Return how strong the shaking is, in a language: the level, or the range of the records' own."""
+        say = language(code)
         if self.level is not None:
-            return str(self.level)
+            return self.level.words(code)
         peaks = [peak_ground_acceleration(motion) / g for motion in self.motions]
         if max(peaks) - min(peaks) <= 1e-9 * max(peaks):
-            return f"PGA {max(peaks):.3g} g"
-        return f"PGA {min(peaks):.3g} to {max(peaks):.3g} g"
+            return say("level.peak", value=max(peaks))
+        return say("level.range", low=min(peaks), high=max(peaks))
 
     def peak(self) -> float:
         """Return the largest peak ground acceleration of all motions [m/s2]."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 from rocking import checks
+from rocking.language import language
 from rocking.statistics.counts import share_interval
 
 # 0.07 * 100 is 7.000000000000001: seven of a hundred must reach it
@@ -144,30 +145,47 @@ class Thresholds:
         sure = share_interval(overturned, count, self.level)[1] <= self.overturning_green
         return Light.GREEN if small and overturned == 0 and sure and failed == 0 else Light.AMBER
 
-    def sentences(self) -> dict[Light, str]:
+    def sentences(self, code: str = "en") -> dict[Light, str]:
         """Return what each light means.
+
+        Parameters
+        ----------
+        code : str
+            Language of the sentences.
 
         Returns
         -------
         dict of Light to str
             One sentence each, with the numbers.
         """
-        needed = math.ceil(math.log(0.5 * (1.0 - self.level)) / math.log(1.0 - self.overturning_green))  # Eq. 187
-        level, most = percent(self.level), percent(self.overturning_green)
-        return {
-            Light.RED: f"At least {percent(self.overturning_red)} of the motions overturn the object.",
-            Light.AMBER: "Neither red nor green: it rocks notably, overturns now and then, or there are too few "
-            "motions to rule overturning out.",
-            Light.GREEN: f"No motion lifts it; or none overturns it, the upper end of the {level} interval of "
-            f"the overturning share is at most {most} (which takes at least {needed} motions), "
-            f"and 84 % of the motions turn it by less than {self.rocking:g} of its slenderness angle.",
-        }
+        say = language(code)
+        numbers = {
+            "red": 100.0 * self.overturning_red, "green": 100.0 * self.overturning_green, "level": 100.0 * self.level,
+            "needed": self.needed, "rocking": self.rocking,
+        }  # fmt: skip
+        return {light: say(f"meaning.{light.word}", **numbers) for light in reversed(Light)}
 
+    def conventions(self, code: str = "en") -> list[str]:
+        """Return how the shares depend on the consequence of a fall, and that all of this is a convention.
 
-def percent(share: float) -> str:
-    """Return a share in percent, unrounded: a threshold of 0.5 % is not one of 0 %, nor 99.999 % all.
+        Parameters
+        ----------
+        code : str
+            Language of the sentences.
 
-    >>> percent(0.005), percent(0.95), percent(0.07)
-    ('0.5%', '95%', '7%')
-    """
-    return f"{100.0 * share:.10g}%"
+        Returns
+        -------
+        list of str
+            Two sentences.
+        """
+        say, low, high = language(code), self.of("low"), self.of("high")
+        shares = {
+            f"{colour}_{name}": 100.0 * getattr(each, f"overturning_{colour}")
+            for name, each in (("low", low), ("high", high)) for colour in ("green", "red")
+        }  # fmt: skip
+        return [say("meaning.consequence", needed_high=high.needed, **shares), say("meaning.convention")]
+
+    @property
+    def needed(self) -> int:
+        """How many motions, none of which overturns an object that they lift, can make it green at best [-]."""
+        return math.ceil(math.log(0.5 * (1.0 - self.level)) / math.log(1.0 - self.overturning_green))  # Eq. 187

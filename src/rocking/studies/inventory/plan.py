@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking.conventions import FEET, FloatArray, IntArray
 from rocking.dynamics.settings import Settings
-from rocking.motions import peak_ground_velocity
+from rocking.motions import peak_ground_acceleration, peak_ground_velocity
 from rocking.outcome import overturned
 from rocking.restitution import ImpactGeometry
 from rocking.studies.histories import HistoryTable, results_of
@@ -20,30 +20,32 @@ from rocking.studies.inventory.objects import Direction, InventoryObject
 from rocking.studies.motion_sets import MotionList
 from rocking.studies.remedies import Landings, changed, lifting_factor, still, tension
 
-_Judgement = Callable[[InventoryObject, Direction, np.ndarray, FloatArray], bool]
-
 ROUNDS = 4
-"""Halvings between the change that keeps an object from lifting and none."""
+"""Halvings between no change and the one that keeps an object from lifting."""
 
 _COARSE, _FINE, _SMALL = 0.01, 0.001, 0.1  # lengths are changed by whole centimetres, up to 10 cm by millimetres [m]
 _angle = np.frompyfunc(math.atan2, 2, 1)  # numpy's own differs between processors
 
+_Judgement = Callable[[InventoryObject, Direction, np.ndarray, FloatArray], bool]
+# an object, the directions that lift it, the share of the motions that overturn it, and the weight of a fall
+_Wanted = tuple[InventoryObject, tuple[Direction, ...], float, float]
+
 
 @dataclass(frozen=True, eq=False)
-class Measures:
-    """What would make an object green; None where it does not serve, or was not computed."""
+class PlanEntry:
+    """What would make an object green; None where it does not serve, is not known, or was not computed."""
 
     item: InventoryObject
     spared: float  # pieces that fall less, as expected [-]
     gain: float  # the same, weighted by the consequence of a fall [-]
-    directions: tuple[Direction, ...]  # in which it is lifted, and changed
-    wider: float | None  # how far either side of its base must reach out [m]
-    lower: float | None  # how far the centre of mass must come down [m]
-    ballast: float | None  # mass at the floor that lowers it so far, where its own is known [kg]
-    pull: float | None  # force to be held along one edge over the weight, and on all anchors across [-]
-    shear: float | None
-    force: float | None  # pull in newtons, where the mass is known [N]
-    weaker: float | None  # largest share of this shaking under which it is green where it stands [-]
+    directions: tuple[Direction, ...] = ()  # in which it is lifted, and changed
+    wider: float | None = None  # how far either side of its base must reach out [m]
+    lower: float | None = None  # how far the centre of mass must come down [m]
+    ballast: float | None = None  # mass at the floor that lowers it so far, where its own is known [kg]
+    weaker: float | None = None  # largest share of this shaking under which it is green where it stands [-]
+    pull: float | None = None  # force that anchors along one edge must hold, over the weight [-]
+    force: float | None = None  # the same, where the mass is known [N]
+    shear: float | None = None  # horizontal force on all anchors over the weight [-]
 
     @property
     def computed(self) -> bool:
@@ -51,7 +53,7 @@ class Measures:
         return self.pull is not None
 
 
-@dataclass
+@dataclass(eq=False)
 class _Search:
     """One way to help an object, in whole steps: from none, which is not enough, to what keeps it from lifting."""
 
@@ -60,11 +62,7 @@ class _Search:
     step: float
     high: int
     low: int = 0
-    serves: bool = field(default=False)
-
-    @property
-    def middle(self) -> int:
-        return (self.low + self.high) // 2
+    serves: bool = False
 
 
 class Planner:
@@ -75,24 +73,24 @@ class Planner:
         is_green: _Judgement,
     ) -> None:  # fmt: skip
         self.draws, self.restitution, self.gravity, self.threads = draws, restitution, gravity, threads
-        self.motions, self.is_green = MotionList(hazard.motions), is_green
+        self.motions, self.settings, self.is_green = MotionList(hazard.motions), Settings(gravity=gravity), is_green
         # of level motions the strongest one alone decides what lifts
-        peaks = [float(np.abs(each.acceleration).max()) for each in hazard.motions]
+        peaks = [peak_ground_acceleration(each) for each in hazard.motions]
         self.strongest = hazard.motions if hazard.vertical else hazard.motions[int(np.argmax(peaks)) :][:1]
         self.peak = max(peaks)
-        self.settings = Settings(gravity=gravity)
         # where one of these overturns a changed object, the others need not be asked
         order = np.argsort([-peak_ground_velocity(each) for each in hazard.motions], kind="stable")
         self.hardest = np.sort(order[: math.ceil(len(order) / 4)])
 
-    def measures(self, wanted: Iterable[tuple[InventoryObject, tuple[Direction, ...], float, float]]) -> list[Measures]:
-        """Return what helps objects that are lifted in some directions: with the share that falls, and its weight."""
+    def entries(self, wanted: Iterable[_Wanted]) -> list[PlanEntry]:
+        """Return what helps objects that are not green."""
         subjects = [(_Subject(self, item, ways), share, weight) for item, ways, share, weight in wanted]
         searches = [each for subject, _, _ in subjects for each in subject.searches()]
         self._bisect(searches)
         found = {(id(each.subject), each.name): each.high * each.step for each in searches if each.serves}
+        names = ("out", "down", "weaker")
         return [
-            subject.measures(share, weight, {name: found.get((id(subject), name)) for name in ("out", "down", "weaker")})
+            subject.entry(share, weight, *(found.get((id(subject), name)) for name in names))
             for subject, share, weight in subjects
         ]
 
@@ -100,9 +98,10 @@ class Planner:
         for each, green in zip(searches, self.green([(one, one.high) for one in searches]), strict=True):
             each.serves = green
         for _ in range(ROUNDS):
-            open_ones = [each for each in searches if each.serves and each.high - each.low > 1]
-            middles = [each.middle for each in open_ones]
-            for each, k, green in zip(open_ones, middles, self.green(list(zip(open_ones, middles, strict=True))), strict=True):
+            tried = [
+                (each, (each.low + each.high) // 2) for each in searches if each.serves and each.high - each.low > 1
+            ]
+            for (each, k), green in zip(tried, self.green(tried), strict=True):
                 each.low, each.high = (each.low, k) if green else (k, each.high)
 
     def green(self, tried: Sequence[tuple[_Search, int]]) -> list[bool]:
@@ -126,8 +125,9 @@ class Planner:
         shape = (len(rows), len(motions))
         outcome = results["outcome"].reshape(shape)
         ratio = (np.abs(results["peak_rotation"]) / values["alpha_right"]).reshape(shape)
-        each = (good(item, way, *both) for (item, way, _), *both in zip(rows, outcome, ratio, strict=True))
-        return [all([next(each) for _ in search.subject.directions]) for search, _ in tried]
+        found = [good(item, way, *both) for (item, way, _), *both in zip(rows, outcome, ratio, strict=True)]
+        ends = np.cumsum([len(search.subject.directions) for search, _ in tried]).tolist()
+        return [all(found[first:last]) for first, last in zip([0, *ends[:-1]], ends, strict=True)]
 
 
 class _Subject:
@@ -167,7 +167,7 @@ class _Subject:
         for foot, behind, ahead in (("right", old, new), ("left", new, old)):
             geometry = ImpactGeometry(height, behind, ahead, right.spread_x, right.spread_y)
             square = height**2 + ahead**2
-            rows[f"alpha_{foot}"] = _angle(ahead, height).astype(np.float64)
+            rows[f"alpha_{foot}"] = np.asarray(_angle(ahead, height), dtype=np.float64)
             rows[f"p_{foot}"] = np.sqrt(gravity * np.sqrt(square) / geometry.new_gyration)  # Eq. 26
             rows[f"q_{foot}"] = square / geometry.new_gyration  # Eq. 27
             if self.planner.restitution is None:
@@ -180,23 +180,20 @@ class _Subject:
             rows |= {f"r_{foot}": np.array([pair[foot] for pair in pairs])[self._number] for foot in FEET}
         return rows
 
-    def measures(self, share: float, weight: float, steps: dict[str, float | None]) -> Measures:
+    def entry(
+        self, share: float, weight: float, out: float | None, down: float | None, weaker: float | None
+    ) -> PlanEntry:
         """Return what was found, with what anchors must hold."""
         planner, item = self.planner, self.item
         pull = max(
             max(tension(body, each, 1.0, planner.gravity).values()) / (body.mass * planner.gravity)
             for body in self._worst for each in planner.strongest
         )  # fmt: skip
-        down, mass = steps["down"], item.mass
         height = self._worst[0].side("right").centre_height
-        return Measures(
-            item, item.count * share, item.count * share * weight, self.directions, steps["out"], down,
-            None if down is None or mass is None else mass * down / (height - down),
-            pull, planner.peak / planner.gravity, None if mass is None else pull * mass * planner.gravity,
-            None if steps["weaker"] is None else 1.0 - steps["weaker"],
+        return PlanEntry(
+            item, item.count * share, item.count * share * weight, self.directions, wider=out, lower=down,
+            ballast=None if down is None or item.mass is None else item.mass * down / (height - down),
+            weaker=None if weaker is None else round(1.0 - weaker, 9), pull=pull,
+            force=None if item.mass is None else pull * item.mass * planner.gravity,
+            shear=planner.peak / planner.gravity,
         )  # fmt: skip
-
-
-def not_computed(item: InventoryObject, share: float, weight: float) -> Measures:
-    """Return the entry of an object in three dimensions, of which nothing was computed."""
-    return Measures(item, item.count * share, item.count * share * weight, (), *[None] * 7)

@@ -1,4 +1,4 @@
-"""The ranked table: as plain values for JSON, as text for CSV and spreadsheets."""
+"""The ranked table: as plain values for JSON, as text for CSV and spreadsheets, and its sentences in a language."""
 
 import csv
 import io
@@ -6,58 +6,118 @@ import math
 from typing import Any
 
 from rocking.conventions import g
+from rocking.language import Language, language
 from rocking.studies.inventory.assessment import Assessment, DirectionResult, Verdict
 from rocking.studies.inventory.lights import Light
+from rocking.studies.inventory.plan import PlanEntry
 from rocking.tables import escaped
 
-HEADER = (
-    "rank", "light", "name", "count", "row", "worse direction", "uplift acceleration [g]", "motions", "lifted",
-    "overturned", "overturned, low [%]", "overturned, high [%]", "median rotation / angle", "84 % rotation / angle",
-    "light by other models", "in words", "what to do", "note",
+COLUMNS = (
+    "rank", "light", "name", "count", "row", "direction", "uplift", "motions", "lifted", "overturned", "low", "high",
+    "median", "quantile", "others", "words", "advice", "note", "consequence", "remarks",
 )  # fmt: skip
-"""Columns of the table in files."""
+PLAN_COLUMNS = ("pieces", "gain", "wider", "lower", "ballast", "anchors", "force", "across", "moved")
+_WORDS = COLUMNS.index("words")
+
+# what every report says about the assumptions
+_LIMITS = ("sliding", "rigid", "directions", "shape", "drawn", "sizes", "damage")
 
 
-def rows(assessment: Assessment) -> list[list[str | float | int]]:
-    """Return one row an object, by `HEADER`, the worst first, those without a verdict last; formulas are escaped."""
+def header(say: Language) -> list[str]:
+    """Return the titles of the table in files."""
+    return [say(f"column.{name}") for name in COLUMNS] + plan_header(say)
+
+
+def plan_header(say: Language) -> list[str]:
+    """Return the titles of the plan, beside the names of the objects."""
+    return [say(f"plan.columns.{name}") for name in PLAN_COLUMNS]
+
+
+def limits(say: Language) -> list[str]:
+    """Return what every report says about the assumptions."""
+    return [say(f"limits.{name}") for name in _LIMITS]
+
+
+def rows(assessment: Assessment, code: str = "en") -> list[list[str | float | int]]:
+    """Return one row an object, by `header`, the worst first, those without a verdict last; formulas are escaped.
+
+    Sentences are in the language of the assessment, names of lights and directions in that of the code.
+    """
+    say, plan = language(code), {id(each.item): each for each in assessment.plan}
     lines: list[list[str | float | int]] = []
     for rank, verdict in enumerate(assessment.verdicts, start=1):
         worse, item, (low, high) = verdict.worse, verdict.item, verdict.interval
-        others = "; ".join(f"{name}: {word}" for name, word in _lights(verdict, assessment).items())
+        lights = _lights(verdict, assessment).items()
+        others = "; ".join(f"{name}: {say(f'light.{word}')}" for name, word in lights)
         rotations = (
-            rotation_words(each) if each is None else round(each, 3)
+            rotation_words(each, say) if each is None else round(each, 3)
             for each in (worse.median_rotation, worse.high_rotation)
         )
+        measures = plan_row(plan[id(item)], say) if id(item) in plan else [""] * len(PLAN_COLUMNS)
         lines.append([
-            rank, f"{verdict.light.value} {verdict.light.word}", escaped(item.name), item.count, item.row,
-            worse.direction, round(verdict.uplift_acceleration / g, 4), worse.count, worse.lifted, worse.overturned,
-            round(100.0 * low, 2), round(100.0 * high, 2), *rotations, others,
+            rank, light_words(verdict.light, say), escaped(item.name), item.count, item.row,
+            say(f"direction.{worse.direction}"), round(verdict.uplift_acceleration / g, 4), worse.count, worse.lifted,
+            worse.overturned, round(100.0 * low, 2), round(100.0 * high, 2), *rotations, others,
             sentence(verdict, assessment),
             f"{advice(verdict, assessment)} {model_note(verdict, assessment)}".strip(), escaped(item.note),
+            say(f"consequence.{item.consequence}"), escaped(remarks(verdict, assessment)), *measures,
         ])  # fmt: skip
     for refused in assessment.not_assessed:
-        line: list[str | float | int] = [""] * len(HEADER)
-        line[1], line[2], line[4] = "not assessed", escaped(refused.name), refused.row
-        line[HEADER.index("in words")] = f"not assessed: {refused.reason}"
+        line: list[str | float | int] = [""] * (len(COLUMNS) + len(PLAN_COLUMNS))
+        line[1], line[2], line[4] = say("sheet.not_assessed"), escaped(refused.name), refused.row
+        line[_WORDS] = say("sheet.not_assessed_why", reason=words_of(assessment).translated(refused.reason))
         lines.append(line)
     return lines
+
+
+def plan_row(entry: PlanEntry, say: Language) -> list[str | float]:
+    """Return what is in the plan of an object, by `PLAN_COLUMNS`."""
+    if not entry.computed:
+        return [entry.spared, entry.gain, say("plan.in_space"), *[""] * (len(PLAN_COLUMNS) - 3)]
+    ways = (entry.wider, entry.lower, entry.weaker)
+    wider, lower, moved = (say("plan.serves_not") if each is None else round(100.0 * each, 3) for each in ways)
+    forces = (entry.ballast, entry.pull, entry.force, entry.shear)
+    ballast, *anchors = ("" if each is None else float(f"{each:.3g}") for each in forces)
+    return [round(entry.spared, 3), round(entry.gain, 3), wider, lower, ballast, *anchors, moved]
+
+
+def plan_words(entry: PlanEntry, say: Language) -> str:
+    """Return what would make an object green, any one of it, as a sentence."""
+    if not entry.computed:
+        return say("plan.sentence", name=entry.item.name, options=say("plan.in_space"))
+    assert entry.pull is not None
+    options = []
+    if entry.wider is not None:
+        options.append(say("plan.wider", wider=100.0 * entry.wider))
+    if entry.lower is not None and entry.ballast is not None:
+        options.append(say("plan.ballasted", lower=100.0 * entry.lower, ballast=entry.ballast))
+    elif entry.lower is not None:
+        options.append(say("plan.lower", lower=100.0 * entry.lower))
+    if entry.weaker is not None:
+        options.append(say("plan.moved", share=100.0 * entry.weaker))
+    if not options:
+        options.append(say("plan.nothing"))
+    weight = say("plan.weight", share=entry.pull)
+    pull = weight if entry.force is None else say("plan.newton", force=entry.force)
+    return say("plan.sentence", name=entry.item.name, options="; ".join([*options, say("plan.anchors", pull=pull)]))
 
 
 def as_csv(assessment: Assessment) -> str:
     """Return the table as CSV; its last line names the columns of the list that were not read, if any."""
     text = io.StringIO(newline="")
     writer = csv.writer(text)
-    writer.writerow(HEADER)
+    titles = header(language("en"))
+    writer.writerow(titles)
     writer.writerows(rows(assessment))
     if assessment.ignored:
         note = f"columns of the list that were not read: {', '.join(assessment.ignored)}"
-        writer.writerow([note if title == "in words" else "" for title in HEADER])
+        writer.writerow([note if k == _WORDS else "" for k in range(len(titles))])
     return text.getvalue()
 
 
 def as_plain(assessment: Assessment) -> dict[str, Any]:
     """Return everything as plain values, for JSON: SI units, named in the keys; text as it was typed."""
-    hazard, limits = assessment.hazard, assessment.thresholds
+    hazard, thresholds = assessment.hazard, assessment.thresholds
     low, high = hazard.velocity()
     return {
         "inventory": assessment.source,
@@ -70,16 +130,39 @@ def as_plain(assessment: Assessment) -> dict[str, Any]:
             "pgv_range_m_s": [low, high],
         },
         "restitution": assessment.restitution,
+        "restitution_drawn": assessment.drawn,
         "comparisons": list(assessment.comparisons),
-        "thresholds": dict(vars(limits)) | {light.word: words for light, words in limits.sentences().items()},
+        "language": assessment.language,
+        "thresholds": dict(vars(thresholds))
+        | {light.word: words for light, words in thresholds.sentences(assessment.language).items()},
         "counts": {light.word: count for light, count in assessment.counts().items()}
         | {"not_assessed": len(assessment.not_assessed)},
+        "pieces": {light.word: count for light, count in assessment.pieces().items()},
         "objects": [_plain(rank, each, assessment) for rank, each in enumerate(assessment.verdicts, start=1)],
+        "plan": [_plan(each, words_of(assessment)) for each in assessment.plan],
         "not_assessed": [
             {"row": each.row, "name": each.name, "reason": each.reason} for each in assessment.not_assessed
         ],
         "columns_not_read": list(assessment.ignored),
-        "assumptions": list(LIMITS),
+        "assumptions": limits(words_of(assessment)),
+    }
+
+
+def _plan(entry: PlanEntry, say: Language) -> dict[str, Any]:
+    return {
+        "name": entry.item.name,
+        "row": entry.item.row,
+        "pieces_spared": entry.spared,
+        "gain": entry.gain,
+        "directions": list(entry.directions),
+        "base_wider_each_side_m": entry.wider,
+        "centre_lower_m": entry.lower,
+        "ballast_kg": entry.ballast,
+        "anchors_of_one_edge_over_weight": entry.pull,
+        "anchors_of_one_edge_n": entry.force,
+        "anchors_across_over_weight": entry.shear,
+        "moved_to_share_of_shaking": entry.weaker,
+        "in_words": plan_words(entry, say),
     }
 
 
@@ -91,6 +174,10 @@ def _plain(rank: int, verdict: Verdict, assessment: Assessment) -> dict[str, Any
         "row": item.row,
         "count": item.count,
         "note": item.note,
+        "consequence": item.consequence,
+        "shape": item.shape,
+        "approximate_m": dict(item.approximate),
+        "remarks": list(item.remarks),
         "light": verdict.light.word,
         "worse_direction": verdict.worse.direction,
         "uplift_acceleration_m_s2": verdict.uplift_acceleration,
@@ -125,53 +212,41 @@ def _direction(result: DirectionResult) -> dict[str, Any]:
     return plain | {"light": result.light.word}
 
 
-SLIDING = (
-    "Sliding is not assessed without a friction: an object on a smooth floor or shelf may slide before it rocks, "
-    "and slide off its support."
-)
-"""What no verdict covers."""
+def words_of(assessment: Assessment) -> Language:
+    """Return the language in which an assessment is reported."""
+    return language(assessment.language)
 
-LIMITS = (
-    SLIDING,
-    "Objects are rigid and stand freely on a rigid, level floor, at the shaking given: what a building, a pedestal or "
-    "a shelf adds to the motion of the ground must be in that shaking.",
-    "Each motion acts once along the width and once along the depth; the worse direction counts. Rocking in both "
-    "directions at once, twisting and rolling on the rim of a round base are not computed.",
-    "Each direction is a rectangle of the outer size, on the base that is given; where no height of the centre of mass "
-    "is given it is half the height. With a friction or a body file the object moves in three dimensions instead, by "
-    "KED where no model was asked for, as nothing was measured there.",
-    "Blows from neighbours, shaking loose, and damage without falling are not assessed.",
-)
-"""What every report says about the assumptions."""
+
+def light_words(light: Light, say: Language) -> str:
+    """Return a light for files: its letter and its word."""
+    return f"{say(f'letter.{light.word}')} {say(f'light.{light.word}')}"
+
+
+def remarks(verdict: Verdict, assessment: Assessment) -> str:
+    """Return what was assumed of an object, or left aside."""
+    return " ".join(map(words_of(assessment).translated, verdict.item.remarks))
 
 
 def sentence(verdict: Verdict, assessment: Assessment) -> str:
     """Return what an object does."""
-    hazard = assessment.hazard
-    still = f"Stays still up to {_in_g(verdict.uplift_acceleration)}"
-    if hazard.vertical:
-        still += " of level shaking alone"
-    worse = verdict.worse
-    at = f"at {hazard.words()}"
-    if worse.failed:
-        at += f" ({worse.failed} of {worse.count + worse.failed} motions could not be computed)"
-    words = f"{still}; {at} {_fate(worse, hazard.synthetic)}"
-    if worse.slid:
-        words += f"; it slides in {worse.slid}"
-    if worse.lost_contact:
-        words += f"; in {worse.lost_contact} the ground would have to pull, and the verdict assumes contact"
-    return f"{words}."
+    say, hazard, worse = words_of(assessment), assessment.hazard, verdict.worse
+    limit = say.number(_in_g(verdict.uplift_acceleration))
+    still = say("still.level" if hazard.vertical else "still.whole", limit=limit)
+    also = {"failed": worse.failed, "slides": worse.slid, "pulls": worse.lost_contact}
+    numbers = {**also, "whole": worse.count + worse.failed}
+    return " ".join(
+        [f"{still}; {_fate(worse, hazard.words(say.code), hazard.synthetic, say)}."]
+        + [say(f"also.{name}", **numbers) for name, happens in also.items() if happens]
+    )
 
 
 def advice(verdict: Verdict, assessment: Assessment) -> str:
     """Return what to do about an object."""
-    if verdict.light is Light.GREEN:
-        return "Nothing to do for rocking; check that it cannot slide off."
-    base = f": {_base(verdict, assessment)}" if verdict.friction is None else ""
-    how = f"Secure it, lower its centre of mass, or widen its base{base}."
-    if verdict.light is Light.AMBER:
-        return f"{how} Give it room to rock without touching its neighbours."
-    return f"{how} Until then keep people and other objects out of its reach."
+    say, light = words_of(assessment), verdict.light
+    if light is Light.GREEN:
+        return say("advice.green")
+    how = say("advice.secure") if verdict.friction is not None else _base(verdict, assessment)
+    return f"{how} {say(f'advice.{light.word}')}"
 
 
 def _lights(verdict: Verdict, assessment: Assessment) -> dict[str, str]:
@@ -181,17 +256,20 @@ def _lights(verdict: Verdict, assessment: Assessment) -> dict[str, str]:
 
 def model_note(verdict: Verdict, assessment: Assessment) -> str:
     """Return whether the model of impact decides, as a sentence; empty if all models show the same light."""
-    pairs = zip(assessment.comparisons, verdict.worse_compared, strict=True)
+    say, pairs = words_of(assessment), zip(assessment.comparisons, verdict.worse_compared, strict=True)
     others = [
-        f"{name} shows {each.light.word} ({each.overturned} of {each.count} overturn)"
+        say(
+            "model.other", name=name, light=say(f"light.{each.light.word}"), overturned=each.overturned,
+            count=each.count,
+        )
         for name, each in pairs if each.light is not verdict.light
     ]  # fmt: skip
-    return f"The model of impact decides: {', '.join(others)}." if others else ""
+    return say("model.decides", others=", ".join(others)) if others else ""
 
 
-def rotation_words(value: float | None) -> str:
+def rotation_words(value: float | None, say: Language) -> str:
     """Return a peak rotation over the slenderness angle in words; None overturns."""
-    return "overturns" if value is None else f"{value:.2f}"
+    return say("report.overturns") if value is None else say.number(f"{value:.2f}")
 
 
 def rounded_down(value: float, digits: int) -> str:
@@ -204,31 +282,26 @@ def rounded_down(value: float, digits: int) -> str:
 
 
 def _in_g(acceleration: float) -> str:
-    return f"{rounded_down(acceleration / g, 2 if acceleration >= 0.1 * g else 3)} g"
+    return rounded_down(acceleration / g, 2 if acceleration >= 0.1 * g else 3)
 
 
 def _base(verdict: Verdict, assessment: Assessment) -> str:
     """Return the base that no motion would lift, as ``g b / h`` has it, at the same height of the centre."""
-    way, peak = verdict.worse.direction, assessment.hazard.peak()
+    say, way, peak = words_of(assessment), verdict.worse.direction, assessment.hazard.peak()
     now = verdict.item.base(way)
     needed = math.ceil(100.0 * now * peak / verdict.worse.uplift_acceleration - 1e-9)
     own = verdict.item.width if way == "width" else verdict.item.depth
-    size = f"{100.0 * now:.3g} cm"
-    words = f"its {way} is {size}" if now == own else f"its base is {size} along the {way}"
-    return words if assessment.hazard.vertical else f"{words}, and {needed} cm would not be lifted"
+    key = ("size" if now == own else "base") + ("_alone" if assessment.hazard.vertical else "")
+    return say(f"advice.{key}", way=say(f"direction.{way}"), size=100.0 * now, needed=needed)
 
 
-def _fate(result: DirectionResult, synthetic: bool) -> str:
-    motions = "simulated earthquakes" if synthetic else "records"
-    of = f"{result.count} {motions}" if result.count > 1 else f"the one {motions.removesuffix('s')}"
-    if result.lifted == 0 and result.slid:
-        return f"it does not rock in any of {of}"
-    if result.lifted == 0:
-        return f"it stood still in all of {result.count} {motions}" if result.count > 1 else f"it stood still in {of}"
-    if result.overturned:
-        fell = f"fell over in {result.overturned} of {of}" if result.count > 1 else f"fell over in {of}"
-        return f"it rocks, and {fell}"
+def _fate(result: DirectionResult, level: str, synthetic: bool, say: Language) -> str:
     high = result.high_rotation or 0.0
-    how = "barely rocks" if high < 0.05 else "rocks a little" if high < 0.2 else "rocks"
-    none = f"fell over in none of {of}" if result.count > 1 else f"did not fall over in {of}"
-    return f"it {how}, and {none}"
+    if result.lifted == 0:
+        fate = "no_rocking" if result.slid else "still"
+    elif result.overturned:
+        fate = "fell"
+    else:
+        fate = "barely" if high < 0.05 else "little" if high < 0.2 else "rocks"
+    motions = say("motions.simulated" if synthetic else "motions.records", count=result.count)
+    return say(f"fate.{fate}", level=level, motions=motions, overturned=result.overturned, count=result.count)

@@ -17,7 +17,7 @@ from rocking.studies.inventory import InventoryObject, Thresholds, assess, parse
 from rocking.studies.inventory import assessment as module
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.lights import Light
-from rocking.studies.inventory.table import HEADER, as_csv, as_plain, rows
+from rocking.studies.inventory.table import COLUMNS, as_csv, as_plain, rows
 from rocking.tables import escaped
 
 pytestmark = pytest.mark.verifies(room="studies")
@@ -206,7 +206,7 @@ def test_no_cell_is_a_formula(text, quakes):
     assert escaped(text) == "'" + text
     good = InventoryObject(name=text, width=0.5, depth=1.0, height=2.0, note=text)
     lines = rows(assess([good], quakes))
-    assert lines[0][HEADER.index("name")] == lines[0][HEADER.index("note")] == "'" + text
+    assert lines[0][COLUMNS.index("name")] == lines[0][COLUMNS.index("note")] == "'" + text
     bad = parse_inventory(f'name,width_cm,depth_cm,height_cm,note\n"{text}",?,1,1,x')
     for line in rows(assess(bad, quakes)):
         assert not any(isinstance(cell, str) and cell.lstrip(" ").startswith(("=", "+", "-", "@")) for cell in line)
