@@ -5,7 +5,7 @@ import string
 import tomllib
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 LANGUAGES = {"en": ".", "de": ",", "it": ","}
@@ -138,7 +138,7 @@ def language(code: str) -> Language:
 @lru_cache(maxsize=8)
 def catalogue(code: str) -> dict[str, str]:
     """Return the sentences of a language by their names."""
-    text = files("rocking.language").joinpath(f"{code}.toml").read_text(encoding="utf-8")
+    text = Path(__file__).with_name(f"{code}.toml").read_text(encoding="utf-8")
     return dict(_flat(tomllib.loads(text)))
 
 

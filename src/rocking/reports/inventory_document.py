@@ -14,6 +14,7 @@ from rocking.studies.inventory.table import (
     model_note,
     plan_header,
     plan_row,
+    plan_words,
     remarks,
     rotation_words,
     rounded_down,
@@ -119,11 +120,12 @@ class _Sections:
     def plan(self) -> ReportSection:
         say, assessment = self.say, self.assessment
         header = [*self._header("object"), *plan_header(say)]
-        rows = [[each.item.name, *map(self._figure, plan_row(each, say))] for each in assessment.plan]
+        rows = [[each.item.name, *map(self._figure, plan_row(each, say))] for each in assessment.plan if each.computed]
+        others = [Paragraph(plan_words(each, say)) for each in assessment.plan if not each.computed]
         weights = {name: 1.0 / assessment.thresholds.factor(name) for name in ("low", "high")}
         lead = Paragraph(say("plan.lead", **weights))
         plan = table(say("plan.caption"), header, rows, say("plan.note"), "plan")
-        return ReportSection(say("plan.title"), [lead, plan] if rows else [])
+        return ReportSection(say("plan.title"), [lead, plan, *others] if rows else others)
 
     def _figure(self, value: str | float) -> str:
         return value if isinstance(value, str) else self.say.number(f"{value:.6g}")
@@ -177,10 +179,10 @@ class _Sections:
         low, high = hazard.velocity()
         source, (first, *rest) = say.translated(hazard.source), assessment.comparisons
         others = say("report.and", one=first, other=rest[0]) if rest else first
-        impacts = say(f"report.impacts{'_drawn' * assessment.drawn}", restitution=assessment.restitution, others=others)
+        impacts = "report.impacts_drawn" if assessment.drawn else "report.impacts"
         source, level = f"{source[:1].upper()}{source[1:]}", hazard.words(say.code)
         motions = say("report.hazard", source=source, level=level, low=low, high=high)
-        blocks = [Paragraph(motions), Paragraph(impacts)]
+        blocks = [Paragraph(motions), Paragraph(say(impacts, restitution=assessment.restitution, others=others))]
         if hazard.synthetic:
             origin = {name: say.translated(hazard.description[name]) for name in ("generator", "origin")}
             blocks.insert(1, Paragraph(say("report.origin", **origin)))

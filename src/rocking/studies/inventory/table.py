@@ -77,7 +77,7 @@ def plan_row(entry: PlanEntry, say: Language) -> list[str | float]:
     ways = (entry.wider, entry.lower, entry.weaker)
     wider, lower, moved = (say("plan.serves_not") if each is None else round(100.0 * each, 3) for each in ways)
     forces = (entry.ballast, entry.pull, entry.force, entry.shear)
-    ballast, *anchors = ("" if each is None else float(f"{each:.3g}") for each in forces)
+    ballast, *anchors = ("" if each is None else rounded_up(each) for each in forces)
     return [round(entry.spared, 3), round(entry.gain, 3), wider, lower, ballast, *anchors, moved]
 
 
@@ -88,17 +88,19 @@ def plan_words(entry: PlanEntry, say: Language) -> str:
     assert entry.pull is not None
     options = []
     if entry.wider is not None:
-        options.append(say("plan.wider", wider=100.0 * entry.wider))
+        options.append(say("plan.wider", wider=_demanded(100.0 * entry.wider, say)))
     if entry.lower is not None and entry.ballast is not None:
-        options.append(say("plan.ballasted", lower=100.0 * entry.lower, ballast=entry.ballast))
+        options.append(
+            say("plan.ballasted", lower=_demanded(100.0 * entry.lower, say), ballast=_demanded(entry.ballast, say))
+        )
     elif entry.lower is not None:
-        options.append(say("plan.lower", lower=100.0 * entry.lower))
+        options.append(say("plan.lower", lower=_demanded(100.0 * entry.lower, say)))
     if entry.weaker is not None:
         options.append(say("plan.moved", share=100.0 * entry.weaker))
     if not options:
         options.append(say("plan.nothing"))
     weight = say("plan.weight", share=entry.pull)
-    pull = weight if entry.force is None else say("plan.newton", force=entry.force)
+    pull = weight if entry.force is None else say("plan.newton", force=_demanded(entry.force, say))
     return say("plan.sentence", name=entry.item.name, options="; ".join([*options, say("plan.anchors", pull=pull)]))
 
 
@@ -270,6 +272,20 @@ def model_note(verdict: Verdict, assessment: Assessment) -> str:
 def rotation_words(value: float | None, say: Language) -> str:
     """Return a peak rotation over the slenderness angle in words; None overturns."""
     return say("report.overturns") if value is None else say.number(f"{value:.2f}")
+
+
+def rounded_up(value: float) -> float:
+    """Return what is demanded in three digits, never less than it is.
+
+    >>> rounded_up(2588.96), rounded_up(0.062), rounded_up(0.0)
+    (2590.0, 0.062, 0.0)
+    """
+    digits = 2 - math.floor(math.log10(value)) if value > 0.0 else 0
+    return round(math.ceil(value * 10.0**digits - 1e-9) / 10.0**digits, max(digits, 0))
+
+
+def _demanded(value: float, say: Language) -> str:
+    return say.number(f"{rounded_up(value):.10g}")
 
 
 def rounded_down(value: float, digits: int) -> str:
