@@ -162,7 +162,7 @@ class InventoryAnswer:
             line.append(f"{say(f'mark.{verdict.light.word}'):<7}", style=_STYLES[verdict.light.name])
             line.append(f"  {verdict.item.name}: {table.sentence(verdict, assessment)}")
             page.rich(line)
-            notes = [getattr(table, name)(verdict, assessment) for name in ("advice", "model_note", "remarks")]
+            notes = [getattr(table, name)(verdict, assessment) for name in ("advice", "model_note", "noted")]
             page.line(f"{'':12} {' '.join(filter(None, notes))}", "dim")
         for refused in assessment.not_assessed:
             reason, name = say.translated(refused.reason), refused.name or say("sheet.no_name")

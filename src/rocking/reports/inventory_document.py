@@ -12,10 +12,10 @@ from rocking.studies.inventory.table import (
     advice,
     limits,
     model_note,
+    noted,
     plan_header,
     plan_row,
     plan_words,
-    remarks,
     rotation_words,
     rounded_down,
     sentence,
@@ -107,7 +107,7 @@ class _Sections:
             name = say("report.noted", name=name, note=item.note)
         if item.consequence != "medium":
             name = say("report.consequence", name=name, consequence=say(f"consequence.{item.consequence}"))
-        words = [sentence(verdict, self.assessment), remarks(verdict, self.assessment)]
+        words = [sentence(verdict, self.assessment), noted(verdict, self.assessment)]
         if item.photo is not None and not self.photos.get(place):
             words.append(say("report.no_photo", file=item.photo.name))
         what_to_do = f"{advice(verdict, self.assessment)} {model_note(verdict, self.assessment)}"

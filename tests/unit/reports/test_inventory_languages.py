@@ -115,7 +115,10 @@ def test_photos_that_can_be_shown_are_and_others_fail_no_report(found, tmp_path,
 def test_remarks_and_consequence_stand_beside_the_object(found):
     """What was assumed of a row is in its line; a consequence that is not medium too."""
     first, *others = found.verdicts
-    noted = replace(first, item=replace(first.item, remarks=("Height guessed.",)))
+    noted = replace(
+        first,
+        item=replace(first.item, remarks=("Maß '1,2?': height taken as 1.2 m, give or take 0.06 m", "it has no name")),
+    )
     text = texts(inventory_document(replace(found, verdicts=(noted, *others))))
-    assert "Height guessed." in text
+    assert "Hinweis: Maß '1,2?': Höhe angenommen zu 1,2 m, plus oder minus 0,06 m; es hat keinen Namen." in text
     assert "Vase (x 2), Meißen; Folgen eines Sturzes: schwer" in text

@@ -14,7 +14,7 @@ from rocking.studies.inventory.hazard import COUNT, FAMILY, SEED, Hazard, Intens
 from rocking.studies.inventory.lights import Light, Thresholds
 from rocking.studies.inventory.objects import DIRECTIONS, InventoryObject
 from rocking.studies.inventory.reading import Inventory, read_inventory
-from rocking.studies.inventory.table import advice, sentence
+from rocking.studies.inventory.table import advice, plan_words, sentence, words_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -65,7 +65,7 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
         The family of synthetic motions, or records; each acts in either direction by itself.
     restitution : str, RestitutionModel, float or mapping
         Model of impact; the verdict of Housner's stands beside it (of KED, if Housner's was asked for). The calibrated
-        default if not given, with both beside it; in three dimensions KED.
+        default if not given, drawn with its scatter for every motion, with both beside it; in three dimensions KED.
     pga, pgv : str or float, optional
         Peak ground acceleration or velocity to which every motion is scaled, such as ``"0.3g"`` or ``"25cm/s"``, a
         number in SI; synthetic motions need one of the two, records are taken as they are without [m/s2 or m/s].
@@ -89,8 +89,9 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     -------
     xarray.Dataset
         Over ``object``, the worst first: light, worse direction, acceleration of uplift, interval of the share that
-        overturns, and both sentences; over ``restitution``, ``object`` and ``direction``: motions that lift it and
-        overturn it, and rotations; over ``not_assessed`` the rows without a verdict and why; with units.
+        overturns, and sentences, one of them with what would make it green; over ``restitution``, ``object`` and
+        ``direction``: motions that lift it and overturn it, and rotations; over ``not_assessed`` the rows without a
+        verdict and why; with units.
 
     Raises
     ------
@@ -143,6 +144,7 @@ def dataset_of(assessment: Assessment) -> "xr.Dataset":
     xarray = extra("xarray", "inventory")
     verdicts, sentences = assessment.verdicts, assessment.thresholds.sentences(assessment.language)
     names = [assessment.restitution, *assessment.comparisons]
+    plan, say = {id(each.item): each for each in assessment.plan}, words_of(assessment)
     by_model = [[each.results for each in verdicts], *zip(*(each.compared for each in verdicts), strict=True)]
     results = [one for of_model in by_model for results in of_model for one in results]
     shape = (len(names), len(verdicts), len(DIRECTIONS))
@@ -165,6 +167,7 @@ def dataset_of(assessment: Assessment) -> "xr.Dataset":
             {"units": "1", "long_name": "interval of the share that overturns in the worse direction"},
         ),
         "in_words": ("object", [sentence(each, assessment) for each in verdicts]),
+        "measures": ("object", [plan_words(plan[key], say) if (key := id(each.item)) in plan else "" for each in verdicts]),
         "what_to_do": ("object", [advice(each, assessment) for each in verdicts]),
         **{name: table(name, *about) for name, about in _OF_DIRECTIONS.items()},
         "reason": ("not_assessed", [each.reason for each in assessment.not_assessed]),

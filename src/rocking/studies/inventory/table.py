@@ -226,7 +226,13 @@ def light_words(light: Light, say: Language) -> str:
 
 def remarks(verdict: Verdict, assessment: Assessment) -> str:
     """Return what was assumed of an object, or left aside."""
-    return " ".join(map(words_of(assessment).translated, verdict.item.remarks))
+    return "; ".join(words_of(assessment).translated(each.rstrip(".")) for each in verdict.item.remarks)
+
+
+def noted(verdict: Verdict, assessment: Assessment) -> str:
+    """Return the remarks as a sentence; nothing where there are none."""
+    said = remarks(verdict, assessment)
+    return words_of(assessment)("report.remarks", remarks=said) if said else ""
 
 
 def sentence(verdict: Verdict, assessment: Assessment) -> str:
