@@ -167,7 +167,7 @@ def dataset_of(assessment: Assessment) -> "xr.Dataset":
             {"units": "1", "long_name": "interval of the share that overturns in the worse direction"},
         ),
         "in_words": ("object", [sentence(each, assessment) for each in verdicts]),
-        "measures": ("object", [plan_words(plan[key], say) if (key := id(each.item)) in plan else "" for each in verdicts]),
+        "measures": ("object", [plan_words(plan[k], say) if (k := id(each.item)) in plan else "" for each in verdicts]),
         "what_to_do": ("object", [advice(each, assessment) for each in verdicts]),
         **{name: table(name, *about) for name, about in _OF_DIRECTIONS.items()},
         "reason": ("not_assessed", [each.reason for each in assessment.not_assessed]),
