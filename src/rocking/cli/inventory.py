@@ -160,7 +160,7 @@ class InventoryAnswer:
         for rank, verdict in enumerate(assessment.verdicts, start=1):
             line = Text(f"{rank:3}  ")
             line.append(f"{say(f'mark.{verdict.light.word}'):<7}", style=_STYLES[verdict.light.name])
-            line.append(f"  {verdict.item.name}: {table.sentence(verdict, assessment)}")
+            line.append(f"  {table.named(verdict, say)}: {table.sentence(verdict, assessment)}")
             page.rich(line)
             notes = [getattr(table, name)(verdict, assessment) for name in ("advice", "model_note", "noted")]
             page.line(f"{'':12} {' '.join(filter(None, notes))}", "dim")
@@ -171,7 +171,7 @@ class InventoryAnswer:
             page.line(f"\n{say('plan.heading')}")
             for k, entry in enumerate(plan[:_MOST_PLANNED], start=1):
                 page.line(f"{k:3}  {table.plan_words(entry, say)}")
-            if left := len(plan) - _MOST_PLANNED if len(plan) > _MOST_PLANNED else 0:
+            if (left := len(plan) - _MOST_PLANNED) > 0:
                 page.line(f"     {say('plan.more', count=left)}")
         lights = assessment.thresholds.sentences(say.code).items()
         page.line("\n" + "\n".join(f"{say(f'light.{light.word}').upper()}: {text}" for light, text in lights))

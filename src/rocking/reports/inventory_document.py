@@ -12,6 +12,7 @@ from rocking.studies.inventory.table import (
     advice,
     limits,
     model_note,
+    named,
     noted,
     plan_header,
     plan_row,
@@ -102,16 +103,11 @@ class _Sections:
 
     def _ranked(self, place: int, verdict: Verdict) -> list[object]:
         say, item = self.say, verdict.item
-        name = say("report.named", name=item.name, count=item.count) if item.count > 1 else item.name
-        if item.note:
-            name = say("report.noted", name=name, note=item.note)
-        if item.consequence != "medium":
-            name = say("report.consequence", name=name, consequence=say(f"consequence.{item.consequence}"))
         words = [sentence(verdict, self.assessment), noted(verdict, self.assessment)]
         if item.photo is not None and not self.photos.get(place):
             words.append(say("report.no_photo", file=item.photo.name))
         what_to_do = f"{advice(verdict, self.assessment)} {model_note(verdict, self.assessment)}"
-        shown = Cell(name, picture=self.photos.get(place, ""))
+        shown = Cell(named(verdict, say), picture=self.photos.get(place, ""))
         return [place + 1, self._light(verdict.light), shown, " ".join(filter(None, words)), what_to_do.strip()]
 
     def _light(self, light: Light, mark: str | None = None) -> Cell:

@@ -232,7 +232,19 @@ def remarks(verdict: Verdict, assessment: Assessment) -> str:
 def noted(verdict: Verdict, assessment: Assessment) -> str:
     """Return the remarks as a sentence; nothing where there are none."""
     said = remarks(verdict, assessment)
-    return words_of(assessment)("report.remarks", remarks=said) if said else ""
+    return words_of(assessment)("report.remarks", remarks=said).replace("?.", "?") if said else ""
+
+
+def named(verdict: Verdict, say: Language) -> str:
+    """Return the name of an object, with how many there are, its note, and a consequence that is not medium."""
+    item, name = verdict.item, verdict.item.name
+    if item.count > 1:
+        name = say("report.named", name=name, count=item.count)
+    if item.note:
+        name = say("report.noted", name=name, note=item.note)
+    if item.consequence != "medium":
+        name = say("report.consequence", name=name, consequence=say(f"consequence.{item.consequence}"))
+    return name
 
 
 def sentence(verdict: Verdict, assessment: Assessment) -> str:
