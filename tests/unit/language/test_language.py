@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from rocking.language import LANGUAGES, Language, language
-from rocking.language import _language as module
-from rocking.language._language import catalogue
+import rocking.language
+from rocking.language import LANGUAGES, Language, catalogue, language
 
 OTHERS = [code for code in LANGUAGES if code != "en"]
 
@@ -51,7 +50,7 @@ def test_no_sentence_was_left_in_english(code):
 @pytest.mark.parametrize("code", LANGUAGES)
 def test_every_sentence_is_asked_for(code):
     """No entry that nothing in the source names: by its whole name, or by what stands before a name that is made."""
-    source = "\n".join(path.read_text("utf-8") for path in Path(module.__file__).parents[1].rglob("*.py"))
+    source = "\n".join(path.read_text("utf-8") for path in Path(rocking.language.__file__).parents[1].rglob("*.py"))
     asked = {*re.findall(r"[\"']([a-z_]+(?:\.[a-z_]+)*)[\"']", source)}
     made = {text.partition("{")[0] for text in re.findall(r"f\"([a-z.]+\.\{[^\"]*)\"", source)}
     lost = [

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from rocking.language._language import catalogue, language
+from rocking.language import catalogue, language
 from rocking.reports.inventory_document import inventory_document
 from rocking.reports.inventory_folder import write_inventory_file
 from rocking.reports.inventory_photos import thumbnails

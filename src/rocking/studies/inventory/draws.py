@@ -14,7 +14,7 @@ from rocking.restitution.calibrated import drawn
 from rocking.studies.inventory.objects import SMALLEST, InventoryObject
 from rocking.studies.sensitivity.restitutions import uniforms
 
-STRATA = 10
+STRATA = 5
 """Bodies standing for an object of approximate sizes: a Latin hypercube, which the motions take one after another."""
 
 _SIZES = ("width", "depth", "height", "base_width", "base_depth", "centre_of_mass_height")
@@ -30,10 +30,9 @@ class Draws:
 
     def bodies(self, item: InventoryObject) -> list[InventoryObject]:
         """Return the objects that stand for one; itself if its sizes are known."""
-        if not any(half > 0.0 for half in item.approximate.values()):
-            return [item]
-        return [_resized(item, {name: 2.0 * self._level(item, name)[k] - 1.0 for name in item.approximate})
-                for k in range(STRATA)]  # fmt: skip
+        levels = {name: self._level(item, name) for name in _SIZES if item.approximate.get(name, 0.0) > 0.0}
+        every = [{name: 2.0 * each[k] - 1.0 for name, each in levels.items()} for k in range(STRATA)]
+        return [_resized(item, shares) for shares in every] if levels else [item]
 
     def number(self, bodies: int) -> IntArray:
         """Return which of so many bodies each motion has."""
@@ -62,21 +61,18 @@ def slenderest(item: InventoryObject) -> InventoryObject:
     return _resized(item, higher) if higher else item
 
 
-def geometries(bodies: Sequence[Body], onto: Foot) -> ImpactGeometry:
-    """Return the impacts of bodies onto a foot."""
+def impacts(bodies: Sequence[Body], onto: Foot, number: IntArray) -> ImpactGeometry:
+    """Return the impacts onto a foot of those bodies that each motion has."""
     each = [ImpactGeometry.of_body(body, onto) for body in bodies]
-    return ImpactGeometry(*(np.array([getattr(one, name) for one in each]) for name in ImpactGeometry.__slots__))
-
-
-def chosen(geometry: ImpactGeometry, number: IntArray) -> ImpactGeometry:
-    """Return those of some of its impacts."""
-    return ImpactGeometry(*(getattr(geometry, name)[number] for name in ImpactGeometry.__slots__))
+    return ImpactGeometry(
+        *(np.array([getattr(one, name) for one in each])[number] for name in ImpactGeometry.__slots__)
+    )
 
 
 def restitutions(draws: Draws, bodies: Sequence[Body]) -> dict[Foot, FloatArray]:
     """Return the coefficients onto both feet under each motion, at the same probabilities [-]."""
     number = draws.number(len(bodies))
-    return {foot: draws.restitution(chosen(geometries(bodies, foot), number)) for foot in FEET}
+    return {foot: draws.restitution(impacts(bodies, foot, number)) for foot in FEET}
 
 
 def _resized(item: InventoryObject, shares: dict[str, float]) -> InventoryObject:

@@ -115,7 +115,7 @@ class Thresholds:
         if consequence == "medium":
             return self
         factor = self.factor(consequence)
-        green, red = (min(factor * each, _MOST) for each in (self.overturning_green, self.overturning_red))
+        green, red = (round(min(factor * each, _MOST), 12) for each in (self.overturning_green, self.overturning_red))
         return replace(self, overturning_green=green, overturning_red=red, low_consequence=1.0, high_consequence=1.0)
 
     def light(self, *, lifted: int, overturned: int, count: int, high_rotation: float | None, failed: int = 0) -> Light:

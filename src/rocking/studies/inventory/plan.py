@@ -14,7 +14,7 @@ from rocking.motions import peak_ground_acceleration, peak_ground_velocity
 from rocking.outcome import overturned
 from rocking.restitution import ImpactGeometry
 from rocking.studies.histories import HistoryTable, results_of
-from rocking.studies.inventory.draws import Draws, chosen, geometries, slenderest
+from rocking.studies.inventory.draws import Draws, impacts, slenderest
 from rocking.studies.inventory.hazard import Hazard
 from rocking.studies.inventory.objects import Direction, InventoryObject
 from rocking.studies.motion_sets import MotionList
@@ -137,7 +137,7 @@ class _Subject:
         self.planner, self.item, self.directions = planner, item, directions
         self._bodies = {way: [each.body(way) for each in planner.draws.bodies(item)] for way in directions}
         self._number = planner.draws.number(len(next(iter(self._bodies.values()))))
-        self._right = {way: chosen(geometries(bodies, "right"), self._number) for way, bodies in self._bodies.items()}
+        self._right = {way: impacts(bodies, "right", self._number) for way, bodies in self._bodies.items()}
         # of approximate sizes, those that lift first
         self._worst = [slenderest(item).body(way) for way in directions]
 
