@@ -117,3 +117,18 @@ def test_a_column_that_looks_like_a_measure_is_not_dropped(refuses, objects):
 def test_level_without_a_leading_zero(answered, objects):
     """A level may be typed as .3g."""
     assert answered(objects, "--pga", ".3g", *FEW)["hazard"]["level"] == "PGA 0.3 g"
+
+
+def test_in_german_with_a_plan(printed, objects):
+    """A language by --set: German sentences, decimal commas, and what to do first; of none, English and said so."""
+    out = printed(objects, "--pga", "0.3g", *FEW, "--set", "inventory.language=de")
+    for words in (
+        "1  ROT      tall vase: Steht still bis 0,13 g",
+        "Was zuerst zu tun ist",
+        "Standfläche auf jeder Seite",
+    ):
+        assert words in out
+    assert "Stays still" not in out
+    english = printed(objects, "--pga", "0.3g", *FEW, "--set", "inventory.language=el")
+    assert "in the language el, of which there are no words yet" in english
+    assert "What to do first, any one of:" in english

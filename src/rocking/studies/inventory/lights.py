@@ -10,7 +10,7 @@ from rocking.statistics.counts import share_interval
 
 # 0.07 * 100 is 7.000000000000001: seven of a hundred must reach it
 _ROUNDING = 1e-9
-_MOST = 0.99  # no share is tolerated that is larger, whatever the consequence
+_MOST = 0.99  # no larger share is green, whatever the consequence
 
 
 class Light(Enum):
@@ -115,7 +115,7 @@ class Thresholds:
         if consequence == "medium":
             return self
         factor = self.factor(consequence)
-        green, red = (round(min(factor * each, _MOST), 12) for each in (self.overturning_green, self.overturning_red))
+        green, red = round(min(factor * self.overturning_green, _MOST), 12), min(factor * self.overturning_red, 1.0)
         return replace(self, overturning_green=green, overturning_red=red, low_consequence=1.0, high_consequence=1.0)
 
     def light(self, *, lifted: int, overturned: int, count: int, high_rotation: float | None, failed: int = 0) -> Light:
