@@ -10,7 +10,7 @@ from rocking.language import catalogue, language
 from rocking.reports.inventory_document import inventory_document
 from rocking.reports.inventory_folder import write_inventory_file
 from rocking.reports.inventory_photos import thumbnails
-from rocking.studies.inventory import Inventory, InventoryObject, assess
+from rocking.studies.inventory import Inventory, InventoryObject, assess, parse_inventory
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.objects import NotAssessed
 from rocking.studies.inventory.table import as_plain
@@ -122,3 +122,13 @@ def test_remarks_and_consequence_stand_beside_the_object(found):
     text = texts(inventory_document(replace(found, verdicts=(noted, *others))))
     assert "Hinweis: Maß '1,2?': Höhe angenommen zu 1,2 m, plus oder minus 0,06 m; es hat keinen Namen." in text
     assert "Vase (x 2), Meißen; Folgen eines Sturzes: schwer" in text
+
+
+def test_reasons_of_the_reader_are_translated():
+    """What the reader itself says of rows that it refuses is in German where it is reported in German."""
+    text = "name,width_cm,depth_cm,height_cm,base_width_cm\nurn,30,30,90,40\nmirror,75,?,160,"
+    inventory = replace(parse_inventory(text), objects=OBJECTS[2:], language="de")
+    hazard = Hazard.of_family("firm-ground", IntensityLevel("PGA", 1.0), count=1)
+    said = texts(inventory_document(assess(inventory, hazard)))
+    assert "Breite der Standfläche darf höchstens so groß sein wie die Breite des Körpers, 0,3 m" in said
+    assert words_in(said) == []
