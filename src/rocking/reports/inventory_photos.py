@@ -1,5 +1,6 @@
 """Photos of an inventory: thumbnails beside the objects, and which of them cannot be shown."""
 
+import warnings
 from pathlib import Path
 
 from rocking.errors import MissingExtraError, extra
@@ -28,7 +29,7 @@ def _thumbnail(photo: Path, path: Path) -> bool:
         image, ops = extra("PIL.Image", "thumbnails"), extra("PIL.ImageOps", "thumbnails")
         if not photo.is_file() or photo.stat().st_size > MOST_BYTES:
             return False
-        with image.open(photo, formats=_FORMATS) as opened:
+        with warnings.catch_warnings(action="ignore"), image.open(photo, formats=_FORMATS) as opened:
             if opened.width * opened.height > MOST_PIXELS:
                 return False
             opened.draft("RGB", (2 * SIDE, 2 * SIDE))
