@@ -3,7 +3,7 @@
 import warnings
 from pathlib import Path
 
-from rocking.errors import MissingExtraError, extra
+from rocking.errors import extra
 from rocking.studies.inventory.assessment import Assessment
 
 MOST_BYTES, MOST_PIXELS = 64 << 20, 100_000_000
@@ -36,8 +36,6 @@ def _thumbnail(photo: Path, path: Path) -> bool:
             small = ops.exif_transpose(opened).convert("RGB")
             small.thumbnail((SIDE, SIDE))
             small.save(path, "JPEG", quality=80)
-    except MissingExtraError:
-        return False
     except Exception:  # noqa: BLE001 - decoders of damaged pictures raise anything, and no photo may fail a report
         return False
     return True
