@@ -23,8 +23,8 @@ Point = tuple[float, float]  # x and y [m]
 Foot = Literal["left", "right"]  # where a body stands or lands
 
 Kind = Literal[
-    "invalid-value", "record", "body-file", "geometry", "unknown-model", "missing-extra", "not-found", "too-large",
-    "busy", "no-room", "forbidden", "internal",
+    "invalid-value", "record", "body-file", "geometry", "unknown-model", "missing-extra", "not-found", "conflict",
+    "too-large", "busy", "no-room", "forbidden", "internal",
 ]  # fmt: skip
 MEDIA_TYPES = {
     "csv": "text/csv; charset=utf-8",
@@ -57,6 +57,7 @@ _ERRORS = {
     403: "Host or Origin is not the server's own address.",
     404: "There is no such thing.",
     405: "This takes another method.",
+    409: "Somebody else changed it meanwhile: look at it anew.",
     413: "The request, or what it asks for, is larger than one server takes.",
     415: "The body of the request is of another type than this takes.",
     422: "The input is refused; the message names value, allowed range and likely cause.",

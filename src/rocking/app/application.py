@@ -19,6 +19,8 @@ from rocking.app.answers import ERRORS, JsonAnswer, describe_api, error_answer, 
 from rocking.app.api import body, impact, info, motion, records, response
 from rocking.app.downloads import documents, pictures, tables
 from rocking.app.errors import kind_of_status
+from rocking.app.projects import router as projects
+from rocking.app.projects.store import ProjectStore
 from rocking.app.records import RecordStore
 from rocking.app.security import sessions as session
 from rocking.app.security.gate import Failures, Gate, SafeHeaders
@@ -106,15 +108,29 @@ def create_app(settings: ServerSettings) -> FastAPI:
     app.state.rocking = AppState(
         settings=settings,
         records=store,
+        projects=ProjectStore(settings.folder),
         studies=StudyManager(settings.folder, limits, store, workers=settings.workers),
-        sessions=Sessions(limits),
+        sessions=Sessions(limits, kept=settings.folder / "sessions.json"),
         heavy=ComputationQueue(limits.heavy_at_once, limits.heavy_waiting),
     )
     app.add_exception_handler(RockingError, _handler(refusal))
     app.add_exception_handler(RequestValidationError, _handler(_invalid))
     app.add_exception_handler(ValidationError, _handler(_invalid))
     app.add_exception_handler(HTTPException, _handler(_refused))
-    for part in (session, info, body, impact, records, motion, response, pictures, tables, documents, studies):
+    for part in (
+        session,
+        info,
+        body,
+        impact,
+        records,
+        motion,
+        response,
+        pictures,
+        tables,
+        documents,
+        projects,
+        studies,
+    ):
         app.include_router(part.router, responses=ERRORS)
     describe_api(app)
     _add_pages(app)
@@ -126,10 +142,16 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     yield
     app.state.rocking.heavy.close()
     app.state.rocking.studies.close()
+    app.state.rocking.projects.close()
 
 
 def _add_pages(app: FastAPI) -> None:
-    for kind, suffix in (("text/javascript", ".js"), ("text/css", ".css"), ("image/svg+xml", ".svg")):
+    for kind, suffix in (
+        ("text/javascript", ".js"),
+        ("text/javascript", ".mjs"),
+        ("text/css", ".css"),
+        ("image/svg+xml", ".svg"),
+    ):
         mimetypes.add_type(kind, suffix)  # the registry of some systems says text/plain, which browsers then refuse
 
     @app.api_route("/api-docs", methods=["GET", "HEAD"], include_in_schema=False)

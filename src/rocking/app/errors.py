@@ -18,6 +18,7 @@ _BY_STATUS = {
     401: "forbidden",
     403: "forbidden",
     404: "not-found",
+    409: "conflict",
     413: "too-large",
     414: "too-large",
     429: "busy",
@@ -45,6 +46,12 @@ class NotFound(Refused):
     """There is no such thing."""
 
     status = 404
+
+
+class Conflict(Refused):
+    """Somebody else was quicker."""
+
+    status = 409
 
 
 class TooLarge(Refused):

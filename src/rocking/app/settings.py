@@ -10,6 +10,7 @@ from rocking.app.work import ComputationQueue
 from rocking.evidence.store import data_folder
 
 if TYPE_CHECKING:
+    from rocking.app.projects.store import ProjectStore
     from rocking.app.records import RecordStore
     from rocking.app.security.sessions import Sessions
     from rocking.app.studies.manager import StudyManager
@@ -63,6 +64,7 @@ class AppState:
 
     settings: ServerSettings  # what the server was told
     records: "RecordStore"  # uploaded records
+    projects: "ProjectStore"  # what is worked on
     studies: "StudyManager"  # campaigns that run, wait or are done
     sessions: "Sessions"  # who is signed in
     heavy: ComputationQueue  # threads for long computations

@@ -27,7 +27,7 @@ _ORDINARY_FILE = 0o644 << 16
 MOST_FILES = 8  # files of an archive; ours have three at most
 _BEGINNINGS = (b"PK\x03\x04", b"PK\x05\x06")
 _ENTRY = b"PK\x01\x02"
-_MOST_ENTRIES = 64  # a packed record may hold the four bytes by chance
+_MOST_ENTRIES = 56
 _ENCRYPTED = 0x1
 
 
@@ -36,15 +36,15 @@ def bundle_of(evaluation: Evaluation) -> bytes:
     inputs, record = evaluation.inputs, record_name(evaluation.inputs)
     stream = io.BytesIO()
     with ZipFile(stream, "w") as archive:
-        _add(archive, FILE_NAME, inputs_as_toml(inputs).encode("utf-8"))
+        add_file(archive, FILE_NAME, inputs_as_toml(inputs).encode("utf-8"))
         if record is not None and inputs.motion is not None and inputs.motion.record is not None:
-            _add(archive, record, evaluation.records.content(inputs.motion.record))
-        _add(archive, "README.txt", _words(evaluation, record).encode("utf-8"))
+            add_file(archive, record, evaluation.records.content(inputs.motion.record))
+        add_file(archive, "README.txt", _words(evaluation, record).encode("utf-8"))
     return stream.getvalue()
 
 
-def _add(archive: ZipFile, name: str, data: bytes) -> None:
-    # the time is always the same: the archive then depends on nothing but the inputs
+def add_file(archive: ZipFile, name: str, data: bytes) -> None:
+    """Add a file whose time is always the same: the archive then depends on nothing but the inputs."""
     entry = ZipInfo(name, _EARLIEST)
     entry.compress_type, entry.external_attr, entry.create_system = ZIP_DEFLATED, _ORDINARY_FILE, 3
     archive.writestr(entry, data)
@@ -129,16 +129,17 @@ def _finder(records: RecordStore) -> FindRecord:
 class Archive:
     """The files of a ZIP archive, by their names."""
 
-    def __init__(self, data: bytes) -> None:
-        if data.count(_ENTRY) > _MOST_ENTRIES:  # before all of them are read
-            raise TooLarge(f"an archive may hold up to {MOST_FILES} files")
+    def __init__(self, data: bytes, most_files: int = MOST_FILES) -> None:
+        # before all of them are read; a packed record may hold the four bytes by chance
+        if data.count(_ENTRY) > _MOST_ENTRIES + most_files:
+            raise TooLarge(f"an archive may hold up to {most_files} files")
         try:
             self._archive = ZipFile(io.BytesIO(data))
         except (BadZipFile, ValueError, NotImplementedError, OSError) as error:
             raise Refused("this is no ZIP archive that can be read: is it damaged?") from error
         entries = self._archive.infolist()
-        if len(entries) > MOST_FILES:
-            raise TooLarge(f"an archive may hold up to {MOST_FILES} files, this has {len(entries)}")
+        if len(entries) > most_files:
+            raise TooLarge(f"an archive may hold up to {most_files} files, this has {len(entries)}")
         for entry in entries:
             _check_entry(entry)
         self._entries = {entry.filename: entry for entry in entries}

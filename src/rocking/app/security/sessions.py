@@ -2,26 +2,32 @@
 
 import hashlib
 import hmac
+import json
 import secrets
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from typing import Any
+from contextlib import suppress
+from pathlib import Path
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Request
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, TypeAdapter
 from starlette.requests import HTTPConnection
 
 from rocking.app.answers import JsonAnswer, shape
 from rocking.app.errors import Busy, Refused
 from rocking.app.settings import Limits, state_of
+from rocking.campaigns.disk import write_new
 
 router = APIRouter(prefix="/api/session", tags=["session"])
 _MOST_SESSIONS = 64
 _MOST_LINKS = 16
 _LINK_SECONDS = 900.0
 _MINUTE = 60.0
+_KEPT_EVERY = 600.0  # after so long it is noted on disk that a session lives [s]
+_KEPT = TypeAdapter(dict[Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")], FiniteFloat])
 
 
 class SignIn(BaseModel):
@@ -96,14 +102,19 @@ def new_token() -> str:
 
 
 class Sessions:
-    """Who may ask: browsers that were signed in by a one-time link, and scripts that have the key."""
+    """Who may ask: browsers that were signed in by a one-time link, and scripts that have the key.
 
-    def __init__(self, limits: Limits, clock: Callable[[], float] = time.monotonic) -> None:
+    Sessions are kept in a file, as digests from which no cookie can be made, so that they survive a restart.
+    """
+
+    def __init__(self, limits: Limits, clock: Callable[[], float] = time.time, kept: Path | None = None) -> None:
         self._limits = limits
         self._clock = clock
+        self._kept = kept
         self._lock = threading.Lock()
         self._links: dict[bytes, float] = {}
-        self._sessions: dict[bytes, float] = {}
+        self._sessions: dict[bytes, float] = self._read()
+        self._written = clock()
         self._wrong: deque[float] = deque(maxlen=limits.wrong_tokens)
         self.key = new_token()
 
@@ -132,6 +143,7 @@ class Sessions:
                 self._sessions.pop(next(iter(self._sessions)))
             value = new_token()
             self._sessions[_digest(value)] = now
+            self._write()
         return value
 
     def knows(self, value: str | None) -> bool:
@@ -145,6 +157,8 @@ class Sessions:
             if now - seen > self._limits.session_seconds:
                 return False
             self._sessions[session] = now
+            if now - self._written > _KEPT_EVERY:
+                self._write()
         return True
 
     def knows_key(self, key: str) -> bool:
@@ -154,6 +168,26 @@ class Sessions:
     def sign_out(self, value: str | None) -> None:
         with self._lock:
             self._sessions.pop(_known(value, self._sessions) or b"", None)
+            self._write()
+
+    def _read(self) -> dict[bytes, float]:
+        """Return the sessions of an earlier server; none where there are none, or the clock was turned back."""
+        try:
+            kept = _KEPT.validate_json(self._kept.read_bytes()) if self._kept else {}
+        except (OSError, ValueError):
+            return {}
+        now = self._clock()
+        live = sorted((seen, each) for each, seen in kept.items() if 0.0 <= now - seen <= self._limits.session_seconds)
+        return {bytes.fromhex(each): seen for seen, each in live[-_MOST_SESSIONS:]}
+
+    def _write(self) -> None:
+        """Keep the sessions, for this user alone; where the disk takes nothing, a restart asks to sign in again."""
+        self._written = self._clock()
+        if self._kept is not None:
+            with suppress(OSError):
+                content = json.dumps({each.hex(): seen for each, seen in self._sessions.items()})
+                write_new(self._kept, content.encode())
+                self._kept.chmod(0o600)
 
 
 def _digest(token: str) -> bytes:

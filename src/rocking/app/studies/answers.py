@@ -244,6 +244,7 @@ StudyFacts: Any = shape(
     histories=(int, "of an adaptive study those that are known so far"),
     state=Literal["waiting", "running", "cancelled", "interrupted", "failed", "done"],
     message=(str, "a sentence on the state; empty where there is nothing to say"),
+    project=(str, "to which it belongs; empty if to none"),
     histories_done=int,
     rate=(float | None, "while it runs [1/s]"),
     seconds_left=(float | None, "while it runs; null while that is measured, or cannot be known [s]"),

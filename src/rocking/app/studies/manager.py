@@ -55,7 +55,7 @@ class StudyManager:
         if any(study.meta.state == WAITING for study in there.values()):
             self.queue.changed()  # what an earlier server left goes on by itself
 
-    def create(self, name: str | None, job: object) -> str:
+    def create(self, name: str | None, job: object, project: str = "") -> str:
         """Put a new study in the queue."""
         document = JobDocument.of(job)
         count = document.most
@@ -64,7 +64,13 @@ class StudyManager:
                 f"the study has {count} histories; this server takes up to {self._limits.histories}: fewer values, "
                 "or `rocking campaign` on the command line, which has no limit"
             )
-        return self.queue.enter(lambda: self._new_study(name or document.document.campaign.name, document)).folder.id
+        words = name or document.document.campaign.name
+        return self.queue.enter(lambda: self._new_study(words, document, project)).folder.id
+
+    def of_project(self, project: str) -> list[tuple[str, dict[str, Any]]]:
+        """Return names and jobs of the studies of a project, the oldest first."""
+        mine = [facts for facts in self.overview() if facts["project"] == project]
+        return [(facts["name"], self.queue.study(facts["id"]).folder.asked()) for facts in reversed(mine)]
 
     def overview(self) -> list[dict[str, Any]]:
         """Return name, kind, state and progress of all studies, the newest first; nothing is read for it."""
@@ -133,10 +139,10 @@ class StudyManager:
         """Stop what runs, so that it can be resumed, and watch no longer."""
         self.queue.close()
 
-    def _new_study(self, name: str, document: JobDocument) -> HostedStudy:
+    def _new_study(self, name: str, document: JobDocument, project: str) -> HostedStudy:
         check_room(self._folder, _BYTES * document.most, self._limits.studies_bytes)
         folder = StudyFolder(self._folder / new_id())
-        meta = Meta(shown(name), document.kind, _instant(datetime.now(UTC)), document.histories)
+        meta = Meta(shown(name), document.kind, _instant(datetime.now(UTC)), document.histories, project=project)
         try:
             folder.create(meta, document, self._records)
         except OSError as error:

@@ -46,6 +46,7 @@ class StudyRequest(BaseModel):
         None
     )
     job: Annotated[dict[str, Any], Field(description=_JOB)]
+    project: Annotated[str, Field(max_length=40, description="to which it belongs, if to one")] = ""
 
 
 class PointRequest(BaseModel):
@@ -65,7 +66,9 @@ class PointRequest(BaseModel):
 )
 async def create_study(request: Request, study: StudyRequest) -> JsonAnswer:
     """Put a study in line."""
-    name = await heavy(request, _studies(request).create, study.name, study.job)
+    if study.project:
+        await run_in_threadpool(state_of(request).projects.get, study.project)
+    name = await heavy(request, _studies(request).create, study.name, study.job, study.project)
     return JsonAnswer({"id": name}, status_code=202)
 
 

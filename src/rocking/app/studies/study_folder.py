@@ -5,10 +5,11 @@ import os
 import re
 import secrets
 import shutil
+import tomllib
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import TypeAdapter
@@ -53,6 +54,7 @@ class Meta:
     histories: int  # how many it has
     state: str = WAITING  # one of `STATES`
     message: str = ""  # A sentence about how it ended; empty while there is none
+    project: str = ""  # to which it belongs, by its name in addresses; empty if to none
 
 
 _META = TypeAdapter(Meta)
@@ -93,6 +95,14 @@ class StudyFolder:
             if isinstance(error, RockingError):
                 raise type(error)(self.without_paths(str(error))) from error
             raise
+
+    def asked(self) -> dict[str, Any]:
+        """Return the tables of the job, with records by their hashes, as they were sent."""
+        tables = tomllib.loads((self.path / JOB).read_text(encoding="utf-8"))
+        for motions in tables.get("motions", []):
+            if "records" in motions:
+                motions["records"] = [Path(name).parent.name for name in motions["records"]]
+        return tables
 
     def _keep(self, sha256: str, source: Path) -> str:
         """Copy a record into the study, by a link where the disk can, and return its path in the study."""

@@ -5,7 +5,8 @@ import { inputsOf } from "/app/shape.js";
 const KEPT = "rocking.inputs";
 const ASIDE = "rocking.aside";
 
-const FIRST = {
+/** What a new project holds. */
+export const FIRST = {
   body: { units: "m", width: 0.5, height: 2.0, depth: 0.5, density: 2400 },
   motion: { pulse: "sine:amplitude=3,period=0.8" },
   restitution: { models: ["ked", "housner"] },
@@ -14,6 +15,7 @@ const FIRST = {
 /** The store of the inputs: get, set by path, subscribe, lend. */
 export const createInputs = (start) => {
   let current = freeze(start ?? FIRST);
+  const wereKept = kept() !== null;
   let aside = keptAside();
   keep(KEPT, current);
   const watchers = new Set();
@@ -29,6 +31,13 @@ export const createInputs = (start) => {
   };
   return {
     get: () => current,
+    /** Whether this tab held inputs before it was loaded. */
+    wereKept,
+    /** Show what a project holds; nothing stays aside. */
+    take: (document) => {
+      put(null);
+      replace(document);
+    },
     set: (path, value) => {
       const [top] = path.split(".");
       const next = changedAt(current, path.split("."), value);

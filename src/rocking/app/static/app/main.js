@@ -5,7 +5,7 @@ import { call, download, latest, superseded } from "/app/api.js";
 import { copyTable } from "/app/copy.js";
 import { createBodyFacts } from "/app/facts.js";
 import { faults } from "/app/faults.js";
-import { createInputs, decode, encode, kept } from "/app/inputs.js";
+import { FIRST, createInputs, decode, encode, kept } from "/app/inputs.js";
 import { followAddress, UNREADABLE } from "/app/navigation.js";
 import { learnModels } from "/app/palette.js";
 import { whenBack } from "/app/offline.js";
@@ -17,6 +17,8 @@ import { exchange, linkForAnother, showDoor } from "/app/session.js";
 import { mountSummary } from "/app/summary.js";
 import { createTabs } from "/app/tabs.js";
 import { createViews } from "/app/views.js";
+import { mountProject } from "/project/bar.js";
+import { createProjects } from "/project/saving.js";
 
 const start = async () => {
   const { token, in: shared, view } = address.read();
@@ -30,7 +32,9 @@ const start = async () => {
   if (shared) address.write({ view });
   const fromLink = shared ? decode(shared) : null;
   const app = createApp(kept() ?? fromLink, info);
-  if (fromLink) app.inputs.lend(fromLink, "what a link holds");
+  app.project = createProjects(app, FIRST);
+  await app.project.start(fromLink);
+  if (fromLink && app.inputs.wereKept) app.inputs.lend(fromLink, "what a link holds");
   if (shared && !fromLink) say(`${UNREADABLE}; the usual start is shown.`, "warning");
   run(app, view);
 };
@@ -78,6 +82,7 @@ const run = (app, view) => {
   app.view = tabs.current;
   app.go = (name) => tabs.show(name, { focus: true });
   mountSummary(document.getElementById("summary"), app);
+  mountProject(document.getElementById("project"), app.project, app);
   mountLent(document.querySelector(".views"), app.inputs);
   tabs.show(tabs.names.includes(view) ? view : "body");
   steps.inert = false; // until here a click would have been lost
@@ -92,6 +97,7 @@ const signingIn = (app, views, tabs) => {
   const again = (words) => () => {
     say(words);
     app.inputs.touch();
+    app.project.save();
     views.show(tabs.current());
   };
   document.addEventListener("rocking:signed-in", again("Signed in."));

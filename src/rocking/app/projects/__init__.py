@@ -1,0 +1,1 @@
+"""Projects: what somebody works on, kept on this computer with every state that it had."""

@@ -1,0 +1,100 @@
+"""A project as one file: what it holds, the records that it names, and its studies as they were asked."""
+
+import io
+import json
+from typing import TYPE_CHECKING, Any, Literal
+from zipfile import ZipFile
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from rocking.app.api.records import record_facts
+from rocking.app.downloads.archive import Archive, add_file
+from rocking.app.errors import NotFound, Refused
+from rocking.app.inputs import levels
+from rocking.app.plain_text import record_file_name
+from rocking.app.projects.store import LARGEST, Project
+from rocking.app.records import is_hash
+from rocking.bodies.formats.words import sentence
+from rocking.errors import RecordError
+from rocking.version import __version__
+
+if TYPE_CHECKING:
+    from rocking.app.settings import AppState
+
+MOST_FILES = 200  # records of a project, and what says what it is
+_WHAT = "project.json"
+_FORMAT = "rocking project 1"
+
+
+class _Study(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+    name: str
+    job: dict[str, Any]
+
+
+class _ProjectFile(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+    format: Literal["rocking project 1"]
+    version: str
+    name: str
+    document: dict[str, Any]
+    records: dict[str, str]
+    studies: list[_Study]
+
+
+def project_file(state: "AppState", project: Project) -> bytes:
+    """Return a project as an archive; the same bytes as long as nothing changes."""
+    document = state.projects.document(project.id)
+    studies = [{"name": name, "job": job} for name, job in state.studies.of_project(project.id)]
+    contents, names = dict[str, bytes](), dict[str, str]()
+    for sha in _hashes([document, studies]):
+        try:
+            names[sha], contents[sha] = state.records.get(sha).file_name, state.records.content(sha)
+        except NotFound:
+            continue  # it was deleted, and the project says so where it is used
+    stream = io.BytesIO()
+    with ZipFile(stream, "w") as archive:
+        whole = {
+            "format": _FORMAT, "version": __version__, "name": project.name, "document": document, "records": names,
+            "studies": studies,
+        }  # fmt: skip
+        add_file(archive, _WHAT, json.dumps(whole, indent=1, ensure_ascii=False).encode())
+        for sha, content in contents.items():
+            add_file(archive, f"{sha[:12]}-{record_file_name(names[sha])}", content)
+    return stream.getvalue()
+
+
+def project_from_file(state: "AppState", data: bytes) -> Project:
+    """Keep the project of a file under a new name in addresses; its studies wait in line, to be computed again."""
+    if not Archive.begins(data):
+        raise Refused("this is no project of rocking, which is one ZIP archive")
+    archive = Archive(data, MOST_FILES)
+    if _WHAT not in archive.names:
+        raise Refused(f"the archive is no project of rocking: it holds no {_WHAT}")
+    try:
+        whole = _ProjectFile.model_validate_json(archive.content(_WHAT, 8 * LARGEST))
+    except ValidationError as error:
+        raise Refused(f"{_WHAT}: {sentence(error, None)}") from error
+    for sha, name in whole.records.items():
+        content = archive.content(_entry(archive, sha), state.records.largest)
+        state.records.check_upload(content)
+        record_facts(content, name, {"format": None, "units": None, "time_step": None})
+        if state.records.add(content, name).record != sha:
+            raise RecordError(f"{record_file_name(name)} in the archive is not the file that was put into it")
+    project = state.projects.create(whole.name, whole.document, "from a file")
+    for study in whole.studies:
+        state.studies.create(study.name, study.job, project.id)
+    return project
+
+
+def _entry(archive: Archive, sha: str) -> str:
+    entry = next((name for name in archive.names if is_hash(sha) and name.startswith(f"{sha[:12]}-")), None)
+    if entry is None:
+        raise Refused(f"the archive does not hold the record {sha:.12} that it names")
+    return entry
+
+
+def _hashes(value: Any) -> list[str]:
+    return list(dict.fromkeys(each for level in levels(value) for each in level if is_hash(each)))

@@ -1,0 +1,202 @@
+"""Endpoints of projects: make, look at, save, undo, redo, history, delete and bring back, one file out and in."""
+
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Request
+from pydantic import BaseModel, ConfigDict, Field
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import Response
+
+from rocking.app.answers import FILE_SENT, JsonAnswer, answered, answered_with_file, attachment, shape
+from rocking.app.projects.one_file import project_file, project_from_file
+from rocking.app.projects.store import KEPT_DAYS, Project, ProjectStore
+from rocking.app.settings import state_of
+from rocking.app.work import heavy
+
+router = APIRouter(prefix="/api/projects", tags=["projects"])
+Name = Annotated[str, Field(min_length=1, max_length=200, description="what people call it")]
+Version = Annotated[int, Field(ge=1, description="the one that this change follows; refused if there is a later one")]
+_DOCUMENT = "body, motion, restitution and whatever else belongs to it, half finished perhaps"
+
+ProjectFacts: Any = shape(
+    "ProjectFacts",
+    "A project.",
+    id=(str, "its name in addresses"),
+    name=(str, "what people call it"),
+    created=(str, "when, in UTC"),
+    changed=(str, "when last, in UTC"),
+    version=(int, "one more with every change"),
+    state=(int, "number of the state that it is in"),
+    can_undo=bool,
+    can_redo=bool,
+    deleted=(str | None, f"when, in UTC; it can be brought back for {KEPT_DAYS} days"),
+)
+Projects: Any = shape(
+    "Projects", "All projects, the last changed first.", projects=list[ProjectFacts], deleted=list[ProjectFacts]
+)
+WholeProject: Any = shape("WholeProject", "A project and what it holds.", ProjectFacts, document=dict[str, Any])
+StateFacts: Any = shape(
+    "StateFacts",
+    "A state that a project was saved in.",
+    number=int,
+    words=(str, "what was changed"),
+    time=(str, "when, in UTC"),
+    here=(bool, "whether the project is in it"),
+)
+History: Any = shape("History", "Every state that is kept, the last first.", states=list[StateFacts])
+
+
+class _Request(BaseModel):
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+
+
+class NewProject(_Request):
+    """A project to make: with something in it, or as a copy of another one."""
+
+    name: Name
+    document: Annotated[dict[str, Any], Field(description=_DOCUMENT)] = Field(default_factory=dict)
+    copy_of: Annotated[str | None, Field(max_length=40, description="another project")] = None
+
+
+class ProjectChange(_Request):
+    """What a project holds from now on."""
+
+    version: Version
+    document: Annotated[dict[str, Any], Field(description=_DOCUMENT)]
+    words: Annotated[str, Field(max_length=200, description="what was changed")] = "changed"
+
+
+class ProjectStep(_Request):
+    """A step that follows a version."""
+
+    version: Version
+
+
+class ProjectName(ProjectStep):
+    """Another name."""
+
+    name: Name
+
+
+class ProjectPast(ProjectStep):
+    """A state of the history."""
+
+    state: Annotated[int, Field(ge=1)]
+
+
+_WHOLE = answered(WholeProject, "The project as it stands.")
+_FACTS = answered(ProjectFacts, "The project as it stands.")
+
+
+def _store(request: Request) -> ProjectStore:
+    return state_of(request).projects
+
+
+async def _whole(request: Request, change: Callable[[ProjectStore], Project], status: int = 200) -> JsonAnswer:
+    def changed() -> dict[str, Any]:
+        project = change(_store(request))
+        return {**asdict(project), "document": _store(request).document(project.id)}
+
+    return JsonAnswer(await run_in_threadpool(changed), status_code=status)
+
+
+@router.get("", summary="All projects", responses=answered(Projects, "The projects."))
+async def list_projects(request: Request) -> JsonAnswer:
+    """Return all projects, and those that can be brought back."""
+    store = _store(request)
+    there, gone = await run_in_threadpool(lambda: (store.all(), store.all(deleted=True)))
+    return JsonAnswer({"projects": [*map(asdict, there)], "deleted": [*map(asdict, gone)]})
+
+
+@router.post("", status_code=201, summary="Make a project", responses=answered(WholeProject, "The project.", 201))
+async def create_project(request: Request, new: NewProject) -> JsonAnswer:
+    """Make a project, a copy of another one perhaps."""
+
+    def made(store: ProjectStore) -> Project:
+        if new.copy_of is None:
+            return store.create(new.name, new.document)
+        return store.create(new.name, store.document(new.copy_of), f"a copy of {store.get(new.copy_of).name}")
+
+    return await _whole(request, made, 201)
+
+
+@router.post(
+    "/import",
+    status_code=201,
+    openapi_extra=FILE_SENT,
+    summary="A project from its file",
+    responses=answered(WholeProject, "The project.", 201),
+)
+async def import_project(request: Request) -> JsonAnswer:
+    """Keep the project of a file; its studies wait in line, to be computed again."""
+    state, data = state_of(request), await request.body()
+    project = await heavy(request, project_from_file, state, data)
+    return await _whole(request, lambda store: store.get(project.id), 201)
+
+
+@router.get("/{project}", summary="One project", responses=_WHOLE)
+async def get_project(request: Request, project: str) -> JsonAnswer:
+    """Return a project and what it holds."""
+    return await _whole(request, lambda store: store.get(project))
+
+
+@router.post("/{project}", summary="Save a project", responses=_FACTS)
+async def save_project(request: Request, project: str, change: ProjectChange) -> JsonAnswer:
+    """Put a project into a new state; nothing of what it held is lost."""
+    saved = await run_in_threadpool(
+        _store(request).save, project, change.version, change.document, change.words or "changed"
+    )
+    return JsonAnswer(asdict(saved))
+
+
+@router.post("/{project}/undo", summary="Go back to the state before", responses=_WHOLE)
+async def undo_project(request: Request, project: str, step: ProjectStep) -> JsonAnswer:
+    """Go back to the state before."""
+    return await _whole(request, lambda store: store.undo(project, step.version))
+
+
+@router.post("/{project}/redo", summary="Go on to what was undone", responses=_WHOLE)
+async def redo_project(request: Request, project: str, step: ProjectStep) -> JsonAnswer:
+    """Go on to the state that was left last."""
+    return await _whole(request, lambda store: store.redo(project, step.version))
+
+
+@router.get("/{project}/history", summary="Every state of a project", responses=answered(History, "The states."))
+async def project_history(request: Request, project: str) -> JsonAnswer:
+    """Return every state that is kept, the last first."""
+    states = await run_in_threadpool(_store(request).history, project)
+    return JsonAnswer({"states": [*map(asdict, states)]})
+
+
+@router.post("/{project}/restore", summary="Take over a state of the history", responses=_WHOLE)
+async def restore_project(request: Request, project: str, past: ProjectPast) -> JsonAnswer:
+    """Take over what the project held in another state, as a new state."""
+    return await _whole(request, lambda store: store.restore(project, past.version, past.state))
+
+
+@router.post("/{project}/name", summary="Call a project otherwise", responses=_FACTS)
+async def rename_project(request: Request, project: str, named: ProjectName) -> JsonAnswer:
+    """Call a project otherwise."""
+    return JsonAnswer(asdict(await run_in_threadpool(_store(request).rename, project, named.version, named.name)))
+
+
+@router.delete("/{project}", summary="Delete a project", responses=_FACTS)
+async def delete_project(request: Request, project: str) -> JsonAnswer:
+    """Take a project away; it can be brought back."""
+    return JsonAnswer(asdict(await run_in_threadpool(_store(request).delete, project)))
+
+
+@router.post("/{project}/back", summary="Bring a deleted project back", responses=_FACTS)
+async def bring_project_back(request: Request, project: str) -> JsonAnswer:
+    """Bring a deleted project back."""
+    return JsonAnswer(asdict(await run_in_threadpool(_store(request).bring_back, project)))
+
+
+@router.get("/{project}/file", summary="A project as one file", responses=answered_with_file("The project.", "zip"))
+async def project_as_file(request: Request, project: str) -> Response:
+    """Return a project with its records and the jobs of its studies."""
+    state = state_of(request)
+    kept = state.projects.get(project)
+    return attachment(await heavy(request, project_file, state, kept), f"{kept.name} project.zip")

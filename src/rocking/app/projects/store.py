@@ -1,0 +1,270 @@
+"""Projects in one database: every state that was saved stays, and undo, redo and history walk among them."""
+
+import json
+import secrets
+import sqlite3
+import threading
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+from rocking.app.errors import Conflict, NoRoom, NotFound, Refused, TooLarge
+from rocking.app.plain_text import shown
+from rocking.campaigns.disk import sync_folder
+
+MOST_PROJECTS = 1_000
+MOST_STATES = 2_000  # of a project; beyond them the oldest go
+LARGEST = 1 << 20  # of what a project holds, as JSON [bytes]
+KEPT_DAYS = 90  # so long a deleted project can be brought back [d]
+_FORMAT = 1
+_TABLES = """
+CREATE TABLE projects (
+    id TEXT PRIMARY KEY, name TEXT NOT NULL, created TEXT NOT NULL, changed TEXT NOT NULL,
+    version INTEGER NOT NULL, here INTEGER NOT NULL, deleted TEXT) STRICT;
+CREATE TABLE states (
+    project TEXT NOT NULL REFERENCES projects ON DELETE CASCADE, number INTEGER NOT NULL, before INTEGER, after INTEGER,
+    words TEXT NOT NULL, time TEXT NOT NULL, document BLOB NOT NULL, PRIMARY KEY (project, number)) STRICT;
+"""
+
+
+@dataclass(frozen=True)
+class Project:
+    """A project as it stands."""
+
+    id: str  # its name in addresses
+    name: str  # as people call it
+    created: str  # created, changed: when, in UTC
+    changed: str
+    version: int  # one more with every change of whatever kind: what a change must know that it follows
+    state: int  # number of the state that it is in
+    can_undo: bool
+    can_redo: bool
+    deleted: str | None = None  # when, in UTC; such a project can be brought back for a while
+
+
+@dataclass(frozen=True)
+class ProjectState:
+    """A state that a project was saved in."""
+
+    number: int
+    words: str  # what was changed
+    time: str  # when, in UTC
+    here: bool  # whether the project is in it
+
+
+class ProjectStore:
+    """All projects of a data folder; safe to use from several threads."""
+
+    def __init__(self, folder: Path) -> None:
+        path = Path(folder) / "projects.sqlite"
+        fresh = not path.exists()
+        if fresh:
+            path.touch(mode=0o600)
+        self._lock = threading.RLock()
+        self._database = sqlite3.connect(path, timeout=30.0, isolation_level=None, check_same_thread=False)
+        for setting in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON", "secure_delete = ON"):
+            self._database.execute(f"PRAGMA {setting}")
+        (version,) = self._database.execute("PRAGMA user_version").fetchone()
+        if version == 0:
+            self._database.executescript(f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {_FORMAT}; COMMIT;")
+        elif version > _FORMAT:
+            self._database.close()
+            raise Refused(f"{path.name} was written by a later version of rocking: use that one, or another --data")
+        if fresh:
+            sync_folder(path.parent)
+        with self._changing() as database:
+            long_ago = _instant(datetime.now(UTC) - timedelta(days=KEPT_DAYS))
+            database.execute("DELETE FROM projects WHERE deleted < ?", (long_ago,))
+
+    def close(self) -> None:
+        """Let go of the file."""
+        with self._lock:
+            self._database.close()
+
+    def all(self, *, deleted: bool = False) -> list[Project]:
+        """Return all projects, the last changed first, or those that were deleted and can be brought back."""
+        with self._lock:
+            rows = self._database.execute(
+                f"{_PROJECT} WHERE p.deleted IS {'NOT ' * deleted}NULL ORDER BY p.changed DESC, p.rowid DESC"
+            ).fetchall()
+        return [_project(row) for row in rows]
+
+    def get(self, project: str) -> Project:
+        """Return a project, one that was deleted too."""
+        with self._lock:
+            row = self._database.execute(f"{_PROJECT} WHERE p.id = ?", (project,)).fetchone()
+        if row is None:
+            raise NotFound("there is no such project here; was it deleted long ago, or is this another data folder?")
+        return _project(row)
+
+    def document(self, project: str, state: int | None = None) -> dict[str, Any]:
+        """Return what a project holds, now or in another state of its history."""
+        with self._lock:
+            number = self.get(project).state if state is None else state
+            row = self._database.execute(
+                "SELECT document FROM states WHERE project = ? AND number = ?", (project, number)
+            ).fetchone()
+        if row is None:
+            raise NotFound(f"the project has no state {number}; its oldest ones are not kept for ever")
+        document: dict[str, Any] = json.loads(zlib.decompress(row[0]))
+        return document
+
+    def history(self, project: str) -> list[ProjectState]:
+        """Return every state of a project that is kept, the last first."""
+        with self._lock:
+            here = self.get(project).state
+            rows = self._database.execute(
+                "SELECT number, words, time FROM states WHERE project = ? ORDER BY number DESC", (project,)
+            ).fetchall()
+        return [ProjectState(number, words, time, number == here) for number, words, time in rows]
+
+    def create(self, name: str, document: dict[str, Any], words: str = "begun") -> Project:
+        """Make a project."""
+        now, project, packed = _instant(), secrets.token_hex(8), _packed(document)
+        with self._changing() as database:
+            (count,) = database.execute("SELECT count(*) FROM projects").fetchone()
+            if count >= MOST_PROJECTS:
+                raise TooLarge(f"up to {MOST_PROJECTS} projects are kept; delete some that are no longer needed")
+            database.execute("INSERT INTO projects VALUES (?, ?, ?, ?, 1, 1, NULL)", (project, _name(name), now, now))
+            database.execute("INSERT INTO states VALUES (?, 1, NULL, NULL, ?, ?, ?)", (project, words, now, packed))
+        return self.get(project)
+
+    def save(self, project: str, version: int, document: dict[str, Any], words: str) -> Project:
+        """Put a project into a new state, which follows the one that it is in."""
+        packed = _packed(document)
+        with self._followed(project, version) as (database, now, known):
+            (last,) = database.execute("SELECT max(number) FROM states WHERE project = ?", (project,)).fetchone()
+            database.execute(
+                "INSERT INTO states VALUES (?, ?, ?, NULL, ?, ?, ?)",
+                (project, last + 1, known.state, shown(words), now, packed),
+            )
+            self._lead(project, known.state, last + 1)
+            database.execute(
+                "DELETE FROM states WHERE project = ? AND number <= ? AND number <> ?",
+                (project, last + 1 - MOST_STATES, last + 1),
+            )
+        return self.get(project)
+
+    def undo(self, project: str, version: int) -> Project:
+        """Go back to the state before."""
+        return self._step(project, version, "before", "there is nothing before it")
+
+    def redo(self, project: str, version: int) -> Project:
+        """Go on to the state that was left last."""
+        return self._step(project, version, "after", "nothing was undone")
+
+    def restore(self, project: str, version: int, state: int) -> Project:
+        """Take over what the project held in another state, as a new state."""
+        return self.save(project, version, self.document(project, state), f"as in state {state}")
+
+    def rename(self, project: str, version: int, name: str) -> Project:
+        """Call a project otherwise."""
+        words = _name(name)
+        with self._followed(project, version) as (database, _, _):
+            database.execute("UPDATE projects SET name = ? WHERE id = ?", (words, project))
+        return self.get(project)
+
+    def delete(self, project: str) -> Project:
+        """Take a project away; it can be brought back for a while."""
+        self.get(project)
+        with self._changing() as database:
+            database.execute(
+                "UPDATE projects SET deleted = ?, version = version + 1 WHERE id = ? AND deleted IS NULL",
+                (_instant(), project),
+            )
+        return self.get(project)
+
+    def bring_back(self, project: str) -> Project:
+        """Bring a deleted project back."""
+        self.get(project)
+        with self._changing() as database:
+            database.execute(
+                "UPDATE projects SET deleted = NULL, version = version + 1 WHERE id = ? AND deleted IS NOT NULL",
+                (project,),
+            )
+        return self.get(project)
+
+    def _step(self, project: str, version: int, way: str, nowhere: str) -> Project:
+        with self._followed(project, version) as (database, _, known):
+            if not (known.can_undo if way == "before" else known.can_redo):
+                raise Refused(nowhere)
+            (number,) = database.execute(
+                f"SELECT {way} FROM states WHERE project = ? AND number = ?", (project, known.state)
+            ).fetchone()
+            if way == "before":
+                self._lead(project, number, known.state)
+            database.execute("UPDATE projects SET here = ? WHERE id = ?", (number, project))
+        return self.get(project)
+
+    def _lead(self, project: str, before: int, after: int) -> None:
+        """Note which state redo goes on to, and put the project there."""
+        self._database.execute("UPDATE states SET after = ? WHERE project = ? AND number = ?", (after, project, before))
+        self._database.execute("UPDATE projects SET here = ? WHERE id = ?", (after, project))
+
+    @contextmanager
+    def _followed(self, project: str, version: int) -> Iterator[tuple[sqlite3.Connection, str, Project]]:
+        """Change a project if nobody has changed it since a version."""
+        with self._changing() as database:
+            known, now = self.get(project), _instant()
+            if known.deleted is not None:
+                raise Conflict("the project was deleted: bring it back first")
+            if known.version != version:
+                raise Conflict("the project was changed meanwhile, perhaps in another tab or browser: look at it anew")
+            yield database, now, known
+            database.execute("UPDATE projects SET version = version + 1, changed = ? WHERE id = ?", (now, project))
+
+    @contextmanager
+    def _changing(self) -> Iterator[sqlite3.Connection]:
+        """Change the database as a whole or not at all."""
+        with self._lock:
+            try:
+                self._database.execute("BEGIN IMMEDIATE")
+                try:
+                    yield self._database
+                    self._database.execute("COMMIT")
+                except BaseException:
+                    if self._database.in_transaction:
+                        self._database.execute("ROLLBACK")
+                    raise
+            except sqlite3.OperationalError as error:
+                raise NoRoom(
+                    f"the project cannot be saved: {error}; is the disk of the server full, or its folder read-only?"
+                ) from error
+
+
+_PROJECT = """
+SELECT p.id, p.name, p.created, p.changed, p.version, p.here, s.before IS NOT NULL AND b.number IS NOT NULL,
+       s.after IS NOT NULL AND a.number IS NOT NULL, p.deleted
+FROM projects p JOIN states s ON s.project = p.id AND s.number = p.here
+LEFT JOIN states b ON b.project = p.id AND b.number = s.before
+LEFT JOIN states a ON a.project = p.id AND a.number = s.after
+"""
+
+
+def _project(row: tuple[Any, ...]) -> Project:
+    project, name, created, changed, version, here, undo, redo, deleted = row
+    return Project(project, name, created, changed, version, here, bool(undo), bool(redo), deleted)
+
+
+def _name(name: str) -> str:
+    if not name.strip():
+        raise Refused("a project needs a name")
+    return shown(name)
+
+
+def _packed(document: dict[str, Any]) -> bytes:
+    data = json.dumps(document, allow_nan=False, separators=(",", ":")).encode()
+    if len(data) > LARGEST:
+        raise TooLarge(
+            f"a project may hold {LARGEST >> 20} MiB beside its records, this has {len(data) / 2**20:.1f}: "
+            "simplify the outline, or take a body file"
+        )
+    return zlib.compress(data)
+
+
+def _instant(time: datetime | None = None) -> str:
+    return (time or datetime.now(UTC)).isoformat(timespec="milliseconds").replace("+00:00", "Z")

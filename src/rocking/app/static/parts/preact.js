@@ -1,0 +1,11 @@
+/** What components of the page are made of: Preact, signals, and templates that need no compiler. */
+
+import htm from "/vendor/htm/htm.mjs";
+import { h, render } from "/vendor/preact/preact.mjs";
+import { useEffect, useRef } from "/vendor/preact/hooks.mjs";
+import { batch, computed, signal } from "/vendor/signals/signals.mjs";
+
+/** A template: html`<p class="note">${words}</p>`; text stays text. */
+export const html = htm.bind(h);
+
+export { batch, computed, render, signal, useEffect, useRef };

@@ -1,0 +1,68 @@
+/** The line of the open project: its name, whether it is saved, undo and redo. */
+
+import { html, render, useEffect, useRef } from "/parts/preact.js";
+import { ProjectDialog } from "/project/dialog.js";
+
+const SAVED = { saved: "saved", saving: "saving \u2026", unsaved: "not saved" };
+
+/** Show the line, and keep it up to date. */
+export const mountProject = (place, projects, app) => {
+  render(html`<${Bar} projects=${projects} app=${app} />`, place);
+  document.addEventListener("keydown", (event) => {
+    const way = wayOf(event);
+    if (!way || event.defaultPrevented || isTyping(event.target)) return;
+    event.preventDefault();
+    projects[way]();
+  });
+};
+
+const wayOf = ({ key, ctrlKey, metaKey, shiftKey, altKey }) => {
+  if (!(ctrlKey || metaKey) || altKey) return null;
+  if (key.toLowerCase() === "z") return shiftKey ? "redo" : "undo";
+  return key.toLowerCase() === "y" ? "redo" : null;
+};
+
+const isTyping = (target) => target.matches?.("input:not([type=range], [type=checkbox], [type=radio]), textarea, select");
+
+const Bar = ({ projects, app }) => {
+  const dialog = useRef(null);
+  const { here, saving, clash } = projects;
+  const facts = here.value;
+  if (!facts) return null;
+  return html`
+    <button type="button" class="button quiet project-name" aria-haspopup="dialog" data-testid="project"
+      aria-label=${`Project: ${facts.name}`} onClick=${() => dialog.current.openIt()}>
+      <span class="project-title">${facts.name}</span>
+    </button>
+    <span class="project-saved" role="status" data-state=${saving.value} data-testid="project-saved">
+      ${SAVED[saving.value]}
+    </span>
+    ${saving.value === "unsaved" && !clash.value
+      && html`<button type="button" class="button" onClick=${projects.again}>Save again</button>`}
+    <${Step} sign="\u21b6" label="Undo" on=${facts.can_undo} go=${projects.undo} />
+    <${Step} sign="\u21b7" label="Redo" on=${facts.can_redo} go=${projects.redo} />
+    <${ProjectDialog} projects=${projects} app=${app} handle=${dialog} />
+    ${clash.value && html`<${Clash} projects=${projects} />`}`;
+};
+
+const Step = ({ sign, label, on, go }) => html`
+  <button type="button" class="button quiet icon" aria-label=${label} title=${label} aria-disabled=${!on}
+    onClick=${() => on && go()}><span aria-hidden="true">${sign}</span></button>`;
+
+const Clash = ({ projects }) => {
+  const dialog = useRef(null);
+  useEffect(() => dialog.current.showModal(), []);
+  const settle = (mine) => () => projects.settle(mine);
+  return html`
+    <dialog ref=${dialog} class="over" aria-labelledby="clash-title" data-testid="clash"
+      onCancel=${(event) => event.preventDefault()}>
+      <div class="card door">
+        <h1 id="clash-title">This project was changed elsewhere</h1>
+        <p>Another tab or browser has changed it since you did. Nothing is lost: choose what you go on with.</p>
+        <div class="toolbar">
+          <button type="button" class="button primary" onClick=${settle(false)}>Show what is there</button>
+          <button type="button" class="button" onClick=${settle(true)}>Keep mine as a copy</button>
+        </div>
+      </div>
+    </dialog>`;
+};

@@ -1,0 +1,129 @@
+/** All projects: open, begin, rename, copy, take away, delete and bring back; and the history of the open one. */
+
+import { html, signal, useRef } from "/parts/preact.js";
+
+const FEW = 12;
+
+const when = (time) => new Date(time).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
+
+/** The dialog; `handle.current.openIt()` opens it. */
+export const ProjectDialog = ({ projects, app, handle }) => {
+  const dialog = useRef(null);
+  const lists = useRef(signal({ projects: [], deleted: [], states: [] })).current;
+  const all = useRef(signal(false)).current;
+  const look = async () => {
+    const [there, past] = await Promise.all([
+      app.call("projects"), app.call(`projects/${projects.here.value.id}/history`),
+    ]);
+    lists.value = { ...there, ...past };
+  };
+  // What goes wrong is said, and the lists are what the server has in any case.
+  const act = (work, close = false) => async () => {
+    try {
+      await work();
+      if (close) dialog.current.close();
+      else await look();
+    } catch (error) {
+      app.say(error.message, "error");
+    }
+  };
+  handle.current = {
+    openIt: act(async () => {
+      await projects.save();
+      await look();
+      if (!dialog.current.open) dialog.current.showModal();
+    }),
+  };
+  const here = projects.here.value;
+  const named = async (event) => {
+    event.preventDefault();
+    const field = event.target.elements.name;
+    const name = field.value.trim();
+    if (!name) return;
+    await act(() => (event.target.dataset.for === "rename" ? projects.rename(name) : projects.begin(name)))();
+    if (event.target.dataset.for !== "rename") field.value = "";
+  };
+  const bring = async (event) => {
+    const [file] = event.target.files;
+    event.target.value = "";
+    if (file) await act(() => projects.bring(file))();
+  };
+  const take = (one) => act(() => app.download(`projects/${one.id}/file`, undefined, "project.zip"));
+  const remove = (one) => act(async () => {
+    await app.call(`projects/${one.id}`, { method: "DELETE" });
+    app.say(`${one.name} was deleted; it can be brought back below.`);
+    if (one.id !== projects.here.value.id) return;
+    const next = lists.value.projects.find((each) => each.id !== one.id);
+    await (next ? projects.open(next.id) : projects.begin("New project"));
+  });
+  const states = all.value ? lists.value.states : lists.value.states.slice(0, FEW);
+  return html`
+    <dialog ref=${dialog} class="over projects" aria-labelledby="projects-title" data-testid="projects">
+      <div class="card">
+        <div class="project-head">
+          <h1 id="projects-title">Projects</h1>
+          <button type="button" class="button" onClick=${() => dialog.current.close()}>Close</button>
+        </div>
+        <p>They are kept on this computer, with every state that they had.</p>
+        <${NameForm} for="rename" label="Name of the open project" value=${here.name} text="Rename" onSubmit=${named} />
+        <ul class="project-list" aria-label="Projects">
+          ${lists.value.projects.map((one) => html`
+            <li key=${one.id} data-here=${one.id === here.id}>
+              <p><strong>${one.name}</strong><span class="quiet">${when(one.changed)}</span></p>
+              <div class="toolbar">
+                ${one.id === here.id
+                  ? html`<span class="project-open">open</span>`
+                  : html`<${Act} text="Open" one=${one} go=${act(() => projects.open(one.id), true)} />`}
+                <${Act} text="Copy" one=${one} go=${act(() => projects.copy(one.id, `${one.name} (copy)`))} />
+                <${Act} text="Take away" one=${one} go=${take(one)} />
+                <${Act} text="Delete" one=${one} go=${remove(one)} />
+              </div>
+            </li>`)}
+        </ul>
+        <${NameForm} for="begin" label="Name of a new project" value="" text="Begin" onSubmit=${named} />
+        <div class="field">
+          <label for="project-file">A project from its file</label>
+          <input id="project-file" type="file" accept=".zip" onChange=${bring} aria-describedby="project-file-about" />
+          <p id="project-file-about" class="field-help">Its studies are computed again here.</p>
+        </div>
+        <h2>What ${here.name} was</h2>
+        <ul class="project-list states" aria-label="History">
+          ${states.map((one) => html`
+            <li key=${one.number}>
+              <p><span>${one.words}</span><span class="quiet">${when(one.time)}</span></p>
+              ${one.here
+                ? html`<span class="project-open">now</span>`
+                : html`<button type="button" class="button" aria-label=${`Go back to state ${one.number}: ${one.words}`}
+                    onClick=${act(() => projects.restore(one.number))}>Go back to it</button>`}
+            </li>`)}
+        </ul>
+        ${lists.value.states.length > FEW && !all.value && html`
+          <button type="button" class="button" onClick=${() => (all.value = true)}>
+            All ${lists.value.states.length} states
+          </button>`}
+        ${lists.value.deleted.length > 0 && html`
+          <h2>Deleted</h2>
+          <ul class="project-list" aria-label="Deleted">
+            ${lists.value.deleted.map((one) => html`
+              <li key=${one.id}>
+                <p><strong>${one.name}</strong><span class="quiet">${when(one.deleted)}</span></p>
+                <${Act} text="Bring back" one=${one}
+                  go=${act(() => app.call(`projects/${one.id}/back`, { method: "POST" }))} />
+              </li>`)}
+          </ul>`}
+      </div>
+    </dialog>`;
+};
+
+const Act = ({ text, one, go }) => html`
+  <button type="button" class="button" aria-label=${`${text}: ${one.name}`} onClick=${go}>${text}</button>`;
+
+const NameForm = ({ for: what, label, value, text, onSubmit }) => html`
+  <form class="project-form" data-for=${what} onSubmit=${onSubmit}>
+    <div class="field">
+      <label for=${`project-${what}`}>${label}</label>
+      <input id=${`project-${what}`} name="name" type="text" maxlength="200" autocomplete="off" defaultValue=${value}
+        key=${value} />
+    </div>
+    <button type="submit" class="button">${text}</button>
+  </form>`;
