@@ -67,7 +67,7 @@ export const createProjects = (app, first) => {
   });
   const differ = async (mine) => {
     const theirs = await ask("");
-    if (JSON.stringify(theirs.document) === JSON.stringify(mine)) {
+    if (same(mine, theirs.document)) {
       known(theirs);
       changed.clear();
       saving.value = "saved";
@@ -153,7 +153,7 @@ export const createProjects = (app, first) => {
       const document = known(await app.call(`projects/${id}`));
       // After a reload the tab may hold what was not saved yet; what a link holds is lent over the project's own.
       if (reloaded) {
-        if (JSON.stringify(own()) === JSON.stringify(document)) return;
+        if (same(own(), document)) return;
         changed.add("inputs");
         await save();
       } else {
@@ -162,6 +162,12 @@ export const createProjects = (app, first) => {
       }
     },
   };
+};
+
+// The order of keys says nothing.
+const same = (one, other) => {
+  const [first, second] = [one, other].map((each) => JSON.stringify(inputsOf(each?.inputs)));
+  return first === second;
 };
 
 const remembered = () => {

@@ -63,7 +63,9 @@ export function studyForm(app, { onLaunched, taken }) {
         ...tables.job,
       };
       if (inputs.settings && Object.keys(inputs.settings).length) job.settings = inputs.settings;
-      const answer = await app.call("/api/studies", { json: { name: job.campaign.name, job } });
+      const answer = await app.call("/api/studies", {
+        json: { name: job.campaign.name, job, project: app.project.here.value.id },
+      });
       name.value = "";
       onLaunched(answer.id);
     } catch (error) {

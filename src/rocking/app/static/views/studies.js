@@ -1,6 +1,6 @@
 /** Studies: many histories at once, launched as campaigns; their progress, and their results. */
 import { el } from "/app/dom.js";
-import { card } from "/app/fields.js";
+import { card, switchField } from "/app/fields.js";
 import { studyForm } from "/views/studies-form.js";
 import { studyList } from "/views/studies-list.js";
 import { liveStudies } from "/views/studies-live.js";
@@ -59,7 +59,12 @@ export function mount(section, app) {
     onGone: (id) => id === open && close(),
     isOpen: (id) => id === open,
   });
-  const live = liveStudies(app, (studies) => list.update(studies));
+  let known = [];
+  // What was launched elsewhere than in a project is everybody's.
+  const mine = ({ project }) => all.value || !project || project === app.project.here.value.id;
+  const look = (studies) => list.update((known = studies).filter(mine));
+  const all = switchField({ label: "Studies of all projects", onChange: () => look(known) });
+  const live = liveStudies(app, look);
   const form = studyForm(app, {
     taken: () => list.names(),
     onLaunched: (id) => {
@@ -74,7 +79,7 @@ export function mount(section, app) {
     el(
       "div",
       { class: "studies" },
-      el("div", { class: "studies-left" }, card("New study", form.node), card("Studies", list.node)),
+      el("div", { class: "studies-left" }, card("New study", form.node), card("Studies", all, list.node)),
       outcome,
     ),
   );

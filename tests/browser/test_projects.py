@@ -1,0 +1,242 @@
+"""Projects in the page: saved by themselves, with a way back, in agreement with other tabs and after a restart."""
+
+import json
+import os
+import socket
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+expect = pytest.importorskip("playwright.sync_api").expect
+KILLS = 50 if os.environ.get("ROCKING_CAMPAIGN") else 4
+
+
+def saved(page: Any) -> None:
+    """Wait until all that was typed is on disk."""
+    expect(page.get_by_test_id("project-saved")).to_have_text("saved")
+
+
+def typed(page: Any, label: str, value: str) -> None:
+    page.get_by_label(label).fill(value)
+    expect(page.get_by_test_id("project-saved")).not_to_have_text("not saved")
+    page.wait_for_timeout(450)
+    saved(page)
+
+
+def opened_dialog(page: Any) -> Any:
+    page.get_by_test_id("project").click()
+    dialog = page.get_by_test_id("projects")
+    expect(dialog).to_be_visible()
+    return dialog
+
+
+def test_what_was_typed_is_there_in_another_browser(open_page: Callable[..., Any], served: Any) -> None:
+    """No button was pressed: another browser, which knows nothing of the first one, opens what was typed."""
+    page = open_page()
+    typed(page, "Width", "0.75")
+    other = open_page()
+    expect(other.get_by_label("Width")).to_have_value("0.75")
+    (project,) = served.api("projects", method="GET")["projects"]
+    document = served.api(f"projects/{project['id']}", method="GET")["document"]
+    assert document["inputs"]["body"]["width"] == 0.75
+    states = served.api(f"projects/{project['id']}/history", method="GET")["states"]
+    assert [each["words"] for each in states] == ["body changed", "begun"]
+
+
+def test_undo_and_redo(open_page: Callable[..., Any]) -> None:
+    """By buttons and by keys, not while a field is typed in, whose own undo that is; and after a reload."""
+    page = open_page()
+    width = page.get_by_label("Width")
+    typed(page, "Width", "0.75")
+    typed(page, "Width", "0.9")
+    page.get_by_role("button", name="Undo").click()
+    expect(width).to_have_value("0.75")
+    page.locator("#tab-body").focus()
+    page.keyboard.press("Control+z")
+    expect(width).to_have_value("0.5")
+    expect(page.get_by_role("button", name="Undo")).to_have_attribute("aria-disabled", "true")
+    page.keyboard.press("Control+Shift+z")
+    expect(width).to_have_value("0.75")
+    page.reload()
+    expect(width).to_have_value("0.75")
+    page.get_by_role("button", name="Redo").click()
+    expect(width).to_have_value("0.9")
+    width.focus()
+    page.keyboard.press("Control+z")
+    page.wait_for_timeout(300)
+    saved(page)
+    expect(page.get_by_role("button", name="Redo")).to_have_attribute("aria-disabled", "true")
+
+
+def test_two_tabs_agree(open_page: Callable[..., Any]) -> None:
+    """What one tab of a browser changes the other one shows, and may change in turn."""
+    page = open_page()
+    other = page.context.new_page()
+    other.goto(page.url)
+    expect(other.get_by_test_id("project-saved")).to_have_text("saved")
+    typed(page, "Width", "0.75")
+    expect(other.get_by_label("Width")).to_have_value("0.75")
+    typed(other, "Height", "3")
+    expect(page.get_by_label("Height")).to_have_value("3")
+
+
+@pytest.mark.parametrize("mine", [True, False], ids=["kept as a copy", "given up"])
+def test_two_browsers_that_change_the_same(open_page: Callable[..., Any], served: Any, mine: bool) -> None:
+    """The later one is asked: nothing of either is lost, whatever it chooses."""
+    page, other = open_page(), open_page()
+    typed(page, "Width", "0.75")
+    other.get_by_label("Width").fill("0.6")
+    clash = other.get_by_test_id("clash")
+    expect(clash).to_be_visible()
+    clash.get_by_role("button", name="Keep mine as a copy" if mine else "Show what is there").click()
+    expect(clash).not_to_be_visible()
+    expect(other.get_by_label("Width")).to_have_value("0.6" if mine else "0.75")
+    names = {each["name"] for each in served.api("projects", method="GET")["projects"]}
+    assert names == {"My first project"} | ({"My first project (mine)"} if mine else set())
+    typed(other, "Height", "3")
+    expect(page.get_by_label("Width")).to_have_value("0.75")
+
+
+def test_all_projects(open_page: Callable[..., Any], tmp_path: Path) -> None:
+    """Begun, renamed, copied, taken away, deleted, brought back, and brought in from the file."""
+    page = open_page()
+    typed(page, "Width", "0.75")
+    dialog = opened_dialog(page)
+    dialog.get_by_label("Name of the open project").fill("Hall 3")
+    dialog.get_by_role("button", name="Rename").click()
+    expect(page.get_by_test_id("project")).to_have_text("Hall 3")
+    with page.expect_download() as told:
+        dialog.get_by_role("button", name="Take away: Hall 3").click()
+    told.value.save_as(tmp_path / "hall.zip")
+    dialog.get_by_label("Name of a new project").fill("Hall 4")
+    dialog.get_by_role("button", name="Begin").click()
+    expect(page.get_by_test_id("project")).to_have_text("Hall 4")
+    expect(page.get_by_label("Width")).to_have_value("0.5")
+    dialog.get_by_role("button", name="Copy: Hall 3").click()
+    expect(page.get_by_test_id("project")).to_have_text("Hall 3 (copy)")
+    expect(page.get_by_label("Width")).to_have_value("0.75")
+    dialog.get_by_role("button", name="Delete: Hall 3", exact=True).click()
+    gone = dialog.get_by_role("list", name="Deleted").get_by_role("button", name="Bring back: Hall 3", exact=True)
+    expect(gone).to_be_visible()
+    gone.click()
+    dialog.get_by_role("button", name="Open: Hall 3", exact=True).click()
+    expect(dialog).not_to_be_visible()
+    expect(page.get_by_label("Width")).to_have_value("0.75")
+    dialog = opened_dialog(page)
+    dialog.get_by_label("A project from its file").set_input_files(tmp_path / "hall.zip")
+    expect(dialog.get_by_role("button", name="Open: Hall 3", exact=True)).to_have_count(1)
+    expect(page.get_by_label("Width")).to_have_value("0.75")
+    dialog.get_by_label("A project from its file").set_input_files(
+        {"name": "x.zip", "mimeType": "application/zip", "buffer": b"nothing"}
+    )
+    expect(page.locator("#status")).to_contain_text("one ZIP archive")
+
+
+def test_back_to_a_state_of_the_history(open_page: Callable[..., Any]) -> None:
+    """Any earlier state is one press away, and what was there stays in the history."""
+    page = open_page()
+    for value in ("0.6", "0.7", "0.8"):
+        typed(page, "Width", value)
+    dialog = opened_dialog(page)
+    dialog.get_by_role("button", name="Go back to state 2").click()
+    expect(page.get_by_label("Width")).to_have_value("0.6")
+    expect(dialog.get_by_role("list", name="History").get_by_role("listitem")).to_have_count(5)
+    dialog.get_by_role("button", name="Close").click()
+    page.get_by_role("button", name="Undo").click()
+    expect(page.get_by_label("Width")).to_have_value("0.8")
+
+
+def test_studies_belong_to_a_project(open_page: Callable[..., Any]) -> None:
+    """A study is in the list of its own project, and of all projects where that is asked."""
+    page = open_page(view="studies")
+    studies = page.get_by_test_id("study-list").get_by_role("listitem")
+    page.wait_for_timeout(500)
+    others = studies.count()  # of no project
+    page.get_by_role("button", name="Launch").click()
+    expect(studies).to_have_count(others + 1)
+    dialog = opened_dialog(page)
+    dialog.get_by_label("Name of a new project").fill("Another")
+    dialog.get_by_role("button", name="Begin").click()
+    dialog.get_by_role("button", name="Close").click()
+    page.locator("#tab-body").click()
+    page.locator("#tab-studies").click()
+    expect(studies).to_have_count(others)
+    page.get_by_label("Studies of all projects").check()
+    expect(studies).not_to_have_count(others)
+
+
+@pytest.mark.parametrize("width", [320, 390, 768, 1024, 1440])
+def test_no_bar_at_any_width(open_page: Callable[..., Any], shot: Callable[..., Any], width: int) -> None:
+    """The line and the dialog fit, with a long name too."""
+    page = open_page(viewport={"width": width, "height": 800})
+    dialog = opened_dialog(page)
+    dialog.get_by_label("Name of the open project").fill("Depot of the western wing, second floor, showcases " * 3)
+    dialog.get_by_role("button", name="Rename").click()
+    expect(page.get_by_test_id("project")).to_contain_text("Depot")
+    shot(page, f"projects-{width}", full_page=False)
+    assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
+    assert dialog.evaluate("node => node.scrollWidth - node.clientWidth") <= 0
+
+
+class OwnServer:
+    """A server on a port of its own that can be killed and started again."""
+
+    def __init__(self, folder: Path) -> None:
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        self._command = [
+            sys.executable, "-m", "rocking", "serve", "--json", "--no-browser", "--port", str(port), "--data",
+            str(folder),
+        ]  # fmt: skip
+        self.start()
+
+    def start(self) -> None:
+        self._process = subprocess.Popen(self._command, stdout=subprocess.PIPE, text=True)
+        assert self._process.stdout is not None
+        self.told = json.loads(self._process.stdout.readline())
+
+    def kill(self) -> None:
+        self._process.kill()
+        self._process.wait()
+        assert self._process.stdout is not None
+        self._process.stdout.close()
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Iterator[OwnServer]:
+    """Serve, and kill in the end."""
+    server = OwnServer(tmp_path / "data")
+    yield server
+    server.kill()
+
+
+def test_a_server_that_is_killed_loses_nothing(browser: Any, own: OwnServer) -> None:
+    """Killed again and again, with changes before and while it is gone: signed in still, and all of it is there."""
+    context = browser.new_context()
+    page = context.new_page()
+    page.goto(f"{own.told['url']}#token={own.told['token']}")
+    width = page.get_by_label("Width")
+    expect(width).to_have_value("0.5")
+    for turn in range(KILLS):
+        before, while_gone = f"{0.61 + 0.01 * turn:.4g}", f"{1.61 + 0.01 * turn:.4g}"
+        typed(page, "Width", before)
+        own.kill()
+        width.fill(while_gone)
+        expect(page.get_by_test_id("project-saved")).to_have_text("not saved")
+        own.start()
+        expect(page.get_by_test_id("project-saved")).to_have_text("saved", timeout=20_000)
+        other = context.new_page()
+        other.goto(own.told["url"])
+        expect(other.get_by_label("Width")).to_have_value(while_gone)
+        other.close()
+    dialog = opened_dialog(page)
+    more = dialog.get_by_role("button", name="All ")
+    if more.count():
+        more.click()
+    expect(dialog.get_by_role("list", name="History").get_by_role("listitem")).to_have_count(1 + 2 * KILLS)
+    context.close()
