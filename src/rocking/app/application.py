@@ -21,6 +21,8 @@ from rocking.app.downloads import documents, pictures, tables
 from rocking.app.errors import kind_of_status
 from rocking.app.projects import router as projects
 from rocking.app.projects.store import ProjectStore
+from rocking.app.questions import router as questions
+from rocking.app.questions.desk import QuestionDesk
 from rocking.app.records import RecordStore
 from rocking.app.security import sessions as session
 from rocking.app.security.gate import Failures, Gate, SafeHeaders
@@ -104,11 +106,14 @@ def create_app(settings: ServerSettings) -> FastAPI:
             Middleware(BodyLimits, limits=settings.limits),
         ],
     )
-    limits, store = settings.limits, RecordStore(settings.folder, settings.limits)
+    limits = settings.limits
+    store, files = (RecordStore(settings.folder, limits, name) for name in ("records", "files"))
     app.state.rocking = AppState(
         settings=settings,
         records=store,
+        files=files,
         projects=ProjectStore(settings.folder),
+        questions=QuestionDesk(settings.folder, (files, store)),
         studies=StudyManager(settings.folder, limits, store, workers=settings.workers),
         sessions=Sessions(limits, kept=settings.folder / "sessions.json"),
         heavy=ComputationQueue(limits.heavy_at_once, limits.heavy_waiting),
@@ -117,20 +122,8 @@ def create_app(settings: ServerSettings) -> FastAPI:
     app.add_exception_handler(RequestValidationError, _handler(_invalid))
     app.add_exception_handler(ValidationError, _handler(_invalid))
     app.add_exception_handler(HTTPException, _handler(_refused))
-    for part in (
-        session,
-        info,
-        body,
-        impact,
-        records,
-        motion,
-        response,
-        pictures,
-        tables,
-        documents,
-        projects,
-        studies,
-    ):
+    of_results = (pictures, tables, documents, projects, questions, studies)
+    for part in (session, info, body, impact, records, motion, response, *of_results):
         app.include_router(part.router, responses=ERRORS)
     describe_api(app)
     _add_pages(app)
@@ -142,6 +135,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     yield
     app.state.rocking.heavy.close()
     app.state.rocking.studies.close()
+    app.state.rocking.questions.close()
     app.state.rocking.projects.close()
 
 

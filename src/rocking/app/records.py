@@ -55,8 +55,8 @@ def read_note(note: Path) -> StoredRecord | None:
 class RecordStore:
     """Files in a folder by hash, each with a note of its name beside it; safe to use from several threads."""
 
-    def __init__(self, folder: Path, limits: Limits) -> None:
-        self.folder = Path(folder) / "records"
+    def __init__(self, folder: Path, limits: Limits, name: str = "records") -> None:
+        self.folder = Path(folder) / name
         self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         self._sweep()
         self._limits = limits

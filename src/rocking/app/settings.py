@@ -11,6 +11,7 @@ from rocking.evidence.store import data_folder
 
 if TYPE_CHECKING:
     from rocking.app.projects.store import ProjectStore
+    from rocking.app.questions.desk import QuestionDesk
     from rocking.app.records import RecordStore
     from rocking.app.security.sessions import Sessions
     from rocking.app.studies.manager import StudyManager
@@ -64,7 +65,9 @@ class AppState:
 
     settings: ServerSettings  # what the server was told
     records: "RecordStore"  # uploaded records
+    files: "RecordStore"  # other uploaded files: scans, sounds, lists
     projects: "ProjectStore"  # what is worked on
+    questions: "QuestionDesk"  # what takes longer than a page waits
     studies: "StudyManager"  # campaigns that run, wait or are done
     sessions: "Sessions"  # who is signed in
     heavy: ComputationQueue  # threads for long computations

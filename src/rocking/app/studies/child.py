@@ -20,7 +20,7 @@ _PATIENCE = 3.0
 
 def main(arguments: list[str]) -> int:
     """Begin or go on with the campaign of a study."""
-    threading.Thread(target=_end_with_the_server, daemon=True).start()
+    threading.Thread(target=end_with_the_server, daemon=True).start()
     with contextlib.suppress(OSError, AttributeError):
         os.nice(10)
     from rocking.campaigns import CampaignInterrupted
@@ -64,7 +64,8 @@ def _compute(study: Path, workers: int) -> None:
     keep_result(OpenStudy(study.name, StudyFolder(study), folder))
 
 
-def _end_with_the_server() -> None:
+def end_with_the_server() -> None:
+    """Wait for the end of the server, and end this process and its group with it."""
     with contextlib.suppress(OSError):
         while os.read(0, 1):
             pass

@@ -1,0 +1,288 @@
+"""All questions of a data folder: asked, in line, answered, stopped; what a restart interrupts is answered after it."""
+
+import json
+import os
+import secrets
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import TypeAdapter
+
+from rocking.app.errors import Busy, NotFound, Refused, TooLarge, room_on_disk
+from rocking.app.inputs import levels
+from rocking.app.plain_text import safe_name, shown, toml_of
+from rocking.app.questions.child import QUESTION
+from rocking.app.records import RecordStore
+from rocking.campaigns.disk import write_new
+from rocking.restitution.from_file import file_of
+
+OUTPUTS: dict[str, tuple[str, ...]] = {
+    "assess": ("picture.svg", "report.pdf", "report.html"),
+    "predict": ("picture.svg", "report.pdf", "table.csv"),
+    "identify": ("picture.svg", "report.pdf", "table.xlsx"),
+    "inventory": ("inventory.html", "inventory.pdf", "inventory.xlsx", "inventory.csv"),
+}
+"""Commands, and the files that they write beside their answer."""
+
+MOST_QUESTIONS, MOST_WAITING, MOST_FILES = 500, 16, 200
+_SECONDS = 1800.0  # longest time of a question [s]
+_NOTE, _ANSWER, _LOG = "state.json", "answer.json", "log.txt"
+_OWN = {_NOTE, _ANSWER, _LOG, QUESTION, *(name for names in OUTPUTS.values() for name in names)}
+State = Literal["waiting", "running", "done", "refused", "stopped"]
+
+
+@dataclass(frozen=True)
+class Question:
+    """What was asked, and how far it is."""
+
+    id: str  # its name in addresses
+    command: str  # of the command line
+    name: str  # what people call it
+    project: str  # to which it belongs; empty if to none
+    asked: str  # when, in UTC
+    state: State = "waiting"
+    message: str = ""  # why there is no answer; empty while nothing is wrong
+    seconds: float = 0.0  # that it took [s]
+    files: list[str] = field(default_factory=list)  # that can be taken away
+
+
+_QUESTION = TypeAdapter(Question)
+
+
+class QuestionDesk:
+    """Questions in a folder each, answered one after the other; safe to use from several threads."""
+
+    def __init__(self, folder: Path, stores: tuple[RecordStore, ...]) -> None:
+        self.folder = Path(folder) / "questions"
+        self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        self._stores = stores
+        self._changed = threading.Condition(threading.RLock())
+        self._questions = {each.id: each for each in self._kept()}
+        self._line = [each.id for each in sorted(self._questions.values(), key=_age) if each.state == "waiting"]
+        self._process: tuple[str, subprocess.Popen[bytes]] | None = None
+        self._closed = False
+        self._thread = threading.Thread(target=self._work, name="questions", daemon=True)
+        self._thread.start()
+
+    def ask(
+        self, command: str, tables: dict[str, Any], files: Mapping[str, str], name: str = "", project: str = ""
+    ) -> Question:
+        """Put a question in line; files: hashes of what was sent, by the names that the tables call them."""
+        if command not in OUTPUTS:
+            raise Refused(f"command must be one of {', '.join(OUTPUTS)}, got {command!r:.40}")
+        refuse_outside(tables)
+        known = self._paths(files)
+        with self._changed:
+            if len(self._line) >= MOST_WAITING:
+                raise Busy(f"{len(self._line)} questions wait already; try again in a moment", seconds=5)
+            if len(self._questions) >= MOST_QUESTIONS:
+                raise TooLarge(f"up to {MOST_QUESTIONS} questions are kept; delete some that are no longer needed")
+        asked = datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+        question = Question(secrets.token_hex(8), command, shown(name or command), project, asked)
+        place = self.folder / question.id
+        try:
+            with room_on_disk():
+                place.mkdir(mode=0o700)
+                for word, source in known.items():
+                    shutil.copyfile(source, place / word)
+                (place / QUESTION).write_text(toml_of(tables), encoding="utf-8")
+        except BaseException:
+            shutil.rmtree(place, ignore_errors=True)
+            raise
+        self._become(question)
+        with self._changed:
+            self._line.append(question.id)
+            self._changed.notify_all()
+        return question
+
+    def all(self) -> list[Question]:
+        """Return all questions, the last one first."""
+        with self._changed:
+            return sorted(self._questions.values(), key=_age, reverse=True)
+
+    def get(self, question: str) -> Question:
+        with self._changed:
+            known = self._questions.get(question)
+        if known is None:
+            raise NotFound("there is no such question here; it was deleted, or this is another data folder")
+        return known
+
+    def answer(self, question: str) -> bytes | None:
+        """Return the answer as JSON; None where there is none yet."""
+        known = self.get(question)
+        return (self.folder / known.id / _ANSWER).read_bytes() if known.state == "done" else None
+
+    def tables(self, question: str) -> str:
+        """Return what was asked, as a file of the command line."""
+        return (self.folder / self.get(question).id / QUESTION).read_text(encoding="utf-8")
+
+    def file(self, question: str, name: str) -> Path:
+        """Return where a file of an answer is."""
+        known = self.get(question)
+        if name not in known.files:
+            raise NotFound(f"the question has no file {name!r:.40}; it has {', '.join(known.files) or 'none'}")
+        return self.folder / known.id / name
+
+    def stop(self, question: str) -> Question:
+        """Stop a question, or take it out of the line."""
+        with self._changed:
+            known = self.get(question)
+            if known.state not in {"waiting", "running"}:
+                return known
+            if known.id in self._line:
+                self._line.remove(known.id)
+            self._become(replace(known, state="stopped", message="stopped"))
+            if self._process is not None and self._process[0] == known.id:
+                _kill(self._process[1])
+        return self.get(question)
+
+    def delete(self, question: str) -> None:
+        """Forget a question and its answer."""
+        known = self.stop(question)
+        with self._changed:
+            self._questions.pop(known.id, None)
+        shutil.rmtree(self.folder / known.id, ignore_errors=True)
+
+    def close(self) -> None:
+        """Stop what runs; it is answered when the server starts again."""
+        with self._changed:
+            self._closed = True
+            if self._process is not None:
+                _kill(self._process[1])
+            self._changed.notify_all()
+        self._thread.join(10.0)
+
+    def _kept(self) -> list[Question]:
+        """Return the questions of an earlier server; one that ran waits again."""
+        found = []
+        for place in list(self.folder.iterdir()):
+            try:
+                question = _QUESTION.validate_json((place / _NOTE).read_bytes())
+            except (OSError, ValueError):  # half written when that server ended
+                if not place.is_symlink():
+                    shutil.rmtree(place, ignore_errors=True)
+                continue
+            if question.id == place.name:
+                found.append(replace(question, state="waiting") if question.state == "running" else question)
+        return found
+
+    def _paths(self, files: Mapping[str, str]) -> dict[str, Path]:
+        if len(files) > MOST_FILES:
+            raise TooLarge(f"a question takes up to {MOST_FILES} files, got {len(files)}")
+        paths = {}
+        for word, sha in files.items():
+            if word != safe_name(word, "file") or word in _OWN:
+                raise Refused(f"the name of a file must be plain, as {safe_name(word, 'file')!r}, got {word!r:.60}")
+            paths[word] = self._path(sha)
+        return paths
+
+    def _path(self, sha: str) -> Path:
+        for store in self._stores:
+            with suppress(NotFound):
+                return store.path(sha)
+        raise NotFound(f"no file {str(sha)[:12]}... is kept here: send it once more")
+
+    def _become(self, question: Question) -> None:
+        with self._changed:
+            self._questions[question.id] = question
+        with suppress(OSError):  # a full disk: a restart asks once more
+            write_new(self.folder / question.id / _NOTE, json.dumps(asdict(question)).encode())
+
+    def _work(self) -> None:
+        """Answer what is in line, one after the other."""
+        while True:
+            with self._changed:
+                while not self._line and not self._closed:
+                    self._changed.wait()
+                if self._closed:
+                    return
+                question = replace(self._questions[self._line.pop(0)], state="running")
+                self._become(question)
+            self._run(question)
+
+    def _run(self, question: Question) -> None:
+        place, begun = self.folder / question.id, datetime.now(UTC)
+        own, cache = place / ".own", self.folder.with_name("cache")  # for what libraries write
+        for each in (own, cache):
+            each.mkdir(mode=0o700, exist_ok=True)
+        environment = {**os.environ, "TMPDIR": str(own), "MPLCONFIGDIR": str(cache), "PYTHONUNBUFFERED": "1"}
+        names = OUTPUTS[question.command]
+        words = [sys.executable, "-P", "-m", "rocking.app.questions.child", str(place), question.command, *names]
+        with (place / _ANSWER).open("wb") as answer, (place / _LOG).open("wb") as log:
+            process = subprocess.Popen(
+                words, stdin=subprocess.PIPE, stdout=answer, stderr=log, start_new_session=True, env=environment
+            )
+            with self._changed:
+                self._process = (question.id, process)
+                if self._closed or self.get_state(question.id) == "stopped":
+                    _kill(process)
+            try:
+                code = process.wait(_SECONDS)
+            except subprocess.TimeoutExpired:
+                _kill(process)
+                code = None
+            finally:
+                if process.stdin:
+                    process.stdin.close()
+        shutil.rmtree(own, ignore_errors=True)
+        with self._changed:
+            self._process = None
+            if self._closed or self.get_state(question.id) in {"stopped", None}:
+                return
+            seconds = (datetime.now(UTC) - begun).total_seconds()
+            there = [name for name in names if (place / name).is_file()]
+            state, why = ("done", "") if code == 0 else ("refused", _why(place, code))
+            self._become(replace(question, state=state, message=why, seconds=seconds, files=there))  # type: ignore[arg-type]
+
+    def get_state(self, question: str) -> str | None:
+        """Return how far a question is; None where it was deleted."""
+        with self._changed:
+            known = self._questions.get(question)
+        return None if known is None else known.state
+
+
+def refuse_outside(tables: dict[str, Any]) -> None:
+    """Refuse words of a question that would run code, or lead out of its folder."""
+    for level in levels(tables):
+        for word in level:
+            if not isinstance(word, str):
+                continue
+            if file_of(word.strip()):
+                raise Refused(f"{word!r:.60} names a file of code, which a page cannot run; see the command line")
+            if word.startswith(("/", "\\", "~")) or ".." in word.replace("\\", "/").split("/") or word[1:3] == ":\\":
+                raise Refused(f"{word!r:.60} leads out of the question: send the file, and name it by its name alone")
+
+
+def _why(place: Path, code: int | None) -> str:
+    """Return why there is no answer, in words that a user may see."""
+    if code is None:
+        return (
+            f"it took longer than {_SECONDS / 60.0:.0f} minutes, which is more than a page waits: use the command line"
+        )
+    lines = (place / _LOG).read_text(encoding="utf-8", errors="replace").splitlines()
+    said = [line.removeprefix("rocking: ") for line in lines if line.startswith("rocking: ")]
+    if code == 2 and said:
+        return said[-1].replace(f"{place}{os.sep}", "")[:1000]
+    return "it needed more memory or time than a page gives, or failed: its log is in the data folder"
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    """End a process and all that it has started."""
+    with suppress(OSError):
+        if sys.platform == "win32":
+            process.kill()
+        elif process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+
+
+def _age(question: Question) -> tuple[str, str]:
+    return question.asked, question.id

@@ -1,0 +1,141 @@
+"""Endpoints of questions that take longer: send files, ask, watch, stop, take away; and of the files that they need."""
+
+import json
+from dataclasses import asdict
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Query, Request
+from pydantic import BaseModel, ConfigDict, Field
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import FileResponse, Response
+
+from rocking.app.answers import (
+    FILE_SENT,
+    MEDIA_TYPES,
+    Deleted,
+    JsonAnswer,
+    answered,
+    answered_with_file,
+    attachment_headers,
+    shape,
+)
+from rocking.app.api.records import RecordKept
+from rocking.app.questions.desk import OUTPUTS, Question, QuestionDesk
+from rocking.app.settings import state_of
+
+router = APIRouter(prefix="/api", tags=["questions"])
+_TABLES = """\
+The tables of a file that `rocking assess`, `predict`, `identify` or `inventory` takes, as JSON. Files in them are named
+as in `files`, and were sent to `/api/files` or `/api/records`."""
+
+QuestionFacts: Any = shape(
+    "QuestionFacts",
+    "A question, and how far it is.",
+    id=(str, "its name in addresses"),
+    command=Literal["assess", "predict", "identify", "inventory"],
+    name=(str, "what people call it"),
+    project=(str, "to which it belongs; empty if to none"),
+    asked=(str, "when, in UTC"),
+    state=Literal["waiting", "running", "done", "refused", "stopped"],
+    message=(str, "why there is no answer; empty while nothing is wrong"),
+    seconds=(float, "that it took [s]"),
+    files=(list[str], "that can be taken away"),
+)
+Questions: Any = shape("Questions", "All questions, the last one first.", questions=list[QuestionFacts])
+WholeQuestion: Any = shape(
+    "WholeQuestion",
+    "A question, and its answer.",
+    QuestionFacts,
+    toml=(str, "what was asked, as a file of the command line"),
+    answer=(Any, "what the command prints with --json; null where there is none yet"),
+)
+
+
+class NewQuestion(BaseModel):
+    """A question to ask."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+
+    command: Literal["assess", "predict", "identify", "inventory"]
+    tables: Annotated[dict[str, Any], Field(description=_TABLES)]
+    files: Annotated[
+        dict[str, str], Field(description="SHA-256 of each file, by the name that it has in the tables")
+    ] = Field(default_factory=dict)
+    name: Annotated[str, Field(max_length=200, description="what people call it")] = ""
+    project: Annotated[str, Field(max_length=40, description="to which it belongs, if to one")] = ""
+
+
+def _desk(request: Request) -> QuestionDesk:
+    return state_of(request).questions
+
+
+def _facts(question: Question) -> dict[str, Any]:
+    return asdict(question)
+
+
+@router.post("/files", openapi_extra=FILE_SENT, summary="Send a file", responses=answered(RecordKept, "The file."))
+async def add_file(request: Request, name: Annotated[str, Query(max_length=500)] = "file") -> JsonAnswer:
+    """Keep a scan, a sound, a list or a table, by its hash; nothing of it is read before a question needs it."""
+    content = await request.body()
+    return JsonAnswer(asdict(await run_in_threadpool(state_of(request).files.add, content, name)))
+
+
+@router.post(
+    "/questions", status_code=202, summary="Ask a question", responses=answered(QuestionFacts, "It is in line.", 202)
+)
+async def ask_question(request: Request, asked: NewQuestion) -> JsonAnswer:
+    """Put a question in line; its answer is what the command of the same name prints with --json."""
+    if asked.project:
+        await run_in_threadpool(state_of(request).projects.get, asked.project)
+    question = await run_in_threadpool(
+        _desk(request).ask, asked.command, asked.tables, asked.files, asked.name, asked.project
+    )
+    return JsonAnswer(_facts(question), status_code=202)
+
+
+@router.get("/questions", summary="All questions", responses=answered(Questions, "The questions."))
+async def list_questions(request: Request) -> JsonAnswer:
+    """Return all questions, the last one first."""
+    return JsonAnswer({"questions": [*map(_facts, _desk(request).all())]})
+
+
+@router.get("/questions/{question}", summary="One question", responses=answered(WholeQuestion, "The question."))
+async def get_question(request: Request, question: str) -> JsonAnswer:
+    """Return a question, and its answer once it is done."""
+
+    def whole() -> dict[str, Any]:
+        desk = _desk(request)
+        answer = desk.answer(question)
+        told = {"toml": desk.tables(question), "answer": None if answer is None else json.loads(answer)}
+        return {**_facts(desk.get(question)), **told}
+
+    return JsonAnswer(await run_in_threadpool(whole))
+
+
+@router.post("/questions/{question}/stop", summary="Stop a question", responses=answered(QuestionFacts, "Stopped."))
+async def stop_question(request: Request, question: str) -> JsonAnswer:
+    """Stop a question, or take it out of the line."""
+    return JsonAnswer(_facts(await run_in_threadpool(_desk(request).stop, question)))
+
+
+@router.delete("/questions/{question}", summary="Delete a question", responses=answered(Deleted, "What is gone."))
+async def delete_question(request: Request, question: str) -> JsonAnswer:
+    """Forget a question and its answer."""
+    await run_in_threadpool(_desk(request).delete, question)
+    return JsonAnswer({"deleted": question})
+
+
+_ENDINGS = sorted({name.rpartition(".")[2] for names in OUTPUTS.values() for name in names})
+
+
+@router.get(
+    "/questions/{question}/{file}",
+    summary="A file of an answer",
+    response_class=Response,
+    responses=answered_with_file("The file.", *_ENDINGS),
+)
+async def question_file(request: Request, question: str, file: str) -> Response:
+    """Return a picture, a report or a table of an answer."""
+    path = await run_in_threadpool(_desk(request).file, question, file)
+    name = f"{_desk(request).get(question).name} {file}"
+    return FileResponse(path, media_type=MEDIA_TYPES[file.rpartition(".")[2]], headers=attachment_headers(name))

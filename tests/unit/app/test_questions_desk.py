@@ -1,0 +1,196 @@
+"""Questions in a process of their own: answered as the command line does, with what was sent and nothing else."""
+
+import json
+import sys
+import time
+
+import pytest
+
+from rocking.app.errors import NotFound, Refused
+from rocking.app.questions.desk import QuestionDesk, refuse_outside
+from rocking.app.records import RecordStore
+from rocking.app.settings import Limits
+
+OCTETS = {"Content-Type": "application/octet-stream"}
+TABLES = {
+    "body": {"units": "cm", "width": 50, "height": 200},
+    "motion": {"pulse": "sine:amplitude=3,period=0.8"},
+    "predict": {"count": 16},
+}
+LIST = "name,width_cm,depth_cm,height_cm\nvase,20,20,100\nbox,?,20,30\n"
+INVENTORY = {
+    "campaign": {"name": "hall", "kind": "inventory"},
+    "inventory": {"objects": "list.csv", "pga": "0.3g"},
+    "motions": [{"synthetic": "point-source", "count": 5, "seed": 1}],
+}
+
+
+@pytest.fixture
+def desk(tmp_path):
+    store = RecordStore(tmp_path, Limits(), "files")
+    kept = QuestionDesk(tmp_path, (store,))
+    kept.store = store
+    yield kept
+    kept.close()
+
+
+def ended(desk, question, seconds=60.0):
+    """Wait for the end of a question."""
+    deadline = time.monotonic() + seconds
+    while desk.get(question).state in {"waiting", "running"}:
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    return desk.get(question)
+
+
+def test_the_answer_is_that_of_the_command_line(desk, tmp_path, capsys):
+    """The same JSON as the command prints for the same file, with a picture and a report beside it."""
+    from rocking.cli import main
+
+    asked = desk.ask("predict", TABLES, {}, "cabinet")
+    found = ended(desk, asked.id)
+    assert (found.state, found.message, found.files) == ("done", "", ["picture.svg", "report.pdf", "table.csv"])
+    (tmp_path / "same.toml").write_text(desk.tables(asked.id))
+    with pytest.raises(SystemExit):
+        main(["predict", str(tmp_path / "same.toml"), "--json"])
+    assert json.loads(desk.answer(asked.id)) == json.loads(capsys.readouterr().out)
+    assert desk.file(asked.id, "picture.svg").read_bytes().startswith(b"<?xml")
+    assert desk.file(asked.id, "report.pdf").read_bytes().startswith(b"%PDF")
+    with pytest.raises(NotFound, match="has no file"):
+        desk.file(asked.id, "state.json")
+
+
+def test_a_list_that_was_sent_is_assessed(desk):
+    """The file is found by the name that the tables give it; one that was not sent is refused."""
+    sent = desk.store.add(LIST.encode(), "my list.csv")
+    asked = desk.ask("inventory", INVENTORY, {"list.csv": sent.record})
+    found = ended(desk, asked.id)
+    assert found.state == "done", found.message
+    answer = json.loads(desk.answer(asked.id))
+    assert [each["name"] for each in answer["objects"] + answer["not_assessed"]] == ["vase", "box"]
+    without = ended(desk, desk.ask("inventory", INVENTORY, {}).id)
+    assert without.state == "refused"
+    assert "list.csv" in without.message
+    assert str(desk.folder) not in without.message
+
+
+def test_what_is_refused_says_why(desk):
+    """The sentence of the command line is the message; there is no answer, and no file."""
+    wrong = {**TABLES, "body": {"units": "cm", "width": 50, "height": -2}}
+    found = ended(desk, desk.ask("predict", wrong, {}).id)
+    assert (found.state, found.files) == ("refused", [])
+    assert "got -2" in found.message
+    assert desk.answer(found.id) is None
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        ({"body": {"file": "/etc/passwd"}}, "leads out"),
+        ({"body": {"file": "../x.toml"}}, "leads out"),
+        ({"body": {"file": "a/../../x.toml"}}, "leads out"),
+        ({"motions": [{"records": ["~/x.at2"]}]}, "leads out"),
+        ({"motions": [{"records": ["C:\\x.at2"]}]}, "leads out"),
+        ({"restitution": {"model": "own.py:Model"}}, "code"),
+    ],
+)
+def test_nothing_leads_out_of_a_question(desk, tables, words):
+    """Paths of this computer and code are refused before anything runs."""
+    with pytest.raises(Refused, match=words):
+        desk.ask("predict", {**TABLES, **tables}, {})
+    refuse_outside({"motion": {"units": "m/s2"}, "body": {"note": "as is... v1.2 / old"}})
+    for name in ("../x", "state.json", "report.pdf", "a b"):
+        with pytest.raises(Refused, match="plain"):
+            desk.ask("predict", TABLES, {name: "0" * 64})
+
+
+SPY = """
+import sys
+from pathlib import Path
+from rocking.app.questions.child import keep_inside
+inside, outside = Path(sys.argv[1]), Path(sys.argv[2])
+if len(sys.argv) == 3:
+    keep_inside(inside)
+for path in (inside / "a.txt", outside / "b.txt", inside / "link.txt"):
+    try:
+        print(path.read_text())
+    except PermissionError as error:
+        print(error.strerror)
+import json, tomllib, rocking
+"""
+
+
+@pytest.mark.parametrize("guarded", [True, False])
+def test_a_process_opens_only_what_was_sent(tmp_path, guarded):
+    """Neither another folder nor a link to it is read, libraries still are; without the guard, all of it is."""
+    import subprocess
+
+    inside, outside = tmp_path / "inside", tmp_path / "outside"
+    for folder, name in ((inside, "a.txt"), (outside, "b.txt")):
+        folder.mkdir()
+        (folder / name).write_text(name)
+    (inside / "link.txt").symlink_to(outside / "b.txt")
+    words = [sys.executable, "-c", SPY, str(inside), str(outside), *(["no"] * (not guarded))]
+    said = subprocess.run(words, capture_output=True, text=True, check=True).stdout.split("\n")[:3]
+    refused = "not among the files that were sent"
+    assert said == (["a.txt", refused, refused] if guarded else ["a.txt", "b.txt", "b.txt"])
+
+
+def test_a_list_cannot_name_a_file_of_this_computer(desk, tmp_path):
+    """A body file that a list names is looked for among what was sent alone."""
+    secret = tmp_path / "secret.csv"
+    secret.write_text("0,0\n1,0\n1,2\n0,2\n")
+    text = f"name,body_file,units\nvase,../../{secret.name},m\nbox,{secret},m\n"
+    sent = desk.store.add(text.encode(), "list.csv")
+    found = ended(desk, desk.ask("inventory", INVENTORY, {"list.csv": sent.record}).id)
+    said = found.message if found.state == "refused" else desk.answer(found.id).decode()
+    assert "1,2" not in said
+    if found.state == "done":
+        assert len(json.loads(said)["not_assessed"]) == 2
+
+
+def test_stopped_deleted_and_gone_on_with(tmp_path):
+    """One that waits or runs can be stopped; what a restart interrupts is answered after it; files go with it."""
+    store = RecordStore(tmp_path, Limits(), "files")
+    desk = QuestionDesk(tmp_path, (store,))
+    long = {**TABLES, "predict": {"count": 20_000}, "motion": {"pulse": "sine:amplitude=4,period=0.8"}}
+    first, second, third = (desk.ask("predict", each, {}) for each in (long, TABLES, TABLES))
+    while desk.get(first.id).state == "waiting":
+        time.sleep(0.01)
+    assert desk.stop(second.id).state == "stopped"
+    desk.close()
+    again = QuestionDesk(tmp_path, (store,))
+    assert [again.get(each.id).state for each in (second, third)] == ["stopped", "waiting"]
+    assert again.stop(first.id).state == "stopped"
+    assert ended(again, third.id).state == "done"
+    again.delete(third.id)
+    assert not (again.folder / third.id).exists()
+    with pytest.raises(NotFound):
+        again.get(third.id)
+    assert [each.id for each in again.all()] == [second.id, first.id]
+    again.close()
+
+
+def test_over_the_api(client, stranger):
+    """Sent, asked, watched and taken away."""
+    assert stranger.get("/api/questions").status_code == 401
+    sent = client.post("/api/files", params={"name": "list.csv"}, content=LIST.encode(), headers=OCTETS).json()
+    asked = client.post(
+        "/api/questions", json={"command": "inventory", "tables": INVENTORY, "files": {"list.csv": sent["record"]}}
+    )
+    assert asked.status_code == 202, asked.text
+    where = f"/api/questions/{asked.json()['id']}"
+    deadline = time.monotonic() + 60.0
+    while (found := client.get(where).json())["state"] in {"waiting", "running"}:
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    assert found["state"] == "done", found["message"]
+    assert found["answer"]["objects"][0]["name"] == "vase"
+    assert 'objects = "list.csv"' in found["toml"]
+    page = client.get(f"{where}/inventory.html")
+    assert page.headers["Content-Disposition"].startswith("attachment")
+    assert client.get(f"{where}/answer.json").status_code == 404
+    assert client.post("/api/questions", json={"command": "serve", "tables": {}}).status_code == 422
+    assert client.post("/api/questions", json={"command": "predict", "tables": {}, "project": "x"}).status_code == 404
+    assert client.delete(where).json() == {"deleted": asked.json()["id"]}
+    assert client.get(where).status_code == 404
