@@ -203,7 +203,7 @@ MANUAL_POLICY = CONTENT_POLICY.replace("form-action 'none'", "form-action 'self'
 )
 _FEATURES = (
     "accelerometer", "autoplay", "camera", "clipboard-read", "display-capture", "encrypted-media", "geolocation",
-    "gyroscope", "hid", "magnetometer", "microphone", "midi", "payment", "publickey-credentials-get",
+    "gyroscope", "hid", "magnetometer", "midi", "payment", "publickey-credentials-get",
     "screen-wake-lock", "serial", "usb", "xr-spatial-tracking",
 )  # fmt: skip
 HEADERS = {
@@ -213,7 +213,7 @@ HEADERS = {
     "Referrer-Policy": "no-referrer",
     "Cross-Origin-Opener-Policy": "same-origin",
     "Cross-Origin-Resource-Policy": "same-origin",
-    "Permissions-Policy": ", ".join(f"{feature}=()" for feature in _FEATURES),
+    "Permissions-Policy": ", ".join([*(f"{feature}=()" for feature in _FEATURES), "microphone=(self)"]),
 }
 _LOG = logging.getLogger("rocking.app")
 

@@ -1,0 +1,10 @@
+/** Hands the samples of the microphone to the page. */
+
+class Recorder extends AudioWorkletProcessor {
+  process([[samples]]) {
+    if (samples) this.port.postMessage(samples.slice());
+    return true;
+  }
+}
+
+registerProcessor("rocking-recorder", Recorder);

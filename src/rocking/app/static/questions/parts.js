@@ -1,0 +1,148 @@
+/** What every view of a question is made of: fields, its progress, its files, and earlier ones. */
+
+import { html, signal, useEffect, useRef } from "/parts/preact.js";
+import { freshId } from "/app/dom.js";
+
+/** A signal that lives as long as its component. */
+export const useSignal = (first) => useRef(signal(first)).current;
+
+/** A labelled field; `kind` is the type of the input. */
+export const Field = ({ label, unit, help, value, kind = "text", error, ...more }) => {
+  const id = useRef(freshId("field")).current;
+  const words = error || help;
+  return html`
+    <div class="field">
+      <div class="field-head"><label for=${id}>${label}${unit && html` <span class="unit">${unit}</span>`}</label></div>
+      <input id=${id} type=${kind} autocomplete="off" aria-describedby=${`${id}-about`} aria-invalid=${error ? "true" : null}
+        value=${value?.value} onInput=${(event) => value && (value.value = event.target.value)} ...${more} />
+      <p id=${`${id}-about`} class=${`field-help ${error ? "field-error" : ""}`}>${words}</p>
+    </div>`;
+};
+
+/** A choice of one. */
+export const Choice = ({ label, help, value, options }) => {
+  const id = useRef(freshId("choice")).current;
+  return html`
+    <div class="field">
+      <div class="field-head"><label for=${id}>${label}</label></div>
+      <select id=${id} aria-describedby=${`${id}-about`} value=${value.value}
+        onChange=${(event) => (value.value = event.target.value)}>
+        ${options.map(([key, text]) => html`<option key=${key} value=${key}>${text}</option>`)}
+      </select>
+      <p id=${`${id}-about`} class="field-help">${help}</p>
+    </div>`;
+};
+
+/** Files by dropping or choosing; `files` is a signal of what was sent. */
+export const FileDrop = ({ label, help, accept, files, many = false, questions, app }) => {
+  const input = useRef(null);
+  const over = useSignal(false);
+  const take = async (list) => {
+    const chosen = many ? [...list] : [...list].slice(0, 1);
+    try {
+      const sent = await Promise.all(chosen.map((file) => questions.send(file)));
+      files.value = many ? [...files.value, ...sent] : sent;
+    } catch (error) {
+      app.say(error.message, "error");
+    }
+  };
+  const drop = (event) => {
+    event.preventDefault();
+    over.value = false;
+    take(event.dataTransfer.files);
+  };
+  const mark = (on) => (event) => {
+    event.preventDefault();
+    over.value = on;
+  };
+  return html`
+    <div class=${`drop ${over.value ? "over" : ""}`} onDragOver=${mark(true)} onDragLeave=${mark(false)} onDrop=${drop}>
+      <p>${label}</p>
+      <button type="button" class="button" onClick=${() => input.current.click()}>Choose ${many ? "files" : "a file"}</button>
+      <input ref=${input} class="visually-hidden" type="file" tabindex="-1" aria-label=${label} accept=${accept}
+        multiple=${many} onChange=${(event) => { take([...event.target.files]); event.target.value = ""; }} />
+      <p class="field-help">${help}</p>
+      ${files.value.length > 0 && html`<ul class="sent" aria-label="Files">
+        ${files.value.map((one) => html`<li key=${one.sha}>${one.name}
+          <button type="button" class="button quiet" aria-label=${`Leave out ${one.name}`}
+            onClick=${() => (files.value = files.value.filter((each) => each !== one))}>leave out</button></li>`)}
+      </ul>`}
+    </div>`;
+};
+
+/** What stands of a question: being answered, refused, or its answer, which `children` shows. */
+export const Outcome = ({ questions, children }) => {
+  const question = questions.shown.value;
+  const heading = useRef(null);
+  const done = question?.state === "done";
+  useEffect(() => { if (done) heading.current?.focus(); }, [done, question?.id]);
+  if (!question) return null;
+  return html`
+    <section class="card question" aria-labelledby="outcome-title" data-testid="outcome" data-state=${question.state}>
+      <h2 id="outcome-title" ref=${heading} tabindex="-1">${question.name}</h2>
+      ${questions.busy.value && html`<${Waiting} questions=${questions} question=${question} />`}
+      ${question.state === "refused" && html`<p class="note error" role="alert"><span class="sign" aria-hidden="true">\u2715</span>
+        <span>${sentence(question.message)}</span></p>
+        <${Drawing} question=${question} alt="What was found all the same" />`}
+      ${question.state === "stopped" && html`<p class="note info"><span class="sign" aria-hidden="true">i</span>
+        <span>It was stopped.</span></p>`}
+      ${done && question.answer && children(question.answer, question)}
+      ${done && html`<${Files} questions=${questions} question=${question} />`}
+    </section>`;
+};
+
+const sentence = (words) => `${words.slice(0, 1).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
+
+const Waiting = ({ questions, question }) => html`
+  <div class="waiting-line" role="status">
+    <progress aria-label="Being answered"></progress>
+    <span>${question.state === "waiting" ? "in line" : "being computed"}</span>
+    <button type="button" class="button" onClick=${questions.stop}>Stop</button>
+  </div>`;
+
+const WORDS = { pdf: "Report (PDF)", html: "Report (web page)", svg: "Picture (SVG)", xlsx: "Excel", csv: "CSV" };
+
+const Files = ({ questions, question }) => html`
+  <div class="toolbar" aria-label="Take away">
+    ${question.files.map((name) => html`<button type="button" class="button" key=${name} onClick=${() => questions.take(name)}>
+      ${WORDS[name.split(".").at(-1)]}</button>`)}
+  </div>
+  <details><summary>The same on the command line</summary>
+    <p class="field-help">Save it as question.toml: rocking ${question.command} question.toml</p><pre>${question.toml}</pre>
+  </details>`;
+
+/** The picture of an answer, if it has one. */
+export const Drawing = ({ question, alt }) => question.files.includes("picture.svg")
+  && html`<img class="drawing" src=${`/api/questions/${question.id}/picture.svg`} alt=${alt} />`;
+
+/** A table; cells are text, or `[text, kind]` with the colour of a light. */
+export const Rows = ({ caption, head, rows }) => html`
+  <div class="table-scroll" tabindex="0" role="region" aria-label=${caption}>
+    <table><caption class="visually-hidden">${caption}</caption>
+      <thead><tr>${head.map((words) => html`<th scope="col" key=${words}>${words}</th>`)}</tr></thead>
+      <tbody>${rows.map((row, k) => html`<tr key=${k}>
+        ${row.map((cell, j) => {
+          const [text, kind] = Array.isArray(cell) ? cell : [cell, null];
+          return j ? html`<td class=${kind ? `light ${kind}` : null}>${text}</td>` : html`<th scope="row">${text}</th>`;
+        })}</tr>`)}
+      </tbody>
+    </table>
+  </div>`;
+
+/** Earlier questions of the project. */
+export const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
+  <section class="card" aria-labelledby="earlier-title">
+    <h2 id="earlier-title">Asked before</h2>
+    <ul class="project-list" aria-label="Asked before">
+      ${questions.all.value.map((one) => html`<li key=${one.id}>
+        <p><strong>${one.name}</strong><span class="quiet">${new Date(one.asked).toLocaleString()}, ${one.state}</span></p>
+        <div class="toolbar">
+          <button type="button" class="button" aria-label=${`Show ${one.name}`} onClick=${() => questions.open(one.id)}>Show</button>
+          <button type="button" class="button" aria-label=${`Delete ${one.name}`} onClick=${() => questions.remove(one.id)}>Delete</button>
+        </div></li>`)}
+    </ul>
+  </section>`;
+
+/** A view: its head, and what is in it. */
+export const View = ({ title, lead, children }) => html`
+  <header class="view-head"><h1>${title}</h1><p class="lead">${lead}</p></header>${children}`;

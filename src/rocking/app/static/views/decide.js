@@ -1,0 +1,113 @@
+/** Decide: does the body stand under its motion, or under several records, how sure is that, and what to do. */
+
+import { html, render } from "/parts/preact.js";
+import { number } from "/app/format.js";
+import { createQuestions, motionOf } from "/questions/asking.js";
+import { Choice, Drawing, Earlier, Field, FileDrop, Outcome, Rows, View, useSignal } from "/questions/parts.js";
+
+const FAMILIES = [
+  ["", "the motion of this project"], ["records", "record files"], ["firm-ground", "20 synthetic motions, firm ground"],
+  ["soft-ground", "20 synthetic motions, soft ground"],
+];
+const RECORDS = ".at2,.txt,.csv,.v1,.v2,.v1c,.v2c,.smc,.mseed,.sac,.dat,.zip,.acc,.knt,.ns,.ew,.ud";
+
+/** Build the view inside its section. */
+export const mount = (section, app) => {
+  const questions = createQuestions(app, "assess");
+  render(html`<${Decide} app=${app} questions=${questions} />`, section);
+  return { shown: () => questions.look() };
+};
+
+const Decide = ({ app, questions }) => {
+  const shaken = useSignal("");
+  const files = useSignal([]);
+  const units = useSignal("");
+  const margin = useSignal("1");
+  const [author, date, pga] = [useSignal(""), useSignal(""), useSignal("0.3")];
+  const wrong = useSignal("");
+  const ask = (event) => {
+    event.preventDefault();
+    const inputs = app.inputs.get();
+    const asked = motions(inputs, shaken.value, files.value, { units: units.value, pga: pga.value });
+    const faulty = app.faults.sentence({ inputs: true }) || asked.missing;
+    wrong.value = faulty || "";
+    if (faulty) return;
+    const name = inputs.body.name || app.project.here.value.name;
+    const signed = { project: app.project.here.value.name, author: author.value, date: date.value };
+    const told = Object.fromEntries(Object.entries(signed).filter(([, words]) => words.trim()));
+    const tables = {
+      body: inputs.body, motions: [asked.motion], assess: { ...told, margin: Number(margin.value.replace(",", ".")) || 1 },
+      ...(inputs.settings ? { settings: inputs.settings } : {}),
+    };
+    questions.ask(tables, asked.files, `Does ${name} stand?`);
+  };
+  return html`
+    <${View} title="Does it stand?"
+      lead="All models of the impact, both ways round, the margin to overturning, how likely it is, and what to do about it.">
+      <div class="columns narrow-wide">
+        <div class="stack">
+          <form class="card" onSubmit=${ask} aria-label="What is asked">
+            <${Choice} label="Shaken by" value=${shaken} options=${FAMILIES} />
+            ${shaken.value === "records" && html`
+              <${FileDrop} label="Drop records here, or" many accept=${RECORDS} files=${files} questions=${questions} app=${app}
+                help="Several records at once; each is computed as it is." />
+              <${Field} label="Unit of the accelerations" value=${units} help="Only where the files state none: g, m/s2, cm/s2." />`}
+            ${["firm-ground", "soft-ground"].includes(shaken.value)
+              && html`<${Field} label="Peak acceleration" unit="g" value=${pga} inputmode="decimal" />`}
+            <${Field} label="Must hold" unit="times the motion" value=${margin} inputmode="decimal"
+              help="What is proposed holds this much." />
+            <${Field} label="Signed by" value=${author} help="For the report." />
+            <${Field} label="Date" value=${date} help="Today if empty." />
+            ${wrong.value && html`<p class="note error" role="alert"><span class="sign" aria-hidden="true">\u2715</span>
+              <span>${wrong.value}</span></p>`}
+            <button type="submit" class="button primary" disabled=${questions.busy.value}>Ask</button>
+          </form>
+          <${Earlier} questions=${questions} />
+        </div>
+        <${Outcome} questions=${questions}>${(answer, question) => html`<${Verdict} answer=${answer} question=${question} />`}<//>
+      </div>
+    <//>`;
+};
+
+/** What shakes the body as a job has it, the files that it needs, and what is missing. */
+const motions = (inputs, shaken, files, { units, pga }) => {
+  if (shaken === "records") {
+    const motion = { records: files.map((one) => one.name), ...(units.trim() ? { units: units.trim() } : {}) };
+    const hashes = Object.fromEntries(files.map((one) => [one.name, one.sha]));
+    return { motion, files: hashes, missing: files.length ? "" : "No record was sent yet." };
+  }
+  if (shaken) {
+    const level = Number(pga.replace(",", "."));
+    const missing = level > 0 ? "" : "How strong is the shaking? The peak acceleration is a number above 0.";
+    return { motion: { synthetic: shaken, count: 20, seed: 1, pga: level * 9.80665 }, files: {}, missing };
+  }
+  return motionOf(inputs) ?? { files: {}, missing: "Nothing moves the ground yet: choose a motion first." };
+};
+
+const MARKS = { overturning: "bad", uplift: "fair" };
+
+const Verdict = ({ answer, question }) => {
+  const fallen = (each) => each.overturned.filter((one) => one === 1).length;
+  const rows = Object.entries(answer.models).map(([name, each]) => [
+    name, number(each.coefficients.left), number(each.coefficients.right),
+    [`${fallen(each)} of ${each.overturned.length}`, fallen(each) ? "bad" : "good"],
+    each.lowest === null ? "none found" : number(each.lowest, 3),
+  ]);
+  const chances = Object.entries(answer.prediction.probability).map(([what, each]) => [
+    { uplift: "rocks", sliding: "slides", overturning: "overturns" }[what], percent(each.value),
+    `${percent(each.low)} to ${percent(each.high)}`,
+  ]);
+  const some = Object.values(answer.models).some(fallen);
+  return html`
+    <p class=${`verdict ${some ? MARKS.overturning : "good"}`} data-testid="verdict">${answer.sentences[0]}</p>
+    ${answer.sentences.slice(1).map((words) => html`<p key=${words}>${words}</p>`)}
+    <${Drawing} question=${question} alt="Least factor on each motion that overturns the body, by model" />
+    <h3>With each model of the impact</h3>
+    <${Rows} caption="Models" head=${["restitution", "r left", "r right", "overturns under", "least factor"]} rows=${rows} />
+    <h3>How likely is it?</h3>
+    <${Rows} caption="Probabilities" head=${["it", "probability", "95 % interval"]} rows=${chances} />
+    ${Object.keys(answer.refused).length > 0 && html`<p class="field-help">Models that say nothing of this body:
+      ${Object.entries(answer.refused).map(([name, why]) => `${name}: ${why}`).join("; ")}</p>`}`;
+};
+
+const percent = (value) => `${number(100 * value, 3)}\u00a0%`;

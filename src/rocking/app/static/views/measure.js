@@ -1,0 +1,84 @@
+/** Measure: the coefficient of restitution from a sound, a table of times or rotations, or the microphone. */
+
+import { html, render } from "/parts/preact.js";
+import { number } from "/app/format.js";
+import { createQuestions } from "/questions/asking.js";
+import { Choice, Drawing, Earlier, Field, FileDrop, Outcome, Rows, View, useSignal } from "/questions/parts.js";
+import { record } from "/questions/microphone.js";
+
+const KINDS = [
+  ["", "what the file says"], ["times", "times of the impacts"], ["rotation", "rotation"], ["displacement", "displacement"],
+  ["angular velocity", "angular velocity"], ["acceleration", "acceleration"],
+];
+
+/** Build the view inside its section. */
+export const mount = (section, app) => {
+  const questions = createQuestions(app, "identify");
+  render(html`<${Measure} app=${app} questions=${questions} />`, section);
+  return { shown: () => questions.look() };
+};
+
+const Measure = ({ app, questions }) => {
+  const files = useSignal([]);
+  const [kind, column, unit, known] = ["", "", "", "yes"].map(useSignal);
+  const wrong = useSignal("");
+  const recording = useSignal(null);
+  const listen = async () => {
+    if (recording.value) {
+      const file = await recording.value.end();
+      recording.value = null;
+      files.value = [await questions.send(file)];
+      return;
+    }
+    try {
+      recording.value = await record();
+    } catch {
+      app.say("The browser does not let this page listen: allow the microphone, or drop a file.", "error");
+    }
+  };
+  const ask = (event) => {
+    event.preventDefault();
+    const inputs = app.inputs.get();
+    wrong.value = (known.value === "yes" && app.faults.sentence({ inputs: true })) || (files.value.length ? "" : "Nothing was sent yet.");
+    if (wrong.value) return;
+    const [file] = files.value;
+    const table = { file: file.name, kind: kind.value, column: column.value.trim(), unit: unit.value.trim() };
+    const measurement = Object.fromEntries(Object.entries(table).filter(([, words]) => words));
+    const tables = { measurement, ...(known.value === "yes" ? { body: inputs.body } : {}) };
+    questions.ask(tables, { [file.name]: file.sha }, `What ${file.name} says`);
+  };
+  return html`
+    <${View} title="What does an impact cost?"
+      lead="Let the body go from a tilt and record it: each knock tells how much of the speed was left.">
+      <div class="columns narrow-wide">
+        <div class="stack">
+          <form class="card" onSubmit=${ask} aria-label="What is asked">
+            <${FileDrop} label="Drop a recording here, or" accept=".wav,.flac,.csv,.txt,.xlsx" files=${files} questions=${questions}
+              app=${app} help="Sound (WAV, FLAC), or a table of times, rotations, a gyroscope or an accelerometer." />
+            <button type="button" class="button" aria-pressed=${String(Boolean(recording.value))} onClick=${listen}>
+              ${recording.value ? "End the recording" : "Record with the microphone"}</button>
+            <${Choice} label="It holds" value=${kind} options=${KINDS} help="Of a table only." />
+            <${Field} label="Column" value=${column} help="Of a table with several." />
+            <${Field} label="Unit" value=${unit} help="Where the table states none." />
+            <${Choice} label="The body" value=${known} options=${[["yes", "is that of this project"], ["no", "is not known"]]} />
+            ${wrong.value && html`<p class="note error" role="alert"><span class="sign" aria-hidden="true">\u2715</span>
+              <span>${wrong.value}</span></p>`}
+            <button type="submit" class="button primary" disabled=${questions.busy.value}>Ask</button>
+          </form>
+          <${Earlier} questions=${questions} />
+        </div>
+        <${Outcome} questions=${questions}>${(answer, question) => html`<${Found} answer=${answer} question=${question} />`}<//>
+      </div>
+    <//>`;
+};
+
+const Found = ({ answer, question }) => {
+  const models = answer.models ?? [];
+  return html`
+    <p class="verdict" data-testid="verdict">${answer.verdict}</p>
+    ${(answer.doubts ?? []).map((words) => html`<p class="note warning" key=${words}>
+      <span class="sign" aria-hidden="true">!</span><span>${words}</span></p>`)}
+    <${Drawing} question=${question} alt="What was measured, what fits it, and what is left over" />
+    ${models.length > 0 && html`<h3>Beside the models</h3><${Rows} caption="Models" head=${Object.keys(models[0])}
+      rows=${models.map((each) => Object.values(each).map((value) => (typeof value === "number" ? number(value) : String(value ?? ""))))} />`}`;
+};

@@ -1,0 +1,168 @@
+"""Doors to what takes longer: does it stand, which objects stand, what does an impact cost."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser_pages import link
+
+from rocking import examples
+
+expect = pytest.importorskip("playwright.sync_api").expect
+LONG = 90_000
+
+
+def asked(page: Any, view: str) -> Any:
+    """Press the button, and wait for the answer or the refusal."""
+    section = page.locator(f"#view-{view}")
+    section.get_by_role("button", name="Ask", exact=True).click()
+    outcome = section.get_by_test_id("outcome")
+    expect(outcome).to_have_attribute("data-state", "done", timeout=LONG)
+    return outcome
+
+
+def test_does_it_stand(open_page: Callable[..., Any], shot: Callable[..., Any], served: Any, tmp_path: Path) -> None:
+    """What the page says is what the command line says of the same file, and a report can be taken away."""
+    page = open_page(link("sine:amplitude=3.2,period=0.8"))
+    page.locator("#tab-decide").click()
+    page.get_by_label("Signed by").fill("A. Person")
+    outcome = asked(page, "decide")
+    verdict = outcome.get_by_test_id("verdict").inner_text()
+    question = served.api("questions", method="GET")["questions"][0]
+    whole = served.api(f"questions/{question['id']}", method="GET")
+    assert verdict == whole["answer"]["sentences"][0]
+    assert whole["answer"]["author"] == "A. Person"
+    rows = outcome.get_by_role("table", name="Models").locator("tbody tr")
+    assert rows.count() == len(whole["answer"]["models"])
+    expect(outcome.locator("img.drawing")).to_be_visible()
+    assert outcome.locator("img.drawing").evaluate("image => image.naturalWidth") > 100
+    with page.expect_download() as told:
+        outcome.get_by_role("button", name="Report (PDF)").click()
+    told.value.save_as(tmp_path / "report.pdf")
+    assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
+    shot(page, "decide")
+    page.reload()
+    page.locator("#view-decide").get_by_role("button", name="Show Does").click()
+    expect(page.get_by_test_id("verdict")).to_have_text(verdict)
+
+
+def test_records_are_sent_together(open_page: Callable[..., Any], tmp_path: Path) -> None:
+    """Two files make two motions; none, and a body that is wrong, are told before anything is asked."""
+    page = open_page(link())
+    page.locator("#tab-decide").click()
+    page.get_by_label("Shaken by").select_option("records")
+    section = page.locator("#view-decide")
+    section.get_by_role("button", name="Ask", exact=True).click()
+    expect(section.get_by_role("alert")).to_contain_text("No record was sent")
+    for k in range(2):
+        lines = "\n".join(f"{0.02 * n:.2f} {0.1 * (n % (7 + k) - 3):.3f}" for n in range(300))
+        (tmp_path / f"site {k}.txt").write_text(lines)
+    section.get_by_label("Drop records here, or").set_input_files([tmp_path / "site 0.txt", tmp_path / "site 1.txt"])
+    expect(section.get_by_role("list", name="Files").get_by_role("listitem")).to_have_count(2)
+    page.get_by_label("Unit of the accelerations").fill("g")
+    outcome = asked(page, "decide")
+    expect(outcome.get_by_test_id("verdict")).to_contain_text("of 2 motions")
+
+
+def test_a_list_of_objects(open_page: Callable[..., Any], shot: Callable[..., Any]) -> None:
+    """Every row has its light, or the reason why it has none; a list that is none is refused in words."""
+    page = open_page(view="inventory")
+    section = page.locator("#view-inventory")
+    section.get_by_label("Drop a list here, or").set_input_files(str(examples.path("objects")))
+    expect(section.get_by_role("list", name="Files")).to_contain_text("objects.csv")
+    section.get_by_label("How many motions").fill("40")
+    outcome = asked(page, "inventory")
+    expect(outcome.get_by_test_id("verdict")).to_contain_text("1 not assessed")
+    expect(outcome.get_by_role("table", name="Rows without a verdict")).to_contain_text("framed mirror")
+    lights = outcome.get_by_role("table", name="Objects, the worst first").locator("td.light").all_inner_texts()
+    assert lights == sorted(lights, key=["RED", "AMBER", "GREEN"].index)
+    shot(page, "inventory")
+    assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
+    section.get_by_role("button", name="Leave out objects.csv").click()
+    wrong = {"name": "nothing.csv", "mimeType": "text/csv", "buffer": b"a,b\n1,2\n"}
+    section.get_by_label("Drop a list here, or").set_input_files(wrong)
+    expect(section.get_by_role("list", name="Files")).to_contain_text("nothing.csv")
+    section.get_by_role("button", name="Ask", exact=True).click()
+    expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "refused", timeout=LONG)
+    expect(section.get_by_role("alert")).to_contain_text("nothing.csv")
+
+
+BLOCK = {"units": "cm", "width": 10, "height": 40}
+
+
+def body_link() -> str:
+    """Return a link to the view with the block that was heard."""
+    import base64
+
+    text = base64.urlsafe_b64encode(json.dumps({"body": BLOCK}).encode()).decode().rstrip("=")
+    return f"in={text}&view=measure"
+
+
+def test_what_an_impact_costs(open_page: Callable[..., Any], shot: Callable[..., Any]) -> None:
+    """The times of the example say a coefficient with its interval, beside the models and with a picture."""
+    recording = str(examples.path("block-heard")).replace(".toml", ".csv")
+    page = open_page(body_link())
+    section = page.locator("#view-measure")
+    section.get_by_label("Drop a recording here, or").set_input_files(recording)
+    outcome = asked(page, "measure")
+    expect(outcome.get_by_test_id("verdict")).to_contain_text("coefficient of restitution")
+    expect(outcome.get_by_role("table", name="Models")).to_contain_text("ked")
+    expect(outcome.locator("img.drawing")).to_be_visible()
+    shot(page, "measure")
+
+
+MICROPHONE = """
+navigator.mediaDevices.getUserMedia = async () => {
+  const context = new AudioContext();
+  const tone = new OscillatorNode(context, { frequency: 440 });
+  const out = context.createMediaStreamDestination();
+  tone.connect(out);
+  tone.start();
+  return out.stream;
+};
+"""
+
+
+def test_the_microphone(open_page: Callable[..., Any], served: Any) -> None:
+    """What is heard becomes a WAV file that is sent; a tone is no rocking, and is refused in words."""
+    page = open_page(body_link())
+    page.evaluate(MICROPHONE)
+    section = page.locator("#view-measure")
+    section.get_by_role("button", name="Record with the microphone").click()
+    end = section.get_by_role("button", name="End the recording")
+    expect(end).to_be_visible()
+    page.wait_for_timeout(1500)
+    end.click()
+    expect(section.get_by_role("list", name="Files")).to_contain_text("recording.wav")
+    section.get_by_role("button", name="Ask", exact=True).click()
+    expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "refused", timeout=LONG)
+    expect(section.get_by_role("alert")).to_contain_text("ecording.wav")
+
+
+def test_a_question_is_stopped(open_page: Callable[..., Any]) -> None:
+    """One that takes long can be stopped, and the next one is answered."""
+    page = open_page(link())
+    page.locator("#tab-decide").click()
+    page.get_by_label("Shaken by").select_option("soft-ground")
+    section = page.locator("#view-decide")
+    section.get_by_role("button", name="Ask", exact=True).click()
+    section.get_by_role("button", name="Stop").click()
+    expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "stopped")
+    page.get_by_label("Shaken by").select_option("")
+    asked(page, "decide")
+
+
+@pytest.mark.parametrize("width", [320, 768, 1024])
+@pytest.mark.parametrize("view", ["decide", "inventory", "measure"])
+def test_no_bar(open_page: Callable[..., Any], view: str, width: int) -> None:
+    """Nothing is wider than the window, and every button can be hit by a finger."""
+    page = open_page(view=view, viewport={"width": width, "height": 800})
+    page.locator(f"#view-{view}").get_by_role("button", name="Ask", exact=True).wait_for()
+    assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
+    low = page.evaluate(
+        "[...document.querySelectorAll('button, select, input[type=text]')].filter(e => e.offsetParent)"
+        ".filter(e => e.getBoundingClientRect().height < 39.5).map(e => e.textContent || e.id)"
+    )
+    assert low == []
