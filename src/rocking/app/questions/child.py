@@ -1,33 +1,33 @@
-"""The process of a question: `python -m rocking.app.questions.child FOLDER COMMAND FILE ...`.
+"""A command that a server runs: `python -m rocking.app.questions.child FOLDER COMMAND WORDS ...`.
 
-It runs a command on the question in its folder, as `rocking COMMAND question.toml --json --out FILE ...` does, with
-limits, and opens nothing that was not sent. It ends when the server does: its standard input is a pipe.
+It runs `rocking COMMAND WORDS ...` in a folder, with limits, and opens nothing that was not sent there. It ends when
+the server does: its standard input is a pipe.
 """
 
 import os
 import sys
 import threading
 from pathlib import Path
+from runpy import run_module
 from typing import Any
 
 _MEMORY, _SECONDS, _FILE = 8 << 30, 1800, 512 << 20  # limits: memory [bytes], time of processors [s], a file [bytes]
 _SYSTEM = ("/usr", "/lib", "/lib64", "/opt", "/proc", "/sys", "/dev", "/etc/fonts", "/etc/localtime", "/etc/mime.types")
-QUESTION = "question.toml"
 
 
 def main(arguments: list[str]) -> None:
-    """Answer a question."""
+    """Run a command."""
     from rocking.app.studies.child import end_with_the_server
 
-    folder, command, outputs = Path(arguments[0]).resolve(), arguments[1], arguments[2:]
+    folder = Path(arguments[0]).resolve()
     threading.Thread(target=end_with_the_server, daemon=True).start()
     _limit()
     os.chdir(folder)
-    from rocking.cli import main as command_line
     from rocking.evidence.store import store
 
     keep_inside(folder, store(), Path(os.environ["MPLCONFIGDIR"]))
-    command_line([command, QUESTION, "--json", *(word for name in outputs for word in ("--out", name))])
+    sys.argv[1:] = arguments[1:]
+    run_module("rocking", run_name="__main__")
 
 
 def keep_inside(*folders: Path) -> None:

@@ -20,7 +20,6 @@ from pydantic import TypeAdapter
 from rocking.app.errors import Busy, NotFound, Refused, TooLarge, room_on_disk
 from rocking.app.inputs import levels
 from rocking.app.plain_text import safe_name, shown, toml_of
-from rocking.app.questions.child import QUESTION
 from rocking.app.records import RecordStore
 from rocking.campaigns.disk import write_new
 from rocking.restitution.from_file import file_of
@@ -35,13 +34,13 @@ OUTPUTS: dict[str, tuple[str, ...]] = {
 
 MOST_QUESTIONS, MOST_WAITING, MOST_FILES = 500, 16, 200
 _SECONDS = 1800.0  # longest time of a question [s]
-_NOTE, _ANSWER, _LOG = "state.json", "answer.json", "log.txt"
+QUESTION, _NOTE, _ANSWER, _LOG = "question.toml", "state.json", "answer.json", "log.txt"
 _OWN = {_NOTE, _ANSWER, _LOG, QUESTION, *(name for names in OUTPUTS.values() for name in names)}
 State = Literal["waiting", "running", "done", "refused", "stopped"]
 
 
 @dataclass(frozen=True)
-class Question:
+class HostedQuestion:
     """What was asked, and how far it is."""
 
     id: str  # its name in addresses
@@ -55,7 +54,7 @@ class Question:
     files: list[str] = field(default_factory=list)  # that can be taken away
 
 
-_QUESTION = TypeAdapter(Question)
+_QUESTION = TypeAdapter(HostedQuestion)
 
 
 class QuestionDesk:
@@ -75,7 +74,7 @@ class QuestionDesk:
 
     def ask(
         self, command: str, tables: dict[str, Any], files: Mapping[str, str], name: str = "", project: str = ""
-    ) -> Question:
+    ) -> HostedQuestion:
         """Put a question in line; files: hashes of what was sent, by the names that the tables call them."""
         if command not in OUTPUTS:
             raise Refused(f"command must be one of {', '.join(OUTPUTS)}, got {command!r:.40}")
@@ -87,7 +86,7 @@ class QuestionDesk:
             if len(self._questions) >= MOST_QUESTIONS:
                 raise TooLarge(f"up to {MOST_QUESTIONS} questions are kept; delete some that are no longer needed")
         asked = datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
-        question = Question(secrets.token_hex(8), command, shown(name or command), project, asked)
+        question = HostedQuestion(secrets.token_hex(8), command, shown(name or command), project, asked)
         place = self.folder / question.id
         try:
             with room_on_disk():
@@ -104,12 +103,12 @@ class QuestionDesk:
             self._changed.notify_all()
         return question
 
-    def all(self) -> list[Question]:
+    def all(self) -> list[HostedQuestion]:
         """Return all questions, the last one first."""
         with self._changed:
             return sorted(self._questions.values(), key=_age, reverse=True)
 
-    def get(self, question: str) -> Question:
+    def get(self, question: str) -> HostedQuestion:
         with self._changed:
             known = self._questions.get(question)
         if known is None:
@@ -132,7 +131,7 @@ class QuestionDesk:
             raise NotFound(f"the question has no file {name!r:.40}; it has {', '.join(known.files) or 'none'}")
         return self.folder / known.id / name
 
-    def stop(self, question: str) -> Question:
+    def stop(self, question: str) -> HostedQuestion:
         """Stop a question, or take it out of the line."""
         with self._changed:
             known = self.get(question)
@@ -161,7 +160,7 @@ class QuestionDesk:
             self._changed.notify_all()
         self._thread.join(10.0)
 
-    def _kept(self) -> list[Question]:
+    def _kept(self) -> list[HostedQuestion]:
         """Return the questions of an earlier server; one that ran waits again."""
         found = []
         for place in list(self.folder.iterdir()):
@@ -191,7 +190,7 @@ class QuestionDesk:
                 return store.path(sha)
         raise NotFound(f"no file {str(sha)[:12]}... is kept here: send it once more")
 
-    def _become(self, question: Question) -> None:
+    def _become(self, question: HostedQuestion) -> None:
         with self._changed:
             self._questions[question.id] = question
         with suppress(OSError):  # a full disk: a restart asks once more
@@ -209,14 +208,16 @@ class QuestionDesk:
                 self._become(question)
             self._run(question)
 
-    def _run(self, question: Question) -> None:
+    def _run(self, question: HostedQuestion) -> None:
         place, begun = self.folder / question.id, datetime.now(UTC)
         own, cache = place / ".own", self.folder.with_name("cache")  # for what libraries write
         for each in (own, cache):
             each.mkdir(mode=0o700, exist_ok=True)
         environment = {**os.environ, "TMPDIR": str(own), "MPLCONFIGDIR": str(cache), "PYTHONUNBUFFERED": "1"}
         names = OUTPUTS[question.command]
-        words = [sys.executable, "-P", "-m", "rocking.app.questions.child", str(place), question.command, *names]
+        outputs = [word for name in names for word in ("--out", name)]
+        command = [question.command, QUESTION, "--json", *outputs]
+        words = [sys.executable, "-P", "-m", "rocking.app.questions.child", str(place), *command]
         with (place / _ANSWER).open("wb") as answer, (place / _LOG).open("wb") as log:
             process = subprocess.Popen(
                 words, stdin=subprocess.PIPE, stdout=answer, stderr=log, start_new_session=True, env=environment
@@ -284,5 +285,5 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
             os.killpg(process.pid, signal.SIGKILL)
 
 
-def _age(question: Question) -> tuple[str, str]:
+def _age(question: HostedQuestion) -> tuple[str, str]:
     return question.asked, question.id

@@ -20,7 +20,7 @@ from rocking.app.answers import (
     shape,
 )
 from rocking.app.api.records import RecordKept
-from rocking.app.questions.desk import OUTPUTS, Question, QuestionDesk
+from rocking.app.questions.desk import OUTPUTS, HostedQuestion, QuestionDesk
 from rocking.app.settings import state_of
 
 router = APIRouter(prefix="/api", tags=["questions"])
@@ -69,7 +69,7 @@ def _desk(request: Request) -> QuestionDesk:
     return state_of(request).questions
 
 
-def _facts(question: Question) -> dict[str, Any]:
+def _facts(question: HostedQuestion) -> dict[str, Any]:
     return asdict(question)
 
 

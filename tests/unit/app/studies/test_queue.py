@@ -27,7 +27,7 @@ ORPHAN = """
 import signal, threading, time
 signal.signal(signal.SIGINT, signal.SIG_IGN)
 from rocking.app.studies import child
-threading.Thread(target=child._end_with_the_server, daemon=True).start()
+threading.Thread(target=child.end_with_the_server, daemon=True).start()
 print("ready", flush=True)
 time.sleep(30.0)
 """

@@ -43,7 +43,7 @@ def test_a_study_from_launch_to_file(client: TestClient, map_job: Callable[..., 
     facts = _wait(client, study, "done")
     assert set(facts) == {
         "id", "name", "kind", "state", "histories", "histories_done", "rate", "seconds_left",
-        "seconds_left_between", "message", "created",
+        "seconds_left_between", "message", "created", "project",
     }  # fmt: skip
     result = client.get(f"/api/studies/{study}/result").json()
     assert result["kind"] == "overturning-map"
