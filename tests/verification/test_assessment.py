@@ -6,6 +6,8 @@ from scipy.integrate import solve_ivp
 
 import rocking as rk
 from rocking.assessment._assess import choices
+from rocking.bodies.solid import Solid, box
+from rocking.conventions import g
 from rocking.studies.remedies import (
     DAMPING,
     HALVINGS,
@@ -18,8 +20,6 @@ from rocking.studies.remedies import (
     still,
     tension,
 )  # fmt: skip
-from rocking.bodies.solid import Solid, box
-from rocking.conventions import g
 
 pytestmark = pytest.mark.verifies(room="studies")
 

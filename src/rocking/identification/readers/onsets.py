@@ -73,7 +73,7 @@ def onsets(
     likely = _AGREED * _agreement(means[0], means[1], rate, off + apart[0]) - 0.5 * np.minimum(law - law.min(), _MOST)
     for weight, pick in zip(_PICKED, apart - apart[0], strict=True):
         likely -= weight * np.log1p(((off - pick) / _NEAR) ** 2)  # a pick may fail
-    share = np.exp(likely - likely.max())  # Eq. 401
+    share = np.exp(likely - likely.max())  # Eq. 318
     share /= share.sum()
     later = float(share @ off)  # the mean has the least square error where several ties are likely
     found[feet[0]] -= 0.5 * later
@@ -177,7 +177,7 @@ def _chosen(
         for here in feet:
             placed[:, here] -= np.median(placed[:, here] - times[here], axis=1, keepdims=True)
         misfit = law_misfit(placed, orders, _LOOSE)
-        return np.asarray(-0.5 * _FAILS * np.log1p(misfit / _FAILS))  # Eq. 400
+        return np.asarray(-0.5 * _FAILS * np.log1p(misfit / _FAILS))  # Eq. 317
 
     tried, alike = [], []
     for rows in product(*(_arrangements(sharp, rate, times[here]) for here in feet)):

@@ -62,7 +62,7 @@ def rotation_seen(path: Path, region: Sequence[float] | None, frame_rate: float 
         "a camera 10 degrees off the normal of the body's plane sees rotations 1.5 % too small, which is in no interval"
     )
     doubts = [*clock_doubts(time[a:b]), *doubts, *said]
-    return RotationSeries(time[a:b], rotation=rotation - turned, source=film.name, doubts=tuple(doubts))  # Eq. 452
+    return RotationSeries(time[a:b], rotation=rotation - turned, source=film.name, doubts=tuple(doubts))  # Eq. 321
 
 
 def _camera(film: Film, around: BoolArray, first: int, last: int) -> tuple[FloatArray, list[str]]:

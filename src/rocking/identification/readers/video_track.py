@@ -103,14 +103,14 @@ class RestPicture:
         light = np.array([1.0, 0.0])
         for _ in range(_STEPS):
             found, inside = self.seen(frame, pose)
-            missed = found - light[0] * self.values - light[1]  # Eq. 450
+            missed = found - light[0] * self.values - light[1]  # Eq. 319
             weight = inside / np.maximum(1.0, np.abs(missed) / (_HUBER * float(np.median(np.abs(missed))) + 1.0))
             by = weight[:, None] * self.slopes
             step = np.linalg.solve(by.T @ self.slopes + 1e-6 * np.eye(by.shape[1]), by.T @ missed)
             light += step[-2:]
             turn, right, down = self.free @ step[:-2] / light[0]
             c, s = math.cos(pose[0] - turn), math.sin(pose[0] - turn)
-            pose = pose - [turn, c * right - s * down, s * right + c * down]  # Eq. 451
+            pose = pose - [turn, c * right - s * down, s * right + c * down]  # Eq. 320
             if abs(turn) * 100.0 + abs(right) + abs(down) < _CLOSE:
                 break
         with np.errstate(invalid="ignore"):
