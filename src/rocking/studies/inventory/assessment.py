@@ -1,7 +1,7 @@
 """The assessment: every object in both directions under every motion, the worse direction counts."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -300,8 +300,11 @@ class _Assessor:
             yield self._verdict(item, lifts, outcome[:, k], ratio[:, k], lost[:, k])
 
     def in_space(self, item: InventoryObject) -> bool:
-        """Return whether an object moves in three dimensions."""
-        return item.solid is not None or item.friction is not None or self.friction is not None
+        """Return whether an object moves in three dimensions; a round one, which would roll for minutes, does not."""
+        return item.solid is not None or (item.shape != "round" and self._friction(item) is not None)
+
+    def _friction(self, item: InventoryObject) -> float | None:
+        return self.friction if item.friction is None else item.friction
 
     def verdict_in_space(
         self, item: InventoryObject, threads: int | None, progress: Callable[[int], None] | None
@@ -309,7 +312,7 @@ class _Assessor:
         """Return the verdict of an object on the vertices of its hull, shaken along its width and along its depth."""
         shaking = [components_of(motion) for motion in self.hazard.motions]
         motions = MotionList([(x, None, up) for x, _, up in shaking] + [(None, x, up) for x, _, up in shaking])
-        stated = self.friction if item.friction is None else item.friction
+        stated = self._friction(item)
         found: list[Any] = []
         try:
             body = item.in_space()
@@ -349,6 +352,8 @@ class _Assessor:
         )
         worse = max(of_model, key=lambda each: each.severity)
         interval = share_interval(worse.overturned, worse.count, self.thresholds.level)
+        if friction is None and self._friction(item) is not None:
+            item = replace(item, remarks=(*item.remarks, "its friction was not used: a round object rocks in a plane"))
         return Verdict(item, of_model, tuple(of_others), interval, friction)
 
     def _direction(

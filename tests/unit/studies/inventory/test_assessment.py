@@ -289,3 +289,17 @@ def test_memory_does_not_grow_with_the_inventory(quakes, monkeypatch):
 
     needed(40)  # what is made once is made here
     assert needed(320) < 2.0 * needed(40)
+
+
+@pytest.mark.verifies("invariant", "a round object with and without a friction; a box with one moves in space")
+def test_a_round_object_with_friction_rocks_in_a_plane(quakes):
+    """Its verdict is that without friction, which the answer says; a box with one is computed in three dimensions."""
+    round_one = InventoryObject(name="drum", width=0.4, depth=0.4, height=1.4, shape="round")
+    few = Hazard.of_records(quakes.motions[:4])
+    (alone,) = assess([round_one], few).verdicts
+    found = assess([round_one, COLUMN], few, friction=0.5)
+    by_name = {each.item.name: each for each in found.verdicts}
+    assert by_name["drum"].results == alone.results
+    assert by_name["drum"].friction is None
+    assert by_name["drum"].item.remarks == ("its friction was not used: a round object rocks in a plane",)
+    assert (by_name["column"].friction, by_name["column"].item.remarks, alone.item.remarks) == (0.5, (), ())
