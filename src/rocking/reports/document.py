@@ -162,7 +162,7 @@ def table(
     """Return a table from cells and anything that prints.
 
     >>> table("", ["r [-]"], [[0.5]]).rows
-    [[Cell(text='0.5', mark='plain')]]
+    [[Cell(text='0.5', mark='plain', picture='')]]
     """
     cells = [[each if isinstance(each, Cell) else Cell(str(each)) for each in row] for row in rows]
     return ReportTable(caption, header, cells, note, stem)
