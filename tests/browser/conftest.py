@@ -125,12 +125,20 @@ def new_record() -> Callable[[], Record]:
     return Record
 
 
+@pytest.fixture(autouse=True)
+def no_projects(request: pytest.FixtureRequest) -> None:
+    """Delete the projects of other tests."""
+    if "served" not in request.fixturenames:
+        return
+    served = request.getfixturevalue("served")
+    for project in served.api("projects", method="GET")["projects"]:
+        served.api(f"projects/{project['id']}", method="DELETE")
+
+
 @pytest.fixture
 def open_page(browser: Any, served: Served, signed_in: Any, record: Record) -> Iterator[Callable[..., Any]]:
     """Open pages of a signed-in user; `open_page(fragment="", view="body", **context options)`."""
     contexts = []
-    for project in served.api("projects", method="GET")["projects"]:  # of other tests
-        served.api(f"projects/{project['id']}", method="DELETE")
 
     def opened(fragment: str = "", *, view: str | None = None, **options: Any) -> Any:
         context = browser.new_context(storage_state=signed_in, **{"viewport": WIDE, **options})

@@ -53,23 +53,23 @@ def test_undo_and_redo(open_page: Callable[..., Any]) -> None:
     width = page.get_by_label("Width")
     typed(page, "Width", "0.75")
     typed(page, "Width", "0.9")
-    page.get_by_role("button", name="Undo").click()
+    page.get_by_role("button", name="Previous state").click()
     expect(width).to_have_value("0.75")
     page.locator("#tab-body").focus()
     page.keyboard.press("Control+z")
     expect(width).to_have_value("0.5")
-    expect(page.get_by_role("button", name="Undo")).to_have_attribute("aria-disabled", "true")
+    expect(page.get_by_role("button", name="Previous state")).to_have_attribute("aria-disabled", "true")
     page.keyboard.press("Control+Shift+z")
     expect(width).to_have_value("0.75")
     page.reload()
     expect(width).to_have_value("0.75")
-    page.get_by_role("button", name="Redo").click()
+    page.get_by_role("button", name="Next state").click()
     expect(width).to_have_value("0.9")
     width.focus()
     page.keyboard.press("Control+z")
     page.wait_for_timeout(300)
     saved(page)
-    expect(page.get_by_role("button", name="Redo")).to_have_attribute("aria-disabled", "true")
+    expect(page.get_by_role("button", name="Next state")).to_have_attribute("aria-disabled", "true")
 
 
 def test_two_tabs_agree(open_page: Callable[..., Any]) -> None:
@@ -146,7 +146,7 @@ def test_back_to_a_state_of_the_history(open_page: Callable[..., Any]) -> None:
     expect(page.get_by_label("Width")).to_have_value("0.6")
     expect(dialog.get_by_role("list", name="History").get_by_role("listitem")).to_have_count(5)
     dialog.get_by_role("button", name="Close").click()
-    page.get_by_role("button", name="Undo").click()
+    page.get_by_role("button", name="Previous state").click()
     expect(page.get_by_label("Width")).to_have_value("0.8")
 
 

@@ -17,11 +17,11 @@ expect = playwright.expect
 
 PHONE, WIDE = {"width": 360, "height": 740}, {"width": 1360, "height": 900}
 STATIC = Path(str(files("rocking"))) / "app" / "static"
-STEPS = ["body", "impact", "motion", "response", "studies", "takeaway"]
+STEPS = ["body", "impact", "motion", "response", "studies", "decide", "inventory", "measure", "takeaway"]
 
 
 def test_every_step_opens_by_arrow_keys_without_a_fault(page: Any, record: Any, served: Any) -> None:
-    """Tab list: right arrow walks the six steps; nothing leaves the machine and no policy is violated."""
+    """Tab list: right arrow walks the nine steps; nothing leaves the machine and no policy is violated."""
     page.locator("#tab-body").focus()
     for name in STEPS[1:]:
         page.keyboard.press("ArrowRight")

@@ -1,4 +1,4 @@
-/** The six steps as tabs: arrow keys move between them, as the ARIA practice has it. */
+/** The steps as tabs: arrow keys move between them, as the ARIA practice has it. */
 
 /** Wire tabs to panels; calls onShow(name, before, quiet) after a change, and returns {show, current}. */
 export const createTabs = (list, onShow) => {

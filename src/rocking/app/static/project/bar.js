@@ -39,8 +39,8 @@ const Bar = ({ projects, app }) => {
     </span>
     ${saving.value === "unsaved" && !clash.value
       && html`<button type="button" class="button" onClick=${projects.again}>Save again</button>`}
-    <${Step} sign="\u21b6" label="Undo" on=${facts.can_undo} go=${projects.undo} />
-    <${Step} sign="\u21b7" label="Redo" on=${facts.can_redo} go=${projects.redo} />
+    <${Step} sign="\u21b6" label="Previous state of the project" on=${facts.can_undo} go=${projects.undo} />
+    <${Step} sign="\u21b7" label="Next state of the project" on=${facts.can_redo} go=${projects.redo} />
     <${ProjectDialog} projects=${projects} app=${app} handle=${dialog} />
     ${clash.value && html`<${Clash} projects=${projects} />`}`;
 };

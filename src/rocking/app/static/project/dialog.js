@@ -11,6 +11,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
   const dialog = useRef(null);
   const lists = useRef(signal({ projects: [], deleted: [], states: [] })).current;
   const all = useRef(signal(false)).current;
+  const shown = useRef(signal(false)).current;
   const look = async () => {
     const [there, past] = await Promise.all([
       app.call("projects"), app.call(`projects/${projects.here.value.id}/history`),
@@ -31,6 +32,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
     openIt: act(async () => {
       await projects.save();
       await look();
+      shown.value = true;
       if (!dialog.current.open) dialog.current.showModal();
     }),
   };
@@ -58,8 +60,9 @@ export const ProjectDialog = ({ projects, app, handle }) => {
   });
   const states = all.value ? lists.value.states : lists.value.states.slice(0, FEW);
   return html`
-    <dialog ref=${dialog} class="over projects" aria-labelledby="projects-title" data-testid="projects">
-      <div class="card">
+    <dialog ref=${dialog} class="over projects" aria-labelledby="projects-title" data-testid="projects"
+      onClose=${() => (shown.value = false)}>
+      ${shown.value && html`<div class="card">
         <div class="project-head">
           <h1 id="projects-title">Projects</h1>
           <button type="button" class="button" onClick=${() => dialog.current.close()}>Close</button>
@@ -111,7 +114,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
                   go=${act(() => app.call(`projects/${one.id}/back`, { method: "POST" }))} />
               </li>`)}
           </ul>`}
-      </div>
+      </div>`}
     </dialog>`;
 };
 
