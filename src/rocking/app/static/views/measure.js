@@ -53,8 +53,8 @@ const Measure = ({ app, questions }) => {
       <div class="columns narrow-wide">
         <div class="stack">
           <form class="card" onSubmit=${ask} aria-label="What is asked">
-            <${FileDrop} label="Drop a recording here, or" accept=".wav,.flac,.csv,.txt,.xlsx" files=${files} questions=${questions}
-              app=${app} help="Sound (WAV, FLAC), or a table of times, rotations, a gyroscope or an accelerometer." />
+            <${FileDrop} label="Drop a recording here, or" accept=".wav,.flac,.csv,.txt,.xlsx,.mp4,.mov,.avi,.webm" files=${files} questions=${questions}
+              app=${app} help="Sound (WAV, FLAC), a video, or a table of times, rotations, a gyroscope or an accelerometer." />
             <button type="button" class="button" aria-pressed=${String(Boolean(recording.value))} onClick=${listen}>
               ${recording.value ? "End the recording" : "Record with the microphone"}</button>
             <${Choice} label="It holds" value=${kind} options=${KINDS} help="Of a table only." />
