@@ -45,7 +45,7 @@ const Decide = ({ app, questions }) => {
     <${View} title="Does it stand?"
       lead="All models of the impact, both ways round, the margin to overturning, how likely it is, and what to do about it.">
       <div class="columns narrow-wide">
-        <div class="stack">
+        <div class="asked">
           <form class="card" onSubmit=${ask} aria-label="What is asked">
             <${Choice} label="Shaken by" value=${shaken} options=${FAMILIES} />
             ${shaken.value === "records" && html`

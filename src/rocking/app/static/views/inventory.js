@@ -38,7 +38,7 @@ const Inventory = ({ app, questions }) => {
     <${View} title="Which objects stay standing?"
       lead="A list of objects with their sizes, as it is kept; every row is assessed, or the reason is said.">
       <div class="columns narrow-wide">
-        <div class="stack">
+        <div class="asked">
           <form class="card" onSubmit=${ask} aria-label="What is asked">
             <${FileDrop} label="Drop a list here, or" accept=".csv,.xlsx,.ods,.txt,.tsv" files=${files} questions=${questions} app=${app}
               help="Columns such as name, width_cm, depth_cm, height_cm; count, base, weight and notes if there are." />

@@ -51,7 +51,7 @@ const Measure = ({ app, questions }) => {
     <${View} title="What does an impact cost?"
       lead="Let the body go from a tilt and record it: each knock tells how much of the speed was left.">
       <div class="columns narrow-wide">
-        <div class="stack">
+        <div class="asked">
           <form class="card" onSubmit=${ask} aria-label="What is asked">
             <${FileDrop} label="Drop a recording here, or" accept=".wav,.flac,.csv,.txt,.xlsx,.mp4,.mov,.avi,.webm" files=${files} questions=${questions}
               app=${app} help="Sound (WAV, FLAC), a video, or a table of times, rotations, a gyroscope or an accelerometer." />
