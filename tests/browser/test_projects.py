@@ -47,6 +47,15 @@ def test_what_was_typed_is_there_in_another_browser(open_page: Callable[..., Any
     assert [each["words"] for each in states] == ["body changed", "begun"]
 
 
+def test_who_leaves_at_once_loses_nothing(open_page: Callable[..., Any]) -> None:
+    """What was typed just before the page was left is saved on the way out."""
+    page = open_page()
+    page.get_by_label("Width").fill("0.85")
+    page.goto("about:blank")
+    page.wait_for_timeout(500)
+    expect(open_page().get_by_label("Width")).to_have_value("0.85")
+
+
 def test_undo_and_redo(open_page: Callable[..., Any]) -> None:
     """By buttons and by keys, not while a field is typed in, whose own undo that is; and after a reload."""
     page = open_page()

@@ -92,7 +92,7 @@ class QuestionDesk:
             with room_on_disk():
                 place.mkdir(mode=0o700)
                 for word, source in known.items():
-                    shutil.copyfile(source, place / word)
+                    _link(source, place / word)
                 (place / QUESTION).write_text(toml_of(tables), encoding="utf-8")
         except BaseException:
             shutil.rmtree(place, ignore_errors=True)
@@ -274,6 +274,14 @@ def _why(place: Path, code: int | None) -> str:
     if code == 2 and said:
         return said[-1].replace(f"{place}{os.sep}", "")[:1000]
     return "it needed more memory or time than a page gives, or failed: its log is in the data folder"
+
+
+def _link(source: Path, target: Path) -> None:
+    """Put a file that was sent into a question, by a link where the disk can."""
+    try:
+        target.hardlink_to(source)
+    except OSError:
+        shutil.copyfile(source, target)
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:

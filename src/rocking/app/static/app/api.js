@@ -61,13 +61,14 @@ const follow = async (line) => {
   }
 };
 
-const send = async (path, { method, json, body, query, signal } = {}) => {
+const send = async (path, { method, json, body, query, signal, keepalive = false } = {}) => {
   const content = json === undefined ? body : JSON.stringify(json);
   const answer = await fetch(addressOf(path, query), {
     method: method ?? (content === undefined ? "GET" : "POST"),
     headers: content === undefined ? {} : { "Content-Type": typeOf(json) },
     body: content,
     signal,
+    keepalive,
     credentials: "same-origin",
   }).catch((error) => {
     if (superseded(error)) throw error;

@@ -39,7 +39,8 @@ export const createProjects = (app, first) => {
     changed.clear();
     saving.value = "saved";
   };
-  const ask = (what, json) => app.call(`projects/${here.value.id}${what}`, { json });
+  let leaving = false; // what is sent then outlives the page
+  const ask = (what, json) => app.call(`projects/${here.value.id}${what}`, { json, keepalive: leaving });
   // One after the other: every change names the version that it follows.
   const inLine = (work) => {
     line = line.then(work, work);
@@ -107,7 +108,11 @@ export const createProjects = (app, first) => {
     if (changed.size) await save();
     else await inLine(async () => show(known(await ask(""))));
   });
-  addEventListener("pagehide", () => save());
+  addEventListener("pagehide", () => {
+    leaving = true;
+    save();
+  });
+  addEventListener("pageshow", () => (leaving = false));
   document.addEventListener("rocking:signed-in", () => save());
 
   return {
