@@ -1,5 +1,7 @@
 """The pages: scripts that hold for much data, and the page of the API in a real browser."""
 
+import hashlib
+import json
 import os
 import re
 import shutil
@@ -7,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+from base64 import b64encode
 from importlib.resources import files
 from pathlib import Path
 
@@ -111,3 +114,29 @@ def test_no_call_takes_data_as_its_arguments():
         if "vendor" not in path.parts and SPREAD.search(path.read_text(encoding="utf-8"))
     }
     assert not found
+
+
+def test_libraries_are_unchanged():
+    """Every file of a library has the hash that its SOURCE.txt says, a licence and a version beside it; not another."""
+    stated, there = {}, {}
+    for source in STATIC.glob("vendor/*/SOURCE.txt"):
+        words = source.read_text(encoding="utf-8")
+        assert re.search(r"\d+\.\d+\.\d+.*licence", words, re.DOTALL), source
+        assert (source.parent / "LICENSE").is_file()
+        stated |= {
+            source.parent / name: sha for sha, name in re.findall(r"^([0-9a-f]{64})  (\S+)$", words, re.MULTILINE)
+        }
+        kept = (path for path in source.parent.iterdir() if path.name not in {"SOURCE.txt", "LICENSE"})
+        there |= {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in kept}
+    assert len(there) > 5
+    assert there == stated
+
+
+def test_the_page_has_one_script_of_its_own(client):
+    """The import map is allowed by its hash; a changed one would not be, nor any other script in the page."""
+    page, policy = client.get("/"), client.get("/").headers["Content-Security-Policy"]
+    (words,) = re.findall(r"<script(?! type=\"module\"| src=)[^>]*>(.*?)</script>", page.text, re.DOTALL)
+    assert f"'sha256-{b64encode(hashlib.sha256(words.encode()).digest()).decode()}'" in policy
+    assert f"'sha256-{b64encode(hashlib.sha256(b'{}').digest()).decode()}'" not in policy
+    for path in json.loads(words)["imports"].values():
+        assert client.get(path).headers["Content-Type"].startswith("text/javascript")
