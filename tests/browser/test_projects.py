@@ -110,6 +110,21 @@ def test_two_browsers_that_change_the_same(open_page: Callable[..., Any], served
     expect(page.get_by_label("Width")).to_have_value("0.75")
 
 
+def test_a_project_that_is_worked_on_is_not_gone(open_page: Callable[..., Any], served: Any) -> None:
+    """Deleted in another browser while somebody types in it: it is back with what was typed, and both are told."""
+    page = open_page()
+    typed(page, "Width", "0.75")
+    (project,) = served.api("projects", method="GET")["projects"]
+    served.api(f"projects/{project['id']}", method="DELETE")
+    page.get_by_label("Height").fill("3")
+    expect(page.locator("#status")).to_contain_text("it is back")
+    saved(page)
+    (again,) = served.api("projects", method="GET")["projects"]
+    assert again["id"] == project["id"]
+    document = served.api(f"projects/{project['id']}", method="GET")["document"]
+    assert (document["inputs"]["body"]["width"], document["inputs"]["body"]["height"]) == (0.75, 3)
+
+
 def test_all_projects(open_page: Callable[..., Any], tmp_path: Path) -> None:
     """Begun, renamed, copied, taken away, deleted, brought back, and brought in from the file."""
     page = open_page()

@@ -67,7 +67,17 @@ export const createProjects = (app, first) => {
     }
   });
   const differ = async (mine) => {
-    const theirs = await ask("");
+    let theirs = await ask("");
+    if (theirs.deleted) {
+      const alone = theirs.version === here.value.version + 1; // nothing else happened to it
+      theirs = { ...theirs, ...(await app.call(`projects/${theirs.id}/back`, { method: "POST" })) };
+      app.say("The project had been deleted elsewhere; it is back, with what you do here.");
+      if (alone) {
+        known(theirs);
+        save(); // after this one, which waits for what is returned here
+        return;
+      }
+    }
     if (same(mine, theirs.document)) {
       known(theirs);
       changed.clear();
