@@ -56,6 +56,48 @@ def test_who_leaves_at_once_loses_nothing(open_page: Callable[..., Any]) -> None
     expect(open_page().get_by_label("Width")).to_have_value("0.85")
 
 
+def test_a_reload_does_not_bring_back_what_is_old(open_page: Callable[..., Any], served: Any) -> None:
+    """A tab that nobody touched since shows what was saved elsewhere, and saves nothing over it."""
+    page = open_page()
+    typed(page, "Width", "0.75")
+    (project,) = served.api("projects", method="GET")["projects"]
+    where = f"projects/{project['id']}"
+    document = served.api(where, method="GET")["document"]
+    document["inputs"]["body"]["width"] = 0.77
+    served.api(where, json={"version": project["version"], "document": document, "words": "elsewhere"})
+    page.reload()
+    expect(page.get_by_label("Width")).to_have_value("0.77")
+    assert served.api(where, method="GET")["document"]["inputs"]["body"]["width"] == 0.77
+
+
+def test_what_is_typed_during_an_undo_is_kept(open_page: Callable[..., Any], served: Any) -> None:
+    """The answer of the undo comes later than what is typed: that is a state of its own, on the screen and saved."""
+    page = open_page()
+    typed(page, "Width", "0.75")
+    page.route("**/undo", lambda route: (page.get_by_label("Height").fill("3"), route.continue_()))
+    page.get_by_role("button", name="Previous state").click()
+    expect(page.get_by_label("Height")).to_have_value("3")
+    page.wait_for_timeout(600)
+    saved(page)
+    (project,) = served.api("projects", method="GET")["projects"]
+    assert served.api(f"projects/{project['id']}", method="GET")["document"]["inputs"]["body"]["height"] == 3
+
+
+def test_another_project_waits_until_this_one_is_saved(open_page: Callable[..., Any]) -> None:
+    """Where the server saves nothing, the project that is open stays, with what was typed."""
+    page = open_page()
+    typed(page, "Width", "0.75")
+    page.route("**/api/projects/*", lambda route: route.fulfill(status=413, json={"error": {"kind": "too-large",
+        "message": "full"}}) if route.request.method == "POST" else route.continue_())  # fmt: skip
+    page.get_by_label("Width").fill("0.93")
+    expect(page.get_by_test_id("project-saved")).to_have_text("not saved")
+    dialog = opened_dialog(page)
+    dialog.get_by_label("Name of a new project").fill("Another")
+    dialog.get_by_role("button", name="Begin").click()
+    expect(page.locator("#status")).to_contain_text("could not be saved yet")
+    expect(page.get_by_label("Width")).to_have_value("0.93")
+
+
 def test_undo_and_redo(open_page: Callable[..., Any]) -> None:
     """By buttons and by keys, not while a field is typed in, whose own undo that is; and after a reload."""
     page = open_page()
@@ -100,6 +142,9 @@ def test_two_browsers_that_change_the_same(open_page: Callable[..., Any], served
     typed(page, "Width", "0.75")
     other.get_by_label("Width").fill("0.6")
     clash = other.get_by_test_id("clash")
+    expect(clash).to_be_visible()
+    for _ in range(3):  # it stays until something is chosen
+        other.keyboard.press("Escape")
     expect(clash).to_be_visible()
     clash.get_by_role("button", name="Keep mine as a copy" if mine else "Show what is there").click()
     expect(clash).not_to_be_visible()

@@ -99,7 +99,7 @@ def test_nothing_leads_out_of_a_question(desk, tables, words):
     with pytest.raises(Refused, match=words):
         desk.ask("predict", {**TABLES, **tables}, {})
     refuse_outside({"motion": {"units": "m/s2"}, "body": {"note": "as is... v1.2 / old"}})
-    for name in ("../x", "state.json", "report.pdf", "a b"):
+    for name in ("../x", "state.json", "Report.pdf", "matplotlibrc", "a b"):
         with pytest.raises(Refused, match="plain"):
             desk.ask("predict", TABLES, {name: "0" * 64})
 
@@ -116,7 +116,13 @@ for path in (inside / "a.txt", outside / "b.txt", inside / "link.txt"):
         print(path.read_text())
     except PermissionError as error:
         print(error.strerror)
-import json, tomllib, rocking
+import json, tomllib, rocking, sqlite3, subprocess
+for started in (lambda: subprocess.run(["true"]), lambda: sqlite3.connect(outside / "b.sqlite")):
+    try:
+        started()
+        print("done")
+    except PermissionError as error:
+        print(error.strerror)
 """
 
 
@@ -131,9 +137,12 @@ def test_a_process_opens_only_what_was_sent(tmp_path, guarded):
         (folder / name).write_text(name)
     (inside / "link.txt").symlink_to(outside / "b.txt")
     words = [sys.executable, "-c", SPY, str(inside), str(outside), *(["no"] * (not guarded))]
-    said = subprocess.run(words, capture_output=True, text=True, check=True).stdout.split("\n")[:3]
-    refused = "not among the files that were sent"
-    assert said == (["a.txt", refused, refused] if guarded else ["a.txt", "b.txt", "b.txt"])
+    said = subprocess.run(words, capture_output=True, text=True, check=True).stdout.split()
+    refused = ["not", "among", "the", "files", "that", "were", "sent"]
+    no_program = ["a", "question", "starts", "no", "other", "program"]
+    no_thing = ["a", "question", "does", "no", "such", "thing"]
+    held = ["a.txt", *refused, *refused, *no_program, *no_thing]
+    assert sorted(said) == sorted(held if guarded else ["a.txt", "b.txt", "b.txt", "done", "done"])
 
 
 def test_a_list_cannot_name_a_file_of_this_computer(desk, tmp_path):
@@ -147,6 +156,16 @@ def test_a_list_cannot_name_a_file_of_this_computer(desk, tmp_path):
     assert "1,2" not in said
     if found.state == "done":
         assert len(json.loads(said)["not_assessed"]) == 2
+
+
+def test_what_cannot_be_run_stops_no_other(desk):
+    """A folder that cannot be made refuses its question; the next one is answered."""
+    cache = desk.folder.with_name("cache")
+    cache.write_text("in the way")
+    found = ended(desk, desk.ask("predict", TABLES, {}).id)
+    assert (found.state, "could not be run" in found.message) == ("refused", True)
+    cache.unlink()
+    assert ended(desk, desk.ask("predict", TABLES, {}).id).state == "done"
 
 
 def test_stopped_deleted_and_gone_on_with(tmp_path):

@@ -14,8 +14,10 @@ from rocking.app.inputs import levels
 from rocking.app.plain_text import record_file_name
 from rocking.app.projects.store import LARGEST, Project
 from rocking.app.records import is_hash
+from rocking.app.security.request_body import check_json
+from rocking.app.studies.job_document import JobDocument
 from rocking.bodies.formats.words import sentence
-from rocking.errors import RecordError
+from rocking.errors import RecordError, RockingError
 from rocking.version import __version__
 
 if TYPE_CHECKING:
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 MOST_FILES = 200  # records of a project, and what says what it is
 _WHAT = "project.json"
 _FORMAT = "rocking project 1"
+_DEEPEST = 32
 
 
 class _Study(BaseModel):
@@ -74,9 +77,15 @@ def project_from_file(state: "AppState", data: bytes) -> Project:
     if _WHAT not in archive.names:
         raise Refused(f"the archive is no project of rocking: it holds no {_WHAT}")
     try:
-        whole = _ProjectFile.model_validate_json(archive.content(_WHAT, 8 * LARGEST))
+        content = archive.content(_WHAT, 8 * LARGEST)
+        check_json(content, _DEEPEST)
+        whole = _ProjectFile.model_validate_json(content)
     except ValidationError as error:
         raise Refused(f"{_WHAT}: {sentence(error, None)}") from error
+    except Refused as error:
+        raise Refused(f"{_WHAT}: {error}") from error
+    for study in whole.studies:
+        JobDocument.of(study.job)  # before anything is kept
     for sha, name in whole.records.items():
         content = archive.content(_entry(archive, sha), state.records.largest)
         state.records.check_upload(content)
@@ -84,8 +93,12 @@ def project_from_file(state: "AppState", data: bytes) -> Project:
         if state.records.add(content, name).record != sha:
             raise RecordError(f"{record_file_name(name)} in the archive is not the file that was put into it")
     project = state.projects.create(whole.name, whole.document, "from a file")
-    for study in whole.studies:
-        state.studies.create(study.name, study.job, project.id)
+    try:
+        for study in whole.studies:
+            state.studies.create(study.name, study.job, project.id)
+    except RockingError:
+        state.projects.delete(project.id)
+        raise
     return project
 
 

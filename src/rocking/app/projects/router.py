@@ -96,8 +96,10 @@ def _store(request: Request) -> ProjectStore:
 
 async def _whole(request: Request, change: Callable[[ProjectStore], Project], status: int = 200) -> JsonAnswer:
     def changed() -> dict[str, Any]:
-        project = change(_store(request))
-        return {**asdict(project), "document": _store(request).document(project.id)}
+        store = _store(request)
+        with store.lock:
+            project = change(store)
+            return {**asdict(project), "document": store.document(project.id)}
 
     return JsonAnswer(await run_in_threadpool(changed), status_code=status)
 

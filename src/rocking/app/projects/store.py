@@ -5,10 +5,11 @@ import secrets
 import sqlite3
 import threading
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from functools import wraps
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +57,17 @@ class ProjectState:
     here: bool  # whether the project is in it
 
 
+def _alone(method: Callable[..., Project]) -> Callable[..., Project]:
+    """Let nobody change anything between a change and the answer that tells of it."""
+
+    @wraps(method)
+    def locked(self: "ProjectStore", *given: Any, **named: Any) -> Project:
+        with self.lock:
+            return method(self, *given, **named)
+
+    return locked
+
+
 class ProjectStore:
     """All projects of a data folder; safe to use from several threads."""
 
@@ -64,7 +76,7 @@ class ProjectStore:
         fresh = not path.exists()
         if fresh:
             path.touch(mode=0o600)
-        self._lock = threading.RLock()
+        self.lock = threading.RLock()
         self._database = sqlite3.connect(path, timeout=30.0, isolation_level=None, check_same_thread=False)
         for setting in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON", "secure_delete = ON"):
             self._database.execute(f"PRAGMA {setting}")
@@ -82,12 +94,12 @@ class ProjectStore:
 
     def close(self) -> None:
         """Let go of the file."""
-        with self._lock:
+        with self.lock:
             self._database.close()
 
     def all(self, *, deleted: bool = False) -> list[Project]:
         """Return all projects, the last changed first, or those that were deleted and can be brought back."""
-        with self._lock:
+        with self.lock:
             rows = self._database.execute(
                 f"{_PROJECT} WHERE p.deleted IS {'NOT ' * deleted}NULL ORDER BY p.changed DESC, p.rowid DESC"
             ).fetchall()
@@ -95,7 +107,7 @@ class ProjectStore:
 
     def get(self, project: str) -> Project:
         """Return a project, one that was deleted too."""
-        with self._lock:
+        with self.lock:
             row = self._database.execute(f"{_PROJECT} WHERE p.id = ?", (project,)).fetchone()
         if row is None:
             raise NotFound("there is no such project here; was it deleted long ago, or is this another data folder?")
@@ -103,7 +115,7 @@ class ProjectStore:
 
     def document(self, project: str, state: int | None = None) -> dict[str, Any]:
         """Return what a project holds, now or in another state of its history."""
-        with self._lock:
+        with self.lock:
             number = self.get(project).state if state is None else state
             row = self._database.execute(
                 "SELECT document FROM states WHERE project = ? AND number = ?", (project, number)
@@ -115,24 +127,26 @@ class ProjectStore:
 
     def history(self, project: str) -> list[ProjectState]:
         """Return every state of a project that is kept, the last first."""
-        with self._lock:
+        with self.lock:
             here = self.get(project).state
             rows = self._database.execute(
                 "SELECT number, words, time FROM states WHERE project = ? ORDER BY number DESC", (project,)
             ).fetchall()
         return [ProjectState(number, words, time, number == here) for number, words, time in rows]
 
+    @_alone
     def create(self, name: str, document: dict[str, Any], words: str = "begun") -> Project:
         """Make a project."""
         now, project, packed = _instant(), secrets.token_hex(8), _packed(document)
         with self._changing() as database:
-            (count,) = database.execute("SELECT count(*) FROM projects").fetchone()
+            (count,) = database.execute("SELECT count(*) FROM projects WHERE deleted IS NULL").fetchone()
             if count >= MOST_PROJECTS:
                 raise TooLarge(f"up to {MOST_PROJECTS} projects are kept; delete some that are no longer needed")
             database.execute("INSERT INTO projects VALUES (?, ?, ?, ?, 1, 1, NULL)", (project, _name(name), now, now))
             database.execute("INSERT INTO states VALUES (?, 1, NULL, NULL, ?, ?, ?)", (project, words, now, packed))
         return self.get(project)
 
+    @_alone
     def save(self, project: str, version: int, document: dict[str, Any], words: str) -> Project:
         """Put a project into a new state, which follows the one that it is in."""
         packed = _packed(document)
@@ -149,18 +163,22 @@ class ProjectStore:
             )
         return self.get(project)
 
+    @_alone
     def undo(self, project: str, version: int) -> Project:
         """Go back to the state before."""
         return self._step(project, version, "before", "there is nothing before it")
 
+    @_alone
     def redo(self, project: str, version: int) -> Project:
         """Go on to the state that was left last."""
         return self._step(project, version, "after", "nothing was undone")
 
+    @_alone
     def restore(self, project: str, version: int, state: int) -> Project:
         """Take over what the project held in another state, as a new state."""
         return self.save(project, version, self.document(project, state), f"as in state {state}")
 
+    @_alone
     def rename(self, project: str, version: int, name: str) -> Project:
         """Call a project otherwise."""
         words = _name(name)
@@ -168,6 +186,7 @@ class ProjectStore:
             database.execute("UPDATE projects SET name = ? WHERE id = ?", (words, project))
         return self.get(project)
 
+    @_alone
     def delete(self, project: str) -> Project:
         """Take a project away; it can be brought back for a while."""
         self.get(project)
@@ -178,6 +197,7 @@ class ProjectStore:
             )
         return self.get(project)
 
+    @_alone
     def bring_back(self, project: str) -> Project:
         """Bring a deleted project back."""
         self.get(project)
@@ -220,7 +240,7 @@ class ProjectStore:
     @contextmanager
     def _changing(self) -> Iterator[sqlite3.Connection]:
         """Change the database as a whole or not at all."""
-        with self._lock:
+        with self.lock:
             try:
                 self._database.execute("BEGIN IMMEDIATE")
                 try:

@@ -1,6 +1,7 @@
 """All questions of a data folder: asked, in line, answered, stopped; what a restart interrupts is answered after it."""
 
 import json
+import logging
 import os
 import secrets
 import shutil
@@ -35,7 +36,7 @@ OUTPUTS: dict[str, tuple[str, ...]] = {
 MOST_QUESTIONS, MOST_WAITING, MOST_FILES = 500, 16, 200
 _SECONDS = 1800.0  # longest time of a question [s]
 QUESTION, _NOTE, _ANSWER, _LOG = "question.toml", "state.json", "answer.json", "log.txt"
-_OWN = {_NOTE, _ANSWER, _LOG, QUESTION, *(name for names in OUTPUTS.values() for name in names)}
+_OWN = {"matplotlibrc", _NOTE, _ANSWER, _LOG, QUESTION, *(name for names in OUTPUTS.values() for name in names)}
 State = Literal["waiting", "running", "done", "refused", "stopped"]
 
 
@@ -55,6 +56,7 @@ class HostedQuestion:
 
 
 _QUESTION = TypeAdapter(HostedQuestion)
+_LOG_OF_SERVER = logging.getLogger(__name__)
 
 
 class QuestionDesk:
@@ -97,8 +99,8 @@ class QuestionDesk:
         except BaseException:
             shutil.rmtree(place, ignore_errors=True)
             raise
-        self._become(question)
         with self._changed:
+            self._become(question)
             self._line.append(question.id)
             self._changed.notify_all()
         return question
@@ -166,9 +168,11 @@ class QuestionDesk:
         for place in list(self.folder.iterdir()):
             try:
                 question = _QUESTION.validate_json((place / _NOTE).read_bytes())
-            except (OSError, ValueError):  # half written when that server ended
+            except FileNotFoundError:  # half written when that server ended
                 if not place.is_symlink():
                     shutil.rmtree(place, ignore_errors=True)
+                continue
+            except (OSError, ValueError):  # of a later version perhaps: it is left as it is
                 continue
             if question.id == place.name:
                 found.append(replace(question, state="waiting") if question.state == "running" else question)
@@ -179,7 +183,7 @@ class QuestionDesk:
             raise TooLarge(f"a question takes up to {MOST_FILES} files, got {len(files)}")
         paths = {}
         for word, sha in files.items():
-            if word != safe_name(word, "file") or word in _OWN:
+            if word != safe_name(word, "file") or word.lower() in _OWN:
                 raise Refused(f"the name of a file must be plain, as {safe_name(word, 'file')!r}, got {word!r:.60}")
             paths[word] = self._path(sha)
         return paths
@@ -204,9 +208,16 @@ class QuestionDesk:
                     self._changed.wait()
                 if self._closed:
                     return
-                question = replace(self._questions[self._line.pop(0)], state="running")
+                known = self._questions.get(self._line.pop(0))
+                if known is None:
+                    continue
+                question = replace(known, state="running")
                 self._become(question)
-            self._run(question)
+            try:
+                self._run(question)
+            except Exception:  # noqa: BLE001 - a full disk, no more processes: the next question is answered all the same
+                _LOG_OF_SERVER.exception("question %s could not be run", question.id)
+                self._fail(question)
 
     def _run(self, question: HostedQuestion) -> None:
         place, begun = self.folder / question.id, datetime.now(UTC)
@@ -243,6 +254,13 @@ class QuestionDesk:
             there = [name for name in names if (place / name).is_file()]
             state, why = ("done", "") if code == 0 else ("refused", _why(place, code))
             self._become(replace(question, state=state, message=why, seconds=seconds, files=there))  # type: ignore[arg-type]
+
+    def _fail(self, question: HostedQuestion) -> None:
+        with self._changed:
+            self._process = None
+            if self.get_state(question.id) == "running":
+                why = "it could not be run: is the disk of the server full? Its log says more"
+                self._become(replace(question, state="refused", message=why))
 
     def get_state(self, question: str) -> str | None:
         """Return how far a question is; None where it was deleted."""

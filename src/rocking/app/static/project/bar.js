@@ -10,7 +10,8 @@ export const mountProject = (place, projects, app) => {
   render(html`<${Bar} projects=${projects} app=${app} />`, place);
   document.addEventListener("keydown", (event) => {
     const way = wayOf(event);
-    if (!way || event.defaultPrevented || isTyping(event.target)) return;
+    const elsewhere = event.defaultPrevented || isTyping(event.target) || document.querySelector("dialog[open]");
+    if (!way || elsewhere) return;
     event.preventDefault();
     projects[way]();
   });
@@ -52,10 +53,12 @@ const Step = ({ sign, label, on, go }) => html`
 const Clash = ({ projects }) => {
   const dialog = useRef(null);
   useEffect(() => dialog.current.showModal(), []);
+  // A browser closes it at a second Escape whatever is said: it comes back until something is chosen.
+  const stay = () => projects.clash.value && dialog.current?.showModal();
   const settle = (mine) => () => projects.settle(mine);
   return html`
     <dialog ref=${dialog} class="over" aria-labelledby="clash-title" data-testid="clash"
-      onCancel=${(event) => event.preventDefault()}>
+      onCancel=${(event) => event.preventDefault()} onClose=${stay}>
       <div class="card door">
         <h1 id="clash-title">This project was changed elsewhere</h1>
         <p>Another tab or browser has changed it since you did. Nothing is lost: choose what you go on with.</p>

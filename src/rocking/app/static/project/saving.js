@@ -1,6 +1,6 @@
 /** The project that is open: saved by itself, with undo and redo, in agreement with other tabs. */
 
-import { batch, signal } from "/parts/preact.js";
+import { signal } from "/parts/preact.js";
 import { inputsOf } from "/app/shape.js";
 
 const OPEN = "rocking.project";
@@ -18,6 +18,7 @@ export const createProjects = (app, first) => {
   const changed = new Set();
   let timer = 0;
   let taking = false;
+  let last = null; // what was saved last
   let line = Promise.resolve();
 
   // What is lent from elsewhere is on the screen, and not in the project.
@@ -28,16 +29,25 @@ export const createProjects = (app, first) => {
   const known = (facts) => {
     const { document, ...rest } = facts;
     here.value = rest;
-    remember(rest.id);
+    note();
     return document;
   };
+  // For a reload: which version this tab has, and whether more than that was typed.
+  const note = () => remember({ id: here.value.id, version: here.value.version, more: changed.size > 0 });
   const tell = () => channel?.postMessage({ id: here.value.id, version: here.value.version });
   const show = (document) => {
     taking = true;
     app.inputs.take(inputsOf(document?.inputs) ?? first);
     taking = false;
     changed.clear();
+    last = own();
     saving.value = "saved";
+    note();
+  };
+  // What was typed while an answer was on its way is a state of its own, not lost.
+  const showUnlessTyped = (document) => {
+    if (changed.size) save();
+    else show(document);
   };
   let leaving = false; // what is sent then outlives the page
   const ask = (what, json) => app.call(`projects/${here.value.id}${what}`, { json, keepalive: leaving });
@@ -57,6 +67,7 @@ export const createProjects = (app, first) => {
     saving.value = "saving";
     try {
       known(await ask("", { version: here.value.version, document, words }));
+      last = document;
       saving.value = changed.size ? "saving" : "saved";
       tell();
     } catch (error) {
@@ -79,8 +90,9 @@ export const createProjects = (app, first) => {
       }
     }
     if (same(mine, theirs.document)) {
-      known(theirs);
       changed.clear();
+      known(theirs);
+      last = mine;
       saving.value = "saved";
     } else clash.value = { theirs, mine };
   };
@@ -89,26 +101,32 @@ export const createProjects = (app, first) => {
     await save();
     return inLine(async () => {
       try {
-        show(known(await ask(`/${what}`, { version: here.value.version })));
+        showUnlessTyped(known(await ask(`/${what}`, { version: here.value.version })));
         tell();
       } catch (error) {
         app.say(error.message, "error");
       }
     });
   };
-  const take = async (facts) => {
+  // Another project takes the place of this one only when all of this one is saved.
+  const change = async (get) => {
     await save();
-    batch(() => {
-      clash.value = null;
-      show(known(facts));
+    if (changed.size || clash.value) throw new Error("What you typed could not be saved yet; it stays here.");
+    return inLine(async () => {
+      const facts = await get();
+      if (changed.size) save();
+      else show(known(facts));
     });
   };
-  const open = async (id) => take(await app.call(`projects/${id}`));
+  const open = (id) => change(() => app.call(`projects/${id}`));
 
   app.inputs.subscribe((_, keys) => {
     if (taking || !here.value || app.inputs.aside()?.mine) return;
+    // To ask again for what is shown changes nothing.
+    if (!changed.size && same(own(), last)) return;
     for (const key of keys) changed.add(key);
     if (!changed.size) return;
+    note();
     saving.value = "saving";
     clearTimeout(timer);
     timer = setTimeout(save, PAUSE);
@@ -116,7 +134,7 @@ export const createProjects = (app, first) => {
   channel?.addEventListener("message", async ({ data }) => {
     if (!here.value || data.id !== here.value.id || data.version <= here.value.version) return;
     if (changed.size) await save();
-    else await inLine(async () => show(known(await ask(""))));
+    else await inLine(async () => showUnlessTyped(known(await ask(""))));
   });
   addEventListener("pagehide", () => {
     leaving = true;
@@ -132,49 +150,68 @@ export const createProjects = (app, first) => {
     /** Try again to save what could not be saved. */
     again: () => save(),
     /** Begin another project: with the usual start, or with what is on the screen. */
-    begin: async (name, document) => take(await app.call("projects", { json: { name, document: document ?? {} } })),
-    copy: async (id, name) => take(await app.call("projects", { json: { name, copy_of: id } })),
-    bring: async (file) => take(await app.call("projects/import", { body: await file.arrayBuffer() })),
+    begin: (name, document) => change(() => app.call("projects", { json: { name, document: document ?? {} } })),
+    copy: (id, name) => change(() => app.call("projects", { json: { name, copy_of: id } })),
+    bring: (file) => change(async () => app.call("projects/import", { body: await file.arrayBuffer() })),
     rename: async (name) => {
       await save();
-      known(await ask("/name", { version: here.value.version, name }));
-      tell();
+      return inLine(async () => {
+        known(await ask("/name", { version: here.value.version, name }));
+        tell();
+      });
     },
     restore: async (state) => {
       await save();
-      show(known(await ask("/restore", { version: here.value.version, state })));
-      tell();
+      return inLine(async () => {
+        showUnlessTyped(known(await ask("/restore", { version: here.value.version, state })));
+        tell();
+      });
     },
     /** Of a project that was changed elsewhere too: show what is there, or keep what is on the screen as a copy. */
-    settle: async (keepMine) => {
-      const { theirs, mine } = clash.value;
-      changed.clear();
-      clash.value = null;
-      if (keepMine) {
-        return take(await app.call("projects", { json: { name: `${theirs.name} (mine)`, document: mine } }));
+    settle: (keepMine) => inLine(async () => {
+      const { theirs } = clash.value;
+      try {
+        const facts = keepMine
+          ? await app.call("projects", { json: { name: `${theirs.name} (mine)`, document: own() } }) : theirs;
+        clash.value = null;
+        show(known(facts));
+      } catch (error) {
+        app.say(`Not saved: ${error.message}`, "error");
       }
-      return show(known(theirs));
-    },
+    }),
     /** Open the project of this tab, else the one that was changed last, else a first one. */
     start: async (fromLink) => {
       const { projects } = await app.call("projects");
-      const id = [remembered(), ...projects.map((each) => each.id)].find((each) =>
+      const kept = remembered();
+      const id = [kept?.id, ...projects.map((each) => each.id)].find((each) =>
         projects.some((one) => one.id === each));
-      const reloaded = id === remembered() && app.inputs.wereKept;
       if (!id) {
         known(await app.call("projects", { json: { name: "My first project", document: own() } }));
+        last = own();
         return;
       }
-      const document = known(await app.call(`projects/${id}`));
+      const mine = own();
+      const whole = await app.call(`projects/${id}`);
       // After a reload the tab may hold what was not saved yet; what a link holds is lent over the project's own.
-      if (reloaded) {
-        if (same(own(), document)) return;
-        changed.add("inputs");
-        await save();
-      } else {
-        show(document);
-        if (fromLink) app.inputs.lend(fromLink, "what a link holds");
+      if (id === kept?.id && kept.more && app.inputs.wereKept && !same(mine, whole.document)) {
+        if (whole.version === kept.version) {
+          known(whole);
+          changed.add("inputs");
+          await save();
+        } else {
+          known(whole);
+          changed.add("inputs");
+          clash.value = { theirs: whole, mine };
+        }
+        return;
       }
+      if (id === kept?.id && app.inputs.wereKept && same(mine, whole.document)) {
+        known(whole);
+        last = mine;
+        return;
+      }
+      show(known(whole));
+      if (fromLink) app.inputs.lend(fromLink, "what a link holds");
     },
   };
 };
@@ -187,15 +224,15 @@ const same = (one, other) => {
 
 const remembered = () => {
   try {
-    return sessionStorage.getItem(OPEN);
+    return JSON.parse(sessionStorage.getItem(OPEN));
   } catch {
     return null;
   }
 };
 
-const remember = (id) => {
+const remember = (facts) => {
   try {
-    sessionStorage.setItem(OPEN, id);
+    sessionStorage.setItem(OPEN, JSON.stringify(facts));
   } catch {
     // The next reload opens the project that was changed last.
   }

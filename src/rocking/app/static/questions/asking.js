@@ -10,6 +10,7 @@ export const createQuestions = (app, command) => {
   const shown = signal(null);
   const all = signal([]);
   let timer = 0;
+  let ticket = 0;
   const here = () => app.project.here.value.id;
   const busy = computed(() => shown.value && !ENDED.has(shown.value.state));
 
@@ -17,16 +18,16 @@ export const createQuestions = (app, command) => {
     const { questions } = await app.call("questions");
     all.value = questions.filter((each) => each.command === command && each.project === here());
   };
-  const follow = async (id) => {
+  const follow = async (id, mine = (ticket += 1)) => {
     clearTimeout(timer);
     const question = await app.call(`questions/${id}`).catch((error) => {
       if (error.kind !== "offline") throw error;
-      return shown.value; // the server is back in a moment, and goes on with it
+      return null; // the server is back in a moment, and goes on with it
     });
-    if (shown.value && shown.value.id !== id) return;
-    shown.value = question;
-    if (ENDED.has(question.state)) await look();
-    else timer = setTimeout(() => follow(id).catch(tell), EVERY);
+    if (mine !== ticket) return; // another one is shown by now
+    if (question) shown.value = question;
+    if (question && ENDED.has(question.state)) await look();
+    else timer = setTimeout(() => follow(id, mine).catch(tell), EVERY);
   };
   const tell = (error) => app.say(error.message, "error");
   const safely = (work) => (...given) => work(...given).catch(tell);
@@ -57,22 +58,23 @@ export const createQuestions = (app, command) => {
     /** Send a file; resolves to its hash and the plain name that tables call it. */
     send: async (file) => {
       const kept = await app.call("files", { method: "POST", body: await file.arrayBuffer(), query: { name: file.name } });
-      return { name: kept.file_name, sha: kept.record };
+      return { name: apart(kept.file_name, kept.record), sha: kept.record };
     },
     take: (name) => app.download(`questions/${shown.value.id}/${name}`, undefined, name),
   };
 };
 
-/** The motion of the inputs as a job has it, and the files that it needs. */
+// Names that answers have.
+const TAKEN = /^(inventory|table|report|picture|answer|state|log|question)\.|^matplotlibrc/i;
+const apart = (name, sha) => (TAKEN.test(name) ? `${sha.slice(0, 8)}-${name}` : name);
+
+/** The motion of the inputs as a question has it, and the files that it needs. */
 export const motionOf = (inputs) => {
   if (!inputs.motion) return null;
-  const { record, file_name: name, pulse, synthetic, member, ...rest } = inputs.motion;
-  if (record) {
-    const called = plainName(name, record);
-    return { motion: { records: [called], ...rest }, files: { [called]: record } };
-  }
-  if (synthetic) return { motion: { synthetic, count: (member ?? 0) + 1, ...rest }, files: {} };
-  return { motion: { pulse: [pulse], ...rest }, files: {} };
+  const { record, file_name: name, ...rest } = inputs.motion;
+  if (!record) return { tables: { motion: rest }, files: {} };
+  const called = plainName(name, record);
+  return { tables: { motion: { record: called, ...rest } }, files: { [called]: record } };
 };
 
 const plainName = (name, record) => {

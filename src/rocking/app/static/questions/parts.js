@@ -41,7 +41,11 @@ export const FileDrop = ({ label, help, accept, files, many = false, questions, 
     const chosen = many ? [...list] : [...list].slice(0, 1);
     try {
       const sent = await Promise.all(chosen.map((file) => questions.send(file)));
-      files.value = many ? [...files.value, ...sent] : sent;
+      const all = many ? [...files.value, ...sent] : sent;
+      // two files of one name are two files
+      const named = all.map((one, k) => (all.slice(0, k).some((each) => each.name === one.name && each.sha !== one.sha)
+        ? { ...one, name: `${one.sha.slice(0, 8)}-${one.name}` } : one));
+      files.value = named.filter((one, k) => named.findIndex((each) => each.sha === one.sha) === k);
     } catch (error) {
       app.say(error.message, "error");
     }
@@ -75,7 +79,10 @@ export const Outcome = ({ questions, children }) => {
   const question = questions.shown.value;
   const heading = useRef(null);
   const done = question?.state === "done";
-  useEffect(() => { if (done) heading.current?.focus(); }, [done, question?.id]);
+  useEffect(() => {
+    const typing = document.activeElement?.matches("input, textarea, select");
+    if (done && !typing) heading.current?.focus();
+  }, [done, question?.id]);
   if (!question) return null;
   return html`
     <section class="card question" aria-labelledby="outcome-title" data-testid="outcome" data-state=${question.state}>
@@ -103,7 +110,7 @@ const Waiting = ({ questions, question }) => html`
 const WORDS = { pdf: "Report (PDF)", html: "Report (web page)", svg: "Picture (SVG)", xlsx: "Excel", csv: "CSV" };
 
 const Files = ({ questions, question }) => html`
-  <div class="toolbar" aria-label="Take away">
+  <div class="toolbar" role="group" aria-label="Take away">
     ${question.files.map((name) => html`<button type="button" class="button" key=${name} onClick=${() => questions.take(name)}>
       ${WORDS[name.split(".").at(-1)]}</button>`)}
   </div>

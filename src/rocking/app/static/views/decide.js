@@ -29,14 +29,16 @@ const Decide = ({ app, questions }) => {
     event.preventDefault();
     const inputs = app.inputs.get();
     const asked = motions(inputs, shaken.value, files.value, { units: units.value, pga: pga.value });
-    const faulty = app.faults.sentence({ inputs: true }) || asked.missing;
+    const factor = Number(margin.value.replace(",", "."));
+    const faulty = app.faults.sentence({ inputs: true }) || asked.missing
+      || (factor > 0 ? "" : "What it must hold is a number above 0.");
     wrong.value = faulty || "";
     if (faulty) return;
     const name = inputs.body.name || app.project.here.value.name;
     const signed = { project: app.project.here.value.name, author: author.value, date: date.value };
     const told = Object.fromEntries(Object.entries(signed).filter(([, words]) => words.trim()));
     const tables = {
-      body: inputs.body, motions: [asked.motion], assess: { ...told, margin: Number(margin.value.replace(",", ".")) || 1 },
+      body: inputs.body, ...asked.tables, assess: { ...told, margin: factor },
       ...(inputs.settings ? { settings: inputs.settings } : {}),
     };
     questions.ask(tables, asked.files, `Does ${name} stand?`);
@@ -74,12 +76,13 @@ const motions = (inputs, shaken, files, { units, pga }) => {
   if (shaken === "records") {
     const motion = { records: files.map((one) => one.name), ...(units.trim() ? { units: units.trim() } : {}) };
     const hashes = Object.fromEntries(files.map((one) => [one.name, one.sha]));
-    return { motion, files: hashes, missing: files.length ? "" : "No record was sent yet." };
+    return { tables: { motions: [motion] }, files: hashes, missing: files.length ? "" : "No record was sent yet." };
   }
   if (shaken) {
     const level = Number(pga.replace(",", "."));
     const missing = level > 0 ? "" : "How strong is the shaking? The peak acceleration is a number above 0.";
-    return { motion: { synthetic: shaken, count: 20, seed: 1, pga: level * 9.80665 }, files: {}, missing };
+    const motion = { synthetic: shaken, count: 20, seed: 1, pga: level * 9.80665 };
+    return { tables: { motions: [motion] }, files: {}, missing };
   }
   return motionOf(inputs) ?? { files: {}, missing: "Nothing moves the ground yet: choose a motion first." };
 };
