@@ -220,16 +220,18 @@ def parts(
 def count_of(cell: Cell) -> int | None:
     """Return how many a cell says there are, if it does.
 
-    >>> [count_of(cell) for cell in ("2 Stk.", "3x", "Paar", 4.0, "viele")]
-    [2, 3, 2, 4, None]
+    >>> [count_of(cell) for cell in ("2 Stk.", "3x", "3 Paar", 4.0, "-4", "viele")]
+    [2, 3, 6, 4, None, None]
     """
     if isinstance(cell, float):
         return int(cell) if cell == int(cell) else None
     words = plain(cell)
     if words in _PAIRS:
         return 2
-    match = re.fullmatch(r"x? ?([0-9]{1,7}) ?[^\W\d]*", words)
-    return int(match[1]) if match and not re.search(r"\d[.,]\d", cell) else None
+    match = re.fullmatch(r"x? ?([0-9]{1,7}) ?([^\W\d]*)", words)
+    if match is None or re.search(r"\d[.,]\d|^\s*-", cell):
+        return None
+    return int(match[1]) * (2 if match[2] in _PAIRS else 1)
 
 
 _PAIRS = words_of(header_words.PAIRS)

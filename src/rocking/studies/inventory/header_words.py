@@ -29,7 +29,8 @@ HEADERS: dict[str, dict[str, str]] = {
         "note": "bemerkung, bemerkungen, anmerkung, anmerkungen, notiz, notizen, hinweis, kommentar",
         "friction": "reibung, reibungszahl, reibungskoeffizient, reibungsbeiwert", "body_file": "körperdatei, scan",
         "units": "einheit, einheiten", "shape": "form, grundform, grundriss",
-        "consequence": "folge, folgen, schadensfolge, schadensfolgen, bedeutung, wichtigkeit",
+        "consequence": "folge, folgen, folgen bei sturz, folgen eines sturzes, konsequenz, konsequenzen, schadensfolge, "
+        "schadensfolgen, schadensausmaß, bedeutung, wichtigkeit",
         "photo": "foto, bild, abbildung, fotodatei, bilddatei", "size": "maße, abmessungen, abmessung, größe",
         "number": "inventarnummer, inventarnr, inventar nr, inv nr, objektnummer",
     },

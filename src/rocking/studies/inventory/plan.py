@@ -154,10 +154,10 @@ class _Subject:
         for name, length in zip(("out", "down"), most.tolist(), strict=True):
             if math.isfinite(length):
                 step = _COARSE if length > _SMALL else _FINE
-                high = math.ceil(length / step - 1e-9)
+                high = math.floor(length / step + 1e-9) + 1  # beyond what just keeps it from lifting
                 yield _Search(self, name, step, max(1, high if name == "out" else min(high, int(0.99 * lowest / step))))
         lifts = min(lifting_factor(body, each, planner.gravity) for body in self._worst for each in planner.strongest)
-        yield _Search(self, "weaker", _COARSE, min(99, max(1, math.ceil((1.0 - lifts) / _COARSE - 1e-9))))
+        yield _Search(self, "weaker", _COARSE, min(99, max(1, math.floor((1.0 - lifts) / _COARSE + 1e-9) + 1)))
 
     def sides(self, way: Direction, out: float = 0.0, down: float = 0.0, weaker: float = 0.0) -> dict[str, FloatArray]:
         """Return the rows of a changed object, under each motion."""

@@ -80,8 +80,9 @@ class RowValues:
     def settle_words(self, find: Callable[[str], Path] | None) -> None:
         """Bring consequence and photo to what they mean."""
         if (word := self.fields.pop("consequence", None)) and not is_missing(word):
-            level = _CONSEQUENCES.get(plain(word))
-            self.optional("consequence", level, f"consequence {word!r:.40} is not low, medium or high: medium is taken")
+            self.fields["consequence"] = _CONSEQUENCES.get(plain(word), "high")  # the careful side
+            if plain(word) not in _CONSEQUENCES:
+                self.remarks.append(f"consequence {word!r:.40} is not low, medium or high: high is taken")
         if photo := self.fields.pop("photo", None):
             self.optional("photo", photo_of(photo, find), f"photo {photo!r:.80} is no picture beside the list")
 

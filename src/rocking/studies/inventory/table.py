@@ -99,7 +99,7 @@ def plan_words(entry: PlanEntry, say: Language) -> str:
         options.append(say("plan.moved", share=100.0 * entry.weaker))
     if not options:
         options.append(say("plan.nothing"))
-    weight = say("plan.weight", share=entry.pull)
+    weight = say("plan.weight", share=_demanded(entry.pull, say))
     pull = weight if entry.force is None else say("plan.newton", force=_demanded(entry.force, say))
     return say("plan.sentence", name=entry.item.name, options="; ".join([*options, say("plan.anchors", pull=pull)]))
 
@@ -323,7 +323,9 @@ def _base(verdict: Verdict, assessment: Assessment) -> str:
     """Return the base that no motion would lift, as ``g b / h`` has it, at the same height of the centre."""
     say, way, peak = words_of(assessment), verdict.worse.direction, assessment.hazard.peak()
     now = verdict.item.base(way)
-    needed = math.ceil(100.0 * now * peak / verdict.worse.uplift_acceleration - 1e-9)
+    needed = (
+        math.floor(100.0 * now * peak / verdict.worse.uplift_acceleration + 1e-9) + 1
+    )  # beyond what just does not lift it
     own = verdict.item.width if way == "width" else verdict.item.depth
     key = ("size" if now == own else "base") + ("_alone" if assessment.hazard.vertical else "")
     return say(f"advice.{key}", way=say(f"direction.{way}"), size=100.0 * now, needed=needed)

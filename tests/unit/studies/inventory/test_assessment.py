@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import math
+import re
 import tracemalloc
 
 import numpy as np
@@ -59,7 +60,9 @@ def test_counts_by_hand():
         "Stays still up to 0.25 g; at PGA 0.5 g it rocks, and fell over in 3 of 10 records."
     )
     # b / h = a / g along the width needs a base of 0.5 m * 2
-    assert "its width is 50 cm, and 100 cm would not be lifted" in table.advice(verdict, found)
+    assert "its width is 50 cm, and 101 cm would not be lifted" in table.advice(
+        verdict, found
+    )  # 100 cm is the limit itself
 
 
 @pytest.mark.verifies("closed form", "g b / h", within="1e-6 on either side")
@@ -303,3 +306,18 @@ def test_a_round_object_with_friction_rocks_in_a_plane(quakes):
     assert by_name["drum"].friction is None
     assert by_name["drum"].item.remarks == ("its friction was not used: a round object rocks in a plane",)
     assert (by_name["column"].friction, by_name["column"].item.remarks, alone.item.remarks) == (0.5, (), ())
+
+
+@pytest.mark.verifies("invariant", "a box that lifts at the peak acceleration exactly, and its plan made true")
+def test_a_plan_that_ends_where_it_just_lifts(quakes):
+    """Where b/h is the peak to the last digit after the change, the plan goes on by a step, and its object is green."""
+    box = InventoryObject(name="box", width=0.3, depth=0.3, height=1.2)
+    few = Hazard.of_records(quakes.motions[:20])
+    found = assess([box], few)
+    (entry,) = found.plan
+    assert entry.wider is not None
+    wider = InventoryObject(name="wider", width=0.3 + 2.0 * entry.wider, depth=0.3 + 2.0 * entry.wider, height=1.2)
+    assert assess([wider], few).verdicts[0].light is Light.GREEN
+    needed = int(re.search(r"and (\d+) cm would not be lifted", table.advice(found.verdicts[0], found))[1])
+    still = InventoryObject(name="still", width=needed / 100.0, depth=needed / 100.0, height=1.2)
+    assert assess([still], few).verdicts[0].worse.lifted == 0

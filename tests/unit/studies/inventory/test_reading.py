@@ -122,7 +122,7 @@ def test_bad_value_that_decides(column, value, words):
         ("count", "0", "count must be a whole number"),
         ("friction", "smooth", "friction was left aside"),
         ("friction", "-1", "friction was left aside"),
-        ("consequence", "***", "medium is taken"),
+        ("consequence", "***", "high is taken"),
         ("photo", "no-such.jpg", "no picture beside the list"),
         ("shape", "oval", "a box of its size is taken"),
         ("base_cm", "?", "as if none were given"),
@@ -132,7 +132,8 @@ def test_bad_value_that_does_not_decide(column, value, words):
     """What does not change how an object rocks is left aside with a remark, and the object is assessed."""
     first, second = parse_inventory(f"{HEAD},{column}\n{GOOD},{value}\n{GOOD},").objects
     assert words in " ".join(first.remarks)
-    assert replace(first, remarks=(), row=3) == second
+    assert first.consequence == ("high" if column == "consequence" else "medium")  # the careful side
+    assert replace(first, remarks=(), row=3, consequence="medium") == second
 
 
 @pytest.mark.parametrize(
