@@ -235,7 +235,7 @@ class QuestionDesk:
             )
             with self._changed:
                 self._process = (question.id, process)
-                if self._closed or self.get_state(question.id) == "stopped":
+                if self._closed or self._state(question.id) == "stopped":
                     _kill(process)
             try:
                 code = process.wait(_SECONDS)
@@ -248,7 +248,7 @@ class QuestionDesk:
         shutil.rmtree(own, ignore_errors=True)
         with self._changed:
             self._process = None
-            if self._closed or self.get_state(question.id) in {"stopped", None}:
+            if self._closed or self._state(question.id) in {"stopped", None}:
                 return
             seconds = (datetime.now(UTC) - begun).total_seconds()
             there = [name for name in names if (place / name).is_file()]
@@ -258,11 +258,11 @@ class QuestionDesk:
     def _fail(self, question: HostedQuestion) -> None:
         with self._changed:
             self._process = None
-            if self.get_state(question.id) == "running":
+            if self._state(question.id) == "running":
                 why = "it could not be run: is the disk of the server full? Its log says more"
                 self._become(replace(question, state="refused", message=why))
 
-    def get_state(self, question: str) -> str | None:
+    def _state(self, question: str) -> str | None:
         """Return how far a question is; None where it was deleted."""
         with self._changed:
             known = self._questions.get(question)

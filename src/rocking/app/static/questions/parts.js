@@ -74,8 +74,8 @@ export const FileDrop = ({ label, help, accept, files, many = false, questions, 
     </div>`;
 };
 
-/** What stands of a question: being answered, refused, or its answer, which `children` shows. */
-export const Outcome = ({ questions, children }) => {
+// What stands of a question: being answered, refused, or its answer.
+const Outcome = ({ questions, answer: Answer }) => {
   const question = questions.shown.value;
   const heading = useRef(null);
   const done = question?.state === "done";
@@ -88,12 +88,11 @@ export const Outcome = ({ questions, children }) => {
     <section class="card question" aria-labelledby="outcome-title" data-testid="outcome" data-state=${question.state}>
       <h2 id="outcome-title" ref=${heading} tabindex="-1">${question.name}</h2>
       ${questions.busy.value && html`<${Waiting} questions=${questions} question=${question} />`}
-      ${question.state === "refused" && html`<p class="note error" role="alert"><span class="sign" aria-hidden="true">\u2715</span>
-        <span>${sentence(question.message)}</span></p>
+      ${question.state === "refused" && html`<${Wrong} words=${sentence(question.message)} />
         <${Drawing} question=${question} alt="What was found all the same" />`}
       ${question.state === "stopped" && html`<p class="note info"><span class="sign" aria-hidden="true">i</span>
         <span>It was stopped.</span></p>`}
-      ${done && question.answer && children(question.answer, question)}
+      ${done && question.answer && html`<${Answer} answer=${question.answer} question=${question} />`}
       ${done && html`<${Files} questions=${questions} question=${question} />`}
     </section>`;
 };
@@ -136,8 +135,8 @@ export const Rows = ({ caption, head, rows }) => html`
     </table>
   </div>`;
 
-/** Earlier questions of the project. */
-export const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
+// Earlier questions of the project.
+const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
   <section class="card" aria-labelledby="earlier-title">
     <h2 id="earlier-title">Asked before</h2>
     <ul class="project-list" aria-label="Asked before">
@@ -150,6 +149,20 @@ export const Earlier = ({ questions }) => questions.all.value.length > 0 && html
     </ul>
   </section>`;
 
-/** A view: its head, and what is in it. */
-export const View = ({ title, lead, children }) => html`
-  <header class="view-head"><h1>${title}</h1><p class="lead">${lead}</p></header>${children}`;
+/** A view of a question: what is asked, what was asked before, and what was found, which `answer` shows. */
+export const QuestionView = ({ title, lead, questions, wrong, onSubmit, answer, children }) => html`
+  <header class="view-head"><h1>${title}</h1><p class="lead">${lead}</p></header>
+  <div class="columns narrow-wide">
+    <div class="asked">
+      <form class="card" onSubmit=${onSubmit} aria-label="What is asked">
+        ${children}
+        ${wrong && html`<${Wrong} words=${wrong} />`}
+        <button type="submit" class="button primary" disabled=${questions.busy.value}>Ask</button>
+      </form>
+      <${Earlier} questions=${questions} />
+    </div>
+    <${Outcome} questions=${questions} answer=${answer} />
+  </div>`;
+
+const Wrong = ({ words }) => html`
+  <p class="note error" role="alert"><span class="sign" aria-hidden="true">\u2715</span><span>${words}</span></p>`;

@@ -3,7 +3,7 @@
 import { html, render } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
-import { Choice, Drawing, Earlier, Field, FileDrop, Outcome, Rows, View, useSignal } from "/questions/parts.js";
+import { Choice, Drawing, Field, FileDrop, QuestionView, Rows, useSignal } from "/questions/parts.js";
 
 const FAMILIES = [
   ["", "the motion of this project"], ["records", "record files"], ["firm-ground", "20 synthetic motions, firm ground"],
@@ -44,30 +44,20 @@ const Decide = ({ app, questions }) => {
     questions.ask(tables, asked.files, `Does ${name} stand?`);
   };
   return html`
-    <${View} title="Does it stand?"
+    <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Verdict}
+      title="Does it stand?"
       lead="All models of the impact, both ways round, the margin to overturning, how likely it is, and what to do about it.">
-      <div class="columns narrow-wide">
-        <div class="asked">
-          <form class="card" onSubmit=${ask} aria-label="What is asked">
-            <${Choice} label="Shaken by" value=${shaken} options=${FAMILIES} />
-            ${shaken.value === "records" && html`
-              <${FileDrop} label="Drop records here, or" many accept=${RECORDS} files=${files} questions=${questions} app=${app}
-                help="Several records at once; each is computed as it is." />
-              <${Field} label="Unit of the accelerations" value=${units} help="Only where the files state none: g, m/s2, cm/s2." />`}
-            ${["firm-ground", "soft-ground"].includes(shaken.value)
-              && html`<${Field} label="Peak acceleration" unit="g" value=${pga} inputmode="decimal" />`}
-            <${Field} label="Must hold" unit="times the motion" value=${margin} inputmode="decimal"
-              help="What is proposed holds this much." />
-            <${Field} label="Signed by" value=${author} help="For the report." />
-            <${Field} label="Date" value=${date} help="Today if empty." />
-            ${wrong.value && html`<p class="note error" role="alert"><span class="sign" aria-hidden="true">\u2715</span>
-              <span>${wrong.value}</span></p>`}
-            <button type="submit" class="button primary" disabled=${questions.busy.value}>Ask</button>
-          </form>
-          <${Earlier} questions=${questions} />
-        </div>
-        <${Outcome} questions=${questions}>${(answer, question) => html`<${Verdict} answer=${answer} question=${question} />`}<//>
-      </div>
+      <${Choice} label="Shaken by" value=${shaken} options=${FAMILIES} />
+      ${shaken.value === "records" && html`
+        <${FileDrop} label="Drop records here, or" many accept=${RECORDS} files=${files} questions=${questions} app=${app}
+          help="Several records at once; each is computed as it is." />
+        <${Field} label="Unit of the accelerations" value=${units} help="Only where the files state none: g, m/s2, cm/s2." />`}
+      ${["firm-ground", "soft-ground"].includes(shaken.value)
+        && html`<${Field} label="Peak acceleration" unit="g" value=${pga} inputmode="decimal" />`}
+      <${Field} label="Must hold" unit="times the motion" value=${margin} inputmode="decimal"
+        help="What is proposed holds this much." />
+      <${Field} label="Signed by" value=${author} help="For the report." />
+      <${Field} label="Date" value=${date} help="Today if empty." />
     <//>`;
 };
 

@@ -3,7 +3,7 @@
 import { html, render } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { createQuestions } from "/questions/asking.js";
-import { Choice, Earlier, Field, FileDrop, Outcome, Rows, View, useSignal } from "/questions/parts.js";
+import { Choice, Field, FileDrop, QuestionView, Rows, useSignal } from "/questions/parts.js";
 
 const LIGHTS = { red: "bad", amber: "fair", green: "good" };
 
@@ -35,28 +35,18 @@ const Inventory = ({ app, questions }) => {
     questions.ask(tables, { [list.name]: list.sha }, `Which objects stand? ${list.name}`);
   };
   return html`
-    <${View} title="Which objects stay standing?"
+    <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Ranking}
+      title="Which objects stay standing?"
       lead="A list of objects with their sizes, as it is kept; every row is assessed, or the reason is said.">
-      <div class="columns narrow-wide">
-        <div class="asked">
-          <form class="card" onSubmit=${ask} aria-label="What is asked">
-            <${FileDrop} label="Drop a list here, or" accept=".csv,.xlsx,.ods,.txt,.tsv" files=${files} questions=${questions} app=${app}
-              help="Columns such as name, width_cm, depth_cm, height_cm; count, base, weight and notes if there are." />
-            <${Choice} label="How strong it is said by" value=${kind}
-              options=${[["pga", "peak acceleration [g]"], ["pgv", "peak velocity [cm/s]"]]} />
-            <${Field} label="Strength" unit=${kind.value === "pga" ? "g" : "cm/s"} value=${level} inputmode="decimal" />
-            <${Choice} label="Motions" value=${family} options=${[
-              ["firm-ground", "firm ground"], ["soft-ground", "soft ground"], ["point-source", "point source"],
-              ["pulse-like", "near a fault, pulse-like"]]} />
-            <${Field} label="How many motions" value=${count} inputmode="numeric" help="More are surer: 200 tell 5 % from 10 %." />
-            ${wrong.value && html`<p class="note error" role="alert"><span class="sign" aria-hidden="true">\u2715</span>
-              <span>${wrong.value}</span></p>`}
-            <button type="submit" class="button primary" disabled=${questions.busy.value}>Ask</button>
-          </form>
-          <${Earlier} questions=${questions} />
-        </div>
-        <${Outcome} questions=${questions}>${(answer) => html`<${Ranking} answer=${answer} />`}<//>
-      </div>
+      <${FileDrop} label="Drop a list here, or" accept=".csv,.xlsx,.ods,.txt,.tsv" files=${files} questions=${questions} app=${app}
+        help="Columns such as name, width_cm, depth_cm, height_cm; count, base, weight and notes if there are." />
+      <${Choice} label="How strong it is said by" value=${kind}
+        options=${[["pga", "peak acceleration [g]"], ["pgv", "peak velocity [cm/s]"]]} />
+      <${Field} label="Strength" unit=${kind.value === "pga" ? "g" : "cm/s"} value=${level} inputmode="decimal" />
+      <${Choice} label="Motions" value=${family} options=${[
+        ["firm-ground", "firm ground"], ["soft-ground", "soft ground"], ["point-source", "point source"],
+        ["pulse-like", "near a fault, pulse-like"]]} />
+      <${Field} label="How many motions" value=${count} inputmode="numeric" help="More are surer: 200 tell 5 % from 10 %." />
     <//>`;
 };
 

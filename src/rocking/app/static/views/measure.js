@@ -3,7 +3,7 @@
 import { html, render } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { createQuestions } from "/questions/asking.js";
-import { Choice, Drawing, Earlier, Field, FileDrop, Outcome, Rows, View, useSignal } from "/questions/parts.js";
+import { Choice, Drawing, Field, FileDrop, QuestionView, Rows, useSignal } from "/questions/parts.js";
 import { record } from "/questions/microphone.js";
 
 const KINDS = [
@@ -48,27 +48,17 @@ const Measure = ({ app, questions }) => {
     questions.ask(tables, { [file.name]: file.sha }, `What ${file.name} says`);
   };
   return html`
-    <${View} title="What does an impact cost?"
+    <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Found}
+      title="What does an impact cost?"
       lead="Let the body go from a tilt and record it: each knock tells how much of the speed was left.">
-      <div class="columns narrow-wide">
-        <div class="asked">
-          <form class="card" onSubmit=${ask} aria-label="What is asked">
-            <${FileDrop} label="Drop a recording here, or" accept=".wav,.flac,.csv,.txt,.xlsx,.mp4,.mov,.avi,.webm" files=${files} questions=${questions}
-              app=${app} help="Sound (WAV, FLAC), a video, or a table of times, rotations, a gyroscope or an accelerometer." />
-            <button type="button" class="button" aria-pressed=${String(Boolean(recording.value))} onClick=${listen}>
-              ${recording.value ? "End the recording" : "Record with the microphone"}</button>
-            <${Choice} label="It holds" value=${kind} options=${KINDS} help="Of a table only." />
-            <${Field} label="Column" value=${column} help="Of a table with several." />
-            <${Field} label="Unit" value=${unit} help="Where the table states none." />
-            <${Choice} label="The body" value=${known} options=${[["yes", "is that of this project"], ["no", "is not known"]]} />
-            ${wrong.value && html`<p class="note error" role="alert"><span class="sign" aria-hidden="true">\u2715</span>
-              <span>${wrong.value}</span></p>`}
-            <button type="submit" class="button primary" disabled=${questions.busy.value}>Ask</button>
-          </form>
-          <${Earlier} questions=${questions} />
-        </div>
-        <${Outcome} questions=${questions}>${(answer, question) => html`<${Found} answer=${answer} question=${question} />`}<//>
-      </div>
+      <${FileDrop} label="Drop a recording here, or" accept=".wav,.flac,.csv,.txt,.xlsx,.mp4,.mov,.avi,.webm" files=${files} questions=${questions}
+        app=${app} help="Sound (WAV, FLAC), a video, or a table of times, rotations, a gyroscope or an accelerometer." />
+      <button type="button" class="button" aria-pressed=${String(Boolean(recording.value))} onClick=${listen}>
+        ${recording.value ? "End the recording" : "Record with the microphone"}</button>
+      <${Choice} label="It holds" value=${kind} options=${KINDS} help="Of a table only." />
+      <${Field} label="Column" value=${column} help="Of a table with several." />
+      <${Field} label="Unit" value=${unit} help="Where the table states none." />
+      <${Choice} label="The body" value=${known} options=${[["yes", "is that of this project"], ["no", "is not known"]]} />
     <//>`;
 };
 
