@@ -1,7 +1,9 @@
 // What synthetic motions take their time with: elementary functions and recurrences of sums and products alone, in the
 // order in which `portable.py` has them, so that a seed has the same bits on every processor, and without this module.
+// And response spectra, which are measures and need not.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/complex.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +13,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "oscillators.hpp"
+
 namespace nb = nanobind;
 using namespace nb::literals;
 
@@ -18,13 +22,6 @@ namespace rocking::motions {
 
 template <class T>
 using Line = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-
-// Wider registers change nothing but the time: no product is fused with a sum.
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__)
-#define ROCKING_WIDER __attribute__((target_clones("avx2", "default")))
-#else
-#define ROCKING_WIDER
-#endif
 
 constexpr double kLog2High = 6.93147180369123816490e-01, kLog2Low = 1.90821492927058770002e-10;
 constexpr double kHalfPiHigh = 1.57079632673412561417e+00, kHalfPiLow = 6.07710050650619224932e-11;
@@ -248,6 +245,34 @@ static void resonances(Line<const double> noise, Line<const double> omega, Line<
         static_cast<std::int64_t>(nodes), total.data(), variance.data());
 }
 
+static void states(Line<const double> ground, double step, Line<const Complex> rates,
+                   nb::ndarray<Complex, nb::ndim<2>, nb::c_contig, nb::device::cpu> out) {
+    check(out.shape(0) == rates.shape(0) && out.shape(1) == ground.shape(0) && ground.shape(0) > 0);
+    nb::gil_scoped_release free;
+    states_of(ground.data(), ground.shape(0), step, rates.data(), rates.shape(0), out.data());
+}
+
+static void peaks(Line<const double> ground, double step, Line<const Complex> rates,
+                  nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu> reach, Line<const std::int64_t> parts,
+                  double margin, std::int64_t points, nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu> out) {
+    const std::size_t count = rates.shape(0);
+    check(reach.shape(0) == count && reach.shape(1) == 3 && parts.shape(0) == count && out.shape(0) == count &&
+          out.shape(1) == 3 && ground.shape(0) > 0 && points > 1);
+    nb::gil_scoped_release free;
+    peaks_of(ground.data(), ground.shape(0), step, rates.data(), count, reach.data(), parts.data(), margin, points, out.data());
+}
+
+static void directions(Line<const double> along, Line<const double> across, double step, Line<const Complex> rates,
+                       Line<const double> cosine, Line<const double> sine, Line<const std::int64_t> parts, std::int64_t points,
+                       nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu> out) {
+    const std::size_t count = rates.shape(0), turns = cosine.shape(0);
+    check(along.shape(0) == across.shape(0) && along.shape(0) > 0 && sine.shape(0) == turns && turns > 0 &&
+          parts.shape(0) == count && out.shape(0) == count && out.shape(1) == turns && points > 1);
+    nb::gil_scoped_release free;
+    directions_of(along.data(), across.data(), along.shape(0), step, rates.data(), count, cosine.data(), sine.data(), turns,
+                  parts.data(), points, out.data());
+}
+
 }  // namespace rocking::motions
 
 NB_MODULE(_filters, m) {
@@ -259,4 +284,8 @@ NB_MODULE(_filters, m) {
     m.def("recurrence", &recurrence, "m00"_a, "m01"_a, "m10"_a, "m11"_a, "first"_a, "second"_a, "z"_a, "v"_a);
     m.def("resonances", &resonances, "noise"_a, "omega"_a, "place"_a, "shared"_a, "cosine"_a, "sine"_a, "lasting"_a, "total"_a,
           "variance"_a);
+    m.def("states", &states, "ground"_a, "step"_a, "rates"_a, "out"_a);
+    m.def("peaks", &peaks, "ground"_a, "step"_a, "rates"_a, "reach"_a, "parts"_a, "margin"_a, "points"_a, "out"_a);
+    m.def("directions", &directions, "along"_a, "across"_a, "step"_a, "rates"_a, "cosine"_a, "sine"_a, "parts"_a, "points"_a,
+          "out"_a);
 }

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking import checks
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError
+from rocking.motions.filters import compiled
 from rocking.motions.integrals import quadratic_roots
 from rocking.motions.motion import GroundMotion, checked_motion
 
@@ -22,14 +23,11 @@ FREE_POINTS = 288
 MARGIN = 1.001
 """Room for cubics, which leave the true response by less than 0.01 %, in the bound of what a step can hold [-]."""
 
-HIGH = 0.8  # samples whose state is so large, compared with the largest, give the first guess of the peaks [-]
-TOGETHER = 90_000  # steps times periods that are held at once: for more, the system is asked for room each time
-_BLOCK = 16  # samples of a row that follow one another in the recurrence of its states
 
 SHORTEST_PERIOD = 0.05  # shortest period in time steps: below, the record says nothing about what the oscillator feels
 ComplexArray = NDArray[np.complex128]
-Pairs = list[tuple[FloatArray, FloatArray]]
-"""Displacement, velocity and absolute acceleration, each with its rate of change."""
+Pair = tuple[FloatArray, FloatArray]
+"""A response and its rate of change."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +102,7 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
     """
     motion = checked_motion(motion)
     given, damping, rates = oscillators(motion, periods, damping)
-    found = _largest(motion, given, rates)
+    found = _peaks(motion, rates, np.ceil(POINTS_PER_PERIOD * motion.time_step / given).astype(np.int64))
     return ResponseSpectrum(given, damping, found[:, 0], found[:, 1], found[:, 2])
 
 
@@ -134,91 +132,43 @@ def phi(x: Any) -> tuple[Any, Any]:
     return np.where(near, 1.0 + small * series, first)[()], np.where(near, series, (first - 1.0) / large)[()]
 
 
-def _largest(motion: GroundMotion, periods: FloatArray, rates: ComplexArray) -> FloatArray:
-    """Return displacement, velocity and absolute acceleration, one row a period: as many periods at once as fit."""
-    parts = np.ceil(POINTS_PER_PERIOD * motion.time_step / periods).astype(np.int64)
-    result = np.empty((periods.size, 3))
-    size = max(1, TOGETHER // len(motion))
-    for number in sorted(set(parts.tolist())):  # NumPy's unique would load masked arrays
-        same = np.flatnonzero(parts == number)
-        for start in range(0, same.size, size):
-            chosen = same[start : start + size]
-            result[chosen] = _peaks(motion, rates[chosen], number).T
-    return result
-
-
-def _peaks(motion: GroundMotion, rates: ComplexArray, parts: int) -> FloatArray:
-    at_samples = states(motion, rates)
-    best = np.zeros((3, rates.size))
-    swing = np.exp(rates[:, None] * (math.pi / rates.imag[:, None] * np.linspace(0.0, 1.0, FREE_POINTS)))
-    for j, (value, _) in enumerate(_response(at_samples[:, -1:] * swing, np.zeros(swing.shape), rates[:, None])):
-        best[j] = np.abs(value).max(axis=1)
-    which, step = _close_steps(motion, rates, at_samples, best)
-    h, a = motion.time_step, motion.acceleration
-    rise, rate, start = a[step + 1] - a[step], rates[which], at_samples[which, step]
-    left = _response(start, a[step], rate)
-    for j in range(3):
-        np.maximum.at(best[j], which, np.abs(left[j][0]))
-    for k in range(1, parts + 1):
-        t = k * h / parts
-        first, second = phi(rates * t)
-        inside = np.exp(rates * t)[which] * start
-        inside -= t * first[which] * a[step] + (t * t / h * second)[which] * rise
-        right = _response(inside, a[step] + k / parts * rise, rate)
-        for j, pair in enumerate(zip(left, right, strict=True)):
-            _raise(best[j], which, *pair, h / parts)
-        left = right
-    return best
-
-
 def states(motion: GroundMotion, rates: ComplexArray) -> ComplexArray:
     """Return the states at the samples, one row an oscillator, at rest at the first."""
     h, a = motion.time_step, motion.acceleration
+    found = np.zeros((rates.size, a.size), dtype=np.complex128)
+    if (module := compiled()) is not None:
+        module.states(a, h, rates, found)
+        return found
+    from scipy.signal import lfilter
+
     first, second = phi(rates * h)
-    before, after = _blocks(a[None, :-1]), _blocks(a[None, 1:])
-    pushes = (-h * second)[:, None] * after + (-h * (first - second))[:, None] * before  # Eq. 151
-    found = np.zeros((rates.size, 1 + pushes.shape[0] * pushes.shape[2]), dtype=np.complex128)
-    found[:, 1:] = _recurrence(pushes, np.exp(rates * h)).transpose(1, 2, 0).reshape(rates.size, -1)
-    return found[:, : a.size]
+    for row, decay, one, two in zip(found, np.exp(rates * h), first, second, strict=True):
+        row[1:] = lfilter([1.0], [1.0, -decay], -h * (two * a[1:] + (one - two) * a[:-1]))  # Eq. 151
+    return found
 
 
-def _blocks(rows: NDArray[Any]) -> NDArray[Any]:
-    """Return rows cut into blocks: what stands at one place of all blocks together."""
-    padded = np.zeros((len(rows), -(-rows.shape[1] // _BLOCK) * _BLOCK), dtype=rows.dtype)
-    padded[:, : rows.shape[1]] = rows
-    return np.ascontiguousarray(padded.reshape(len(rows), -1, _BLOCK).transpose(2, 0, 1))
-
-
-def _recurrence(pushes: ComplexArray, decay: ComplexArray) -> ComplexArray:
-    """Return y[n] = decay y[n - 1] + push[n] of each row, in place of the pushes: blocks, then what they hand on."""
-    for k in range(1, _BLOCK):
-        pushes[k] += decay[:, None] * pushes[k - 1]
-    last = pushes[-1, :, :-1]
-    if last.shape[1]:
-        handed = _recurrence(_blocks(last), decay**_BLOCK).transpose(1, 2, 0).reshape(len(decay), -1)
-        carried = handed[:, : last.shape[1]]
-        for k in range(_BLOCK):
-            pushes[k, :, 1:] += (decay ** (k + 1))[:, None] * carried
-    return pushes
-
-
-def _close_steps(
-    motion: GroundMotion, rates: ComplexArray, states: ComplexArray, best: FloatArray
-) -> tuple[IntArray, IntArray]:
-    """Return oscillators and steps that may hold a largest response, and raise the best known to those of samples."""
-    size = np.sqrt(states.real**2 + states.imag**2)
-    which, sample = np.nonzero(size >= HIGH * size.max(axis=1)[:, None])
-    for j, (value, _) in enumerate(_response(states[which, sample], np.zeros(which.size), rates[which])):
-        np.maximum.at(best[j], which, np.abs(value))
-    needed = (best / _reach(rates)).min(axis=0) / (0.5 * MARGIN)
-    h, a = motion.time_step, np.abs(motion.acceleration)
-    decay = np.exp(-rates.real * h)[:, None]
-    # within a step a state changes by no more than the push of the ground, seen from either of its ends
-    bound = size[:, 1:] + h * np.maximum(a[:-1], a[1:])
-    bound *= decay
-    bound += size[:, :-1]
-    found, step = np.nonzero(bound > needed[:, None])
-    return np.asarray(found, dtype=np.int64), np.asarray(step, dtype=np.int64)
+def _peaks(motion: GroundMotion, rates: ComplexArray, parts: IntArray) -> FloatArray:
+    """Return the largest displacement, velocity and absolute acceleration, one row an oscillator."""
+    best = np.zeros((rates.size, 3))
+    if (module := compiled()) is not None:
+        reach = np.ascontiguousarray(_reach(rates).T)
+        module.peaks(motion.acceleration, motion.time_step, rates, reach, parts, MARGIN, FREE_POINTS, best)
+        return best
+    h, a = motion.time_step, motion.acceleration
+    rise = np.diff(a)
+    for row, rate, number in zip(best, rates, parts.tolist(), strict=True):
+        start = states(motion, np.array([rate]))[0]
+        swing = np.exp(rate * math.pi / rate.imag * np.linspace(0.0, 1.0, FREE_POINTS))
+        np.maximum(row, [np.abs(value).max() for value, _ in _response(start[-1] * swing, 0.0, rate)], out=row)
+        left = _response(start[:-1], a[:-1], rate)
+        for k in range(1, number + 1):
+            t = k * h / number
+            first, second = phi(rate * t)
+            inside = np.exp(rate * t) * start[:-1] - t * first * a[:-1] - t * t / h * second * rise  # Eq. 151
+            right = _response(inside, a[:-1] + k / number * rise, rate)
+            np.maximum(row, [_highest(*pair, h / number) for pair in zip(left, right, strict=True)], out=row)
+            left = right
+    return best
 
 
 def _reach(s: ComplexArray) -> FloatArray:
@@ -228,21 +178,18 @@ def _reach(s: ComplexArray) -> FloatArray:
     return np.stack([1.0 / s.imag, velocity, absolute])
 
 
-def _raise(best: FloatArray, which: IntArray, left: Any, right: Any, step: float) -> None:
-    """Raise the largest magnitudes to those of cubics through values and slopes at both ends."""
-    np.maximum.at(best, which, np.abs(right[0]))
-    # no cubic leaves the range of its ends by more than 4/27 of its slopes: most need no closer look
-    reach = np.maximum(np.abs(left[0]), np.abs(right[0])) + 4.0 / 27.0 * step * (np.abs(left[1]) + np.abs(right[1]))
-    close = np.flatnonzero(reach > best[which])
-    (y, d), (z, e) = ((side[0][close], step * side[1][close]) for side in (left, right))
-    rise = z - y
+def _highest(left: Pair, right: Pair, step: float) -> float:
+    """Return the largest magnitude of cubics through values and slopes at both ends."""
+    (y, d), (z, e) = ((side[0], step * side[1]) for side in (left, right))
+    rise, best = z - y, float(np.abs(z).max())
     for root in quadratic_roots(3.0 * (d + e - 2.0 * rise), 2.0 * (3.0 * rise - 2.0 * d - e), d):
         t = np.where((root > 0.0) & (root < 1.0), root, 0.0)
         inside = y + t * (d + t * (3.0 * rise - 2.0 * d - e + t * (d + e - 2.0 * rise)))
-        np.maximum.at(best, which[close], np.abs(inside))
+        best = max(best, float(np.abs(inside).max()))
+    return best
 
 
-def _response(states: ComplexArray, ground: FloatArray, rates: ComplexArray) -> Pairs:
+def _response(states: ComplexArray, ground: Any, rates: Any) -> list[Pair]:
     """Return displacement, velocity and absolute acceleration, each with its rate of change."""
     u = states.imag / rates.imag  # Eq. 150
     v = states.real + rates.real * u
