@@ -202,28 +202,22 @@ static void peaks_of(const double* a, std::size_t n, double step, const Complex*
 
 // How far a path has come in every direction so far, and an ellipse shaped like the path, as large as fits within.
 struct Outline {
-    const double *cosine, *sine, *over;  // `over`: one over the cosine between any two directions, as a matrix
+    const double *cosine, *sine;
     std::size_t count;
     std::vector<double> best;
-    double xx, xy, yy, inside = 0.0;  // of a place within the ellipse the quadratic form is no larger: it changes nothing
+    double xx, xy, yy, inside = 0.0;  // a place within has no larger quadratic form, and changes nothing
 
     ROCKING_WIDER static void raise_by(double x, double y, const double* cosine, const double* sine, std::size_t count,
                                        double* best) {
         for (std::size_t i = 0; i < count; ++i) best[i] = std::max(best[i], std::abs(x * cosine[i] + y * sine[i]));
     }
-    ROCKING_WIDER static double radius(const double* best, const double* over, std::size_t count) {
-        double found = best[0] * over[0];
-        for (std::size_t k = 1; k < count; ++k) found = std::min(found, best[k] * over[k]);
-        return found;
-    }
     double form(double x, double y) const { return xx * x * x + 2.0 * xy * x * y + yy * y * y; }
-    // A state's form is that of its parts; within half the angle between directions an outline comes 0.02 % closer at most.
     double form(Complex z, Complex w) const { return form(z.real(), w.real()) + form(z.imag(), w.imag()); }
     void settle() {
         inside = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < count; ++i) {
-            const double far = radius(best.data(), over + i * count, count);
-            inside = std::min(inside, 0.9996 * far * far * form(cosine[i], sine[i]));
+            const double c = cosine[i], s = sine[i], reach = yy * c * c - 2.0 * xy * c * s + xx * s * s;
+            if (reach > 0.0) inside = std::min(inside, best[i] * best[i] * (xx * yy - xy * xy) / reach);
         }
     }
     bool beyond(double x, double y) const { return form(x, y) > inside; }
@@ -237,10 +231,6 @@ static void directions_of(const double* a, const double* b, std::size_t n, doubl
                           const double* cosine, const double* sine, std::size_t directions, const std::int64_t* parts,
                           std::int64_t points, double* found) {
     std::vector<double> re(n * kTogether), im(n * kTogether), re2(n * kTogether), im2(n * kTogether);
-    std::vector<double> over(directions * directions);
-    for (std::size_t i = 0; i < directions; ++i)
-        for (std::size_t k = 0; k < directions; ++k)
-            over[i * directions + k] = 1.0 / std::max(1e-9, std::abs(cosine[i] * cosine[k] + sine[i] * sine[k]));
     for (std::size_t first = 0; first < count; first += kTogether) {
         const std::size_t some = std::min<std::size_t>(kTogether, count - first);
         Lanes along = lanes(rates + first, some, step), across = along;
@@ -257,7 +247,7 @@ static void directions_of(const double* a, const double* b, std::size_t n, doubl
                 xx += x * x, xy += x * y, yy += y * y;
             }
             const double room = 1e-6 * (xx + yy);  // of a path that is nearly a line
-            Outline outline{cosine, sine, over.data(), directions, std::vector<double>(directions, 0.0), yy + room, -xy, xx + room};
+            Outline outline{cosine, sine, directions, std::vector<double>(directions, 0.0), yy + room, -xy, xx + room};
             // the ends of the path along some directions first: most other places lie within
             for (std::size_t d = 0; d < directions; d += 12) {
                 double most = -1.0;

@@ -130,6 +130,10 @@ def flatfile(
         values = [str(one.metadata.get(key, "")) for one, _ in kept]
         columns[key.replace(" ", "_")] = Column(text_array(values), "", "as the file says it")
     columns["files"] = Column(text_array([_files(one) for one, _ in kept]), "", "record files")
+    doubts = (
+        dict.fromkeys(part.metadata.get("doubts", "") for part in one.parts if part is not None) for one, _ in kept
+    )
+    columns["doubts"] = Column(text_array(["; ".join(filter(None, each)) for each in doubts]), "", "what is doubted")
     parts = [next(part for part in one.parts if part is not None) for one, _ in kept]
     columns["time_step"] = Column(np.array([part.time_step for part in parts]), "s", "step between samples")
     columns["samples"] = Column(np.array([len(part) for part in parts], dtype=np.int64), "1", "number of samples")

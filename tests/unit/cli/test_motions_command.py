@@ -63,6 +63,20 @@ def test_a_doubt_names_its_file_once(run, folder):
     assert all(line.count("odd.csv") == 1 for line in lines)
 
 
+@pytest.mark.filterwarnings("always:check the input")
+def test_many_doubts_are_counted(run, tmp_path):
+    """Of many doubts five are said and the rest counted; the table has every one beside its record."""
+    rows = [f"{0.25 * k}, {30.0 * np.sin(k):.6f}" for k in range(60)]
+    for k in range(7):
+        (tmp_path / f"odd{k}.csv").write_text("\n".join(["time [s], x [m/s2]", *rows]), "utf-8")
+    _, _, err = run("motions", tmp_path, "--threads", 1, "--periods", "1,2", "--out", tmp_path / "flat.csv")
+    said = [line for line in err.splitlines() if "odd" in line or "doubts more" in line]
+    assert len(said) == 6
+    assert "doubts more" in said[-1]
+    found = list(csv.DictReader((tmp_path / "flat.csv").read_text("utf-8").splitlines()))
+    assert all(row["doubts"] for row in found)
+
+
 def test_a_target_chooses_and_scales(run, folder):
     """Two of three records come with their factors and misfits, and the sentence of the set."""
     words = ["--set", "motion.target=eurocode8:ag=0.3g,ground=B", "--set", "motion.count=2", "--periods", "1"]

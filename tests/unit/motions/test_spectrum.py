@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 from rocking.errors import InvalidValueError
 from rocking.motions import GroundMotion, response_spectrum
+from rocking.motions.filters import compiled
 from rocking.motions.integrals import quadratic_roots
 from rocking.motions.spectrum import _reach, _response, phi
 
@@ -181,8 +182,13 @@ LONG = GroundMotion(
 )
 @pytest.mark.parametrize("motion", [JAGGED, LONG, GroundMotion([0.0, 3.0], 0.02), GroundMotion(np.ones(50), 0.1)])
 @pytest.mark.parametrize("damping", [0.0, 0.05, 0.6])
-def test_all_periods_at_once_are_each_period_by_itself(motion, damping):
+@pytest.mark.parametrize("module", ["compiled", "plain"])
+def test_all_periods_at_once_are_each_period_by_itself(motion, damping, module, monkeypatch):
     """The steps that are passed over hold no peak: a loop over periods and all steps agrees to 1e-12."""
+    if module == "plain":
+        monkeypatch.setattr("rocking.motions.spectrum.compiled", lambda: None)
+    elif compiled() is None:
+        pytest.skip("without the compiled module")
     periods = motion.time_step * np.geomspace(0.07, 600.0, 9)
     found = response_spectrum(motion, periods, damping)
     wanted = np.array([_per_period(motion, period, damping) for period in periods]).T
@@ -193,6 +199,8 @@ def test_all_periods_at_once_are_each_period_by_itself(motion, damping):
 @pytest.mark.verifies("negative control", "a bound of 0.8 of what a step can hold")
 def test_passing_over_too_much_is_noticed(monkeypatch):
     """Negative control: with the bound of what a step can hold cut to 80 %, peaks are missed by far over 1e-12."""
+    if compiled() is None:
+        pytest.skip("without the compiled module no step is passed over")
     monkeypatch.setattr("rocking.motions.spectrum.MARGIN", 0.8)
     periods = LONG.time_step * np.geomspace(2.0, 600.0, 40)
     found = response_spectrum(LONG, periods, 0.05).displacement

@@ -18,6 +18,7 @@ from rocking.motions.motion import GroundMotion
 
 PERPENDICULAR = 5.0  # azimuths of two components differ by a right angle, to this [degree]
 FEW = 48  # so few files are read by one process: others take longer to start
+MOST_TOLD = 6  # so many doubts about files are said one by one
 
 _UP = re.compile(r"UP|DO?W?N|V|VER|VERT|VRT|VERTICAL|U|Z|U-?D|[A-Z]{2}Z")
 _DOWN = re.compile(r"DO?W?N")
@@ -227,22 +228,31 @@ def _read(path: Path, **options: Any) -> Read:
     return found, [str(each.message) for each in doubts]
 
 
-def _motions(path: Path, read: Read, left_out: list[tuple[str, str]]) -> list[GroundMotion]:
+def _motions(path: Path, read: Read, left_out: list[tuple[str, str]], doubted: list[str]) -> list[GroundMotion]:
     found, doubts = read
-    said = (doubt.removeprefix("check the input: ").removeprefix(f"{path.name}: ") for doubt in doubts)
-    plausibility.warn(f"{path.name}: {doubt}" for doubt in said)
+    said = [doubt.removeprefix("check the input: ").removeprefix(f"{path.name}: ") for doubt in doubts]
+    doubted += (f"{path.name}: {doubt}" for doubt in said)
     if isinstance(found, str):
         left_out.append((str(path), found))
         return []
-    return [replace(each, metadata={**each.metadata, "file": path.name}) for each in found]
+    told = {"file": path.name} | ({"doubts": "; ".join(said)} if said else {})
+    return [replace(each, metadata={**each.metadata, **told}) for each in found]
+
+
+def _warn(doubted: list[str]) -> None:
+    """Say the first doubts, and of many how many more there are."""
+    plausibility.warn(doubted if len(doubted) <= MOST_TOLD else doubted[: MOST_TOLD - 1])
+    if (more := len(doubted) - MOST_TOLD + 1) > 1:
+        plausibility.warn([f"{more} doubts more about these files: `doubts` in the table of measures has them all"])
 
 
 def paired(files: Iterable[tuple[Path, Read]]) -> RecordSet:
     """Return the records of files, of which those that belong together by their names are one."""
     groups: dict[Any, list[GroundMotion]] = {}
     left_out: list[tuple[str, str]] = []
+    doubted: list[str] = []
     for path, read in files:
-        motions = _motions(path, read, left_out)
+        motions = _motions(path, read, left_out, doubted)
         key, token = ((path.name,), "") if len(motions) > 1 else _key(path, motions)
         if token and _oriented(motions[0]) is None:  # the header does not say what the name does
             motions = [replace(motions[0], metadata={**motions[0].metadata, "component": token})]
@@ -254,6 +264,7 @@ def paired(files: Iterable[tuple[Path, Read]]) -> RecordSet:
             records += [_joined([each]) for each in motions]
         elif motions:
             records.append(_joined(motions))
+    _warn(doubted)
     return RecordSet(tuple(records), tuple(left_out))
 
 
@@ -412,8 +423,9 @@ def _is_number(text: str) -> bool:
 def _listed(rows: Sequence[ListedRecord], files: Mapping[str, Read]) -> RecordSet:
     records: list[Components] = []
     left_out: list[tuple[str, str]] = []
+    doubted: list[str] = []
     for row in rows:
-        parts = {axis: _motions(Path(name), files[name], left_out) for axis, name in row.files.items()}
+        parts = {axis: _motions(Path(name), files[name], left_out, doubted) for axis, name in row.files.items()}
         motions = [each for found in parts.values() for each in found]
         if not all(parts.values()):
             continue
@@ -430,6 +442,7 @@ def _listed(rows: Sequence[ListedRecord], files: Mapping[str, Read]) -> RecordSe
             count = min(map(len, motions))
             record = Components(*(_cut(parts[axis][0], count) if axis in parts else None for axis in "xyz"))
         records.append(record.each(partial(_told, row=row)))
+    _warn(doubted)
     return RecordSet(tuple(records), tuple(left_out))
 
 
