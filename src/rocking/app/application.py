@@ -107,13 +107,14 @@ def create_app(settings: ServerSettings) -> FastAPI:
         ],
     )
     limits = settings.limits
-    store, files = (RecordStore(settings.folder, limits, name) for name in ("records", "files"))
+    store = RecordStore(settings.folder, limits)
+    files = RecordStore(settings.folder, limits, "files", forgets=True)  # a question keeps those that it needs
     app.state.rocking = AppState(
         settings=settings,
         records=store,
         files=files,
-        projects=ProjectStore(settings.folder),
-        questions=QuestionDesk(settings.folder, (files, store)),
+        projects=ProjectStore(settings.folder, limits),
+        questions=QuestionDesk(settings.folder, (files, store), limits),
         studies=StudyManager(settings.folder, limits, store, workers=settings.workers),
         sessions=Sessions(limits, kept=settings.folder / "sessions.json"),
         heavy=ComputationQueue(limits.heavy_at_once, limits.heavy_waiting),

@@ -1,7 +1,10 @@
 """What goes wrong, as the client is told it: one status, one kind, one sentence, never a traceback."""
 
+import os
+import shutil
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from pathlib import Path
 
 from rocking.errors import BodyFileError, GeometryError, MissingExtraError, RecordError, RockingError, UnknownModelError
 
@@ -92,3 +95,18 @@ def room_on_disk() -> Iterator[None]:
         raise NoRoom(
             f"the disk of the server does not take the file: {why}; make room there, then send it again"
         ) from error
+
+
+def check_room(folder: Path, wanted: int, limit: int, what: str) -> None:
+    """Refuse what needs more room than there is, or than all of its kind may take together [byte]."""
+    used = 0
+    for where, _, names in os.walk(folder):
+        for name in names:
+            with suppress(OSError):  # others are deleted meanwhile, and are not missed
+                used += Path(where, name).lstat().st_size
+    room = min(shutil.disk_usage(folder).free, limit - used)
+    if wanted > room:
+        raise TooLarge(
+            f"the results need about {wanted / 1e6:.1f} MB, and there is room for {max(room, 0) / 1e6:.1f} MB; "
+            f"delete {what} that are no longer needed"
+        )

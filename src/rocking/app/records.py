@@ -53,13 +53,16 @@ def read_note(note: Path) -> StoredRecord | None:
 
 
 class RecordStore:
-    """Files in a folder by hash, each with a note of its name beside it; safe to use from several threads."""
+    """Files in a folder by hash, each with a note of its name beside it; safe to use from several threads.
 
-    def __init__(self, folder: Path, limits: Limits, name: str = "records") -> None:
+    One that forgets lets the oldest files go where a new one needs their room.
+    """
+
+    def __init__(self, folder: Path, limits: Limits, name: str = "records", *, forgets: bool = False) -> None:
         self.folder = Path(folder) / name
         self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         self._sweep()
-        self._limits = limits
+        self._limits, self._forgets = limits, forgets
         self._lock = threading.RLock()
         self._motions: Remembered[GroundMotion] = Remembered(_HELD, _size)
 
@@ -175,11 +178,17 @@ class RecordStore:
 
     def _check_room(self, record: StoredRecord) -> None:
         others = [other for other in self.stored() if other.record != record.record]
+        while self._forgets and others and self._fits([], record) and not self._fits(others, record):
+            self.delete(others.pop().record)
         if len(others) >= MOST_RECORDS:
             raise TooLarge(f"up to {MOST_RECORDS} records are kept; delete some that are no longer needed")
-        if sum(other.bytes for other in others) + record.bytes > self._limits.records_bytes:
+        if not self._fits(others, record):
             room = self._limits.records_bytes >> 20
             raise TooLarge(f"records may take up to {room} MiB together; delete some that are no longer needed")
+
+    def _fits(self, others: list[StoredRecord], record: StoredRecord) -> bool:
+        room = self._limits.records_bytes - sum(other.bytes for other in others)
+        return len(others) < MOST_RECORDS and record.bytes <= room
 
     def _forget(self, sha: str) -> None:
         self._motions.forget(lambda key: key[0] == sha)

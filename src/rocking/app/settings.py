@@ -26,6 +26,7 @@ class Limits:
     """How much one server takes on, and how much it accepts at once."""
 
     upload_bytes: int = 32 * MEBIBYTE  # largest file that is taken [bytes]
+    project_bytes: int = 128 * MEBIBYTE  # largest file of a project [bytes]
     json_bytes: int = 2 * MEBIBYTE  # largest JSON document [bytes]
     json_depth: int = 32  # deepest nesting of a JSON document
     bytes_in_flight: int = 256 * MEBIBYTE  # all request bodies that are held at once [bytes]
@@ -33,6 +34,8 @@ class Limits:
     target_bytes: int = 4096  # longest path and query of a request [bytes]
     records_bytes: int = 1024 * MEBIBYTE  # disk for uploaded records [bytes]
     studies_bytes: int = 8192 * MEBIBYTE  # disk for studies [bytes]
+    questions_bytes: int = 8192 * MEBIBYTE  # disk for questions [bytes]
+    projects_bytes: int = 4096 * MEBIBYTE  # disk for all states of all projects [bytes]
     histories: int = 2_000_000  # largest study [histories]
     studies_waiting: int = 8  # studies that may wait in the queue
     heavy_at_once: int = 2  # threads for long computations

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given, settings, strategies
 
 from rocking.app.application import create_app
-from rocking.app.errors import Conflict, NotFound, Refused, TooLarge
+from rocking.app.errors import Conflict, NoRoom, NotFound, Refused, TooLarge
 from rocking.app.projects import store as module
 from rocking.app.projects.one_file import project_file, project_from_file
 from rocking.app.projects.store import ProjectStore
@@ -26,7 +26,7 @@ OCTETS = {"Content-Type": "application/octet-stream"}
 
 @pytest.fixture
 def store(tmp_path):
-    kept = ProjectStore(tmp_path)
+    kept = ProjectStore(tmp_path, Limits())
     yield kept
     kept.close()
 
@@ -76,7 +76,7 @@ class _Plain:
 @settings(max_examples=30, deadline=None)
 def test_any_walk_is_that_of_a_list(tmp_path_factory, steps):
     """Whatever is done in whatever order, the project is where a plain list of states is."""
-    store, plain = ProjectStore(tmp_path_factory.mktemp("data")), _Plain()
+    store, plain = ProjectStore(tmp_path_factory.mktemp("data"), Limits()), _Plain()
     project = store.create("p", {"n": 0})
     for n, step in enumerate(steps, start=1):
         if step == "save":
@@ -118,7 +118,7 @@ def test_what_is_deleted_comes_back_for_a_while(store, tmp_path, monkeypatch):
     store.delete(project.id)
     store.close()
     monkeypatch.setattr(module, "KEPT_DAYS", -1)
-    later = ProjectStore(tmp_path)
+    later = ProjectStore(tmp_path, Limits())
     with pytest.raises(NotFound):
         later.get(project.id)
     assert later._database.execute("SELECT count(*) FROM states").fetchone() == (0,)
@@ -149,11 +149,30 @@ def test_limits(store, monkeypatch):
         store.create("q", {})
 
 
+def test_projects_have_a_limit_of_disk(tmp_path):
+    """A database that is full refuses the next state, and keeps those that were saved."""
+    store = ProjectStore(tmp_path, Limits(projects_bytes=1 << 16))
+    project, noise = store.create("p", {}), np.random.default_rng(1)
+
+    def saved(project):
+        return store.save(project.id, project.version, {"noise": noise.bytes(5000).hex()}, "")
+
+    for _ in range(4):
+        project = saved(project)
+    with pytest.raises(NoRoom, match="too many projects"):  # noqa: PT012 - one of them
+        for _ in range(9):
+            project = saved(project)
+    assert len(store.history(project.id)) >= 5
+    assert store.document(project.id)["noise"]
+    store.close()
+
+
 WRITER = """
 import sys
 from pathlib import Path
 from rocking.app.projects.store import ProjectStore
-store = ProjectStore(Path(sys.argv[1]))
+from rocking.app.settings import Limits
+store = ProjectStore(Path(sys.argv[1]), Limits())
 project = store.create("p", {"n": 0}) if not store.all() else store.all()[0]
 while True:
     n = store.document(project.id)["n"] + 1
@@ -171,7 +190,7 @@ def test_killed_at_any_instant_it_loses_nothing_that_was_saved(tmp_path):
             time.sleep(0.03 + 0.017 * turn)
             os.kill(one.pid, signal.SIGKILL)
             said = [first, *map(int, one.stdout.read().split())]
-        store = ProjectStore(tmp_path)
+        store = ProjectStore(tmp_path, Limits())
         (project,) = store.all()
         n = store.document(project.id)["n"]
         assert said[-1] <= n <= said[-1] + 1
@@ -210,7 +229,7 @@ def test_over_the_api(client, stranger):
     assert client.post(where, json={"version": 1, "document": {}, "more": 1}).status_code == 422
 
 
-def test_one_file_holds_all_of_it(client, settings, tmp_path):
+def test_one_file_holds_all_of_it(client, settings, tmp_path, monkeypatch):
     """Out as one file, and in on another computer: document, record and study are there, and the same file again."""
     wave = 0.3 * np.sin(2.0 * np.pi * np.arange(400) * 0.01)
     content = "\n".join(f"{k * 0.01:.2f} {value:.6f}" for k, value in enumerate(wave)).encode()
@@ -242,6 +261,17 @@ def test_one_file_holds_all_of_it(client, settings, tmp_path):
     assert state.records.content(sha) == content
     assert state.studies.of_project(other.id) == [("scaled", job)]
     assert project_file(state, other) == data
+    twelve = ZipFile(BytesIO(data))
+    whole = json.loads(twelve.read("project.json"))
+    whole["studies"] *= 12
+    with ZipFile(many := BytesIO(), "w") as archive:
+        archive.writestr("project.json", json.dumps(whole))
+        archive.writestr(twelve.namelist()[1], content)
+    brought = project_from_file(state, many.getvalue())
+    assert len(state.studies.of_project(brought.id)) == 12 > state.settings.limits.studies_waiting
+    monkeypatch.setattr("rocking.app.projects.one_file.MOST_FILES", 1)
+    with pytest.raises(TooLarge, match="1 records"):
+        project_file(state, other)
     state.studies.close()
     state.projects.close()
 

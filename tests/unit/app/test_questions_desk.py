@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from rocking.app.errors import NotFound, Refused
+from rocking.app.errors import NotFound, Refused, TooLarge
 from rocking.app.questions.desk import QuestionDesk, refuse_outside
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
@@ -28,7 +28,7 @@ INVENTORY = {
 @pytest.fixture
 def desk(tmp_path):
     store = RecordStore(tmp_path, Limits(), "files")
-    kept = QuestionDesk(tmp_path, (store,))
+    kept = QuestionDesk(tmp_path, (store,), Limits())
     kept.store = store
     yield kept
     kept.close()
@@ -171,14 +171,14 @@ def test_what_cannot_be_run_stops_no_other(desk):
 def test_stopped_deleted_and_gone_on_with(tmp_path):
     """One that waits or runs can be stopped; what a restart interrupts is answered after it; files go with it."""
     store = RecordStore(tmp_path, Limits(), "files")
-    desk = QuestionDesk(tmp_path, (store,))
+    desk = QuestionDesk(tmp_path, (store,), Limits())
     long = {**TABLES, "predict": {"count": 20_000}, "motion": {"pulse": "sine:amplitude=4,period=0.8"}}
     first, second, third = (desk.ask("predict", each, {}) for each in (long, TABLES, TABLES))
     while desk.get(first.id).state == "waiting":
         time.sleep(0.01)
     assert desk.stop(second.id).state == "stopped"
     desk.close()
-    again = QuestionDesk(tmp_path, (store,))
+    again = QuestionDesk(tmp_path, (store,), Limits())
     assert [again.get(each.id).state for each in (second, third)] == ["stopped", "waiting"]
     assert again.stop(first.id).state == "stopped"
     assert ended(again, third.id).state == "done"
@@ -188,6 +188,44 @@ def test_stopped_deleted_and_gone_on_with(tmp_path):
         again.get(third.id)
     assert [each.id for each in again.all()] == [second.id, first.id]
     again.close()
+
+
+def test_what_brings_the_server_down_is_not_asked_for_ever(tmp_path):
+    """A note that says it was running when the server ended: begun anew twice, then refused; closing counts nothing."""
+    store = RecordStore(tmp_path, Limits(), "files")
+    long = {**TABLES, "predict": {"count": 20_000}, "motion": {"pulse": "sine:amplitude=4,period=0.8"}}
+    for turn in range(4):
+        desk = QuestionDesk(tmp_path, (store,), Limits())
+        one = desk.get(desk.all()[0].id) if turn else desk.ask("predict", long, {})
+        while desk.get(one.id).state == "waiting":
+            time.sleep(0.01)
+        while desk.get(one.id).state == "running" and desk._process is None:
+            time.sleep(0.01)
+        note = (desk.folder / one.id / "state.json").read_bytes()
+        desk.close()
+        if turn < 3:
+            assert json.loads(note)["starts"] == turn + 1
+            assert json.loads((desk.folder / one.id / "state.json").read_bytes())["starts"] == turn
+            (desk.folder / one.id / "state.json").write_bytes(note)  # as a server that was killed leaves it
+    assert (desk.get(one.id).state, "ended 3 times" in desk.get(one.id).message) == ("refused", True)
+
+
+def test_the_disk_is_shared(tmp_path):
+    """Questions have a limit of disk; of files that were sent the oldest go where a new one needs their room."""
+    files = RecordStore(tmp_path, Limits(records_bytes=3000), "files", forgets=True)
+    kept = []
+    for k in range(4):
+        kept.append(files.add(bytes([65 + k]) * 1000, f"{k}.txt").record)
+        note = files.folder / f"{kept[-1]}.json"
+        note.write_text(json.dumps({**json.loads(note.read_text()), "uploaded": f"200{k}"}))
+    assert [each.record for each in files.stored()] == kept[:0:-1]
+    with pytest.raises(TooLarge, match="may take up to"):
+        files.add(b"x" * 3001, "large.txt")
+    assert len(files.stored()) == 3
+    desk = QuestionDesk(tmp_path, (files,), Limits(questions_bytes=1000))
+    with pytest.raises(TooLarge, match="delete questions"):
+        desk.ask("predict", TABLES, {})
+    desk.close()
 
 
 def test_over_the_api(client, stranger):

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from rocking.app.api.records import record_facts
 from rocking.app.downloads.archive import Archive, add_file
-from rocking.app.errors import NotFound, Refused
+from rocking.app.errors import NotFound, Refused, TooLarge
 from rocking.app.inputs import levels
 from rocking.app.plain_text import record_file_name
 from rocking.app.projects.store import LARGEST, Project
@@ -23,7 +23,7 @@ from rocking.version import __version__
 if TYPE_CHECKING:
     from rocking.app.settings import AppState
 
-MOST_FILES = 200  # records of a project, and what says what it is
+MOST_FILES, MOST_STUDIES = 1_000, 100  # files of a project, and studies that one brings
 _WHAT = "project.json"
 _FORMAT = "rocking project 1"
 _DEEPEST = 32
@@ -66,7 +66,13 @@ def project_file(state: "AppState", project: Project) -> bytes:
         add_file(archive, _WHAT, json.dumps(whole, indent=1, ensure_ascii=False).encode())
         for sha, content in contents.items():
             add_file(archive, f"{sha[:12]}-{record_file_name(names[sha])}", content)
-    return stream.getvalue()
+    data, most = stream.getvalue(), state.settings.limits.project_bytes
+    if len(data) > most or len(contents) >= MOST_FILES:
+        raise TooLarge(
+            f"the project has {len(contents)} records and {len(data) / 2**20:.0f} MiB; a file that can come back in "
+            f"holds {MOST_FILES - 1} and {most >> 20}: delete studies that need many records, or copy the data folder"
+        )
+    return data
 
 
 def project_from_file(state: "AppState", data: bytes) -> Project:
@@ -84,6 +90,8 @@ def project_from_file(state: "AppState", data: bytes) -> Project:
         raise Refused(f"{_WHAT}: {sentence(error, None)}") from error
     except Refused as error:
         raise Refused(f"{_WHAT}: {error}") from error
+    if len(whole.studies) > MOST_STUDIES:
+        raise TooLarge(f"a file may bring {MOST_STUDIES} studies, this has {len(whole.studies)}")
     for study in whole.studies:
         JobDocument.of(study.job)  # before anything is kept
     for sha, name in whole.records.items():
@@ -95,7 +103,7 @@ def project_from_file(state: "AppState", data: bytes) -> Project:
     project = state.projects.create(whole.name, whole.document, "from a file")
     try:
         for study in whole.studies:
-            state.studies.create(study.name, study.job, project.id)
+            state.studies.create(study.name, study.job, project.id, brought=True)
     except RockingError:
         state.projects.delete(project.id)
         raise

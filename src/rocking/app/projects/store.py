@@ -15,6 +15,7 @@ from typing import Any
 
 from rocking.app.errors import Conflict, NoRoom, NotFound, Refused, TooLarge
 from rocking.app.plain_text import shown
+from rocking.app.settings import Limits
 from rocking.campaigns.disk import sync_folder
 
 MOST_PROJECTS = 1_000
@@ -71,7 +72,7 @@ def _alone(method: Callable[..., Project]) -> Callable[..., Project]:
 class ProjectStore:
     """All projects of a data folder; safe to use from several threads."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, limits: Limits) -> None:
         path = Path(folder) / "projects.sqlite"
         fresh = not path.exists()
         if fresh:
@@ -80,6 +81,8 @@ class ProjectStore:
         self._database = sqlite3.connect(path, timeout=30.0, isolation_level=None, check_same_thread=False)
         for setting in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON", "secure_delete = ON"):
             self._database.execute(f"PRAGMA {setting}")
+        (page,) = self._database.execute("PRAGMA page_size").fetchone()
+        self._database.execute(f"PRAGMA max_page_count = {limits.projects_bytes // page}")
         (version,) = self._database.execute("PRAGMA user_version").fetchone()
         if version == 0:
             self._database.executescript(f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {_FORMAT}; COMMIT;")
@@ -252,7 +255,8 @@ class ProjectStore:
                     raise
             except sqlite3.OperationalError as error:
                 raise NoRoom(
-                    f"the project cannot be saved: {error}; is the disk of the server full, or its folder read-only?"
+                    f"the project cannot be saved: {error}; is the disk of the server full, or its folder read-only, "
+                    "or are there too many projects?"
                 ) from error
 
 

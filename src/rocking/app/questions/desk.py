@@ -18,10 +18,11 @@ from typing import Any, Literal
 
 from pydantic import TypeAdapter
 
-from rocking.app.errors import Busy, NotFound, Refused, TooLarge, room_on_disk
+from rocking.app.errors import Busy, NotFound, Refused, TooLarge, check_room, room_on_disk
 from rocking.app.inputs import levels
 from rocking.app.plain_text import safe_name, shown, toml_of
 from rocking.app.records import RecordStore
+from rocking.app.settings import Limits
 from rocking.campaigns.disk import write_new
 from rocking.restitution.from_file import file_of
 
@@ -35,6 +36,8 @@ OUTPUTS: dict[str, tuple[str, ...]] = {
 
 MOST_QUESTIONS, MOST_WAITING, MOST_FILES = 500, 16, 200
 _SECONDS = 1800.0  # longest time of a question [s]
+_ROOM = 32 << 20  # that a question may need on the disk [bytes]
+_MOST_STARTS = 3  # so often it is begun anew where the server ended beneath it
 QUESTION, _NOTE, _ANSWER, _LOG = "question.toml", "state.json", "answer.json", "log.txt"
 _OWN = {"matplotlibrc", _NOTE, _ANSWER, _LOG, QUESTION, *(name for names in OUTPUTS.values() for name in names)}
 State = Literal["waiting", "running", "done", "refused", "stopped"]
@@ -53,6 +56,7 @@ class HostedQuestion:
     message: str = ""  # why there is no answer; empty while nothing is wrong
     seconds: float = 0.0  # that it took [s]
     files: list[str] = field(default_factory=list)  # that can be taken away
+    starts: int = 0  # how often it was begun
 
 
 _QUESTION = TypeAdapter(HostedQuestion)
@@ -62,10 +66,10 @@ _LOG_OF_SERVER = logging.getLogger(__name__)
 class QuestionDesk:
     """Questions in a folder each, answered one after the other; safe to use from several threads."""
 
-    def __init__(self, folder: Path, stores: tuple[RecordStore, ...]) -> None:
+    def __init__(self, folder: Path, stores: tuple[RecordStore, ...], limits: Limits) -> None:
         self.folder = Path(folder) / "questions"
         self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        self._stores = stores
+        self._stores, self._limits = stores, limits
         self._changed = threading.Condition(threading.RLock())
         self._questions = {each.id: each for each in self._kept()}
         self._line = [each.id for each in sorted(self._questions.values(), key=_age) if each.state == "waiting"]
@@ -87,6 +91,7 @@ class QuestionDesk:
                 raise Busy(f"{len(self._line)} questions wait already; try again in a moment", seconds=5)
             if len(self._questions) >= MOST_QUESTIONS:
                 raise TooLarge(f"up to {MOST_QUESTIONS} questions are kept; delete some that are no longer needed")
+        check_room(self.folder, _ROOM, self._limits.questions_bytes, "questions")
         asked = datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
         question = HostedQuestion(secrets.token_hex(8), command, shown(name or command), project, asked)
         place = self.folder / question.id
@@ -175,6 +180,9 @@ class QuestionDesk:
             except (OSError, ValueError):  # of a later version perhaps: it is left as it is
                 continue
             if question.id == place.name:
+                if question.state == "running" and question.starts >= _MOST_STARTS:
+                    why = f"the server ended {question.starts} times beneath it: does it need too much memory?"
+                    question = replace(question, state="refused", message=why)
                 found.append(replace(question, state="waiting") if question.state == "running" else question)
         return found
 
@@ -211,7 +219,7 @@ class QuestionDesk:
                 known = self._questions.get(self._line.pop(0))
                 if known is None:
                     continue
-                question = replace(known, state="running")
+                question = replace(known, state="running", starts=known.starts + 1)
                 self._become(question)
             try:
                 self._run(question)
@@ -248,7 +256,10 @@ class QuestionDesk:
         shutil.rmtree(own, ignore_errors=True)
         with self._changed:
             self._process = None
-            if self._closed or self._state(question.id) in {"stopped", None}:
+            if self._state(question.id) in {"stopped", None}:
+                return
+            if self._closed:  # in good order: this beginning does not count
+                self._become(replace(question, state="waiting", starts=question.starts - 1))
                 return
             seconds = (datetime.now(UTC) - begun).total_seconds()
             there = [name for name in names if (place / name).is_file()]

@@ -70,7 +70,7 @@ def _desk(request: Request) -> QuestionDesk:
 
 
 def _facts(question: HostedQuestion) -> dict[str, Any]:
-    return asdict(question)
+    return {key: value for key, value in asdict(question).items() if key != "starts"}
 
 
 @router.post("/files", openapi_extra=FILE_SENT, summary="Send a file", responses=answered(RecordKept, "The file."))

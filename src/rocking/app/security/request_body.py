@@ -14,6 +14,7 @@ from rocking.app.errors import Busy, Refused, TooLarge
 from rocking.app.security.gate import BYTES, SAFE, RequestHead, content_type
 from rocking.app.settings import MEBIBYTE, Limits
 
+PROJECT_FILE = "/api/projects/import"  # where a file may hold all records of a project
 _DRAINED = 64 * MEBIBYTE
 _LONG_JSON = 1 << 16
 _BRACKETS = re.compile(rb'"(?:[^"\\]|\\.)*"|[\[\]{}]', re.DOTALL)
@@ -51,7 +52,8 @@ class BodyLimits:
 
     async def _read(self, head: RequestHead, receive: Receive, body: bytearray) -> None:
         is_file, depth = content_type(head) == BYTES, self._limits.json_depth
-        most = self._limits.upload_bytes if is_file else self._limits.json_bytes
+        limits, is_project = self._limits, head.target == PROJECT_FILE
+        most = limits.json_bytes if not is_file else limits.project_bytes if is_project else limits.upload_bytes
         try:
             async with asyncio.timeout(self._limits.body_seconds):
                 await self._fill(head, receive, body, most)

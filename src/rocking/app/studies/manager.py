@@ -1,14 +1,13 @@
 """The studies of a server: in a queue, each in a process of its own; what is there, and how much room there is."""
 
 import errno
-import os
 import shutil
 from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from rocking.app.errors import NoRoom, NotFound, Refused, TooLarge
+from rocking.app.errors import NoRoom, NotFound, Refused, TooLarge, check_room
 from rocking.app.plain_text import shown
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
@@ -55,8 +54,8 @@ class StudyManager:
         if any(study.meta.state == WAITING for study in there.values()):
             self.queue.changed()  # what an earlier server left goes on by itself
 
-    def create(self, name: str | None, job: object, project: str = "") -> str:
-        """Put a new study in the queue."""
+    def create(self, name: str | None, job: object, project: str = "", *, brought: bool = False) -> str:
+        """Put a new study in the queue, however long it is if a file of a project brought it."""
         document = JobDocument.of(job)
         count = document.most
         if count > self._limits.histories:
@@ -65,7 +64,7 @@ class StudyManager:
                 "or `rocking campaign` on the command line, which has no limit"
             )
         words = name or document.document.campaign.name
-        return self.queue.enter(lambda: self._new_study(words, document, project)).folder.id
+        return self.queue.enter(lambda: self._new_study(words, document, project), brought=brought).folder.id
 
     def of_project(self, project: str) -> list[tuple[str, dict[str, Any]]]:
         """Return names and jobs of the studies of a project, the oldest first."""
@@ -140,7 +139,7 @@ class StudyManager:
         self.queue.close()
 
     def _new_study(self, name: str, document: JobDocument, project: str) -> HostedStudy:
-        check_room(self._folder, _BYTES * document.most, self._limits.studies_bytes)
+        check_room(self._folder, _BYTES * document.most, self._limits.studies_bytes, "studies")
         folder = StudyFolder(self._folder / new_id())
         meta = Meta(shown(name), document.kind, _instant(datetime.now(UTC)), document.histories, project=project)
         try:
@@ -196,18 +195,3 @@ def remove(study: HostedStudy) -> None:
     with suppress(FileNotFoundError):  # somebody was quicker
         path.rename(aside)
     shutil.rmtree(aside, ignore_errors=True)
-
-
-def check_room(folder: Path, wanted: int, limit: int) -> None:
-    """Refuse a study whose results need more room than there is, or than all studies may take together [byte]."""
-    used = 0
-    for where, _, names in os.walk(folder):
-        for name in names:
-            with suppress(OSError):  # others are deleted meanwhile, and are not missed
-                used += Path(where, name).lstat().st_size
-    room = min(shutil.disk_usage(folder).free, limit - used)
-    if wanted > room:
-        raise TooLarge(
-            f"the results need about {wanted / 1e6:.1f} MB, and there is room for {max(room, 0) / 1e6:.1f} MB; "
-            "delete studies that are no longer needed"
-        )
