@@ -34,6 +34,7 @@ from rocking.app.studies.manager import StudyManager
 from rocking.app.work import ComputationQueue
 from rocking.bodies.formats.words import sentence
 from rocking.errors import RockingError
+from rocking.language import page_words
 from rocking.version import __version__
 
 _SAME_AS = {"model_attributes_type": "model_type", "int_parsing": "int_type", "float_parsing": "float_type"}
@@ -152,6 +153,10 @@ def _add_pages(app: FastAPI) -> None:
     @app.api_route("/api-docs", methods=["GET", "HEAD"], include_in_schema=False)
     def api_docs() -> FileResponse:
         return FileResponse(STATIC / "api-docs.html")
+
+    @app.api_route("/words/{code}.json", methods=["GET", "HEAD"], include_in_schema=False)
+    def words(code: str) -> JsonAnswer:
+        return JsonAnswer(page_words(code))
 
     built = next((each for each in _MANUALS if (each / "index.html").exists()), STATIC / "manual")
     app.mount("/manual", StaticFiles(directory=built, html=True), name="manual")

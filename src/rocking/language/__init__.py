@@ -1,5 +1,6 @@
 """Words of reports: one file of sentences a language, which say the same with the same numbers, as each writes them."""
 
+import csv
 import re
 import string
 import tomllib
@@ -67,6 +68,13 @@ def language(code: str) -> Language:
 def catalogue(code: str) -> dict[str, str]:
     """Return the sentences of a language by their names."""
     return dict(_flat(tomllib.loads(Path(__file__).with_name(f"{code}.toml").read_text(encoding="utf-8"))))
+
+
+@lru_cache(maxsize=8)
+def page_words(code: str) -> dict[str, str]:
+    """Return what the sentences of the application's page are in a language, by their English ones; none in English."""
+    with (Path(__file__).parent / "page.csv").open(encoding="utf-8", newline="") as file:
+        return {row["en"]: row[code] for row in csv.DictReader(file) if code in row and code != "en"}
 
 
 def _flat(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, str]]:

@@ -1,5 +1,6 @@
 /** The start: sign in, read the link, build the app object, show the first view. */
 
+import "/app/words.js"; // first: what the others draw is said in its words
 import * as address from "/app/address.js";
 import { call, download, latest, superseded } from "/app/api.js";
 import { copyTable } from "/app/copy.js";
