@@ -1,6 +1,6 @@
 /** The start: sign in, read the link, build the app object, show the first view. */
 
-import "/app/words.js"; // first: what the others draw is said in its words
+import { language } from "/app/words.js"; // first: what the others draw is said in its words
 import * as address from "/app/address.js";
 import { call, download, latest, superseded } from "/app/api.js";
 import { copyTable } from "/app/copy.js";
@@ -41,7 +41,7 @@ const start = async () => {
 };
 
 const createApp = (inputs, info) => {
-  const app = { inputs: createInputs(inputs), info, superseded, copyTable, say, faults };
+  const app = { inputs: createInputs(inputs), info, language, superseded, copyTable, say, faults };
   const plainly = (ask) => (...given) => ask(...given).catch((error) => {
     if (error.kind) inPlainWords(error, app.inputs.get().body);
     throw error;
