@@ -46,7 +46,8 @@ EXPORTS = {
 def convert(
     context: typer.Context,
     record: Annotated[
-        list[str], typer.Argument(help="Record file, file#COMPONENT; with its vertical part x=FILE z=FILE.")
+        list[str],
+        typer.Argument(help="Record file, file#COMPONENT; with its vertical part x=FILE z=FILE; or a TOML with [motion].")
     ],
     units: options.RecordUnits = None,
     scale: Annotated[float | None, options.key(options.tables.MotionKeys, "scale")] = None,
@@ -62,28 +63,33 @@ def convert(
     as_json: options.AsJson = False,
 ) -> None:
     """Write a record in another format, corrected by --set "motion.process=mean; bandpass:low=0.1,high=25; taper"."""
-    from rocking.cli.arguments import Arguments, hinted
+    from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
     from rocking.motions.motion import GroundMotion
     from rocking.spec.construction import motion_of
-    from rocking.spec.document import OneMotionTable
-    from rocking.spec.reading import CommandFiles, checked
+    from rocking.spec.document import OneMotionTable, RecordDocument
+    from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 
     exports = Exports.of(out, EXPORTS)
     arguments = Arguments(context, "motion")
+    file = document_file(context, record[0], ("motion",), ("record",)) if len(record) == 1 else None
+    files = CommandFiles(Path()) if file is None else InputFiles(file.parent)
     upright = next((word.rpartition("#")[2] for word in record if word.startswith("z=")), "")
     with hinted(None, record[0].removeprefix("x="), upright):
-        scaled = arguments.table("motion", {"scale": scale}, keys={"scale"})
-        table = checked(OneMotionTable, {**arguments.one_motion(record), **scaled})
-        exports.spare(*record)
-        before = motion_of(table, CommandFiles(Path()), raw=True)
-        after = motion_of(table, CommandFiles(Path()))
+        if file is None:
+            scaled = arguments.table("motion", {"scale": scale}, keys={"scale"})
+            table = checked(OneMotionTable, {**arguments.one_motion(record), **scaled})
+        else:
+            table = checked(RecordDocument, with_sets(tables_in(file) or {}, arguments.sets)).motion
+        exports.spare(*record, *filter(None, [table.record]))
+        before = motion_of(table, files, raw=True)
+        after = motion_of(table, files)
     if not isinstance(before, GroundMotion) or not isinstance(after, GroundMotion):
         raise InvalidValueError(f"a record file is converted, got the pulse {record[0]!r:.80}")
     after = after if table.scale == 1.0 else after.scaled(table.scale)
     # a format without a unit of its own keeps that of the file
     unit = before.metadata.get("unit", "m/s2")
-    files = tuple(str(path) for _, path in exports.files)
-    deliver(Conversion(before, after, unit, files), exports, as_json=as_json)
+    written = tuple(str(path) for _, path in exports.files)
+    deliver(Conversion(before, after, unit, written), exports, as_json=as_json)
 
 
 @dataclass(frozen=True)
@@ -101,8 +107,12 @@ class Conversion:
         return processing_picture(self.before, self.after)
 
     def facts(self) -> dict[str, Any]:
-        told = {name: _facts(motion) for name, motion in (("before", self.before), ("after", self.after))}
-        return {"name": self.after.name, **told, "provenance": list(self.after.provenance), "files": list(self.files)}
+        told = {
+            name: {**_facts(motion), "warnings": list(motion.doubts)}
+            for name, motion in (("before", self.before), ("after", self.after))
+        }
+        said = {"metadata": dict(self.before.metadata), "provenance": list(self.after.provenance)}
+        return {"name": self.after.name, **told, **said, "files": list(self.files)}
 
     def show(self, page: Page) -> None:
         page.line(self.after.name, "bold")

@@ -52,7 +52,9 @@ def motions(
     context: typer.Context,
     record: Annotated[
         list[str],
-        typer.Argument(help="Folder, pattern in quotes, or list of records in a .csv file; or several files."),
+        typer.Argument(
+            help="Folder, pattern in quotes, or list of records in a .csv file; several files; a TOML with [motions]."
+        ),
     ],
     units: options.RecordUnits = None,
     damping: Annotated[float, typer.Option(help="Damping ratio of the spectra.")] = 0.05,
@@ -68,26 +70,33 @@ def motions(
     as_json: options.AsJson = False,
 ) -> None:
     """Print the intensity measures of many records and write them with RotD spectra; choose and scale to a target."""
-    from rocking.cli.arguments import Arguments, as_typed, is_file
+    from rocking.cli.arguments import Arguments, as_typed, document_file, is_file, with_sets
     from rocking.cli.motion import parsed_periods
     from rocking.dynamics.settings import processors
     from rocking.motions.flatfiles import PERIODS, flatfile
-    from rocking.spec.document import MotionTable
-    from rocking.spec.reading import CommandFiles, checked, is_pattern
+    from rocking.spec.document import MotionTable, RecordSetDocument
+    from rocking.spec.reading import CommandFiles, InputFiles, checked, is_pattern, tables_in
     from rocking.spec.record_sets import record_set
 
     exports = Exports.of(out, EXPORTS)
     arguments = Arguments(context, "motion")
+    beside = ("record", "damping", "periods", "threads")
+    file = document_file(context, record[0], ("motions",), beside) if len(record) == 1 else None
+    files = CommandFiles(Path()) if file is None else InputFiles(file.parent)
     if missing := [word for word in record if not is_file(word) and not is_pattern(word)]:
         raise InvalidValueError(f"{missing[0]:.200}: no such file or folder")
     damping = checks.within("--damping", damping, 0.0, 1.0, open_high=True, hint="a ratio, not a percentage")
     wanted = PERIODS if periods is None else parsed_periods(periods)
     workers = min(processors(), _MOST_PROCESSES) if threads is None else checks.whole("--threads", threads, 1, 256)
     with as_typed():
-        values = {"records": list(record), "units": arguments.acceleration}
-        table = checked(MotionTable, arguments.table("motion", values, {"records": record[0]}))
+        if file is None:
+            values = {"records": list(record), "units": arguments.acceleration}
+            table = checked(MotionTable, arguments.table("motion", values, {"records": record[0]}))
+        else:
+            tables = with_sets(tables_in(file) or {}, arguments.sets, lists=True)
+            (table,) = checked(RecordSetDocument, tables).motions
         with bar("files", quiet=as_json) as progress:
-            found, chosen = record_set(table, CommandFiles(Path()), workers, progress)
+            found, chosen = record_set(table, files, workers, progress)
         with bar("records", len(found), quiet=as_json) as progress:
             measured = flatfile(found, wanted, damping, workers=workers, progress=progress)
     left_out = (*found.left_out, *measured.left_out)
@@ -118,7 +127,8 @@ class SetAnswer:
             told = {"factor": chosen.factors, "misfit": chosen.misfits, "period_s": chosen.periods}
             told |= {"mean_m_s2": chosen.mean, "target_m_s2": chosen.target(chosen.periods)}
             facts["selection"] = {
-                "target": chosen.target.name, **told, "misfit_of_mean": chosen.misfit, "least_ratio": chosen.least
+                "target": chosen.target.name, **told, "misfit_of_mean": chosen.misfit, "least_ratio": chosen.least,
+                "sentence": chosen.sentence,
             }  # fmt: skip
         return {**facts, "records": rows, "left_out": [{"file": name, "why": why} for name, why in self.left_out]}
 

@@ -17,7 +17,13 @@ Steps = list[tuple[str, dict[str, Any]]]
 
 
 def _scaled(motion: GroundMotion, factor: float | None = None, **level: float) -> GroundMotion:
-    """Multiply by a factor, or to a measure such as pga=3 [m/s2]."""
+    """Return the motion multiplied by a factor, or to a measure.
+
+    Parameters
+    ----------
+    factor : float
+        On all components [-].
+    """
     if (factor is not None) + len(level) != 1:
         raise InvalidValueError("scale takes factor=2, or one measure such as pga=3 [m/s2]")
     if factor is not None:
@@ -27,14 +33,28 @@ def _scaled(motion: GroundMotion, factor: float | None = None, **level: float) -
 
 
 def _without_response(motion: GroundMotion, stations: str, low: float = 0.02, high: float = 40.0) -> GroundMotion:
-    """Remove the response of the instrument by a StationXML file, between two frequencies [Hz]."""
+    """Return accelerations from counts: the response of the instrument is removed.
+
+    Parameters
+    ----------
+    stations : str
+        StationXML file that describes the instrument.
+    low, high : float
+        Frequencies between which that is done [Hz].
+    """
     from rocking.motions.formats.instrument import without_response
 
     return without_response(motion, Path(stations), low, high)
 
 
 def _rotated(motion: GroundMotion, angle: float) -> GroundMotion:
-    """Turn both horizontal components, from x towards y [degree]."""
+    """Return both horizontal components turned.
+
+    Parameters
+    ----------
+    angle : float
+        From x towards y [degree].
+    """
     raise InvalidValueError(f"rotate is for two horizontal components; {motion.name!r:.60} is one")
 
 
@@ -87,13 +107,16 @@ def processed(motion: Any, chain: str | Sequence[str]) -> Any:
     """
     if not isinstance(motion, Components):
         checked_motion(motion)
-    for name, keys in steps_of(chain):
+    steps = steps_of(chain)
+    names = [name for name, _ in steps]
+    for place, (name, keys) in enumerate(steps, 1):
         try:
             motion = _together(motion, name, keys) if isinstance(motion, Components) else STEPS[name](motion, **keys)
         except MissingExtraError:
             raise
         except RockingError as error:
-            raise InvalidValueError(f"step {name}: {error}") from error
+            which = name if names.count(name) == 1 else f"{place}, {name}"
+            raise InvalidValueError(f"step {which}: {error}") from error
     return motion
 
 
@@ -125,10 +148,15 @@ def steps_of(chain: str | Sequence[str]) -> Steps:
     return [_step(part) for part in parts if part]
 
 
+def keys_of(step: Callable[..., Any]) -> dict[str, inspect.Parameter]:
+    """Return the keys that a step takes beside the motion; level: any measure that grows with it."""
+    return {key: one for key, one in inspect.signature(step).parameters.items() if key not in {"motion", "body"}}
+
+
 def _step(words: str) -> tuple[str, dict[str, Any]]:
     name, _, tail = words.partition(":")
     name = checks.one_of("step", name.strip(), STEPS)
-    known = {key: one for key, one in list(inspect.signature(STEPS[name]).parameters.items())[1:] if key != "body"}
+    known = keys_of(STEPS[name])
     open_ended = known.pop("level", None) is not None
     keys: dict[str, Any] = {}
     for item in filter(None, tail.split(",")):

@@ -73,7 +73,16 @@ class TargetSpectrum:
 def eurocode8(ag: float, ground: str = "A", type: int = 1, damping: float = 0.05) -> TargetSpectrum:
     """Return the horizontal elastic response spectrum of Eurocode 8, EN 1998-1:2004, 3.2.2.2, up to 4 s.
 
-    ag: of ground A, with the importance factor [m/s2]; type 2 where earthquakes up to magnitude Ms 5.5 decide.
+    Parameters
+    ----------
+    ag : float
+        Of ground A, with the importance factor; a number with a unit, such as 0.25g [m/s2].
+    ground : str
+        From A to E.
+    type : int
+        2 where earthquakes up to magnitude Ms 5.5 decide, else 1.
+    damping : float
+        Damping ratio [-].
 
     >>> eurocode8(2.0, "B")([0.3, 1.0]).round(12).tolist()
     [6.0, 3.0]
@@ -95,7 +104,16 @@ def eurocode8(ag: float, ground: str = "A", type: int = 1, damping: float = 0.05
 
 
 def asce7(sds: float, sd1: float, tl: float) -> TargetSpectrum:
-    """Return the design response spectrum of ASCE/SEI 7-16, 11.4.6, for 5 % damping [m/s2, m/s2, s].
+    """Return the design response spectrum of ASCE/SEI 7-16, 11.4.6, for 5 % damping.
+
+    Parameters
+    ----------
+    sds : float
+        At short periods; a number with a unit, such as 1g [m/s2].
+    sd1 : float
+        At 1 s; a number with a unit, such as 0.6g [m/s2].
+    tl : float
+        Where the long periods begin [s].
 
     >>> asce7(10.0, 6.0, 8.0)([0.0, 0.3, 2.0, 16.0]).round(12).tolist()
     [4.0, 10.0, 3.0, 0.1875]
@@ -167,7 +185,7 @@ def target_spectrum(words: Any, folder: Path | None = None) -> TargetSpectrum:
         return words
     checks.of_kind("target", words, str, "text")
     name, colon, tail = words.partition(":")
-    if name not in _CODES or not colon:
+    if name not in CODES or not colon:
         if (folder or Path()).joinpath(words).is_file():
             return in_file((folder or Path()) / words)
         raise InvalidValueError(f"target must be {_HOW}; got {words!r:.80}")
@@ -176,12 +194,12 @@ def target_spectrum(words: Any, folder: Path | None = None) -> TargetSpectrum:
         key, _, value = (part.strip() for part in item.partition("="))
         given[key] = value if key in {"ground", "type"} else _acceleration(key, value)
     try:
-        return _CODES[name](**given)
+        return CODES[name](**given)
     except TypeError as error:
         raise InvalidValueError(f"target must be {_HOW}; got {words!r:.80}") from error
 
 
-_CODES: dict[str, Callable[..., TargetSpectrum]] = {"eurocode8": eurocode8, "asce7": asce7}
+CODES: dict[str, Callable[..., TargetSpectrum]] = {"eurocode8": eurocode8, "asce7": asce7}
 
 
 def _acceleration(key: str, text: str) -> float:

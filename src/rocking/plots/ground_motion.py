@@ -142,7 +142,7 @@ def _spectrum(axes: "Axes", motion: GroundMotion, peak: float) -> None:
 
 @in_journal_style
 def processing_picture(before: GroundMotion, after: GroundMotion) -> "Figure":
-    """Draw a record before and after its processing: histories, and smoothed Fourier amplitudes beside them.
+    """Draw a record before and after its processing: histories, Fourier amplitudes (smoothed) and response spectra.
 
     Parameters
     ----------
@@ -152,21 +152,22 @@ def processing_picture(before: GroundMotion, after: GroundMotion) -> "Figure":
     Returns
     -------
     matplotlib.figure.Figure
-        Three stacked panels, and one beside them.
+        Three stacked panels, and two beside them.
 
     Examples
     --------
     >>> from rocking.motions import demeaned
     >>> motion = GroundMotion(1.0 + np.sin(np.linspace(0.0, 60.0, 600)), 0.01)
     >>> len(processing_picture(motion, demeaned(motion)).axes)
-    4
+    5
     """
-    figure, cells = new_figure(DOUBLE, 4.3, rows=3, columns=2, sharex="col", width_ratios=[1.5, 1.0])
+    figure, cells = new_figure(DOUBLE, 4.6, rows=3, columns=2, sharex="col", width_ratios=[1.5, 1.0])
     figure.suptitle(plain(after.name)[:_LONGEST_TITLE], x=0.01, ha="left", fontsize=9)
     grid: Any = cells[0].get_gridspec()
     for axes in cells[1::2]:
         axes.remove()
-    right = figure.add_subplot(grid[:, 1])
+    beside = grid[:, 1].subgridspec(2, 1)
+    fourier, spectrum = (figure.add_subplot(beside[k]) for k in range(2))
     words = ("acceleration [m/s$^2$]", "velocity [m/s]", "displacement [m]")
     for motion, color, when in ((before, GREY, "before"), (after, INK, "after")):
         rows = (motion.acceleration, ground_velocity(motion), ground_displacement(motion))
@@ -174,9 +175,12 @@ def processing_picture(before: GroundMotion, after: GroundMotion) -> "Figure":
             axes.plot(motion.time + begins_at(motion), values, linewidth=0.7, color=color, label=when)
             axes.set_ylabel(name)
         places = np.geomspace(2.0 / motion.duration, 0.49 / motion.time_step, 120)
-        right.plot(*fourier_amplitudes(motion, places), linewidth=0.9, color=color)
+        fourier.plot(*fourier_amplitudes(motion, places), linewidth=0.9, color=color)
+        response = response_spectrum(motion, _SET_PERIODS, _DAMPING)
+        spectrum.plot(response.periods, response.pseudo_acceleration, linewidth=0.9, color=color)
     cells[4].set_xlabel("time [s]")
-    right.set(xlabel="frequency [Hz]", ylabel="Fourier amplitude [m/s]", xscale="log", yscale="log")
+    fourier.set(xlabel="frequency [Hz]", ylabel="Fourier amplitude [m/s]", xscale="log", yscale="log")
+    spectrum.set(xlabel="period [s]", ylabel=f"PSA, {100.0 * _DAMPING:g} % damping [m/s$^2$]", xscale="log")
     legend_above(cells[0], 2)
     figure.align_ylabels(cells[::2])
     return figure

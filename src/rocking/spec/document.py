@@ -564,6 +564,18 @@ class AssessmentDocument(PredictionDocument):
     assess: AssessTable = Field(default_factory=AssessTable)
 
 
+class RecordDocument(JobTable):
+    """A file that says how one record is read and corrected."""
+
+    motion: OneMotionTable
+
+
+class RecordSetDocument(JobTable):
+    """A file that says how a set of records is read, corrected and chosen."""
+
+    motions: Annotated[list[MotionTable], Field(min_length=1, max_length=1), BeforeValidator(in_list)]
+
+
 class ValidationDocument(PredictedBody):
     """A file beside a table of outcomes: the body, what is not known of it, and how its records are read."""
 

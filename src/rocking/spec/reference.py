@@ -1,8 +1,9 @@
 """The documentation of the keys of a question, made from its tables: docs/questions.md."""
 
+import re
 import types
-from collections.abc import Iterator
-from inspect import signature
+from collections.abc import Callable, Iterator, Mapping
+from inspect import Parameter, getdoc, signature
 from itertools import chain
 from typing import Any, Literal, Union, get_args, get_origin
 
@@ -67,6 +68,81 @@ def reference() -> str:
     return "\n".join([*chain(*questions), *_names(), "## The keys of body files\n", *chain(*bodies)]) + "\n"
 
 
+def described(table: type[BaseModel]) -> dict[str, dict[str, Any]]:
+    """Return what is said of the keys of a table: unit, meaning, usual value, whether it is needed, what may be said."""
+    return {
+        field.alias or key: _said(
+            field.description or "", field.default, _choices(field.annotation), needed=field.is_required()
+        )
+        for key, field in table.model_fields.items()
+    }
+
+
+def steps() -> dict[str, dict[str, Any]]:
+    """Return what every step of a record does, and its keys; one: only one of these is given."""
+    from rocking.motions.intensity import MEASURES
+    from rocking.motions.pipeline import STEPS
+    from rocking.motions.pipeline import keys_of as keys_of_step
+
+    found = {}
+    for name, step in STEPS.items():
+        keys = keys_of_step(step)
+        levels = keys.pop("level", None) is not None
+        grow = [one for one in MEASURES.values() if levels and one.power and one.is_listed and not one.needs_body]
+        measures = {one.name: _said(f"to this {one.words} [{one.unit}]", None) for one in grow}
+        found[name] = {"words": _summary(step), "one": levels, "keys": {**_documented(step, keys), **measures}}
+    return found
+
+
+def targets() -> dict[str, dict[str, Any]]:
+    """Return the spectra that records are scaled to, and their keys."""
+    from rocking.motions.target_spectra import CODES
+
+    return {
+        name: {"words": _summary(make), "one": False, "keys": _documented(make, signature(make).parameters)}
+        for name, make in CODES.items()
+    }
+
+
+_PARAMETERS = re.compile(r"^(\w+(?:, \w+)*) : .*\n((?: {4}.*\n?)+)", re.MULTILINE)
+
+
+def _documented(function: Callable[..., Any], keys: Mapping[str, Parameter]) -> dict[str, dict[str, Any]]:
+    """Return what a function says of some of its parameters."""
+    text = (getdoc(function) or "").partition("\nReturns\n")[0]
+    words = {key: " ".join(said.split()) for names, said in _PARAMETERS.findall(text) for key in names.split(", ")}
+    return {
+        key: _said(
+            words.get(key, ""), None if needed else one.default, _choices(one.annotation), needed=needed
+        )
+        for key, one in keys.items()
+        for needed in [one.default is one.empty]
+    }
+
+
+def _said(words: str, usual: Any, choices: tuple[str, ...] = (), *, needed: bool = False) -> dict[str, Any]:
+    """Return what is said of a key, with the unit that its words end with."""
+    meaning, bracket, unit = words.rstrip(".").removesuffix("]").rpartition("[")
+    unit = unit if bracket and words.rstrip(".").endswith("]") else ""
+    text = _usual(usual).strip("`")
+    return {
+        "unit": unit, "words": (meaning if unit else words).strip(), "usual": text, "needed": needed,
+        "choices": list(choices),
+    }  # fmt: skip
+
+
+def _choices(annotation: Any) -> tuple[str, ...]:
+    """Return the words that a key takes, if there are few."""
+    if annotation is bool:
+        return ("false", "true")
+    return tuple(map(str, get_args(annotation))) if get_origin(annotation) is Literal else ()
+
+
+def _summary(documented: Any) -> str:
+    words = _first_line(documented).removeprefix("Return ").rstrip(".")
+    return f"{words[:1].upper()}{words[1:]}"
+
+
 def keys_of(name: str) -> list[str]:
     """Return the keys of a table as they are written; none where no table has the name."""
     if name not in _TABLES:
@@ -95,10 +171,26 @@ def _names() -> Iterator[str]:
         ("Measures of intensity", "measure", [*measures, ("sa(T)", "spectral acceleration at the period T [m/s2]")]),
         ("Families of synthetic motions", "family", [(name, family.title) for name, family in families().items()]),
         ("Pulses", "pulse", pulses),
+        ("Steps of a record", "step", _written(steps())),
+        ("Target spectra", "spectrum", _written(targets())),
     ):
         yield f"### {title}\n\n| {head} | what it is |\n|---|---|"
         yield from (f"| `{name}` | {words.replace('[1]', '[-]').rstrip('.')} |" for name, words in rows)
         yield ""
+
+
+def _written(described: dict[str, dict[str, Any]]) -> list[tuple[str, str]]:
+    """Return a row for each of some things with keys: how it is written, and what it is."""
+    rows = []
+    for name, one in described.items():
+        keys = ",".join(f"{key}={each['usual']}" for key, each in one["keys"].items() if not one["one"])
+        means = "; ".join(
+            f"{key}: {each['words'].rstrip('.')}" + (f" [{each['unit']}]" if each["unit"] else "")
+            for key, each in one["keys"].items()
+        )
+        head = f"{name}:{keys}" if keys else name
+        rows.append((head, f"{one['words']}. {means}".strip()))
+    return rows
 
 
 def _first_line(documented: Any) -> str:
