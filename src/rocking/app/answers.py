@@ -28,8 +28,10 @@ Kind = Literal[
 ]  # fmt: skip
 MEDIA_TYPES = {
     "csv": "text/csv; charset=utf-8",
+    "dat": "application/octet-stream",
     "gif": "image/gif",
     "html": "text/html; charset=utf-8",
+    "json": "application/json",
     "mat": "application/x-matlab-data",
     "nc": "application/x-netcdf",
     "parquet": "application/vnd.apache.parquet",

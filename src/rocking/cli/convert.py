@@ -30,17 +30,13 @@ def _provenance(answer: "Conversion", path: Path) -> None:
     path.write_text(json.dumps(answer.facts(), indent=1) + "\n", encoding="utf-8")
 
 
-_ENDINGS = {
-    "peer": (".at2",), "esm": (".asc",), "cosmos": (".v1c", ".v2c", ".v1", ".v2"), "csmip-v1": (".v1", ".raw"),
-    "csmip-v2": (".v2",), "smc-usgs": (".smc",), "smc-boore": (".smc",), "knet": (".ns", ".ew", ".ud"),
-    "cwa": (".dat", ".txt"), "geonet-v2a": (".v2a",), "bhrc": (".v1",), "miniseed": (".mseed",), "sac": (".sac",),
-}  # fmt: skip
-EXPORTS = {
-    "columns": Export((".csv", ".txt", ".dat"), _as("columns")),
-    **{form: Export(endings, _as(form)) for form, endings in _ENDINGS.items()},
-    "picture": Export(PICTURES, draw, "matplotlib"),
-    "provenance": Export((".json",), _provenance),
-}
+def _kinds() -> dict[str, Export]:
+    """Return the kinds of files that are written: every format, a picture, and what was done."""
+    from rocking.motions.formats import formats
+
+    known = {name: Export(form.suffixes, _as(name)) for name, form in formats().items()}
+    others = {"picture": Export(PICTURES, draw, "matplotlib"), "provenance": Export((".json",), _provenance)}
+    return {"columns": known["columns"], **known, **others}
 
 
 def convert(
@@ -69,7 +65,7 @@ def convert(
     from rocking.spec.document import OneMotionTable, RecordDocument
     from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 
-    exports = Exports.of(out, EXPORTS)
+    exports = Exports.of(out, _kinds())
     arguments = Arguments(context, "motion")
     file = document_file(context, record[0], ("motion",), ("record",)) if len(record) == 1 else None
     files = CommandFiles(Path()) if file is None else InputFiles(file.parent)

@@ -69,10 +69,10 @@ def reference() -> str:
 
 
 def described(table: type[BaseModel]) -> dict[str, dict[str, Any]]:
-    """Return what is said of the keys of a table: unit, meaning, usual value, whether it is needed, what may be said."""
+    """Return what is said of the keys of a table: unit, meaning, kind, usual value, if it is needed, what may be said."""
     return {
         field.alias or key: _said(
-            field.description or "", field.default, _choices(field.annotation), needed=field.is_required()
+            field.description or "", field.default, field.annotation, needed=field.is_required()
         )
         for key, field in table.model_fields.items()
     }
@@ -89,7 +89,7 @@ def steps() -> dict[str, dict[str, Any]]:
         keys = keys_of_step(step)
         levels = keys.pop("level", None) is not None
         grow = [one for one in MEASURES.values() if levels and one.power and one.is_listed and not one.needs_body]
-        measures = {one.name: _said(f"to this {one.words} [{one.unit}]", None) for one in grow}
+        measures = {one.name: _said(f"To this {one.words} [{one.unit}]", None, float) for one in grow}
         found[name] = {"words": _summary(step), "one": levels, "keys": {**_documented(step, keys), **measures}}
     return found
 
@@ -113,22 +113,25 @@ def _documented(function: Callable[..., Any], keys: Mapping[str, Parameter]) -> 
     words = {key: " ".join(said.split()) for names, said in _PARAMETERS.findall(text) for key in names.split(", ")}
     return {
         key: _said(
-            words.get(key, ""), None if needed else one.default, _choices(one.annotation), needed=needed
+            words.get(key, ""), None if needed else one.default, one.annotation, needed=needed
         )
         for key, one in keys.items()
         for needed in [one.default is one.empty]
     }
 
 
-def _said(words: str, usual: Any, choices: tuple[str, ...] = (), *, needed: bool = False) -> dict[str, Any]:
+def _said(words: str, usual: Any, annotation: Any, *, needed: bool = False) -> dict[str, Any]:
     """Return what is said of a key, with the unit that its words end with."""
     meaning, bracket, unit = words.rstrip(".").removesuffix("]").rpartition("[")
     unit = unit if bracket and words.rstrip(".").endswith("]") else ""
-    text = _usual(usual).strip("`")
     return {
-        "unit": unit, "words": (meaning if unit else words).strip(), "usual": text, "needed": needed,
-        "choices": list(choices),
-    }  # fmt: skip
+        "unit": unit,
+        "words": (meaning if unit else words).strip(),
+        "kind": _kind(annotation),
+        "usual": _usual(usual).strip("`"),
+        "needed": needed,
+        "choices": list(_choices(annotation)),
+    }
 
 
 def _choices(annotation: Any) -> tuple[str, ...]:

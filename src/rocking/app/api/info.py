@@ -80,6 +80,19 @@ UnitNames: Any = shape("UnitNames", "Units that may be said.", length=list[str],
 KindOfStudy: Any = shape(
     "KindOfStudy", "A kind of study, and the table that its job has of its own.", name=str, table=str
 )
+KeyFacts: Any = shape(
+    "KeyFacts",
+    "A key of a table or of a step.",
+    unit=(str, "empty where it has none"),
+    words=str,
+    kind=(str, "text, number, whole number, list of number"),
+    usual=(str, "as it is written; empty where there is none"),
+    needed=bool,
+    choices=(list[str], "all that may be said, where these are few"),
+)
+StepFacts: Any = shape(
+    "StepFacts", "A step, or a spectrum.", words=str, one=(bool, "only one key is given"), keys=dict[str, KeyFacts]
+)
 Info: Any = shape(
     "Info",
     "What there is to choose from.",
@@ -94,6 +107,9 @@ Info: Any = shape(
     measures=list[QuantityAnswer],
     axes=list[QuantityAnswer],
     study_kinds=list[KindOfStudy],
+    steps=(dict[str, StepFacts], "that a record goes through"),
+    targets=(dict[str, StepFacts], "spectra that records are scaled to"),
+    keys=(dict[str, dict[str, KeyFacts]], "of tables that the page asks for"),
     limits=(dict[str, float], "how much one server takes; the names say what: bytes [B], seconds [s], counts"),
 )
 
@@ -112,7 +128,8 @@ def _constant() -> dict[str, Any]:
     from rocking.motions.formats import formats
     from rocking.motions.pulses import catalogue
     from rocking.motions.synthetic.families import families
-    from rocking.spec.document import NEEDS
+    from rocking.spec.document import NEEDS, MinimumTable, MotionTable, OneMotionTable
+    from rocking.spec.reference import described, steps, targets
     from rocking.studies.axis import axes
 
     fast = fast_engine.available()
@@ -142,6 +159,11 @@ def _constant() -> dict[str, Any]:
         "measures": listed_measures(),
         "axes": [_quantity(one) for one in axes().values()],
         "study_kinds": [{"name": name, "table": NEEDS[name]} for name in KINDS],
+        "steps": steps(),
+        "targets": targets(),
+        "keys": {
+            "motion": described(OneMotionTable), "motions": described(MotionTable), "minimum": described(MinimumTable),
+        },
     }  # fmt: skip
 
 

@@ -24,6 +24,7 @@ from rocking.app.plain_text import safe_name, shown, toml_of
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
 from rocking.campaigns.disk import write_new
+from rocking.motions.formats import formats
 from rocking.restitution.from_file import file_of
 
 OUTPUTS: dict[str, tuple[str, ...]] = {
@@ -31,10 +32,14 @@ OUTPUTS: dict[str, tuple[str, ...]] = {
     "predict": ("picture.svg", "report.pdf", "table.csv"),
     "identify": ("picture.svg", "report.pdf", "table.xlsx"),
     "inventory": ("inventory.html", "inventory.pdf", "inventory.xlsx", "inventory.csv"),
+    "convert": ("picture.svg", "record.csv", "provenance.json"),
+    "motions": ("picture.svg", "table.csv", "table.xlsx"),
+    "minimum": ("picture.svg", "table.csv"),
 }
 """Commands, and the files that they write beside their answer."""
 
-MOST_QUESTIONS, MOST_WAITING, MOST_FILES = 500, 16, 200
+FOLDER = "records"  # of a question, in which the files of a set are
+MOST_QUESTIONS, MOST_WAITING, MOST_FILES = 500, 16, 1000
 _SECONDS = 1800.0  # longest time of a question [s]
 _ROOM = 32 << 20  # that a question may need on the disk [bytes]
 _MOST_STARTS = 3  # so often it is begun anew where the server ended beneath it
@@ -57,6 +62,7 @@ class HostedQuestion:
     seconds: float = 0.0  # that it took [s]
     files: list[str] = field(default_factory=list)  # that can be taken away
     starts: int = 0  # how often it was begun
+    format: str = ""  # in which convert writes the record beside columns; empty for no other
 
 
 _QUESTION = TypeAdapter(HostedQuestion)
@@ -79,11 +85,19 @@ class QuestionDesk:
         self._thread.start()
 
     def ask(
-        self, command: str, tables: dict[str, Any], files: Mapping[str, str], name: str = "", project: str = ""
+        self,
+        command: str,
+        tables: dict[str, Any],
+        files: Mapping[str, str],
+        name: str = "",
+        project: str = "",
+        format: str = "",
     ) -> HostedQuestion:
         """Put a question in line; files: hashes of what was sent, by the names that the tables call them."""
         if command not in OUTPUTS:
             raise Refused(f"command must be one of {', '.join(OUTPUTS)}, got {command!r:.40}")
+        if format and (command != "convert" or format not in formats()):
+            raise Refused(f"format is that of a record that convert writes, one of {', '.join(formats())}")
         refuse_outside(tables)
         known = self._paths(files)
         with self._changed:
@@ -93,11 +107,13 @@ class QuestionDesk:
                 raise TooLarge(f"up to {MOST_QUESTIONS} questions are kept; delete some that are no longer needed")
         check_room(self.folder, _ROOM, self._limits.questions_bytes, "questions")
         asked = datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
-        question = HostedQuestion(secrets.token_hex(8), command, shown(name or command), project, asked)
+        question = HostedQuestion(
+            secrets.token_hex(8), command, shown(name or command), project, asked, format=format
+        )
         place = self.folder / question.id
         try:
             with room_on_disk():
-                place.mkdir(mode=0o700)
+                (place / FOLDER).mkdir(mode=0o700, parents=True)
                 for word, source in known.items():
                     _link(source, place / word)
                 (place / QUESTION).write_text(toml_of(tables), encoding="utf-8")
@@ -191,8 +207,11 @@ class QuestionDesk:
             raise TooLarge(f"a question takes up to {MOST_FILES} files, got {len(files)}")
         paths = {}
         for word, sha in files.items():
-            if word != safe_name(word, "file") or word.lower() in _OWN:
+            plain = word.removeprefix(f"{FOLDER}/")
+            if plain != safe_name(plain, "file") or word.lower() in {*_OWN, FOLDER}:
                 raise Refused(f"the name of a file must be plain, as {safe_name(word, 'file')!r}, got {word!r:.60}")
+            if word.startswith("record."):
+                raise Refused(f"{word!r:.60} is the name of what is written: give the file another")
             paths[word] = self._path(sha)
         return paths
 
@@ -233,8 +252,7 @@ class QuestionDesk:
         for each in (own, cache):
             each.mkdir(mode=0o700, exist_ok=True)
         environment = {**os.environ, "TMPDIR": str(own), "MPLCONFIGDIR": str(cache), "PYTHONUNBUFFERED": "1"}
-        names = OUTPUTS[question.command]
-        outputs = [word for name in names for word in ("--out", name)]
+        outputs = [word for name in _written(question) for word in ("--out", name)]
         command = [question.command, QUESTION, "--json", *outputs]
         words = [sys.executable, "-P", "-m", "rocking.app.questions.child", str(place), *command]
         with (place / _ANSWER).open("wb") as answer, (place / _LOG).open("wb") as log:
@@ -262,6 +280,7 @@ class QuestionDesk:
                 self._become(replace(question, state="waiting", starts=question.starts - 1))
                 return
             seconds = (datetime.now(UTC) - begun).total_seconds()
+            names = [name.rpartition("=")[2] for name in _written(question)]
             there = [name for name in names if (place / name).is_file()]
             state, why = ("done", "") if code == 0 else ("refused", _why(place, code))
             self._become(replace(question, state=state, message=why, seconds=seconds, files=there))  # type: ignore[arg-type]
@@ -278,6 +297,12 @@ class QuestionDesk:
         with self._changed:
             known = self._questions.get(question)
         return None if known is None else known.state
+
+
+def _written(question: HostedQuestion) -> list[str]:
+    """Return what a question writes, as --out says it."""
+    form = question.format
+    return [*OUTPUTS[question.command], *([f"{form}=record{formats()[form].suffixes[0]}"] if form else [])]
 
 
 def refuse_outside(tables: dict[str, Any]) -> None:

@@ -25,14 +25,15 @@ from rocking.app.settings import state_of
 
 router = APIRouter(prefix="/api", tags=["questions"])
 _TABLES = """\
-The tables of a file that `rocking assess`, `predict`, `identify` or `inventory` takes, as JSON. Files in them are named
-as in `files`, and were sent to `/api/files` or `/api/records`."""
+The tables of a file that the command takes, as JSON. Files in them are named as in `files`, and were sent to
+`/api/files` or `/api/records`."""
+Command = Literal["assess", "predict", "identify", "inventory", "convert", "motions", "minimum"]
 
 QuestionFacts: Any = shape(
     "QuestionFacts",
     "A question, and how far it is.",
     id=(str, "its name in addresses"),
-    command=Literal["assess", "predict", "identify", "inventory"],
+    command=Command,
     name=(str, "what people call it"),
     project=(str, "to which it belongs; empty if to none"),
     asked=(str, "when, in UTC"),
@@ -40,6 +41,7 @@ QuestionFacts: Any = shape(
     message=(str, "why there is no answer; empty while nothing is wrong"),
     seconds=(float, "that it took [s]"),
     files=(list[str], "that can be taken away"),
+    format=(str, "in which convert writes the record beside columns; empty for no other"),
 )
 Questions: Any = shape("Questions", "All questions, the last one first.", questions=list[QuestionFacts])
 WholeQuestion: Any = shape(
@@ -56,13 +58,15 @@ class NewQuestion(BaseModel):
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
-    command: Literal["assess", "predict", "identify", "inventory"]
+    command: Command
     tables: Annotated[dict[str, Any], Field(description=_TABLES)]
     files: Annotated[
-        dict[str, str], Field(description="SHA-256 of each file, by the name that it has in the tables")
+        dict[str, str],
+        Field(description="SHA-256 of each file, by the name that it has in the tables; records/NAME in a folder"),
     ] = Field(default_factory=dict)
     name: Annotated[str, Field(max_length=200, description="what people call it")] = ""
     project: Annotated[str, Field(max_length=40, description="to which it belongs, if to one")] = ""
+    format: Annotated[str, Field(max_length=20, description="in which convert writes the record too")] = ""
 
 
 def _desk(request: Request) -> QuestionDesk:
@@ -88,7 +92,7 @@ async def ask_question(request: Request, asked: NewQuestion) -> JsonAnswer:
     if asked.project:
         await run_in_threadpool(state_of(request).projects.get, asked.project)
     question = await run_in_threadpool(
-        _desk(request).ask, asked.command, asked.tables, asked.files, asked.name, asked.project
+        _desk(request).ask, asked.command, asked.tables, asked.files, asked.name, asked.project, asked.format
     )
     return JsonAnswer(_facts(question), status_code=202)
 
@@ -125,7 +129,7 @@ async def delete_question(request: Request, question: str) -> JsonAnswer:
     return JsonAnswer({"deleted": question})
 
 
-_ENDINGS = sorted({name.rpartition(".")[2] for names in OUTPUTS.values() for name in names})
+_ENDINGS = sorted({"dat", *(name.rpartition(".")[2] for names in OUTPUTS.values() for name in names)})
 
 
 @router.get(
@@ -138,4 +142,5 @@ async def question_file(request: Request, question: str, file: str) -> Response:
     """Return a picture, a report or a table of an answer."""
     path = await run_in_threadpool(_desk(request).file, question, file)
     name = f"{_desk(request).get(question).name} {file}"
-    return FileResponse(path, media_type=MEDIA_TYPES[file.rpartition(".")[2]], headers=attachment_headers(name))
+    media = MEDIA_TYPES.get(file.rpartition(".")[2], MEDIA_TYPES["dat"])
+    return FileResponse(path, media_type=media, headers=attachment_headers(name))

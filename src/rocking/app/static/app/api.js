@@ -14,6 +14,9 @@ export class ApiError extends Error {
 /** Call the API; resolves to JSON, rejects with ApiError. */
 export const call = async (path, options = {}) => (await send(path, options)).json();
 
+/** A file of the server as a blob. */
+export const fetchFile = async (path) => (await send(path)).blob();
+
 /** Call by POST and let only the newest call of a key follow the one in flight. */
 export const latest = (key, path, json) =>
   new Promise((resolve, reject) => {

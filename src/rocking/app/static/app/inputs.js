@@ -96,7 +96,8 @@ const keptAside = () => {
   return inputs && { inputs, words: String(found.words), mine: Boolean(found.mine) };
 };
 
-const stored = (key) => {
+/** What was kept in this tab; null if nothing. */
+export const stored = (key) => {
   try {
     return JSON.parse(sessionStorage.getItem(key));
   } catch {
@@ -104,7 +105,8 @@ const stored = (key) => {
   }
 };
 
-const keep = (key, value) => {
+/** Keep a value in this tab. */
+export const keep = (key, value) => {
   try {
     sessionStorage.setItem(key, JSON.stringify(value));
   } catch {
@@ -112,7 +114,8 @@ const keep = (key, value) => {
   }
 };
 
-const changedAt = (tree, [key, ...rest], value) => {
+/** A tree with one value changed, at a path of keys; undefined takes it away. */
+export const changedAt = (tree, [key, ...rest], value) => {
   const next = { ...(tree ?? {}) };
   if (rest.length) next[key] = changedAt(next[key], rest, value);
   else if (value === undefined) delete next[key];

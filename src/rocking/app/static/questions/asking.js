@@ -5,8 +5,8 @@ import { computed, signal } from "/parts/preact.js";
 const EVERY = 500; // a look at a question that is being answered [ms]
 const ENDED = new Set(["done", "refused", "stopped"]);
 
-/** The questions of one command in the open project. */
-export const createQuestions = (app, command) => {
+/** The questions of some commands in the open project. */
+export const createQuestions = (app, ...commands) => {
   const shown = signal(null);
   const all = signal([]);
   let timer = 0;
@@ -16,7 +16,7 @@ export const createQuestions = (app, command) => {
 
   const look = async () => {
     const { questions } = await app.call("questions");
-    all.value = questions.filter((each) => each.command === command && each.project === here());
+    all.value = questions.filter((each) => commands.includes(each.command) && each.project === here());
   };
   const follow = async (id, mine = (ticket += 1)) => {
     clearTimeout(timer);
@@ -33,12 +33,18 @@ export const createQuestions = (app, command) => {
   const safely = (work) => (...given) => work(...given).catch(tell);
 
   return {
-    shown, all, busy,
+    app, shown, all, busy,
     look: safely(look),
-    ask: safely(async (tables, files, name) => {
+    /** Look, and show the last one again after a reload. */
+    reopen: safely(async () => {
+      await look();
+      if (!shown.value && all.value.length) await follow(all.value[0].id);
+    }),
+    ask: safely(async (tables, files, name, { command = commands[0], format = "" } = {}) => {
       await app.project.save();
       shown.value = null;
-      const question = await app.call("questions", { json: { command, tables, files, name, project: here() } });
+      const json = { command, tables, files, name, format, project: here() };
+      const question = await app.call("questions", { json });
       shown.value = { ...question, answer: null };
       await follow(question.id);
     }),
@@ -65,7 +71,7 @@ export const createQuestions = (app, command) => {
 };
 
 // Names that answers have.
-const TAKEN = /^(inventory|table|report|picture|answer|state|log|question)\.|^matplotlibrc/i;
+const TAKEN = /^(inventory|table|report|picture|answer|state|log|question|record|provenance)\.|^(matplotlibrc|records$)/i;
 const apart = (name, sha) => (TAKEN.test(name) ? `${sha.slice(0, 8)}-${name}` : name);
 
 /** The motion of the inputs as a question has it, and the files that it needs. */

@@ -2,9 +2,28 @@
 
 import { html, signal, useEffect, useRef } from "/parts/preact.js";
 import { freshId } from "/app/dom.js";
+import { parseNumber, pretty } from "/app/format.js";
+import { changedAt, keep, stored } from "/app/inputs.js";
 
 /** A signal that lives as long as its component. */
 export const useSignal = (first) => useRef(signal(first)).current;
+
+/** The fields of a form that outlasts a reload; `form.at(...path)` is a signal of one of them. */
+export const useForm = (key, first) => {
+  const form = useRef(null);
+  if (!form.current) {
+    const all = signal({ ...first, ...stored(key) });
+    all.at = (...path) => ({
+      get value() { return path.reduce((tree, name) => tree?.[name], all.value) ?? ""; },
+      set value(next) {
+        all.value = changedAt(all.value, path, next);
+        keep(key, all.value);
+      },
+    });
+    form.current = all;
+  }
+  return form.current;
+};
 
 /** A labelled field; `kind` is the type of the input. */
 export const Field = ({ label, unit, help, value, kind = "text", error, ...more }) => {
@@ -19,29 +38,59 @@ export const Field = ({ label, unit, help, value, kind = "text", error, ...more 
     </div>`;
 };
 
-/** A choice of one. */
-export const Choice = ({ label, help, value, options }) => {
+/** A choice of one; chosen: what it is while nothing was chosen. */
+export const Choice = ({ label, help, value, chosen, options }) => {
   const id = useRef(freshId("choice")).current;
   return html`
     <div class="field">
       <div class="field-head"><label for=${id}>${label}</label></div>
-      <select id=${id} aria-describedby=${`${id}-about`} value=${value.value}
-        onChange=${(event) => (value.value = event.target.value)}>
+      <select id=${id} aria-describedby=${`${id}-about`} value=${chosen ?? value.value}
+        onChange=${({ target }) => { value.value = target.value; target.value = value.value; }}>
         ${options.map(([key, text]) => html`<option key=${key} value=${key}>${text}</option>`)}
       </select>
       <p id=${`${id}-about`} class="field-help">${help}</p>
     </div>`;
 };
 
+const YES = { true: "yes", false: "no" };
+
+/** A field of a key, with the unit, the words and the choices of its description. */
+export const KeyField = ({ name, facts, ...more }) => {
+  const label = name.replaceAll("_", " ");
+  if (!facts.choices.length) {
+    return html`<${Field} label=${label} unit=${pretty(facts.unit.replace(/^-$/, ""))} help=${sentence(facts.words)}
+      placeholder=${facts.usual} ...${more} />`;
+  }
+  const others = facts.choices.filter((word) => word !== facts.usual).map((word) => [word, YES[word] ?? word]);
+  return html`<${Choice} label=${label} help=${sentence(facts.words)} ...${more}
+    options=${[["", YES[facts.usual] ?? (facts.usual || "\u2013")], ...others]} />`;
+};
+
+/** The keys that were filled in, as a table has them; what is no number is left for the server to refuse. */
+export const filled = (texts, known) => Object.fromEntries(Object.entries(texts).filter(([, text]) => text.trim()).map(
+  ([key, text]) => [key, valueOf(text.trim(), known[key].kind)],
+));
+const valueOf = (text, kind) => {
+  if (kind === "true or false") return text === "true";
+  if (!kind.includes("number")) return text;
+  if (!kind.startsWith("list")) return parseNumber(text) ?? text;
+  const parts = text.split(/\s*;\s*|,\s+|\s+/);
+  return (parts.length > 1 ? parts : text.split(",")).map((part) => parseNumber(part) ?? part);
+};
+
 /** Files by dropping or choosing; `files` is a signal of what was sent. */
 export const FileDrop = ({ label, help, accept, files, many = false, questions, app }) => {
   const input = useRef(null);
   const over = useSignal(false);
+  const folder = useRef(null);
   const take = async (list) => {
     const chosen = many ? [...list] : [...list].slice(0, 1);
+    const sent = [];
     try {
-      const sent = await Promise.all(chosen.map((file) => questions.send(file)));
-      const all = many ? [...files.value, ...sent] : sent;
+      for (let k = 0; k < chosen.length; k += AT_ONCE) {
+        sent.push(...await Promise.all(chosen.slice(k, k + AT_ONCE).map((file) => questions.send(file))));
+      }
+      const all = many ? [...(files.value || []), ...sent] : sent;
       // two files of one name are two files
       const named = all.map((one, k) => (all.slice(0, k).some((each) => each.name === one.name && each.sha !== one.sha)
         ? { ...one, name: `${one.sha.slice(0, 8)}-${one.name}` } : one));
@@ -53,7 +102,9 @@ export const FileDrop = ({ label, help, accept, files, many = false, questions, 
   const drop = (event) => {
     event.preventDefault();
     over.value = false;
-    take(event.dataTransfer.files);
+    const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
+    if (many && entries.some((entry) => entry.isDirectory)) return inFolders(entries).then(take);
+    return take([...event.dataTransfer.files]);
   };
   const mark = (on) => (event) => {
     event.preventDefault();
@@ -62,7 +113,12 @@ export const FileDrop = ({ label, help, accept, files, many = false, questions, 
   return html`
     <div class=${`drop ${over.value ? "over" : ""}`} onDragOver=${mark(true)} onDragLeave=${mark(false)} onDrop=${drop}>
       <p>${label}</p>
-      <button type="button" class="button" onClick=${() => input.current.click()}>Choose ${many ? "files" : "a file"}</button>
+      <div class="toolbar">
+        <button type="button" class="button" onClick=${() => input.current.click()}>Choose ${many ? "files" : "a file"}</button>
+        ${many && html`<button type="button" class="button" onClick=${() => folder.current.click()}>Choose a folder</button>
+          <input ref=${folder} class="visually-hidden" type="file" tabindex="-1" aria-label="A folder" webkitdirectory
+            onChange=${(event) => { take([...event.target.files]); event.target.value = ""; }} />`}
+      </div>
       <input ref=${input} class="visually-hidden" type="file" tabindex="-1" aria-label=${label} accept=${accept}
         multiple=${many} onChange=${(event) => { take([...event.target.files]); event.target.value = ""; }} />
       <p class="field-help">${help}</p>
@@ -72,6 +128,23 @@ export const FileDrop = ({ label, help, accept, files, many = false, questions, 
             onClick=${() => (files.value = files.value.filter((each) => each !== one))}>leave out</button></li>`)}
       </ul>`}
     </div>`;
+};
+
+const AT_ONCE = 6; // files that are sent beside one another
+
+// All files of what was dropped, of folders those in them.
+const inFolders = async (entries) => {
+  const found = [];
+  for (const entry of entries) {
+    if (entry.isFile) found.push(await new Promise((resolve, reject) => entry.file(resolve, reject)));
+    const reader = entry.isDirectory && entry.createReader();
+    let some = reader ? await new Promise((resolve, reject) => reader.readEntries(resolve, reject)) : [];
+    while (some.length) {
+      found.push(...await inFolders(some));
+      some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+    }
+  }
+  return found;
 };
 
 // What stands of a question: being answered, refused, or its answer.
@@ -92,12 +165,14 @@ const Outcome = ({ questions, answer: Answer }) => {
         <${Drawing} question=${question} alt="What was found all the same" />`}
       ${question.state === "stopped" && html`<p class="note info"><span class="sign" aria-hidden="true">i</span>
         <span>It was stopped.</span></p>`}
-      ${done && question.answer && html`<${Answer} answer=${question.answer} question=${question} />`}
+      ${done && question.answer && html`<${Answer} answer=${question.answer} question=${question}
+        questions=${questions} />`}
       ${done && html`<${Files} questions=${questions} question=${question} />`}
     </section>`;
 };
 
-const sentence = (words) => `${words.slice(0, 1).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
+/** Words as a sentence. */
+export const sentence = (words) => `${words.slice(0, 1).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
 
 const Waiting = ({ questions, question }) => html`
   <div class="waiting-line" role="status">
@@ -106,12 +181,18 @@ const Waiting = ({ questions, question }) => html`
     <button type="button" class="button" onClick=${questions.stop}>Stop</button>
   </div>`;
 
-const WORDS = { pdf: "Report (PDF)", html: "Report (web page)", svg: "Picture (SVG)", xlsx: "Excel", csv: "CSV" };
+const WORDS = {
+  pdf: "Report (PDF)", html: "Report (web page)", svg: "Picture (SVG)", xlsx: "Excel", csv: "CSV", json: "What was done (JSON)",
+};
+const wordsOf = (name) => {
+  const ending = name.split(".").at(-1);
+  return name.startsWith("record.") ? `Record (${ending.toUpperCase()})` : WORDS[ending];
+};
 
 const Files = ({ questions, question }) => html`
   <div class="toolbar" role="group" aria-label="Take away">
     ${question.files.map((name) => html`<button type="button" class="button" key=${name} onClick=${() => questions.take(name)}>
-      ${WORDS[name.split(".").at(-1)]}</button>`)}
+      ${wordsOf(name)}</button>`)}
   </div>
   <details><summary>The same on the command line</summary>
     <p class="field-help">Save it as question.toml: rocking ${question.command} question.toml</p><pre>${question.toml}</pre>
@@ -164,5 +245,6 @@ export const QuestionView = ({ title, lead, questions, wrong, onSubmit, answer, 
     <${Outcome} questions=${questions} answer=${answer} />
   </div>`;
 
-const Wrong = ({ words }) => html`
+/** What is wrong. */
+export const Wrong = ({ words }) => html`
   <p class="note error" role="alert"><span class="sign" aria-hidden="true">\u2715</span><span>${words}</span></p>`;

@@ -1,9 +1,9 @@
-/** Decide: does the body stand under its motion, or under several records, how sure is that, and what to do. */
+/** Decide: does the body stand, how sure is that, what to do; and all factors at which that changes. */
 
 import { html, render } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
-import { Choice, Drawing, Field, FileDrop, QuestionView, Rows, useSignal } from "/questions/parts.js";
+import { Choice, Drawing, Field, FileDrop, KeyField, QuestionView, Rows, filled, sentence, useForm, useSignal } from "/questions/parts.js";
 
 const FAMILIES = [
   ["", "the motion of this project"], ["records", "record files"], ["firm-ground", "20 synthetic motions, firm ground"],
@@ -13,7 +13,7 @@ const RECORDS = ".at2,.txt,.csv,.v1,.v2,.v1c,.v2c,.smc,.mseed,.sac,.dat,.zip,.ac
 
 /** Build the view inside its section. */
 export const mount = (section, app) => {
-  const questions = createQuestions(app, "assess");
+  const questions = createQuestions(app, "assess", "minimum");
   render(html`<${Decide} app=${app} questions=${questions} />`, section);
   return { shown: () => questions.look() };
 };
@@ -25,8 +25,14 @@ const Decide = ({ app, questions }) => {
   const margin = useSignal("1");
   const [author, date, pga] = [useSignal(""), useSignal(""), useSignal("0.3")];
   const wrong = useSignal("");
+  const what = useSignal("assess");
+  const range = useForm("rocking.crossings", {});
   const ask = (event) => {
     event.preventDefault();
+    if (what.value === "minimum") {
+      wrong.value = app.faults.sentence({ inputs: true }) || crossings(app, questions, range.value);
+      return;
+    }
     const inputs = app.inputs.get();
     const asked = motions(inputs, shaken.value, files.value, { units: units.value, pga: pga.value });
     const factor = Number(margin.value.replace(",", "."));
@@ -44,9 +50,14 @@ const Decide = ({ app, questions }) => {
     questions.ask(tables, asked.files, `Does ${name} stand?`);
   };
   return html`
-    <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Verdict}
+    <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Found}
       title="Does it stand?"
       lead="All models of the impact, both ways round, the margin to overturning, how likely it is, and what to do about it.">
+      <${Choice} label="Question" value=${what} options=${[["assess", "does it stand, and what to do about it"],
+        ["minimum", "from which acceleration on does it overturn, and where that changes"]]} />
+      ${what.value === "minimum" ? html`<div class="fields">${["lowest", "highest", "points", "levels"].map((name) => html`
+        <${KeyField} key=${name} name=${name} facts=${app.info.keys.minimum[name]} value=${range.at(name)} />`)}</div>
+        <p class="field-help">Under the motion of this project, scaled; with the first model of the impact.</p>` : html`
       <${Choice} label="Shaken by" value=${shaken} options=${FAMILIES} />
       ${shaken.value === "records" && html`
         <${FileDrop} label="Drop records here, or" many accept=${RECORDS} files=${files} questions=${questions} app=${app}
@@ -57,7 +68,7 @@ const Decide = ({ app, questions }) => {
       <${Field} label="Must hold" unit="times the motion" value=${margin} inputmode="decimal"
         help="What is proposed holds this much." />
       <${Field} label="Signed by" value=${author} help="For the report." />
-      <${Field} label="Date" value=${date} help="Today if empty." />
+      <${Field} label="Date" value=${date} help="Today if empty." />`}
     <//>`;
 };
 
@@ -76,6 +87,42 @@ const motions = (inputs, shaken, files, { units, pga }) => {
   }
   return motionOf(inputs) ?? { files: {}, missing: "Nothing moves the ground yet: choose a motion first." };
 };
+
+/** Ask for all accelerations at which the verdict changes; what is missing. */
+const crossings = (app, questions, range) => {
+  const { body, motion, restitution, settings } = app.inputs.get();
+  const known = motionOf({ motion });
+  if (!known) return "Nothing moves the ground yet: choose a motion first.";
+  const { record, pulse, scale, ...keys } = known.tables.motion;
+  if (!record && !pulse) return "This is asked of one record or pulse: choose one as the motion.";
+  const named = record ? { records: [record], ...keys } : { pulse: [pulse], ...keys };
+  const { models, values, ...one } = restitution ?? {};
+  const first = models ? { model: models[0] } : values ? { value: values[0] } : one;
+  const tables = {
+    campaign: { name: "crossings", kind: "minimum-acceleration" }, body, motions: [named], restitution: first,
+    minimum: filled(range, app.info.keys.minimum), ...(settings ? { settings } : {}),
+  };
+  questions.ask(tables, known.files, `When does ${body.name || app.project.here.value.name} overturn?`, { command: "minimum" });
+  return "";
+};
+
+const Found = (given) => (given.question.command === "minimum" ? html`<${Crossings} ...${given} />` : html`<${Verdict} ...${given} />`);
+
+const G = 9.80665;
+const MOST = 20; // crossings in the table
+const STANDS = { "-2": "not lifted", "-1": "stays standing" };
+const modeOf = (mode) => STANDS[mode] ?? (mode >= 1e6 ? "falls" : mode === 0 ? "falls, no impact" : `falls, ${mode} impact${mode === 1 ? "" : "s"}`);
+
+const Crossings = ({ answer, question }) => html`
+  <p class=${`verdict ${answer.minimum_m_s2 === null ? "good" : "bad"}`} data-testid="verdict">
+    ${answer.minimum_m_s2 === null ? "It overturns nowhere" : `It first overturns at a PGA of ${number(answer.minimum_m_s2 / G, 4)} g, ${number(answer.minimum_m_s2 / answer.motion.peak_acceleration_m_s2, 4)} times this motion`}.</p>
+  <p>${sentence(answer.sentence)}</p>
+  <${Drawing} question=${question} alt="Where the body overturns, by the acceleration of the ground" />
+  <${Rows} caption="Crossings" head=${["PGA [g]", "times this motion", "times what lifts it", "below", "above"]}
+    rows=${answer.crossings.slice(0, MOST).map((each) => [number(each.acceleration_g, 6), number(each.scale, 6), number(each.ratio, 4),
+      modeOf(each.mode_below), modeOf(each.mode_above)])} />
+  <p class="field-help">Restitution: ${answer.restitution}.
+    ${answer.crossings.length > MOST && ` The first ${MOST} of ${answer.crossings.length} crossings; the CSV has all of them.`}</p>`;
 
 const MARKS = { overturning: "bad", uplift: "fair" };
 

@@ -1,0 +1,216 @@
+/** Records: one corrected by a chain of steps, before and after; or many measured, chosen and scaled to a spectrum. */
+
+import { freshId } from "/app/dom.js";
+import { html, render, useRef } from "/parts/preact.js";
+import { fetchFile } from "/app/api.js";
+import { number, parseNumber } from "/app/format.js";
+import { createQuestions } from "/questions/asking.js";
+import {
+  Choice, Drawing, FileDrop, KeyField, QuestionView, Rows, Wrong, filled, sentence, useForm, useSignal,
+} from "/questions/parts.js";
+
+const G = 9.80665;
+const ACCEPTED = ".at2,.txt,.csv,.v1,.v2,.v1a,.v2a,.v0c,.v1c,.v2c,.smc,.mseed,.sac,.dat,.asc,.acc,.ascii,.raw,.ns,.ew,.ud,.xml";
+const FIRST = { files: [], curve: [], steps: [], motion: {}, set: {}, of: {}, code: "eurocode8", shown: "", list: "", format: "" };
+
+/** Build the view inside its section. */
+export const mount = (section, app) => {
+  const questions = createQuestions(app, "convert", "motions");
+  const All = () => html`<${Records} key=${app.project.here.value.id} app=${app} questions=${questions} />`;
+  render(html`<${All} />`, section);
+  return { shown: () => questions.reopen() };
+};
+
+const Records = ({ app, questions }) => {
+  const form = useForm(`rocking.records.${app.project.here.value.id}`, FIRST);
+  const wrong = useSignal("");
+  const { files, curve, steps } = form.value;
+  const records = files.filter((one) => !isStations(one));
+  const shown = shownOf(form.value, records);
+  const lists = records.filter((one) => /\.csv$/i.test(one.name));
+  const single = shown !== "all" && shown !== "target";
+  const key = (name) => html`<${KeyField} key=${name} name=${name} facts=${app.info.keys.motion[name]} value=${form.at("motion", name)} />`;
+  const ask = (event) => {
+    event.preventDefault();
+    wrong.value = !records.length ? "No record was sent yet."
+      : shown === "target" && form.value.code === "file" && !curve.length ? "The file of the spectrum was not sent yet." : "";
+    if (wrong.value) return;
+    form.at("asked").value = chainOf(steps).join("; ");
+    const asked = single ? oneOf(form.value, app, records.find((one) => one.name === shown)) : setOf(form.value, app, shown);
+    questions.ask(asked.tables, asked.files, asked.name, { command: single ? "convert" : "motions", format: single ? form.value.format : "" });
+  };
+  return html`
+    <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Answer}
+      title="Records"
+      lead="A recording as it comes: what its file says, corrected step by step, before and after; or a folder of them, measured and chosen for a spectrum.">
+      <${FileDrop} label="Drop records or a folder here, or" many accept=${ACCEPTED} files=${form.at("files")} questions=${questions}
+        app=${app} help="With their StationXML file (.xml) where they are counts." />
+      ${records.length > 0 && html`<${Choice} label="What is shown" value=${form.at("shown")} chosen=${shown}
+        options=${[...records.slice(0, 50).map(({ name }) => [name, `${name}, before and after`]),
+          ["all", "all of them, in a table of measures"], ["target", "those that come close to a spectrum, scaled"]]} />`}
+      ${!single && lists.length > 0 && records.length > 1 && html`<${Choice} label="List of records" value=${form.at("list")}
+        help="A CSV with the columns motion, or x, y and z; the files that it names are sent with it."
+        options=${[["", "none: every file is a record"], ...lists.map(({ name }) => [name, name])]} />`}
+      <details open=${Object.values(form.value.motion).some(Boolean)}><summary>What the file does not say</summary>
+        <div class="fields">${["units", "time_step", "format", ...(single ? ["component"] : [])].map(key)}</div>
+      </details>
+      <${Chain} app=${app} form=${form} stations=${files.filter(isStations)} faulty=${faultyOf(questions, form.value)} />
+      ${shown === "target" && html`<${Target} app=${app} form=${form} questions=${questions} />`}
+      ${!single && html`<${KeyField} name="mirrored" facts=${app.info.keys.motions.mirrored} value=${form.at("set", "mirrored")} />`}
+      ${single && html`<${Choice} label="Written as" value=${form.at("format")} help="Beside columns of time and acceleration."
+        options=${[["", "columns only (CSV)"], ...app.info.formats.filter(({ name }) => name !== "columns")
+          .map(({ name, title }) => [name, `${name}: ${title}`])]} />`}
+    <//>`;
+};
+
+const isStations = ({ name }) => /\.xml$/i.test(name);
+const shownOf = ({ shown }, records) => {
+  if (["all", "target"].includes(shown) || records.some(({ name }) => name === shown)) return shown;
+  return records.length > 1 ? "all" : records[0]?.name ?? "";
+};
+
+/** The steps as job files and the command line have them. */
+const chainOf = (steps) => steps.map(({ name, keys }) => {
+  const given = Object.entries(keys).filter(([, text]) => text.trim());
+  return given.length ? `${name}:${given.map(([key, text]) => `${key}=${written(text)}`).join(",")}` : name;
+});
+const written = (text) => (parseNumber(text) === null ? text.replace(/[;,]/g, " ").trim() : String(parseNumber(text)));
+
+// Which step a refusal is about: its place if it says one, else its name.
+const faultyOf = (questions, { steps, asked }) => {
+  const found = /step (?:(\d+), )?([a-z]+)[: ]/.exec(questions.shown.value?.state === "refused" ? questions.shown.value.message : "");
+  if (!found || asked !== chainOf(steps).join("; ")) return null;
+  const place = found[1] ? Number(found[1]) - 1 : steps.findIndex(({ name }) => name === found[2]);
+  return { place, words: sentence(questions.shown.value.message.replace(/^.*?step (?:\d+, )?/, "")) };
+};
+
+const Chain = ({ app, form, stations, faulty }) => {
+  const known = app.info.steps;
+  const { steps } = form.value;
+  const heading = useRef(freshId("steps")).current;
+  const set = (next) => (form.at("steps").value = next);
+  const keyed = (place, key) => ({
+    get value() { return steps[place].keys[key] ?? ""; },
+    set value(text) { set(steps.map((one, k) => (k === place ? { ...one, keys: { ...one.keys, [key]: text } } : one))); },
+  });
+  const added = {
+    get value() { return ""; },
+    set value(name) { if (name) set([...steps, { name, id: freshId("step"), keys: {} }]); },
+  };
+  const moved = (place, by) => {
+    const next = [...steps];
+    next.splice(place + by, 0, ...next.splice(place, 1));
+    set(next);
+  };
+  return html`
+    <div class="chain" role="group" aria-labelledby=${heading}>
+      <h3 id=${heading}>Steps, in their order</h3>
+      <ol>${steps.map(({ name, id }, place) => html`<li key=${id} aria-label=${`Step ${place + 1}, ${name}`}>
+        <div class="toolbar"><strong>${name}</strong>
+          <button type="button" class="button quiet" aria-label=${`${name} earlier`} disabled=${!place} onClick=${() => moved(place, -1)}>\u2191</button>
+          <button type="button" class="button quiet" aria-label=${`${name} later`} disabled=${place === steps.length - 1} onClick=${() => moved(place, 1)}>\u2193</button>
+          <button type="button" class="button quiet" aria-label=${`Leave out ${name}`} onClick=${() => set(steps.filter((_, k) => k !== place))}>leave out</button>
+        </div>
+        <p class="field-help">${sentence(known[name].words)}</p>
+        <div class="fields">${Object.entries(known[name].keys).map(([key, facts]) => html`<${KeyField} key=${key} name=${key}
+          facts=${key === "stations" ? { ...facts, choices: stations.map((one) => one.name) } : facts} value=${keyed(place, key)} />`)}</div>
+        ${faulty?.place === place && html`<${Wrong} words=${faulty.words} />`}
+      </li>`)}</ol>
+      <${Choice} label="Add a step" value=${added}
+        options=${[["", "\u2013"], ...Object.entries(known).map(([name, { words }]) => [name, `${name}: ${words.toLowerCase()}`])]} />
+    </div>`;
+};
+
+const Target = ({ app, form, questions }) => {
+  const { code } = form.value;
+  const codes = Object.entries(app.info.targets).map(([name, { words }]) => [name, `${name}: ${words}`]);
+  return html`
+    <${Choice} label="Target spectrum" value=${form.at("code")} options=${[...codes, ["file", "a file (CSV) of periods and accelerations"]]} />
+    ${code === "file" ? html`<${FileDrop} label="Drop the spectrum here, or" accept=".csv" files=${form.at("curve")} questions=${questions} app=${app}
+      help="Its first line names the columns with units: T [s], Sa [g]." />`
+      : html`<div class="fields">${Object.entries(app.info.targets[code].keys).map(([key, facts]) => html`<${KeyField} key=${`${code}.${key}`} name=${key}
+        facts=${facts} value=${form.at("of", code, key)} />`)}</div>`}
+    <div class="fields">${["count", "periods"].map((name) => html`<${KeyField} key=${name} name=${name}
+      facts=${app.info.keys.motions[name]} value=${form.at("set", name)} />`)}</div>`;
+};
+
+const shas = (files, folder = "") => Object.fromEntries(files.map((one) => [`${folder}${one.name}`, one.sha]));
+
+const oneOf = ({ files, steps, motion }, app, record) => ({
+  tables: { motion: { record: record.name, ...filled(motion, app.info.keys.motion), ...processOf(steps) } },
+  files: shas([record, ...files.filter(isStations)]),
+  name: `${record.name}, before and after`,
+});
+
+const setOf = ({ files, curve, steps, motion, set, of, code, list }, app, shown) => {
+  const records = files.filter((one) => !isStations(one));
+  const { component, ...keys } = motion;
+  const { mirrored, ...chosen } = filled(set, app.info.keys.motions);
+  const spectrum = `${code}:${Object.entries(of[code] ?? {}).filter(([, text]) => text.trim()).map(([key, text]) => `${key}=${written(text)}`).join(",")}`;
+  const wanted = shown === "target" ? { target: code === "file" ? curve[0].name : spectrum, ...chosen } : {};
+  const named = records.some(({ name }) => name === list) ? `records/${list}` : "records";
+  return {
+    tables: { motions: [{ records: [named], ...filled(keys, app.info.keys.motions), ...processOf(steps), ...wanted, ...(mirrored ? { mirrored } : {}) }] },
+    files: { ...shas(records, "records/"), ...shas(files.filter(isStations)), ...shas(shown === "target" && code === "file" ? curve : []) },
+    name: `${records.length} records${shown === "target" ? ` for ${wanted.target}` : ""}`,
+  };
+};
+
+const processOf = (steps) => (steps.length ? { process: chainOf(steps) } : {});
+
+const Answer = (given) => (given.question.command === "convert" ? html`<${Corrected} ...${given} />` : html`<${Chosen} ...${given} />`);
+
+const HEAD = [["samples", "samples"], ["time_step_s", "step [s]"], ["pga_m_s2", "PGA [m/s\u00b2]"], ["pgv_m_s", "PGV [m/s]"],
+  ["pgd_m", "PGD [m]"], ["end_velocity_m_s", "velocity at the end [m/s]"]];
+
+const Corrected = ({ answer, question, questions }) => {
+  const doubts = [...new Set([...answer.before.warnings, ...answer.after.warnings])];
+  const said = Object.entries(answer.metadata).filter(([key]) => key !== "header");
+  return html`
+    <p class="verdict" data-testid="verdict">${answer.name}: PGA ${number(answer.before.pga_m_s2 / G, 4)} g before, ${number(answer.after.pga_m_s2 / G, 4)} g after.</p>
+    ${doubts.map((words) => html`<p class="note warning" key=${words}><span class="sign" aria-hidden="true">!</span><span>${sentence(words)}</span></p>`)}
+    <${Drawing} question=${question} alt="Acceleration, velocity, displacement, Fourier amplitudes and response spectrum, before and after" />
+    <div class="toolbar"><button type="button" class="button primary" onClick=${() => use(questions, question)}>Use it as the motion</button></div>
+    <${Rows} caption="Before and after" head=${["", ...HEAD.map(([, words]) => words)]} rows=${["before", "after"].map((when) =>
+      [when, ...HEAD.map(([key]) => (key === "samples" ? String(answer[when][key]) : number(answer[when][key])))])} />
+    <h3>What was done</h3>
+    <ul aria-label="What was done">${answer.provenance.map((words) => html`<li key=${words} class="provenance">${words}</li>`)}</ul>
+    <details><summary>What the file says</summary>
+      <dl class="facts">${said.map(([key, text]) => html`<dt key=${key}>${key}</dt><dd>${text}</dd>`)}</dl>
+      ${answer.metadata.header && html`<pre>${answer.metadata.header}</pre>`}
+    </details>`;
+};
+
+/** Keep the corrected record as a record of its own, and shake the body with it. */
+const use = async ({ app }, question) => {
+  try {
+    const name = `${question.name.split(",")[0].replace(/\.\w+$/, "")}-corrected.csv`;
+    const body = await (await fetchFile(`questions/${question.id}/record.csv`)).arrayBuffer();
+    const kept = await app.call("records", { method: "POST", body, query: { name } });
+    app.inputs.set("motion", { record: kept.record, file_name: kept.file_name });
+    app.say(`${kept.file_name} is the motion of this project.`);
+  } catch (error) {
+    app.say(error.message, "error");
+  }
+};
+
+const SHOWN = [["pga", "PGA [g]", 1 / G], ["pgv", "PGV [m/s]", 1], ["arias", "Arias [m/s]", 1], ["d5_95", "D5-95 [s]", 1]];
+
+const Chosen = ({ answer, question }) => {
+  const { records, selection, left_out: left } = answer;
+  const scaled = selection && selection.factor.length === records.length;
+  const rows = records.map((row, k) => {
+    const seen = ["x", "y", "z"].filter((axis) => row[`pga_${axis}`] !== null);
+    const lead = [...seen].sort((a, b) => (a === "z") - (b === "z") || row[`pga_${b}`] - row[`pga_${a}`])[0];
+    return [row.record, ...(scaled ? [number(selection.factor[k], 3), number(selection.misfit[k], 2)] : []),
+      ...SHOWN.map(([key, , size]) => number(row[`${key}_${lead}`] * size, 4)), seen.join(" ")];
+  });
+  return html`
+    <p class="verdict" data-testid="verdict">${selection ? sentence(selection.sentence) : `${records.length} records${left.length ? `, ${left.length} files left out` : ""}.`}</p>
+    <${Drawing} question=${question} alt=${selection ? "Spectra of the scaled records, their mean and the target" : "Spectra of the records"} />
+    <${Rows} caption="Records" rows=${rows}
+      head=${["record", ...(scaled ? ["factor", "misfit"] : []), ...SHOWN.map(([, words]) => words), "components"]} />
+    <p class="field-help">The component with the largest peak is shown; the files have all of them, and their spectra.</p>
+    ${left.length > 0 && html`<h3>Left out</h3><${Rows} caption="Files that were left out" head=${["file", "why"]}
+      rows=${left.map(({ file, why }) => [file, why])} />`}`;
+};
