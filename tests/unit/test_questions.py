@@ -7,12 +7,13 @@ import pytest
 
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import MEASURES
+from rocking.motions.pipeline import steps_of
 from rocking.motions.pulses import catalogue
 from rocking.motions.synthetic import families
 from rocking.spec import construction
 from rocking.spec.document import CampaignDocument, IdentificationDocument, ResponseDocument
 from rocking.spec.reading import checked
-from rocking.spec.reference import reference
+from rocking.spec.reference import reference, steps, targets
 from rocking.studies import axes
 
 ROOT = Path(__file__).parents[2]
@@ -56,3 +57,19 @@ def test_names_that_stand_as_values_are_documented():
     names = [f"`{name}`" for name in (*axes(), *MEASURES, *families())] + [f"`{name}:" for name in catalogue()]
     assert [name for name in names if f"| {name}" not in text] == []
     assert "| `amplitude`" not in text
+
+
+def test_steps_say_what_they_take():
+    """Every step and target spectrum is described by its own function: no key without words, none that it refuses."""
+    for name, step in steps().items():
+        usual = "stations=x.xml,angle=1,time_step=1,low=1,high=2,before=1,start=0,end=1,number=1,storeys=2,period=1"
+        given = [word for word in usual.split(",") if step["keys"].get(word.partition("=")[0], {}).get("needed")]
+        given += ["factor=2"] if step["one"] else []
+        ((found, keys),) = steps_of(f"{name}:{','.join(given)}")
+        assert (found, len(keys)) == (name, len(given))
+    described = [*steps().values(), *targets().values()]
+    assert [key for one in described for key, each in one["keys"].items() if not each["words"]] == []
+    assert steps()["bandpass"]["keys"]["high"]["unit"] == "Hz"
+    assert steps()["bandpass"]["keys"]["pads"]["choices"] == ["cut", "keep"]
+    with pytest.raises(InvalidValueError, match="step taper takes fraction"):
+        steps_of("taper:low=1")

@@ -43,7 +43,9 @@ def convert(
     context: typer.Context,
     record: Annotated[
         list[str],
-        typer.Argument(help="Record file, file#COMPONENT; with its vertical part x=FILE z=FILE; or a TOML with [motion].")
+        typer.Argument(
+            help=r"Record file, file#COMPONENT; vertical part too: x=FILE z=FILE; or a TOML with \[motion]."
+        ),
     ],
     units: options.RecordUnits = None,
     scale: Annotated[float | None, options.key(options.tables.MotionKeys, "scale")] = None,

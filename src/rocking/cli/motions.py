@@ -53,7 +53,7 @@ def motions(
     record: Annotated[
         list[str],
         typer.Argument(
-            help="Folder, pattern in quotes, or list of records in a .csv file; several files; a TOML with [motions]."
+            help=r"Folder, pattern in quotes, or list of records in a .csv file; several files; a TOML with \[motions]."
         ),
     ],
     units: options.RecordUnits = None,

@@ -575,6 +575,12 @@ class RecordSetDocument(JobTable):
 
     motions: Annotated[list[MotionTable], Field(min_length=1, max_length=1), BeforeValidator(in_list)]
 
+    @model_validator(mode="after")
+    def _of_records(self) -> "RecordSetDocument":
+        if self.motions[0].records is None:
+            raise refused("motions.records is missing: a set is one of records")
+        return self
+
 
 class ValidationDocument(PredictedBody):
     """A file beside a table of outcomes: the body, what is not known of it, and how its records are read."""

@@ -69,11 +69,9 @@ def reference() -> str:
 
 
 def described(table: type[BaseModel]) -> dict[str, dict[str, Any]]:
-    """Return what is said of the keys of a table: unit, meaning, kind, usual value, if it is needed, what may be said."""
+    """Return what is said of the keys of a table: unit, meaning, kind, usual value and choices."""
     return {
-        field.alias or key: _said(
-            field.description or "", field.default, field.annotation, needed=field.is_required()
-        )
+        field.alias or key: _said(field.description or "", field.default, field.annotation, needed=field.is_required())
         for key, field in table.model_fields.items()
     }
 
@@ -112,9 +110,7 @@ def _documented(function: Callable[..., Any], keys: Mapping[str, Parameter]) -> 
     text = (getdoc(function) or "").partition("\nReturns\n")[0]
     words = {key: " ".join(said.split()) for names, said in _PARAMETERS.findall(text) for key in names.split(", ")}
     return {
-        key: _said(
-            words.get(key, ""), None if needed else one.default, one.annotation, needed=needed
-        )
+        key: _said(words.get(key, ""), None if needed else one.default, one.annotation, needed=needed)
         for key, one in keys.items()
         for needed in [one.default is one.empty]
     }

@@ -3,13 +3,17 @@
 import json
 import sys
 import time
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from rocking.app.errors import NotFound, Refused, TooLarge
 from rocking.app.questions.desk import QuestionDesk, refuse_outside
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
+from rocking.motions.formats import read_motion
+from rocking.motions.pipeline import processed
 
 OCTETS = {"Content-Type": "application/octet-stream"}
 TABLES = {
@@ -156,6 +160,77 @@ def test_a_list_cannot_name_a_file_of_this_computer(desk, tmp_path):
     assert "1,2" not in said
     if found.state == "done":
         assert len(json.loads(said)["not_assessed"]) == 2
+
+
+SHAKEN = "# time [s], acceleration [m/s2]\n" + "\n".join(
+    f"{0.01 * k:.2f} {np.sin(0.2 * k) * np.exp(-0.003 * k) + 0.05:.6f}" for k in range(1200)
+)
+
+
+def test_a_record_is_corrected(desk, tmp_path):
+    """What is written is the record after its steps, in the chosen format too; a step that cannot be is named."""
+    sha = desk.store.add(SHAKEN.encode(), "hall.txt").record
+    chain = ["mean", "bandpass:low=0.5,high=20", "taper"]
+    tables = {"motion": {"record": "hall.txt", "process": chain}}
+    found = ended(desk, desk.ask("convert", tables, {"hall.txt": sha}, format="smc-usgs").id)
+    assert found.files == ["picture.svg", "record.csv", "provenance.json", "record.smc"], found.message
+    (tmp_path / "hall.txt").write_text(SHAKEN)
+    expected = processed(read_motion(tmp_path / "hall.txt"), chain)
+    for name, share in (("record.csv", 1e-12), ("record.smc", 1e-4)):
+        written = read_motion(desk.file(found.id, name)).acceleration
+        assert written == pytest.approx(expected.acceleration, abs=share * expected.peak)
+    answer = json.loads(desk.answer(found.id))
+    assert answer["provenance"][1:] == list(expected.provenance)[1:]
+    assert answer["before"]["pga_m_s2"] != pytest.approx(answer["after"]["pga_m_s2"], rel=0.01)
+    for process, why in ((["mean", "bandpass:low=1,high=80"], "step bandpass: high must be in (1, 50) Hz, got 80"),
+                         (["response:stations=no.xml"], "no.xml")):  # fmt: skip
+        tables = {"motion": {"record": "hall.txt", "process": process}}
+        wrong = ended(desk, desk.ask("convert", tables, {"hall.txt": sha}).id)
+        assert wrong.state == "refused"
+        assert why in wrong.message
+    for command, form in (("convert", "word"), ("motions", "peer")):
+        with pytest.raises(Refused, match="format is that of a record"):
+            desk.ask(command, tables, {}, format=form)
+
+
+def test_no_record_at_all(desk):
+    """A text that is no record is refused in words, alone and among others."""
+    prose = desk.store.add(b"Dear all, please find no record here.\n", "letter.txt").record
+    alone = ended(desk, desk.ask("convert", {"motion": {"record": "letter.txt"}}, {"letter.txt": prose}).id)
+    assert (alone.state, "not recognised as any of" in alone.message) == ("refused", True)
+    sent = {"records/letter.txt": prose, "records/hall.txt": desk.store.add(SHAKEN.encode(), "hall.txt").record}
+    found = ended(desk, desk.ask("motions", {"motions": [{"records": ["records"]}]}, sent).id)
+    answer = json.loads(desk.answer(found.id))
+    assert [Path(each["file"]).name for each in answer["left_out"]] == ["letter.txt"]
+    assert [each["samples"] for each in answer["records"]] == [1200]
+    for name in ("records", "records/../x.txt", "records/a/b.txt", "record.csv", "record.xyz"):
+        with pytest.raises(Refused):
+            desk.ask("motions", {}, {name: prose})
+
+
+def test_a_list_of_records_names_none_of_this_computer(desk, tmp_path):
+    """What a list names is looked for among what was sent; another file of this computer is not opened."""
+    (tmp_path / "secret.txt").write_text(SHAKEN)
+    for name in (f"{tmp_path}/secret.txt", "../../../secret.txt"):
+        sha = desk.store.add(f"motion\n{name}\n".encode(), "list.csv").record
+        asked = desk.ask("motions", {"motions": [{"records": ["records/list.csv"]}]}, {"records/list.csv": sha})
+        found = ended(desk, asked.id)
+        assert found.state == "refused"
+        assert "1200" not in found.message
+
+
+def test_crossings(desk):
+    """The lowest acceleration at which a block overturns under a pulse, and where it stands again."""
+    body = {"units": "cm", "width": 50, "height": 200, "depth": 50, "density": 2400}
+    tables = {
+        "campaign": {"name": "crossings", "kind": "minimum-acceleration"}, "body": body,
+        "motions": [{"pulse": ["sine:amplitude=3,period=0.8"]}], "minimum": {"points": 40, "levels": 1},
+    }  # fmt: skip
+    found = ended(desk, desk.ask("minimum", tables, {}).id)
+    answer = json.loads(desk.answer(found.id))
+    assert found.files == ["picture.svg", "table.csv"]
+    assert answer["minimum_m_s2"] == answer["crossings"][0]["acceleration_m_s2"]
+    assert answer["minimum_m_s2"] > answer["uplift_acceleration_m_s2"]
 
 
 def test_what_cannot_be_run_stops_no_other(desk):

@@ -162,6 +162,29 @@ def test_convert(run, folder, tmp_path):
     assert run("convert", source, "--set", "motion.process=polish")[0] == 2
 
 
+def test_a_file_says_what_options_say(run, refuses, folder, tmp_path):
+    """A TOML with [motion] or [[motions]] gives the answer of the words; what does not fit is refused."""
+    chain, source = ["mean", "bandpass:low=0.2,high=20", "taper"], folder / "RSN0_A000.AT2"
+    one, many = folder / "one.toml", tmp_path / "many.toml"
+    one.write_text(f'[motion]\nrecord = "{source.name}"\nprocess = {json.dumps(chain)}\n')
+    many.write_text(f'[[motions]]\nrecords = ["{folder.name}"]\ntarget = "eurocode8:ag=0.2g"\ncount = 2\n')
+    typed = json.loads(run("convert", source, "--set", f"motion.process={'; '.join(chain)}", "--json")[1])
+    assert json.loads(run("convert", one, "--json")[1]) == typed
+    assert typed["before"]["pga_m_s2"] != typed["after"]["pga_m_s2"]
+    assert typed["metadata"]["station"]
+    one.unlink()
+    words = ["--set", "motion.target=eurocode8:ag=0.2g", "--set", "motion.count=2"]
+    expected = json.loads(run("motions", folder, *words, "--json")[1])
+    assert json.loads(run("motions", many, "--json")[1])["selection"] == expected["selection"]
+    assert expected["selection"]["sentence"].startswith("2 records scaled by ")
+    one.write_text(f'[motion]\nrecord = "{source.name}"\nprocess = ["taper", "mean", "taper:fraction=2"]\n')
+    refuses(["convert", one], "step 3, taper: fraction must be")
+    refuses(["convert", one, "--units", "g"], "says everything itself")
+    refuses(["convert", one, "--set", "motion.pulse=sine:amplitude=3,period=0.8"], "exactly one of")
+    many.write_text('[[motions]]\npulse = ["sine:amplitude=3,period=0.8"]\n')
+    refuses(["motions", many], "records is missing")
+
+
 @pytest.mark.parametrize("command", ["assess", "codes"])
 def test_a_record_of_zeros_does_not_stop_a_folder(run, folder, command):
     """It is left out with its reason as damaged ones are; a folder of nothing else is refused."""

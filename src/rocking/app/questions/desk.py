@@ -107,9 +107,7 @@ class QuestionDesk:
                 raise TooLarge(f"up to {MOST_QUESTIONS} questions are kept; delete some that are no longer needed")
         check_room(self.folder, _ROOM, self._limits.questions_bytes, "questions")
         asked = datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
-        question = HostedQuestion(
-            secrets.token_hex(8), command, shown(name or command), project, asked, format=format
-        )
+        question = HostedQuestion(secrets.token_hex(8), command, shown(name or command), project, asked, format=format)
         place = self.folder / question.id
         try:
             with room_on_disk():
