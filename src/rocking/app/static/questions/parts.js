@@ -85,10 +85,10 @@ export const FileDrop = ({ label, help, accept, files, many = false, questions, 
   const folder = useRef(null);
   const take = async (list) => {
     const chosen = many ? [...list] : [...list].slice(0, 1);
-    const sent = [];
+    let sent = [];
     try {
       for (let k = 0; k < chosen.length; k += AT_ONCE) {
-        sent.push(...await Promise.all(chosen.slice(k, k + AT_ONCE).map((file) => questions.send(file))));
+        sent = [...sent, ...await Promise.all(chosen.slice(k, k + AT_ONCE).map((file) => questions.send(file)))];
       }
       const all = many ? [...(files.value || []), ...sent] : sent;
       // two files of one name are two files
@@ -132,20 +132,16 @@ export const FileDrop = ({ label, help, accept, files, many = false, questions, 
 
 const AT_ONCE = 6; // files that are sent beside one another
 
-// All files of what was dropped, of folders those in them.
-const inFolders = async (entries) => {
-  const found = [];
-  for (const entry of entries) {
-    if (entry.isFile) found.push(await new Promise((resolve, reject) => entry.file(resolve, reject)));
-    const reader = entry.isDirectory && entry.createReader();
-    let some = reader ? await new Promise((resolve, reject) => reader.readEntries(resolve, reject)) : [];
-    while (some.length) {
-      found.push(...await inFolders(some));
-      some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
-    }
-  }
-  return found;
-};
+// All files of what was dropped, of folders those in them, which browsers give in pieces.
+const inFolders = async (entries) => (await Promise.all(entries.map(async (entry) => {
+  if (entry.isFile) return new Promise((resolve, reject) => entry.file(resolve, reject));
+  const reader = entry.createReader();
+  const inside = async () => {
+    const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+    return some.length ? [...await inFolders(some), ...await inside()] : [];
+  };
+  return inside();
+}))).flat();
 
 // What stands of a question: being answered, refused, or its answer.
 const Outcome = ({ questions, answer: Answer }) => {
