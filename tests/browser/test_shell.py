@@ -21,7 +21,7 @@ STEPS = ["body", "impact", "motion", "records", "response", "studies", "decide",
 
 
 def test_every_step_opens_by_arrow_keys_without_a_fault(page: Any, record: Any, served: Any) -> None:
-    """Tab list: right arrow walks the nine steps; nothing leaves the machine and no policy is violated."""
+    """Tab list: right arrow walks the ten steps; nothing leaves the machine and no policy is violated."""
     page.locator("#tab-body").focus()
     for name in STEPS[1:]:
         page.keyboard.press("ArrowRight")
