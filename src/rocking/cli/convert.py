@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking import plausibility
 from rocking.cli import options
 from rocking.cli.exports import PICTURES, Export, Exports, draw
 from rocking.cli.page import Page, deliver
@@ -105,10 +106,11 @@ class Conversion:
         return processing_picture(self.before, self.after)
 
     def facts(self) -> dict[str, Any]:
-        told = {
-            name: {**_facts(motion), "warnings": list(motion.doubts)}
+        told: dict[str, dict[str, Any]] = {
+            name: {**_facts(motion), "warnings": _doubts(motion)}
             for name, motion in (("before", self.before), ("after", self.after))
         }
+        told["before"]["warnings"] += filter(None, [self.before.metadata.get("doubts")])
         said = {"metadata": dict(self.before.metadata), "provenance": list(self.after.provenance)}
         return {"name": self.after.name, **told, **said, "files": list(self.files)}
 
@@ -125,6 +127,12 @@ class Conversion:
         page.table(head, rows, ("",))
         if not self.files:
             page.line("Nothing was written: --out FILE.at2 writes it, --out FILE.png draws it before and after.")
+
+
+def _doubts(motion: "GroundMotion") -> list[str]:
+    """Return what is hardly meant, of the samples and of what they integrate to."""
+    end, velocity, displacement = (_facts(motion)[key] for key in ("end_velocity_m_s", "pgv_m_s", "pgd_m"))
+    return [*motion.doubts, *plausibility.of_integrals(end, velocity, displacement)]
 
 
 def _facts(motion: "GroundMotion") -> dict[str, float]:

@@ -181,6 +181,8 @@ def test_a_record_is_corrected(desk, tmp_path):
         assert written == pytest.approx(expected.acceleration, abs=share * expected.peak)
     answer = json.loads(desk.answer(found.id))
     assert answer["provenance"][1:] == list(expected.provenance)[1:]
+    assert "integrated, it ends at" in answer["before"]["warnings"][0]
+    assert answer["after"]["warnings"] == []
     assert answer["before"]["pga_m_s2"] != pytest.approx(answer["after"]["pga_m_s2"], rel=0.01)
     for process, why in ((["mean", "bandpass:low=1,high=80"], "step bandpass: high must be in (1, 50) Hz, got 80"),
                          (["response:stations=no.xml"], "no.xml")):  # fmt: skip

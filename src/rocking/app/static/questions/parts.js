@@ -83,11 +83,13 @@ export const FileDrop = ({ label, help, accept, files, many = false, questions, 
   const input = useRef(null);
   const over = useSignal(false);
   const folder = useRef(null);
+  const sending = useSignal("");
   const take = async (list) => {
     const chosen = many ? [...list] : [...list].slice(0, 1);
     let sent = [];
     try {
       for (let k = 0; k < chosen.length; k += AT_ONCE) {
+        if (chosen.length > AT_ONCE) sending.value = `Sending ${k + 1} of ${chosen.length}`;
         sent = [...sent, ...await Promise.all(chosen.slice(k, k + AT_ONCE).map((file) => questions.send(file)))];
       }
       const all = many ? [...(files.value || []), ...sent] : sent;
@@ -98,6 +100,7 @@ export const FileDrop = ({ label, help, accept, files, many = false, questions, 
     } catch (error) {
       app.say(error.message, "error");
     }
+    sending.value = "";
   };
   const drop = (event) => {
     event.preventDefault();
@@ -122,6 +125,7 @@ export const FileDrop = ({ label, help, accept, files, many = false, questions, 
       <input ref=${input} class="visually-hidden" type="file" tabindex="-1" aria-label=${label} accept=${accept}
         multiple=${many} onChange=${(event) => { take([...event.target.files]); event.target.value = ""; }} />
       <p class="field-help">${help}</p>
+      <p class="field-help" role="status">${sending.value}</p>
       ${files.value.length > 0 && html`<ul class="sent" aria-label="Files">
         ${files.value.map((one) => html`<li key=${one.sha}>${one.name}
           <button type="button" class="button quiet" aria-label=${`Leave out ${one.name}`}
@@ -191,7 +195,8 @@ const Files = ({ questions, question }) => html`
       ${wordsOf(name)}</button>`)}
   </div>
   <details><summary>The same on the command line</summary>
-    <p class="field-help">Save it as question.toml: rocking ${question.command} question.toml</p><pre>${question.toml}</pre>
+    <p class="field-help">Save it as question.toml, its files beside it${question.command === "motions" && " and the records in a folder records"}:</p>
+    <pre>rocking ${question.command} question.toml${question.format && ` --out ${question.format}=${question.files.at(-1)}`}</pre><pre>${question.toml}</pre>
   </details>`;
 
 /** The picture of an answer, if it has one. */

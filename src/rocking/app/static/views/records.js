@@ -29,7 +29,9 @@ const Records = ({ app, questions }) => {
   const shown = shownOf(form.value, records);
   const lists = records.filter((one) => /\.csv$/i.test(one.name));
   const single = shown !== "all" && shown !== "target";
-  const key = (name) => html`<${KeyField} key=${name} name=${name} facts=${app.info.keys.motion[name]} value=${form.at("motion", name)} />`;
+  const choices = { units: app.info.units.acceleration, format: app.info.formats.map(({ name }) => name) };
+  const key = (name) => html`<${KeyField} key=${name} name=${name} value=${form.at("motion", name)}
+    facts=${{ ...app.info.keys.motion[name], choices: choices[name] ?? [] }} />`;
   const ask = (event) => {
     event.preventDefault();
     wrong.value = !records.length ? "No record was sent yet."
@@ -93,6 +95,10 @@ const Chain = ({ app, form, stations, faulty }) => {
     get value() { return steps[place].keys[key] ?? ""; },
     set value(text) { set(steps.map((one, k) => (k === place ? { ...one, keys: { ...one.keys, [key]: text } } : one))); },
   });
+  const by = (place) => ({
+    get value() { return Object.keys(steps[place].keys)[0] ?? ""; },
+    set value(key) { set(steps.map((one, k) => (k === place ? { ...one, keys: { [key]: "" } } : one))); },
+  });
   const added = {
     get value() { return ""; },
     set value(name) { if (name) set([...steps, { name, id: freshId("step"), keys: {} }]); },
@@ -112,13 +118,22 @@ const Chain = ({ app, form, stations, faulty }) => {
           <button type="button" class="button quiet" aria-label=${`Leave out ${name}`} onClick=${() => set(steps.filter((_, k) => k !== place))}>leave out</button>
         </div>
         <p class="field-help">${sentence(known[name].words)}</p>
-        <div class="fields">${Object.entries(known[name].keys).map(([key, facts]) => html`<${KeyField} key=${key} name=${key}
-          facts=${key === "stations" ? { ...facts, choices: stations.map((one) => one.name) } : facts} value=${keyed(place, key)} />`)}</div>
+        <div class="fields">
+          ${known[name].one && html`<${Choice} label="by" value=${by(place)} options=${Object.keys(known[name].keys).map((key) => [key, key])} />`}
+          ${keysOf(steps[place], known[name]).map(([key, facts]) => html`<${KeyField} key=${key} name=${key}
+            facts=${key === "stations" ? { ...facts, choices: stations.map((one) => one.name) } : facts} value=${keyed(place, key)} />`)}
+        </div>
         ${faulty?.place === place && html`<${Wrong} words=${faulty.words} />`}
       </li>`)}</ol>
       <${Choice} label="Add a step" value=${added}
         options=${[["", "\u2013"], ...Object.entries(known).map(([name, { words }]) => [name, `${name}: ${words.toLowerCase()}`])]} />
     </div>`;
+};
+
+// All keys of a step; of one that takes a single one, that which was chosen.
+const keysOf = ({ keys }, { one, keys: known }) => {
+  const all = Object.entries(known);
+  return one ? [all.find(([key]) => key in keys) ?? all[0]] : all;
 };
 
 const Target = ({ app, form, questions }) => {
@@ -164,7 +179,7 @@ const HEAD = [["samples", "samples"], ["time_step_s", "step [s]"], ["pga_m_s2", 
   ["pgd_m", "PGD [m]"], ["end_velocity_m_s", "velocity at the end [m/s]"]];
 
 const Corrected = ({ answer, question, questions }) => {
-  const doubts = [...new Set([...answer.before.warnings, ...answer.after.warnings])];
+  const doubts = ["before", "after"].flatMap((when) => answer[when].warnings.map((words) => `${when}: ${words}`));
   const said = Object.entries(answer.metadata).filter(([key]) => key !== "header");
   return html`
     <p class="verdict" data-testid="verdict">${answer.name}: PGA ${number(answer.before.pga_m_s2 / G, 4)} g before, ${number(answer.after.pga_m_s2 / G, 4)} g after.</p>
