@@ -45,6 +45,7 @@ EXPORTS = {
     "picture": Export(PICTURES, draw),
     "csv": Export((".csv",), lambda answer, path: answer.write_csv(path)),
     "stages": Export(PICTURES, _stages),
+    "space": Export((".glb",), lambda answer, path: answer.write_glb(path)),
 }
 
 
@@ -84,7 +85,7 @@ def cor(
     arguments = Arguments(context, "body", "settings")
     if odd := sorted(set(arguments.sets.get("settings", {})) - {"gravity"}):
         raise InvalidValueError(f"--set settings.{odd[0]}: an impact takes gravity only")
-    subject, gravity = _body(arguments, quiet=as_json)
+    subject, gravity = named_body(arguments, quiet=as_json)
     length = arguments.length or "m"
     if isinstance(subject, Solid):
         from rocking.cli.solids import SolidAnswer
@@ -97,6 +98,8 @@ def cor(
             )
         found = recommended(subject, models=restitution) if recommend else None
         answer: Any = SolidAnswer.of(subject, restitution, gravity, length, found)
+    elif "space" in exports.names:
+        raise InvalidValueError("--out with .glb is of a body in space, and this one is plane")
     else:
         from rocking.reports.body_facts import ImpactAnswer
 
@@ -113,10 +116,10 @@ def _model(text: str) -> Any:
     return model_in_file(text) if file_of(text) else model(text)
 
 
-def _body(arguments: Arguments, *, quiet: bool) -> tuple[Any, float]:
+def named_body(arguments: Arguments, *, quiet: bool) -> tuple[Any, float]:
     """Return the body and the gravity [m/s2], of a file of a response too; JSON stays alone on its stream."""
     word, sets = arguments.options["body"], arguments.sets
-    beside = ("onto", "restitution", "identities")
+    beside = ("onto", "restitution", "identities", "least_barrier")
     if file := document_file(arguments.context, word, ("response",), beside, "has a table [body] and "):
         with located(word):
             made = _made(with_sets(tables_in(file) or {}, sets), InputFiles(file.parent))

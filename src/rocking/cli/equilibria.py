@@ -11,8 +11,8 @@ import typer
 from rocking.bodies import Block, Section, Solid
 from rocking.bodies.equilibria import TOLERANCES, BaseTolerance, Equilibria, StablePose, base_tolerances
 from rocking.cli import options
-from rocking.cli.arguments import Arguments, hinted
-from rocking.cli.cor import body_of
+from rocking.cli.arguments import Arguments
+from rocking.cli.cor import named_body
 from rocking.cli.exports import PICTURES, Export, Exports, draw, write_records
 from rocking.cli.numbers import in_unit
 from rocking.cli.page import Page, deliver
@@ -26,6 +26,7 @@ DIRECTIONS = 12  # azimuths towards which barriers are printed, from x towards y
 
 EXPORTS = {
     "picture": Export(PICTURES, draw),
+    "space": Export((".glb",), lambda answer, path: answer.write_glb(path)),
     "csv": Export((".csv",), lambda answer, path: write_records(path, answer.facts()["stable"])),
 }
 
@@ -45,8 +46,7 @@ def equilibria(
     """Print in which ways a solid can stand, how far its centre must rise to leave each, and how sure its base is."""
     exports = Exports.of(out, EXPORTS)
     arguments = Arguments(context, "body")
-    with hinted(body, None):
-        subject, _ = body_of(arguments, body)
+    subject, _ = named_body(arguments, quiet=as_json)
     if isinstance(subject, (Block, Section)):
         subject = Solid.from_section(subject)
         subject.name = Path(body or "").name
@@ -135,6 +135,13 @@ class EquilibriaAnswer:
         from rocking.plots import equilibria_picture
 
         return equilibria_picture(self.solid, self.pose, found=self.found)
+
+    def write_glb(self, path: Path) -> None:
+        from rocking.plots.space_glb import GltfFile
+
+        file = GltfFile(self.solid)
+        file.stands(self.found, self.pose)
+        file.write(path)
 
     def show(self, page: Page) -> None:
         found, number = self.found, self.pose.number

@@ -32,6 +32,13 @@ _TABLES = ("body", "motion", "response", "restitution", "settings")
 def _animate(answer: Any, path: Path) -> None:
     from rocking.plots.animation import animate_gif, animate_html, slowest_speed
 
+    if path.suffix.lower() == ".glb":
+        from rocking.plots.space_glb import GltfFile
+
+        file = GltfFile(answer.problem.body)
+        file.moves(answer.response)
+        file.write(path)
+        return
     if path.suffix.lower() == ".html":
         animate_html(answer.response, path)
         return
@@ -52,7 +59,7 @@ def _animate(answer: Any, path: Path) -> None:
 
 EXPORTS = {
     "picture": Export(PICTURES, draw),
-    "animation": Export((".html", ".gif"), _animate),
+    "animation": Export((".html", ".gif", ".glb"), _animate),
     "csv": Export((".csv",), lambda answer, path: answer.response.to_csv(path)),
     "mat": Export((".mat",), lambda answer, path: answer.response.to_mat(path)),
     "netcdf": Export((".nc",), lambda answer, path: answer.response.to_netcdf(path)),
@@ -116,6 +123,8 @@ def simulate(
             "an animation is of pure rocking in the plane, or of a body in space with friction, and this is "
             f"{problem.mechanics}"
         )
+    if problem.mechanics == "rocking" and any(path.suffix.lower() == ".glb" for _, path in exports.files):
+        raise InvalidValueError(".glb is of a body in space with friction; an animation in the plane is .html or .gif")
     answer = answer_of(problem, length or "m", acceleration or "m/s2", listed=file is not None)
     deliver(answer, exports, as_json=as_json)
 

@@ -81,6 +81,13 @@ class SolidAnswer:
 
         return solid_picture(self.solid)
 
+    def write_glb(self, path: Path) -> None:
+        from rocking.plots.space_glb import GltfFile
+
+        file = GltfFile(self.solid)
+        file.edges(self.edges)
+        file.write(path)
+
     def write_csv(self, path: Path) -> None:
         from rocking.cli.exports import write_records
 

@@ -125,7 +125,7 @@ def solid_from_mesh(
             part, base=base, ground=float(part.box()[0, 2]), base_tolerance=tolerance,
             mass=mass, centre=None if centre is None else place + mesh.middle, inertia=inertia,
         )  # fmt: skip
-    solid.name, solid.repairs = path.name, said
+    solid.name, solid.repairs, solid.turn = path.name, said, times(part.rotation, _turn(options.get("up", "z")))
     return solid
 
 

@@ -63,6 +63,8 @@ class Solid:
         What its file calls it, or the name of the file; empty without one.
     repairs : tuple of str
         One sentence for each change of a mesh that it was read from, and each doubt about it.
+    turn : ndarray, shape (3, 3)
+        Rotation from the axes of the mesh that it was read from to its own; none if it was not [-].
 
     Raises
     ------
@@ -100,6 +102,7 @@ class Solid:
     ) -> None:
         self.name: str = ""
         self.repairs: tuple[str, ...] = ()
+        self.turn: FloatArray = np.eye(3)
         listed = _listed(parts)
         self._ground = checks.number("ground", ground, "m")
         boxes = np.array([part.box() for part in listed])
@@ -379,12 +382,13 @@ class Solid:
             known = {"centre": (0.0, 0.0, chosen.height), "inertia": inertia}
         result = Solid(parts, base=base, ground=ground, **known)
         result.name, result.repairs, result._assumed = self.name, self.repairs, self._assumed
+        result.turn = times(turn, self.turn)
         return result
 
     def _copy(self, parts: list[Part], matrix: FloatArray, size: float = 1.0, density: float = 1.0) -> "Solid":
         # not checked again: a similarity keeps a valid body valid
         result = object.__new__(Solid)
-        result.name, result.repairs = self.name, self.repairs
+        result.name, result.repairs, result.turn = self.name, self.repairs, times(matrix, self.turn)
         result._ground, result._size, result.origin = self._ground, self._size * size, self.origin
         result.local_parts = tuple(parts)
         result.local_base = self.local_base.changed(size * matrix[:2, :2], np.zeros(3))

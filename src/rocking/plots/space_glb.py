@@ -1,0 +1,171 @@
+"""A body in space as glTF (.glb): its surface, how it can stand, and how it moves, for 3D programs and for the page."""
+
+import json
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rocking.bodies.equilibria import Equilibria, StablePose
+from rocking.bodies.solid import RoundBase, Solid, SupportPolygon
+from rocking.bodies.solid.surfaces import TriangleSurface
+from rocking.conventions import FloatArray
+from rocking.dynamics.hull.response import HullResponse
+from rocking.plots.animation_hull import HullScene
+from rocking.version import SOFTWARE
+
+_TYPES = {np.dtype(np.float32): 5126, np.dtype(np.uint32): 5125, np.dtype(np.uint8): 5121}
+_SHAPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
+_Z_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # turns z up, as here, into y up, as glTF has it
+_ROUND = 90  # corners by which a round base is drawn
+_FEW, _DIVISIONS = 3000, 8  # fewer flat faces are split, so that colours change within them; pieces of what is round
+
+
+class GltfFile:
+    """A body in space and what was found about it, as one file of glTF."""
+
+    # what glTF has no word for stands in `extras`, in m and s, z up, from the centre of mass in the axes of the body
+    def __init__(self, solid: Solid) -> None:
+        self.solid = solid
+        self.binary = bytearray()
+        self.document: dict[str, Any] = {
+            "asset": {"version": "2.0", "generator": SOFTWARE}, "scene": 0, "scenes": [{"nodes": [0]}],
+            "nodes": [{"name": "ground", "rotation": _Z_UP, "children": [1]}],
+            "accessors": [], "bufferViews": [],
+        }  # fmt: skip
+        moments = solid.local_moments
+        triangles = _triangles(solid) - moments.centre
+        self.points, faces = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
+        primitive = {
+            "attributes": {"POSITION": self._add(self.points.astype(np.float32), bounds=True)},
+            "indices": self._add(faces.astype(np.uint32).ravel()),
+        }
+        self.attributes: dict[str, int] = primitive["attributes"]
+        self.document["meshes"] = [{"primitives": [primitive]}]
+        name, place = solid.name or "body", moments.centre
+        self.document["nodes"].append({"name": name, "mesh": 0, "translation": [0.0, 0.0, float(place[2])]})
+        corners = _corners(solid) - place
+        self.extras: dict[str, Any] = {"height": float(place[2]), "base": corners.tolist()}
+
+    def stands(self, found: Equilibria, pose: StablePose) -> None:
+        """Add the poses, what lies between them, and how high its centre is where each point of it is the lowest."""
+        heights = found.height(self.points)
+        low, high = found.stable[0].height, float(heights.max())
+        self.attributes["COLOR_0"] = self._add(_coloured((heights - low) / (high - low)))
+        self.extras |= {
+            "stands_in": pose.number, "landscape": [low, high],
+            "poses": [
+                {
+                    "turn": _quaternion(each.rotation), "height": each.height, "energy": each.energy,
+                    "barrier": each.barrier if np.isfinite(each.barrier) else None, "support": each.support.tolist(),
+                    "up_in_file": (-self.solid.turn.T @ each.down).tolist(),
+                }
+                for each in found.stable
+            ],
+            "marks": [
+                {
+                    "kind": each.kind, "place": (each.points.mean(axis=0) - found.centre).tolist(),
+                    "height": each.height, "energy": each.energy,
+                }
+                for each in (*found.stable, *found.saddles, *found.summits)
+            ],
+        }  # fmt: skip
+
+    def edges(self, edges: list[dict[str, Any]]) -> None:
+        """Add edges of the base, as `rocking cor` numbers them."""
+        from_centre = np.array([*self.solid.centre[:2], 0.0])
+        height = -self.extras["height"]
+
+        def place(corner: list[float]) -> list[float]:
+            return (np.array([*corner, height]) - from_centre).tolist()  # type: ignore[no-any-return]
+
+        self.extras["edges"] = [
+            {"name": each["edge"], "from": place(each["from_m"]), "to": place(each["to_m"])} for each in edges
+        ]
+
+    def moves(self, response: HullResponse) -> None:
+        """Add the motion as an animation, the tilt, and the vertices by whose numbers contacts are told."""
+        scene = HullScene.of(response)
+        turn = np.roll(scene.quaternion, -1, axis=1)  # the scalar last, as glTF has it
+        turn[1:] *= np.cumprod(np.where((turn[1:] * turn[:-1]).sum(axis=1) < 0.0, -1.0, 1.0))[:, None]
+        time = self._add(scene.time.astype(np.float32), bounds=True)
+        samplers = [{"input": time, "output": self._add(each.astype(np.float32))} for each in (turn, scene.centre)]
+        channels = [
+            {"sampler": k, "target": {"node": 1, "path": path}} for k, path in enumerate(("rotation", "translation"))
+        ]
+        self.document["animations"] = [{"samplers": samplers, "channels": channels}]
+        node = self.document["nodes"][1]
+        node["rotation"], node["translation"] = turn[0].tolist(), scene.centre[0].tolist()
+        self.extras["tilt"] = self._add(scene.tilt.astype(np.float32))
+        self.extras["hull"] = self._add(scene.points.astype(np.float32))
+
+    def write(self, path: Path) -> None:
+        """Write the file."""
+        self.document |= {"buffers": [{"byteLength": len(self.binary)}], "extras": {"rocking": self.extras}}
+        text = json.dumps(self.document, allow_nan=False, separators=(",", ":")).encode()
+        text += b" " * (-len(text) % 4)
+        whole = 28 + len(text) + len(self.binary)
+        head = struct.pack("<4sII I4s", b"glTF", 2, whole, len(text), b"JSON")
+        path.write_bytes(head + text + struct.pack("<I4s", len(self.binary), b"BIN\0") + self.binary)
+
+    def _add(self, values: np.ndarray, *, bounds: bool = False) -> int:
+        """Put an array into the file, a row an element; return the number of its accessor."""
+        data, kind = np.ascontiguousarray(values), _TYPES[values.dtype]
+        view = {"buffer": 0, "byteOffset": len(self.binary), "byteLength": data.nbytes}
+        accessor: dict[str, Any] = {
+            "bufferView": len(self.document["bufferViews"]), "componentType": kind, "count": len(data),
+            "type": _SHAPES[1 if data.ndim == 1 else data.shape[1]],
+        }  # fmt: skip
+        if data.dtype == np.uint8:
+            accessor["normalized"] = True
+        if bounds:
+            accessor |= {name: np.atleast_1d(getattr(data, name)(axis=0)).tolist() for name in ("min", "max")}
+        self.binary += data.tobytes() + bytes(-data.nbytes % 4)
+        self.document["bufferViews"].append(view)
+        self.document["accessors"].append(accessor)
+        return len(self.document["accessors"]) - 1
+
+
+def _triangles(solid: Solid) -> FloatArray:
+    pieces = []
+    for surface in (surface for part in solid.local_parts for surface in part.surfaces()):
+        if not isinstance(surface, TriangleSurface):
+            pieces.append(surface.triangles(_DIVISIONS))
+            continue
+        cells = surface.cells()
+        while len(cells) < _FEW:
+            cells = surface.split(cells)
+        pieces.append(cells)
+    return np.concatenate(pieces)
+
+
+def _corners(solid: Solid) -> FloatArray:
+    base = solid.local_base
+    if isinstance(base, SupportPolygon):
+        return np.column_stack([base.vertices, np.zeros(len(base.vertices))])
+    phi = 2.0 * np.pi * np.arange(_ROUND) / _ROUND
+    circle = base if isinstance(base, RoundBase) else RoundBase(np.zeros(2), 0.0)
+    flat = circle.centre + circle.radius * np.stack([np.cos(phi), np.sin(phi)], axis=1)
+    return np.column_stack([flat, np.zeros(_ROUND)])
+
+
+def _coloured(share: FloatArray) -> np.ndarray:
+    """Return the colours that the picture of the equilibria has, as glTF wants them: linear, not as on a screen."""
+    from matplotlib import colormaps
+
+    seen = colormaps["cividis"](np.clip(share, 0.0, 1.0))
+    light = np.where(seen <= 0.04045, seen / 12.92, ((seen + 0.055) / 1.055) ** 2.4)  # IEC 61966-2-1
+    light[:, 3] = 1.0
+    return np.round(255.0 * light).astype(np.uint8)
+
+
+def _quaternion(turn: FloatArray) -> list[float]:
+    """Return a shortest rotation onto -z, the scalar last."""
+    # about the horizontal axis (t12 - t21, ...) / (2 s) with s^2 = (1 + trace) / 4; by half a turn about x at last
+    scalar = 0.5 * np.sqrt(max(0.0, 1.0 + float(np.trace(turn))))
+    if scalar < 1e-9:
+        return [1.0, 0.0, 0.0, 0.0]
+    axis = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / (4.0 * scalar)
+    whole = np.array([*axis, scalar])
+    return (whole / np.linalg.norm(whole)).tolist()  # type: ignore[no-any-return]
