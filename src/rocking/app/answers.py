@@ -30,6 +30,7 @@ MEDIA_TYPES = {
     "csv": "text/csv; charset=utf-8",
     "dat": "application/octet-stream",
     "gif": "image/gif",
+    "glb": "model/gltf-binary",
     "html": "text/html; charset=utf-8",
     "json": "application/json",
     "mat": "application/x-matlab-data",

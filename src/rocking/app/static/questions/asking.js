@@ -5,7 +5,7 @@ import { computed, signal } from "/parts/preact.js";
 const EVERY = 500; // a look at a question that is being answered [ms]
 const ENDED = new Set(["done", "refused", "stopped"]);
 
-/** The questions of some commands in the open project. */
+/** The questions of some commands in the open project; what is asked is of the first if nothing else is said. */
 export const createQuestions = (app, ...commands) => {
   const shown = signal(null);
   const all = signal([]);
@@ -71,7 +71,7 @@ export const createQuestions = (app, ...commands) => {
 };
 
 // Names that answers have.
-const TAKEN = /^(inventory|table|report|picture|answer|state|log|question|record|provenance)\.|^(matplotlibrc|records$)/i;
+const TAKEN = /^(inventory|table|report|picture|space|answer|state|log|question|record|provenance)\.|^(matplotlibrc|records$)/i;
 const apart = (name, sha) => (TAKEN.test(name) ? `${sha.slice(0, 8)}-${name}` : name);
 
 /** The motion of the inputs as a question has it, and the files that it needs. */

@@ -182,7 +182,7 @@ const Waiting = ({ questions, question }) => html`
   </div>`;
 
 const WORDS = {
-  pdf: "Report (PDF)", html: "Report (web page)", svg: "Picture (SVG)", xlsx: "Excel", csv: "CSV", json: "What was done (JSON)",
+  pdf: "Report (PDF)", html: "Report (web page)", svg: "Picture (SVG)", xlsx: "Excel", csv: "CSV", json: "What was done (JSON)", glb: "3D (glTF)",
 };
 const wordsOf = (name) => {
   const ending = name.split(".").at(-1);

@@ -1,10 +1,12 @@
 /** Counts frames and what their script costs; tests and the curious read `window.rockingFrames`. */
 
-const meter = { count: 0, lastMs: 0, meanMs: 0, worstMs: 0 };
+const KEPT = 4096;
+const meter = { count: 0, lastMs: 0, meanMs: 0, worstMs: 0, times: new Float32Array(KEPT) };
 window.rockingFrames = meter;
 
 /** Notes one frame that took so many milliseconds of script. */
 export const noteFrame = (milliseconds) => {
+  meter.times[meter.count % KEPT] = milliseconds;
   meter.count += 1;
   meter.lastMs = milliseconds;
   meter.meanMs += (milliseconds - meter.meanMs) / meter.count;

@@ -1,0 +1,26 @@
+/** What an impact costs a body in space: every edge of its base, marked on the body, under every model. */
+
+import { html } from "/parts/preact.js";
+import { number } from "/app/format.js";
+import { Rows } from "/questions/parts.js";
+import { Scene } from "/space/scene.js";
+
+/** The edges of a question's body. */
+export const Edges = ({ question, answer }) => {
+  const models = Object.keys(answer.edges[0].coefficients);
+  const doubts = [...new Set(answer.edges.flatMap(({ coefficients }) => Object.entries(coefficients)
+    .flatMap(([name, { flags }]) => Object.values(flags).map((words) => `${name}: ${words}`))))];
+  return html`
+    <p class="verdict" data-testid="verdict">What is left of its speed when it falls back from an edge of its base, by model.</p>
+    <${Scene} question=${question} label="The body with the edges of its base numbered" onSpace=${() => {}}
+      onStage=${(stage) => {
+        stage.number(stage.model.edges);
+        stage.draw();
+      }}
+      words=${`Its base has ${answer.edges.length + answer.edges_left_out} edges it may rock about; edge 0 runs from corner 0 to corner 1.`}
+      legend=${[["holds", "an edge, with its number"], ["base", "a corner"], ["plumb", "centre of mass and plumb line"]]} />
+    <${Rows} caption="Edges and corners" head=${["from edge", "onto", "slenderness [\u00b0]", ...models]}
+      rows=${answer.edges.map((each) => [each.edge, each.lands_on, number((each.slenderness_angle_rad * 180) / Math.PI, 3),
+        ...models.map((name) => number(each.coefficients[name].coefficient, 4))])} />
+    ${[...doubts, ...answer.notes].map((words) => html`<p class="field-help" key=${words}>${words}</p>`)}`;
+};

@@ -1,0 +1,26 @@
+/** Reads the file in which the commands write a body in space: glTF in one piece. */
+
+const ARRAYS = { 5126: Float32Array, 5125: Uint32Array, 5121: Uint8Array };
+const WIDTHS = { SCALAR: 1, VEC3: 3, VEC4: 4 };
+
+/** What the file holds: arrays as they are in it, and what glTF has no word for, from the centre of mass, z up. */
+export const readGlb = (buffer) => {
+  const length = new DataView(buffer).getUint32(12, true);
+  const told = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 20, length)));
+  const array = (number) => {
+    if (number === undefined) return null;
+    const { bufferView, componentType, count, type } = told.accessors[number];
+    const at = 28 + length + told.bufferViews[bufferView].byteOffset;
+    return new ARRAYS[componentType](buffer, at, count * WIDTHS[type]);
+  };
+  const [{ attributes, indices }] = told.meshes[0].primitives;
+  const [turns, places] = told.animations?.[0].samplers ?? [];
+  const { tilt, hull, ...extras } = told.extras.rocking;
+  return {
+    ...extras,
+    points: array(attributes.POSITION), faces: array(indices), colours: array(attributes.COLOR_0), hull: array(hull),
+    motion: turns ? {
+      time: array(turns.input), turn: array(turns.output), place: array(places.output), tilt: array(tilt),
+    } : null,
+  };
+};

@@ -1,0 +1,98 @@
+/** Playing the motion of a body in space: one time for the picture, the curve of the tilt, and the words. */
+
+import { html, useEffect, useRef } from "/parts/preact.js";
+import { lineChart } from "/charts/line.js";
+import { Choice, useSignal } from "/questions/parts.js";
+import { Clock } from "/scene/clock.js";
+import { noteFrame, resetFrames } from "/scene/frames.js";
+import { Played } from "/space/played.js";
+import { Scene } from "/space/scene.js";
+
+const TOLD = 100; // between two looks at words and curve while it is played [ms]
+const SPEEDS = [["1", "1\u00d7, real speed"], ["2", "2\u00d7"], ["0.5", "0.5\u00d7"], ["0.1", "0.1\u00d7, slow motion"]];
+const LEGEND = [["holds", "touches the ground and holds"], ["slides", "slides"], ["plumb", "centre of mass and plumb line"]];
+
+/** The motion that a question found, with its controls. */
+export const MotionScene = ({ question, answer }) => {
+  const [now, running, words] = [useSignal(0), useSignal(false), useSignal("The motion is being loaded.")];
+  const speed = useSignal("1");
+  const kept = useRef({ clock: new Clock(), played: null, chart: null, told: 0 }).current;
+  const curve = useRef(null);
+  const { clock } = kept;
+  const tell = () => {
+    now.value = clock.now;
+    words.value = kept.played.words(clock.now);
+    kept.chart.setAim(clock.now);
+  };
+  const seek = (instant) => {
+    if (!kept.played) return;
+    clock.seek(instant);
+    clock.stop();
+    running.value = false;
+    kept.played.show(clock.now);
+    tell();
+  };
+  const frame = (stamp) => {
+    if (!clock.running) return;
+    const begun = performance.now();
+    clock.speed = Number(speed.value);
+    clock.tick(stamp);
+    kept.played.show(clock.now);
+    if (stamp - kept.told > TOLD || !clock.running) {
+      kept.told = stamp;
+      tell();
+    }
+    noteFrame(performance.now() - begun);
+    if (clock.running) requestAnimationFrame(frame);
+    else running.value = false;
+  };
+  const toggle = () => {
+    if (!kept.played) return;
+    if (clock.running) {
+      seek(clock.now);
+      return;
+    }
+    clock.start();
+    resetFrames();
+    running.value = clock.running;
+    requestAnimationFrame(frame);
+  };
+  const standing = (stage) => {
+    kept.played = new Played(stage.three, stage, answer);
+    clock.end = kept.played.end;
+    const { time, tilt } = stage.model.motion;
+    kept.chart = lineChart(curve.current, {
+      title: "Tilt from the pose at the start", height: 150, x: { label: "time", unit: "s" }, y: { label: "tilt", unit: "\u00b0" },
+      series: [{ label: "tilt", colour: "--accent" }],
+    });
+    kept.chart.setData([Array.from(time), Array.from(tilt, (each) => (each * 180) / Math.PI)]);
+    kept.chart.setMarks({ vertical: answer.impacts.map(({ time_s: at }) => at) });
+    kept.chart.plot.over.addEventListener("click", () => {
+      const at = kept.chart.plot.cursor.left;
+      if (at >= 0) seek(kept.chart.plot.posToVal(at, "x"));
+    });
+    seek(0);
+  };
+  useEffect(() => () => {
+    clock.stop();
+    kept.chart?.destroy();
+  }, []);
+  return html`
+    <${Scene} question=${question} words=${words.value} legend=${LEGEND} onStage=${standing} onSpace=${toggle}
+      label=${`The body as it moves: ${answer.summary}`} />
+    <div class="scene-row" role="group" aria-label="Play">
+      <button type="button" class="button primary scene-play" data-testid="space-play" onClick=${toggle}>
+        ${running.value ? "Pause" : "Play"}</button>
+      <input type="range" class="scene-time" min="0" max=${clock.end || 1} step="any" value=${now.value} aria-label="Instant"
+        aria-valuetext=${words.value} data-testid="space-time" onInput=${(event) => seek(Number(event.target.value))}
+        onKeyDown=${(event) => {
+          const stride = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+          if (!stride) return;
+          event.preventDefault();
+          seek(clock.now + (stride * (event.shiftKey ? 0.5 : 0.05)));
+        }} />
+      <output>${now.value.toFixed(2)} s</output>
+    </div>
+    <${Choice} label="Speed" value=${speed} options=${SPEEDS} />
+    <div ref=${curve}></div>`;
+};

@@ -1,0 +1,64 @@
+/** The motion of a body in space: where it is at an instant, what touches then, and that in words. */
+
+const DEGREES = 180 / Math.PI;
+
+/** The place in ordered times of the last that is not after an instant; -1 before all of them. */
+export const lastBefore = (count, at, instant) => {
+  let [low, high] = [-1, count];
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (at(middle) <= instant) low = middle;
+    else high = middle;
+  }
+  return low;
+};
+
+/** A motion as the server computed it, asked for its state at any instant between two poses of it. */
+export class Played {
+  constructor(three, stage, answer) {
+    this.stage = stage;
+    this.motion = stage.model.motion;
+    this.contacts = answer.contacts;
+    this.fell = answer.outcome === "overturned" ? (answer.overturning_time_s ?? Infinity) : Infinity;
+    this.end = this.motion.time.at(-1);
+    this.interval = null;
+    [this.one, this.other] = [new three.Quaternion(), new three.Quaternion()];
+    this.centre = [0, 0, 0];
+    this.turn = [0, 0, 0, 1];
+  }
+
+  /** Put the body where it is at an instant [s], and draw it. */
+  show(instant) {
+    const { time, turn, place, tilt } = this.motion;
+    const last = time.length - 1;
+    const k = Math.min(Math.max(0, lastBefore(time.length, (i) => time[i], instant)), Math.max(0, last - 1));
+    const next = Math.min(k + 1, last);
+    const share = next > k ? Math.min(1, Math.max(0, (instant - time[k]) / (time[next] - time[k]))) : 0;
+    this.one.fromArray(turn, 4 * k).slerp(this.other.fromArray(turn, 4 * next), share).toArray(this.turn);
+    for (let i = 0; i < 3; i += 1) this.centre[i] = between(place[3 * k + i], place[3 * next + i], share);
+    this.tilt = between(tilt[k], tilt[next], share);
+    this.stage.place(this.turn, this.centre);
+    this.touch(instant);
+    this.stage.draw();
+  }
+
+  touch(instant) {
+    const interval = this.contacts[lastBefore(this.contacts.length, (i) => this.contacts[i].start_s, instant)] ?? null;
+    if (interval === this.interval) return;
+    this.interval = interval;
+    const { vertices = [], sliding = [] } = interval ?? {};
+    this.stage.touch(vertices.filter((each) => !sliding.includes(each)), sliding);
+  }
+
+  /** What is seen at an instant that was shown. */
+  words(instant) {
+    const { vertices = [], sliding = [] } = this.interval ?? {};
+    const points = `on ${vertices.length} point${vertices.length === 1 ? "" : "s"}`;
+    const slides = sliding.length ? `, ${sliding.length === vertices.length ? "all" : sliding.length} sliding` : "";
+    const touches = vertices.length ? `${points}${slides}` : "in the air";
+    const fallen = instant >= this.fell ? "; it has overturned" : "";
+    return `At ${instant.toFixed(2)} s: tilted ${(this.tilt * DEGREES).toFixed(2)}\u00b0, ${touches}${fallen}.`;
+  }
+}
+
+const between = (one, other, share) => one + (other - one) * share;

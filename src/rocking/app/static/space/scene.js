@@ -1,0 +1,84 @@
+/** A body in space on the page: the picture, how to turn it, and what it shows in words. */
+
+import { html, useEffect, useRef } from "/parts/preact.js";
+import { fetchFile } from "/app/api.js";
+import { freshId } from "/app/dom.js";
+import { onTheme } from "/charts/style.js";
+import { useSignal } from "/questions/parts.js";
+import { readGlb } from "/space/glb.js";
+import { Stage } from "/space/stage.js";
+
+const LIBRARY = "/vendor/three/three.module.min.js"; // for this view alone, when there is something to show
+const [BY_KEY, BY_PIXEL, CLOSER] = [0.15, 0.008, 0.85];
+const VIEWS = [
+  ["From the front", { turned: -Math.PI / 2, raised: 0.15 }], ["From the side", { turned: 0, raised: 0.15 }],
+  ["From above", { turned: -Math.PI / 2, raised: 1.5 }], ["Nearer", null, CLOSER], ["Farther", null, 1 / CLOSER],
+];
+
+/** The picture of a question's body; `onStage` is told of the stage once it stands, `onSpace` is what that key does. */
+export const Scene = ({ question, words, label, onStage, onSpace, legend }) => {
+  const canvas = useRef(null);
+  const stage = useSignal(null);
+  const trouble = useSignal("");
+  const about = useRef(freshId("scene")).current;
+  useEffect(() => {
+    let made = null;
+    let gone = false;
+    const watcher = new ResizeObserver(() => made?.resize());
+    const forget = onTheme(() => made?.repaint());
+    const build = async () => {
+      const [file, three] = await Promise.all([fetchFile(`questions/${question.id}/space.glb`).then((file) => file.arrayBuffer()), import(LIBRARY)]);
+      if (gone) return;
+      made = new Stage(three, canvas.current, readGlb(file));
+      stage.value = made;
+      watcher.observe(canvas.current);
+      onStage(made);
+      canvas.current.dataset.drawn = "true";
+    };
+    build().catch((error) => (trouble.value = `No picture: ${error.message}. All that it shows stands in words below.`));
+    return () => {
+      gone = true;
+      watcher.disconnect();
+      forget();
+      made?.dispose();
+    };
+  }, []);
+  const look = (to) => {
+    stage.value?.look(to);
+    stage.value?.draw();
+  };
+  const turn = (across, up) => stage.value
+    && look({ turned: stage.value.turned + across, raised: stage.value.raised + up });
+  const nearer = (times) => stage.value && look({ near: stage.value.near * times });
+  const keys = (event) => {
+    const does = {
+      ArrowLeft: () => turn(-BY_KEY, 0), ArrowRight: () => turn(BY_KEY, 0),
+      ArrowUp: () => turn(0, BY_KEY), ArrowDown: () => turn(0, -BY_KEY),
+      "+": () => nearer(CLOSER), "-": () => nearer(1 / CLOSER), " ": onSpace,
+    }[event.key];
+    if (!does || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    does();
+  };
+  return html`
+    ${trouble.value && html`<p class="note warning"><span class="sign" aria-hidden="true">!</span><span>${trouble.value}</span></p>`}
+    <div class="space-picture" hidden=${Boolean(trouble.value)}>
+      <canvas ref=${canvas} class="space-stage" role="img" tabindex="0" aria-label=${label} aria-describedby=${about}
+        data-testid="space-stage" onKeyDown=${keys}
+        onPointerDown=${(event) => event.currentTarget.setPointerCapture(event.pointerId)}
+        onPointerMove=${(event) => event.buttons && turn(-BY_PIXEL * event.movementX, BY_PIXEL * event.movementY)}
+        onWheel=${(event) => {
+          if (document.activeElement !== canvas.current) return; // else the page could not be scrolled past it
+          event.preventDefault();
+          nearer(event.deltaY < 0 ? CLOSER : 1 / CLOSER);
+        }}></canvas>
+      <div class="toolbar" role="group" aria-label="Look">
+        ${VIEWS.map(([name, to, times]) => html`<button type="button" class="button quiet" key=${name}
+          onClick=${() => (to ? look({ ...to, near: 1 }) : nearer(times))}>${name}</button>`)}
+      </div>
+      <ul class="space-legend" aria-label="What is marked">
+        ${legend.map(([kind, text]) => html`<li key=${kind}><span class=${`space-key ${kind}`} aria-hidden="true"></span>${text}</li>`)}
+      </ul>
+    </div>
+    <p id=${about} class="space-words" data-testid="space-words">${words}</p>`;
+};

@@ -1,0 +1,253 @@
+/** A body in space on its ground, drawn by three.js; what it shows and where it is comes from the server. */
+
+import { colour } from "/charts/style.js";
+import { labelTexture, markTexture } from "/space/textures.js";
+
+const VIEW = 35; // opening of the camera [degrees]
+const FIRST = { turned: -1.1, raised: 0.3 };
+const [LOWEST, HIGHEST] = [0.03, 1.5];
+const FINEST = 2; // pixels of a canvas for one of the page
+
+/** The picture of one body; draws when it is told to. */
+export class Stage {
+  constructor(three, canvas, model) {
+    this.three = three;
+    this.canvas = canvas;
+    this.model = model;
+    const context = canvas.getContext("webgl2", { antialias: true, alpha: false });
+    if (!context) throw new Error("this browser draws nothing in three dimensions (WebGL 2 is off)");
+    this.renderer = new three.WebGLRenderer({ canvas, context });
+    this.scene = new three.Scene();
+    this.camera = new three.PerspectiveCamera(VIEW, 1, 0.01, 100);
+    this.camera.up.set(0, 0, 1);
+    this.paints = []; // [material, variable of the page]
+    this.body = new three.Group();
+    this.scene.add(this.body);
+    this.build();
+    this.look(FIRST);
+    this.repaint();
+  }
+
+  /** Put everything into the scene that never changes. */
+  build() {
+    const { three, model, scene, body } = this;
+    const skin = new three.BufferGeometry();
+    skin.setAttribute("position", new three.BufferAttribute(model.points, 3));
+    skin.setIndex(new three.BufferAttribute(model.faces, 1));
+    if (model.colours) skin.setAttribute("color", new three.BufferAttribute(model.colours, 4, true));
+    skin.computeBoundingSphere();
+    this.size = skin.boundingSphere.center.length() + skin.boundingSphere.radius;
+    this.skin = this.painted(new three.MeshLambertMaterial({ flatShading: true, side: three.DoubleSide }), "--space-body");
+    body.add(new three.Mesh(skin, this.skin));
+    this.frame();
+    this.lay();
+    const sun = new three.DirectionalLight(0xffffff, 2.2);
+    sun.position.set(0.5, -0.8, 1.2);
+    this.camera.add(sun, sun.target);
+    scene.add(this.camera, new three.HemisphereLight(0xffffff, 0x888888, 1.6));
+    this.base = this.line(loop(model.base), "--space-base", body);
+    this.support = this.line([], "--space-base");
+    this.plumb = this.line([[0, 0, 0], [0, 0, 0]], "--space-plumb", scene, true);
+    this.dots([[0, 0, 0]], "dot", "--space-plumb");
+    this.touching = ["--space-holds", "--space-slides"].map((paint) => this.contacts(paint));
+    this.place(null, [0, 0, model.height]);
+  }
+
+  /** Where the picture looks: the middle of all places of the centre, and how far it must see. */
+  frame() {
+    const [low, high] = [[0, 0, this.model.height], [0, 0, this.model.height]];
+    const places = this.model.motion?.place ?? [];
+    for (let k = 0; k < places.length; k += 1) {
+      low[k % 3] = Math.min(low[k % 3], places[k]);
+      high[k % 3] = Math.max(high[k % 3], places[k]);
+    }
+    this.middle = new this.three.Vector3(...low.map((value, k) => 0.5 * (value + high[k])));
+    this.reach = this.size + 0.5 * Math.hypot(...low.map((value, k) => high[k] - value));
+  }
+
+  /** The ground: a plane, and lines at a round distance. */
+  lay() {
+    const { three, scene, reach } = this;
+    const far = 6 * reach;
+    const gap = 10 ** Math.round(Math.log10(reach / 2));
+    const ends = [];
+    const count = Math.min(200, Math.ceil(far / gap));
+    for (let k = -count; k <= count; k += 1) {
+      const [at, end] = [k * gap, count * gap];
+      ends.push([at, -end, 0], [at, end, 0], [-end, at, 0], [end, at, 0]);
+    }
+    const lines = new three.BufferGeometry().setFromPoints(ends.map((each) => new three.Vector3(...each)));
+    scene.add(new three.LineSegments(lines, this.painted(new three.LineBasicMaterial(), "--space-line")));
+    const plane = new three.Mesh(
+      new three.PlaneGeometry(2 * count * gap, 2 * count * gap),
+      this.painted(new three.MeshBasicMaterial({ polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }), "--surface-2"),
+    );
+    scene.add(plane);
+    this.clear = new three.Color();
+  }
+
+  painted(material, paint) {
+    this.paints.push([material, paint]);
+    return material;
+  }
+
+  line(points, paint, into = this.scene, seenThrough = false) {
+    const { three } = this;
+    const geometry = new three.BufferGeometry().setFromPoints(points.map((each) => new three.Vector3(...each)));
+    const line = new three.Line(geometry, this.painted(new three.LineBasicMaterial({ depthTest: !seenThrough }), paint));
+    line.frustumCulled = false;
+    if (seenThrough) line.renderOrder = 1;
+    into.add(line);
+    return line;
+  }
+
+  /** Marks on the body that keep their size on the screen. */
+  dots(places, shape, paint) {
+    const { three } = this;
+    const seenThrough = shape === "dot";
+    const geometry = new three.BufferGeometry().setFromPoints(places.map((each) => new three.Vector3(...each)));
+    const material = new three.PointsMaterial({
+      map: markTexture(three, shape), size: 15 * this.fine, sizeAttenuation: false, transparent: true, alphaTest: 0.4,
+      depthTest: !seenThrough,
+    });
+    const points = new three.Points(geometry, this.painted(material, paint));
+    points.renderOrder = 2;
+    this.body.add(points);
+    return points;
+  }
+
+  /** Vertices of the hull of which some are shown; none at first. */
+  contacts(paint) {
+    if (!this.model.hull) return null;
+    const { three } = this;
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.BufferAttribute(this.model.hull, 3));
+    geometry.setIndex(new three.BufferAttribute(new Uint32Array(this.model.hull.length / 3), 1));
+    geometry.setDrawRange(0, 0);
+    const material = new three.PointsMaterial({
+      map: markTexture(three, "dot"), size: 13 * this.fine, sizeAttenuation: false, transparent: true, alphaTest: 0.4,
+      depthTest: false,
+    });
+    const points = new three.Points(geometry, this.painted(material, paint));
+    [points.renderOrder, points.frustumCulled] = [3, false];
+    this.body.add(points);
+    return points;
+  }
+
+  get fine() {
+    return Math.min(window.devicePixelRatio || 1, FINEST);
+  }
+
+  /** Show which vertices of the hull hold, and which slide. */
+  touch(holding, sliding) {
+    [holding, sliding].forEach((vertices, k) => {
+      const { geometry } = this.touching[k];
+      for (let i = 0; i < vertices.length; i += 1) geometry.index.array[i] = vertices[i];
+      geometry.index.needsUpdate = true;
+      geometry.setDrawRange(0, vertices.length);
+    });
+  }
+
+  /** Put the body into place: its attitude (x, y, z, s), null for as it is in the file, and its centre [m]. */
+  place(turn, centre) {
+    if (turn) this.body.quaternion.fromArray(turn);
+    this.body.position.fromArray(centre);
+    this.hang();
+  }
+
+  /** Let the plumb line hang from the centre. */
+  hang() {
+    const { x, y, z } = this.body.position;
+    const ends = this.plumb.geometry.attributes.position;
+    ends.setXYZ(0, x, y, z);
+    ends.setXYZ(1, x, y, 0);
+    ends.needsUpdate = true;
+  }
+
+  /** Draw a support polygon on the ground, in place of the base that the body has in its file. */
+  standOn(corners) {
+    const { three } = this;
+    this.base.visible = false;
+    const points = loop(corners.map(([x, y]) => [x, y, 0.001 * this.size]));
+    this.support.geometry.dispose();
+    this.support.geometry = new three.BufferGeometry().setFromPoints(points.map((each) => new three.Vector3(...each)));
+  }
+
+  /** Number edges on the body. */
+  number(edges) {
+    const { three } = this;
+    for (const { name, from, to } of edges) {
+      this.line([from, to], "--space-holds", this.body, true);
+      const label = new three.Sprite(new three.SpriteMaterial({
+        map: labelTexture(three, name), sizeAttenuation: false, depthTest: false,
+      }));
+      label.position.fromArray(from.map((value, k) => 0.5 * (value + to[k])));
+      label.scale.setScalar(0.045);
+      label.renderOrder = 4;
+      this.body.add(label);
+    }
+    this.dots(edges.map(({ from }) => from), "dot", "--space-base");
+  }
+
+  /** Colour the body by its landscape, or not. */
+  colourful(on) {
+    this.skin.vertexColors = on && Boolean(this.model.colours);
+    this.skin.needsUpdate = true;
+    this.repaint();
+  }
+
+  /** Look from a direction: from x towards y, and above the ground [rad]; near: times the first distance. */
+  look({ turned = this.turned, raised = this.raised, near = this.near ?? 1 }) {
+    this.turned = turned;
+    this.raised = Math.min(HIGHEST, Math.max(LOWEST, raised));
+    this.near = Math.min(4, Math.max(0.15, near));
+  }
+
+  /** Take the size of the canvas, and draw. */
+  resize() {
+    const { clientWidth: wide, clientHeight: high } = this.canvas;
+    if (!wide || !high) return;
+    this.renderer.setPixelRatio(this.fine);
+    this.renderer.setSize(wide, high, false);
+    this.camera.aspect = wide / high;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  /** Take the colours of the page, and draw. */
+  repaint() {
+    for (const [material, paint] of this.paints) {
+      material.color.set(material === this.skin && material.vertexColors ? "#ffffff" : colour(paint));
+    }
+    this.renderer.setClearColor(this.clear.set(colour("--surface")));
+    this.resize();
+  }
+
+  draw() {
+    const { camera, middle, reach, near, turned, raised } = this;
+    const narrow = Math.min(1, camera.aspect);
+    const far = (1.05 * near * reach) / (Math.sin((VIEW * Math.PI) / 360) * narrow);
+    const level = Math.cos(raised);
+    camera.position.set(
+      middle.x + far * level * Math.cos(turned), middle.y + far * level * Math.sin(turned), middle.z + far * Math.sin(raised),
+    );
+    camera.near = 0.01 * far;
+    camera.far = far + 12 * reach;
+    camera.lookAt(middle);
+    camera.updateProjectionMatrix();
+    this.renderer.render(this.scene, camera);
+  }
+
+  /** Give back what the graphics card holds. */
+  dispose() {
+    this.scene.traverse((each) => {
+      each.geometry?.dispose();
+      each.material?.map?.dispose();
+      each.material?.dispose();
+    });
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+  }
+}
+
+const loop = (points) => (points.length ? [...points, points[0]] : []);

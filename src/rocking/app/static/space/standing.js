@@ -1,0 +1,115 @@
+/** In which ways a body can stand: the poses, what it takes to leave them, and the landscape between them. */
+
+import { html, useRef } from "/parts/preact.js";
+import { number } from "/app/format.js";
+import { Choice, Drawing, Rows, useSignal } from "/questions/parts.js";
+import { calm } from "/scene/theme.js";
+import { Scene } from "/space/scene.js";
+
+const SETTLES = 700; // a body that is set down in another pose is seen to turn for so long [ms]
+const MOST = 40; // marks of one kind; a rough scan has hundreds of little ones
+const COLOURS = [["rise", "how high the centre is where that point is lowest"], ["plain", "none"]];
+// what only rounding left is nothing
+const joules = (value, most) => number(Math.abs(value) < 1e-9 * most ? 0 : value, 3);
+const millimetres = (value) => (value === null || value === undefined ? "\u2013" : number(1000 * value, 3));
+
+/** The poses of a question's body; `onPose` is told how it must lie in its file to stand in another. */
+export const Standing = ({ question, answer, onPose }) => {
+  const pose = useSignal(String(answer.stands_in));
+  const colours = useSignal("rise");
+  const stage = useRef(null);
+  const shown = Number(pose.value);
+  // the hardest to leave first
+  const poses = [...answer.stable].sort((one, other) => (other.barrier_m ?? Infinity) - (one.barrier_m ?? Infinity));
+  const settle = (number_) => {
+    pose.value = number_;
+    stage.current?.settleIn(stage.current.model.poses[Number(number_)]);
+  };
+  const built = (made) => {
+    stage.current = settling(made);
+    for (const kind of ["summit", "saddle", "stable"]) {
+      const marks = made.model.marks.filter((each) => each.kind === kind);
+      made.dots(marks.slice(0, MOST).map(({ place }) => before(place, made.size)), kind, `--space-${kind}`);
+    }
+    made.colourful(true);
+    made.setIn(made.model.poses[shown]);
+  };
+  const here = answer.stable[shown];
+  const most = answer.stable.at(-1).energy_J;
+  const [low, high] = [answer.stable[0].height_m, Math.max(...answer.stable.map(({ height_m: each }) => each))];
+  const words = `Pose ${shown}: its centre ${millimetres(here.height_m)} mm over the ground, ${joules(here.energy_J, most)} J above the lowest pose; `
+    + `the plumb line ${millimetres(here.nearest_edge_m)} mm inside the nearest edge of the support polygon. `
+    + (here.barrier_m === null || !Number.isFinite(here.barrier_m) ? "It knows no other pose."
+      : `To leave it the centre must rise ${millimetres(here.barrier_m)} mm.`);
+  const ways = answer.stable.length === 1 ? "one way" : `${answer.stable.length} ways`;
+  return html`
+    <p class="verdict" data-testid="verdict">It can stand in ${ways}; as it is set down it stands in pose ${answer.stands_in}.</p>
+    <${Scene} question=${question} words=${words} onStage=${built} label="The body on its support polygon, with its equilibria"
+      onSpace=${() => {}} legend=${[
+        ["stable", `${answer.stable.length} stable: it stands on that side`], ["saddle", `${answer.saddles} saddles: balanced on an edge`],
+        ["summit", `${answer.summits} summits: balanced on a corner`], ["plumb", "centre of mass and plumb line"],
+        ["rise", `dark: the centre is low (from ${millimetres(low)} mm) when that point is below; bright: high`]]} />
+    <div class="space-choices">
+      <${Choice} label="Set down in" value=${{ get value() { return pose.value; }, set value(next) { settle(next); } }}
+        options=${poses.map((each) => [String(each.pose),
+          `pose ${each.pose}: ${millimetres(each.barrier_m)} mm to leave it`])} />
+      <${Choice} label="Colours" value=${{ get value() { return colours.value; }, set value(next) {
+        colours.value = next;
+        stage.current?.colourful(next === "rise");
+      } }} options=${COLOURS} />
+    </div>
+    <div class="toolbar"><button type="button" class="button" onClick=${() => {
+      const { up_in_file: up } = stage.current?.model.poses[shown] ?? {};
+      if (up) onPose(shown, up);
+    }}>Go on in pose ${shown}</button></div>
+    <${Drawing} question=${question} alt=${`Rise of the centre by tilt and azimuth from pose ${answer.stands_in}, up to ${millimetres(high)} mm high, and its support polygon`} />
+    <h3>What it takes to topple it, by direction</h3>
+    <${Rows} caption="Directions" head=${["towards [\u00b0]", "centre must rise [mm]", "by the lowest way [mm]", "lifts at [m/s\u00b2]", "into pose"]}
+      rows=${answer.directions.map((each) => [
+        number((each.azimuth_rad * 180) / Math.PI, 3), millimetres(each.straight_rise_m), millimetres(each.lowest_rise_m),
+        number(each.uplift_acceleration_m_s2, 3), each.topples_into === null ? "\u2013" : String(each.topples_into)])} />
+    <h3>All poses, the hardest to leave first</h3>
+    <${Rows} caption="Poses" head=${["pose", "rise to leave [mm]", "centre [mm]", "energy [J]", "nearest edge [mm]"]}
+      rows=${poses.map((each) => [String(each.pose), millimetres(each.barrier_m), millimetres(each.height_m),
+        joules(each.energy_J, most), millimetres(each.nearest_edge_m)])} />
+    ${answer.notes.map((note) => html`<p class="field-help" key=${note}>${note}</p>`)}`;
+};
+
+// A place a little before the surface, where a mark is not cut in halves by it.
+const before = (place, size) => place.map((each) => each * (1 + (0.03 * size) / Math.hypot(...place)));
+
+// A stage on which a body is lifted, turned and set down.
+const settling = (stage) => {
+  const [from, to] = [new stage.three.Quaternion(), new stage.three.Quaternion()];
+  let ticket = 0;
+  stage.setIn = ({ turn, height, support }) => {
+    stage.place(turn, [0, 0, height]);
+    stage.standOn(support);
+    stage.draw();
+  };
+  stage.settleIn = (pose) => {
+    const mine = (ticket += 1);
+    if (calm()) {
+      stage.setIn(pose);
+      return;
+    }
+    from.copy(stage.body.quaternion);
+    to.fromArray(pose.turn);
+    const [begun, before] = [performance.now(), stage.body.position.z];
+    const step = (stamp) => {
+      const share = Math.min(1, Math.max(0, (stamp - begun) / SETTLES));
+      if (mine !== ticket || !stage.canvas.isConnected) return;
+      if (share >= 1) {
+        stage.setIn(pose);
+        return;
+      }
+      const lift = stage.size * Math.sin(Math.PI * share);
+      const height = Math.max(before + (pose.height - before) * share, lift);
+      stage.place(from.clone().slerp(to, share).toArray(), [0, 0, height]);
+      stage.draw();
+      requestAnimationFrame(step);
+    };
+    requestAnimationFrame(step);
+  };
+  return stage;
+};

@@ -1,0 +1,56 @@
+/** Marks and numbers as pictures that three.js puts into a scene. */
+
+const SIDE = 64;
+
+const drawn = (three, draw) => {
+  const canvas = Object.assign(document.createElement("canvas"), { width: SIDE, height: SIDE });
+  const pen = canvas.getContext("2d");
+  pen.translate(SIDE / 2, SIDE / 2);
+  pen.lineJoin = "round";
+  draw(pen);
+  const texture = new three.CanvasTexture(canvas);
+  texture.colorSpace = three.SRGBColorSpace;
+  return texture;
+};
+
+const path = (pen, points) => {
+  pen.beginPath();
+  points.forEach((each) => pen.lineTo(...each));
+  pen.closePath();
+};
+
+// As the picture of the equilibria marks them; white takes the colour of the material.
+const SHAPES = {
+  dot: (pen) => { pen.beginPath(); pen.arc(0, 0, 20, 0, 7); },
+  stable: (pen) => { pen.beginPath(); pen.arc(0, 0, 20, 0, 7); },
+  summit: (pen) => path(pen, [[0, -24], [23, 18], [-23, 18]]),
+  saddle: (pen) => path(pen, [
+    [-24, -15], [-15, -24], [0, -9], [15, -24], [24, -15], [9, 0], [24, 15], [15, 24], [0, 9], [-15, 24], [-24, 15], [-9, 0],
+  ]),
+};
+
+/** A mark: dot, stable, saddle or summit. */
+export const markTexture = (three, shape) => drawn(three, (pen) => {
+  SHAPES[shape](pen);
+  pen.lineWidth = 8;
+  pen.strokeStyle = "#1d1f1e";
+  pen.stroke();
+  pen.fillStyle = "#ffffff";
+  pen.fill();
+});
+
+/** A number on a plate. */
+export const labelTexture = (three, words) => drawn(three, (pen) => {
+  pen.beginPath();
+  pen.arc(0, 0, 28, 0, 7);
+  pen.fillStyle = "#ffffff";
+  pen.fill();
+  pen.lineWidth = 4;
+  pen.strokeStyle = "#1d1f1e";
+  pen.stroke();
+  pen.fillStyle = "#1d1f1e";
+  pen.font = `bold ${words.length > 2 ? 18 : 32}px system-ui, sans-serif`;
+  pen.textAlign = "center";
+  pen.textBaseline = "middle";
+  pen.fillText(words, 0, 2);
+});

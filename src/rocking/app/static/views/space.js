@@ -1,0 +1,139 @@
+/** In space: a scan, what was mended in it, in which ways it can stand, what its edges cost, and how it moves. */
+
+import { html, render } from "/parts/preact.js";
+import { number, parseNumber } from "/app/format.js";
+import { createQuestions, motionOf } from "/questions/asking.js";
+import { Choice, Drawing, Field, FileDrop, QuestionView, useSignal } from "/questions/parts.js";
+import { Edges } from "/space/edges.js";
+import { MotionScene } from "/space/motion.js";
+import { Standing } from "/space/standing.js";
+
+const SCANS = ".stl,.obj,.ply,.glb,.xyz,.toml";
+const RECORDS = ".at2,.txt,.csv,.v1,.v2,.v1c,.v2c,.smc,.mseed,.sac,.dat,.acc,.knt,.ns,.ew,.ud";
+const ASKED = [["equilibria", "in which ways can it stand?"], ["cor", "what do impacts cost, by edge?"], ["simulate", "how does it move?"]];
+const TITLES = { equilibria: "How it can stand", cor: "Its edges", simulate: "How it moves" };
+const UNITS = [["", "what the file says"], ["mm", "mm"], ["cm", "cm"], ["m", "m"], ["in", "in"], ["ft", "ft"]];
+const UP = [["", "what is usual (z; GLB: y)"], ["z", "z"], ["y", "y"], ["x", "x"], ["-z", "z, upside down"]];
+const AXES = { x: [1, 0, 0], "-z": [0, 0, -1] };
+const REPAIRS = [["", "what is safe"], ["none", "nothing: refuse what is not closed"], ["all", "whatever it takes"]];
+const SURFACES = [["", "its faces"], ["wrap", "a skin over its points"], ["hull", "the hull of its points"]];
+const SHAKEN = [["x", "the motion of this project, along x"], ["y", "the motion of this project, along y"], ["records", "records along x, y and z"]];
+const LAWS = [["ked-3d", "kinetic energy distribution (ked-3d)"], ["housner-3d", "Housner's (housner-3d)"], ["", "a coefficient"]];
+
+/** Build the view inside its section. */
+export const mount = (section, app) => {
+  const questions = createQuestions(app, ...Object.keys(TITLES));
+  render(html`<${Space} app=${app} questions=${questions} />`, section);
+  return { shown: () => questions.look() };
+};
+
+const Space = ({ app, questions }) => {
+  const files = useSignal([]);
+  const [asked, units, up, repair, surface, density] = ["equilibria", "", "", "", "", ""].map(useSignal);
+  const [shaken, friction, law, coefficient, times] = ["x", "0.4", "ked-3d", "0.8", "1"].map(useSignal);
+  const records = { x: useSignal([]), y: useSignal([]), z: useSignal([]) };
+  const recordUnits = useSignal("");
+  const pose = useSignal(null); // {number, up}: which way up it shall stand, in the axes of the file
+  const wrong = useSignal("");
+  const ask = (event) => {
+    event.preventDefault();
+    const body = bodyOf(files.value[0], {
+      units: units.value, up: pose.value?.up ?? AXES[up.value] ?? up.value, repair: repair.value, surface: surface.value,
+      density: density.value.trim(),
+    });
+    const moves = asked.value === "simulate";
+    const motion = moves ? shakenBy(app, shaken.value, records, recordUnits.value.trim(), times.value) : { tables: {}, files: {} };
+    const held = parseNumber(friction.value);
+    const kept = parseNumber(coefficient.value);
+    wrong.value = body.missing || (!(held > 0) ? "The friction is a number above 0." : "")
+      || (moves && !law.value && !(kept >= 0 && kept <= 1) ? "The coefficient is a number from 0 to 1." : "") || motion.missing || "";
+    if (wrong.value) return;
+    const [scan] = files.value;
+    const tables = {
+      body: body.table, response: { friction: held }, ...motion.tables,
+      ...(moves ? { restitution: law.value ? { model: law.value } : { value: kept } } : {}),
+    };
+    questions.ask(tables, { [scan.name]: scan.sha, ...motion.files }, `${TITLES[asked.value]}: ${scan.name}`, { command: asked.value });
+  };
+  const goOn = (number_, direction) => {
+    pose.value = { number: number_, up: direction };
+    app.say(`What is asked next is of the body in pose ${number_}.`);
+  };
+  return html`
+    <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask}
+      answer=${({ answer, question }) => html`<${Answer} key=${question.id} answer=${answer} question=${question} onPose=${goOn} />`}
+      title="What does a scan do?"
+      lead="A statue, a stone or a machine as it was scanned: what had to be mended, in which ways it can stand, and how it rocks, slides and falls in space.">
+      <${FileDrop} label="Drop a scan here, or" accept=${SCANS} files=${files} questions=${questions} app=${app}
+        help="STL, OBJ, PLY or GLB, points alone (PLY, XYZ), or a body file (TOML); up to 32 MiB." />
+      <${Choice} label="Unit of the file" value=${units} options=${UNITS} help="STL, OBJ and PLY do not say theirs." />
+      ${pose.value ? html`<p class="space-pose">Stands in pose ${pose.value.number} of the last answer.
+          <button type="button" class="button quiet" onClick=${() => (pose.value = null)}>As in the file</button></p>`
+        : html`<${Choice} label="Up" value=${up} options=${UP} help="It is let down from there until it rests." />`}
+      <${Field} label="Density" unit="kg/m\u00b3" value=${density} inputmode="decimal" help="Concrete's if empty." />
+      <details><summary>What may be mended</summary>
+        <${Choice} label="Mend" value=${repair} options=${REPAIRS} help="Safe: at most 1 % of the volume, and 0.5 % of the size for the centre." />
+        <${Choice} label="Surface" value=${surface} options=${SURFACES} />
+      </details>
+      <${Choice} label="Asked is" value=${asked} options=${ASKED} />
+      ${asked.value === "simulate" && html`
+        <${Choice} label="Shaken by" value=${shaken} options=${SHAKEN} />
+        ${shaken.value === "records" && html`
+          ${Object.entries(records).map(([axis, sent]) => html`<${FileDrop} key=${axis} label=${`A record along ${axis}, or`}
+            accept=${RECORDS} files=${sent} questions=${questions} app=${app} help=${axis === "z" ? "Upward." : ""} />`)}
+          <${Field} label="Unit of the accelerations" value=${recordUnits} help="Only where the files state none: g, m/s2, cm/s2." />`}
+        <${Field} label="Motion" unit="times" value=${times} inputmode="decimal" />
+        <${Field} label="Friction" value=${friction} inputmode="decimal" help="Coefficient: it may slide, hop and fall." />
+        <${Choice} label="Impacts" value=${law} options=${LAWS} />
+        ${!law.value && html`<${Field} label="Coefficient of restitution" value=${coefficient} inputmode="decimal" help="From 0 to 1." />`}`}
+    <//>`;
+};
+
+/** The table of the body, with what was said alone; missing: what has to be said first. */
+const bodyOf = (scan, said) => {
+  if (!scan) return { missing: "No scan was sent yet." };
+  const kind = scan.name.split(".").at(-1).toLowerCase();
+  if (!said.units && !["glb", "toml"].includes(kind)) return { missing: `${kind.toUpperCase()} files do not say their unit: choose it.` };
+  const density = said.density ? parseNumber(said.density) : null;
+  if (said.density && !(density > 0)) return { missing: "The density is a number above 0." };
+  const stated = Object.entries({ ...said, density }).filter(([, value]) => value !== null && value !== "");
+  return { table: { file: scan.name, ...Object.fromEntries(stated) } };
+};
+
+/** What shakes it along its axes, the files for that, and what is missing. */
+const shakenBy = (app, shaken, records, units, times) => {
+  const scale = parseNumber(times);
+  if (scale === null || scale === 0) return { missing: "How many times the motion? A number is needed." };
+  if (shaken !== "records") {
+    const motion = motionOf(app.inputs.get());
+    const missing = app.faults.sentence({ inputs: true }) || (motion ? "" : "This project has no motion: choose one, or send records.");
+    if (missing) return { missing };
+    return { tables: { motion: { [shaken]: motion.tables.motion, scale } }, files: motion.files };
+  }
+  const sent = Object.entries(records).filter(([, signal]) => signal.value.length).map(([axis, signal]) => [axis, signal.value[0]]);
+  const along = Object.fromEntries(sent.map(([axis, one]) => [axis, { record: one.name, ...(units ? { units } : {}) }]));
+  return {
+    tables: { motion: { ...along, scale } }, files: Object.fromEntries(sent.map(([, one]) => [one.name, one.sha])),
+    missing: sent.length ? "" : "No record was sent yet.",
+  };
+};
+
+const Answer = ({ answer, question, onPose }) => html`
+  ${question.command === "equilibria" && html`<${Standing} question=${question} answer=${answer} onPose=${onPose} />`}
+  ${question.command === "cor" && html`<${Edges} question=${question} answer=${answer} />`}
+  ${question.command === "simulate" && html`
+    <p class=${`verdict ${answer.outcome === "overturned" ? "bad" : "good"}`} data-testid="verdict">${sentence(answer.summary)}.</p>
+    <${MotionScene} question=${question} answer=${answer} />
+    <p>Largest tilt ${number((answer.peak_tilt_rad * 180) / Math.PI, 4)}\u00b0, ${answer.impacts.length} impacts;
+      slid ${number(1000 * answer.sliding_distance_m, 3)} mm at most.</p>
+    <${Drawing} question=${question} alt="Tilt, direction and energy over time" />`}
+  <h3>The scan, as it was taken</h3>
+  <p>${answer.body.size_m.map((each) => number(1000 * each, 4)).join(" \u00d7 ")} mm, ${number(answer.body.mass_kg, 4)} kg,
+    centre ${number(1000 * answer.body.centre_height_m, 4)} mm over the ground.</p>
+  <ul class="space-repairs" aria-label="What was mended">
+    ${answer.repairs.length ? answer.repairs.map((words) => html`<li key=${words}>${sentence(words)}.</li>`)
+      : html`<li>Nothing had to be mended.</li>`}
+    ${[...answer.body.assumed, ...answer.body.warnings].map((words) => html`<li key=${words}>${sentence(words)}.</li>`)}
+  </ul>`;
+
+const sentence = (words) => `${words.slice(0, 1).toUpperCase()}${words.slice(1)}`;
