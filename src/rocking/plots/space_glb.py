@@ -19,7 +19,7 @@ _TYPES = {np.dtype(np.float32): 5126, np.dtype(np.uint32): 5125, np.dtype(np.uin
 _SHAPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
 _Z_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # turns z up, as here, into y up, as glTF has it
 _ROUND = 90  # corners by which a round base is drawn
-_FEW, _DIVISIONS = 3000, 8  # fewer flat faces are split, so that colours change within them; pieces of what is round
+_FEW, _DIVISIONS = 10_000, 8  # fewer flat faces are split, so that colours change within them; pieces of what is round
 
 
 class GltfFile:

@@ -1,0 +1,135 @@
+"""Bodies in space as glTF: other programs read the same body, and its poses and motion are those of the answer."""
+
+import json
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.cli import main
+from rocking.dynamics.space.attitude import matrix
+from rocking.plots.space_glb import GltfFile
+
+trimesh = pytest.importorskip("trimesh")
+_KINDS = {5126: np.float32, 5125: np.uint32, 5121: np.uint8}
+_WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
+MILLIMETRES = 1000.0
+
+
+@pytest.fixture(scope="module")
+def scan(tmp_path_factory):
+    """Write a leaning block without symmetry, lying on its side in a file in mm."""
+    mesh = trimesh.creation.box((0.4, 0.25, 1.2))
+    height = mesh.vertices[:, 2] + 0.6
+    points = mesh.vertices * np.stack([1.0 - 0.3 * height, 1.0 - 0.1 * height, np.ones(8)], axis=1)
+    points[:, 0] += 0.05 * height
+    points[:, 1] += 0.03 * points[:, 0] + 0.06 * height
+    path = tmp_path_factory.mktemp("scan") / "block.stl"
+    trimesh.Trimesh(MILLIMETRES * points[:, [2, 0, 1]], mesh.faces, process=False).export(path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def solid(scan):
+    return rk.read_body(scan, units="mm", up=(1.0, 0.0, 0.0))
+
+
+def opened(path):
+    """Return what a file says, what it says beside glTF, and how to read an array of it."""
+    raw = path.read_bytes()
+    assert raw[:4] == b"glTF"
+    assert int.from_bytes(raw[8:12], "little") == len(raw)
+    length = int.from_bytes(raw[12:16], "little")
+    told = json.loads(raw[20 : 20 + length])
+
+    def array(number):
+        accessor = told["accessors"][number]
+        start = 28 + length + told["bufferViews"][accessor["bufferView"]]["byteOffset"]
+        width = _WIDTHS[accessor["type"]]
+        flat = np.frombuffer(raw, _KINDS[accessor["componentType"]], accessor["count"] * width, start)
+        return flat.reshape(-1, width).astype(np.float64)
+
+    return told, told["extras"]["rocking"], array
+
+
+def test_another_program_reads_the_same_body(solid, tmp_path):
+    """Volume and centre by trimesh, which knows nothing of ours; y is up, and with z up it would lie."""
+    GltfFile(solid).write(tmp_path / "body.glb")
+    mesh = trimesh.load_scene(tmp_path / "body.glb").to_geometry()
+    assert mesh.is_watertight
+    assert mesh.volume == pytest.approx(solid.volume, rel=1e-5)  # single precision
+    height = solid.centre[2] - solid.ground
+    assert mesh.center_mass == pytest.approx([0.0, height, 0.0], abs=1e-6)
+    assert rk.read_body(tmp_path / "body.glb").mass == pytest.approx(solid.mass, rel=1e-5)
+    wrong = rk.read_body(tmp_path / "body.glb", up="z")
+    assert abs(wrong.centre[2] - wrong.ground - height) > 0.1
+
+
+def test_the_file_stands_again_in_each_pose(solid, scan, tmp_path):
+    """Read with the direction that a pose names as up, it stands as high as that pose, and as no other; turns set down."""
+    found = solid.equilibria()
+    file = GltfFile(solid)
+    file.stands(found, found.stable[0])
+    file.write(tmp_path / "body.glb")
+    _, extras, _ = opened(tmp_path / "body.glb")
+    heights = [pose.height for pose in found.stable]
+    for pose, told in zip(found.stable, extras["poses"], strict=True):
+        x, y, z, s = told["turn"]
+        assert matrix(np.array([s, x, y, z])) @ pose.down == pytest.approx([0.0, 0.0, -1.0], abs=1e-12)
+        again = rk.read_body(scan, units="mm", up=told["up_in_file"])
+        assert again.centre[2] - again.ground == pytest.approx(pose.height, rel=1e-6)
+    assert min(np.diff(sorted(heights))) > 1e-4
+
+
+def test_colours_are_those_of_the_height(solid, tmp_path):
+    """Brightness follows the height of the centre over the point that is below, from all pairs of points."""
+    found = solid.equilibria()
+    file = GltfFile(solid)
+    file.stands(found, found.stable[0])
+    file.write(tmp_path / "body.glb")
+    told, extras, array = opened(tmp_path / "body.glb")
+    attributes = told["meshes"][0]["primitives"][0]["attributes"]
+    points, colours = array(attributes["POSITION"]), array(attributes["COLOR_0"])
+    heights = (points / np.linalg.norm(points, axis=1)[:, None] @ points.T).max(axis=1)
+    order = np.argsort(heights)
+    green = colours[order, 1]
+    assert (np.diff(green) >= -1.0).all()  # one step of 255 is rounding
+    assert np.ptp(green) > 100.0
+    assert heights.max() == pytest.approx(extras["landscape"][1], rel=1e-6)
+    assert heights.min() > extras["landscape"][0]  # which lies between points
+
+
+def test_what_is_told_to_touch_is_on_the_ground(solid, tmp_path):
+    """In the poses of the file, vertices that the answer lists are on the ground, none is below; other poses are not."""
+    pulse = rk.pulses.sine(amplitude=6.0, period=0.6)
+    response = rk.simulate(solid, {"x": pulse, "y": pulse}, 0.6, friction=0.5)
+    file = GltfFile(solid)
+    file.moves(response)
+    file.write(tmp_path / "body.glb")
+    told, extras, array = opened(tmp_path / "body.glb")
+    turns, places = (array(each["output"]) for each in told["animations"][0]["samplers"])
+    time, hull = array(told["animations"][0]["samplers"][0]["input"])[:, 0], array(extras["hull"])
+    assert (turns[1:] * turns[:-1]).sum(axis=1).min() > 0.0  # the short way between any two
+    above = hull @ matrix(np.roll(turns, 1, axis=1))[:, 2].T + places[:, 2]
+    slack = 1e-4  # single precision, and cubics between the steps [m]
+    assert above.min() > -slack
+    checked = 0
+    for start, end, touching, _ in response.intervals:
+        for k in np.flatnonzero((time > start + 1e-6) & (time < end - 1e-6)):
+            assert np.abs(above[list(touching), k]).max(initial=0.0) < slack
+            checked += len(touching)
+    assert checked > 50
+    assert array(extras["tilt"]).max() == pytest.approx(response.peak_tilt, rel=0.02)  # 60 poses a second
+    assert np.abs(above[:, np.argmax(array(extras["tilt"]))]).max() > slack
+
+
+def test_plane_bodies_are_refused(tmp_path, capsys):
+    """What is plane has no such file, and nothing is written."""
+    sizes = ["--width", "1", "--height", "4"]
+    target = str(tmp_path / "body.glb")
+    for words in (["cor", *sizes], ["simulate", *sizes, "--free", "0.5"]):
+        with pytest.raises(SystemExit) as ended:
+            main([*words, "--out", target])
+        assert ended.value.code == 2
+        assert ".glb is of a body in space" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
