@@ -17,7 +17,19 @@ expect = playwright.expect
 
 PHONE, WIDE = {"width": 360, "height": 740}, {"width": 1360, "height": 900}
 STATIC = Path(str(files("rocking"))) / "app" / "static"
-STEPS = ["body", "impact", "motion", "records", "response", "studies", "decide", "inventory", "measure", "takeaway"]
+STEPS = [
+    "body",
+    "impact",
+    "motion",
+    "records",
+    "response",
+    "studies",
+    "decide",
+    "inventory",
+    "measure",
+    "space",
+    "takeaway",
+]
 
 
 def test_every_step_opens_by_arrow_keys_without_a_fault(page: Any, record: Any, served: Any) -> None:

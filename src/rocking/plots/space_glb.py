@@ -37,12 +37,9 @@ class GltfFile:
         moments = solid.local_moments
         triangles = _triangles(solid) - moments.centre
         self.points, faces = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
-        primitive = {
-            "attributes": {"POSITION": self._add(self.points.astype(np.float32), bounds=True)},
-            "indices": self._add(faces.astype(np.uint32).ravel()),
-        }
-        self.attributes: dict[str, int] = primitive["attributes"]
-        self.document["meshes"] = [{"primitives": [primitive]}]
+        self.attributes = {"POSITION": self._add(self.points.astype(np.float32), bounds=True)}
+        indices = self._add(faces.astype(np.uint32).ravel())
+        self.document["meshes"] = [{"primitives": [{"attributes": self.attributes, "indices": indices}]}]
         name, place = solid.name or "body", moments.centre
         self.document["nodes"].append({"name": name, "mesh": 0, "translation": [0.0, 0.0, float(place[2])]})
         corners = _corners(solid) - place

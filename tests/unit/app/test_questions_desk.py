@@ -78,6 +78,48 @@ def test_a_list_that_was_sent_is_assessed(desk):
     assert str(desk.folder) not in without.message
 
 
+PLY = """ply
+format ascii 1.0
+element vertex 5
+property float x
+property float y
+property float z
+element face 6
+property list uchar int vertex_indices
+end_header
+0 0 0
+40 0 0
+40 25 0
+0 30 0
+15 10 90
+3 0 2 1
+3 0 3 2
+3 0 1 4
+3 1 2 4
+3 2 3 4
+3 3 0 4
+"""
+
+
+def test_a_scan_is_asked_in_two_ways(desk, client):
+    """One file with [response] serves both commands; each leaves a file of three dimensions; a cut one is refused."""
+    tables = {"body": {"file": "spire.ply", "units": "cm"}, "response": {"friction": 0.5}}
+    moved = {"motion": {"y": {"pulse": "sine:amplitude=4,period=0.5"}}, "restitution": {"value": 0.5}}
+    sent = desk.store.add(PLY.encode(), "spire.ply")
+    files = {"spire.ply": sent.record}
+    for command, more, key in (("equilibria", {}, "stable"), ("simulate", moved, "contacts")):
+        found = ended(desk, desk.ask(command, {**tables, **more}, files).id)
+        assert (found.state, found.files) == ("done", ["picture.svg", "space.glb", "table.csv"]), found.message
+        assert json.loads(desk.answer(found.id))[key]
+        assert desk.file(found.id, "space.glb").read_bytes().startswith(b"glTF")
+    cut = desk.store.add(PLY[:-20].encode(), "cut.ply")
+    found = ended(desk, desk.ask("equilibria", tables, {"spire.ply": cut.record}).id)
+    assert found.state == "refused"
+    assert "cut short" in found.message
+    schema = client.get("/api/openapi.json").json()["paths"]["/api/questions/{question}/{file}"]
+    assert "model/gltf-binary" in schema["get"]["responses"]["200"]["content"]
+
+
 def test_what_is_refused_says_why(desk):
     """The sentence of the command line is the message; there is no answer, and no file."""
     wrong = {**TABLES, "body": {"units": "cm", "width": 50, "height": -2}}

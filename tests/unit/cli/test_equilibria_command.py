@@ -74,3 +74,16 @@ def test_points_of_mass_are_refused(refuses, file):
     """Equilibria are those of a body in space."""
     points = "[mass_points]\npoints = [[0.1, 0.4], [0.5, 1.7]]\nmasses = [30, 55]\nfeet = [0, 0.6]\n"
     refuses((file(f'units = "m"\n{points}'),), "equilibria are those of a body in space")
+
+
+def test_a_file_that_asks_for_a_response(answered, run, file, tmp_path):
+    """Its table [body] is what stands, as the body alone does; --set changes it."""
+    body = file(PRISM)
+    asked = tmp_path / "asked.toml"
+    asked.write_text('[response]\nfriction = 0.5\n[body]\nfile = "body.toml"\n')
+    code, out, err = run(COMMAND, str(asked), "--json")
+    assert (code, "body and gravity are taken from it" in err) == (0, True)
+    assert json.loads(out) == answered(body)
+    (tmp_path / "other.toml").write_text(PRISM.replace("height = 3.0", "height = 2.5"))
+    _, out, _ = run(COMMAND, str(asked), "--json", "--set", "body.file=other.toml")
+    assert json.loads(out) == answered(tmp_path / "other.toml")

@@ -66,7 +66,7 @@ def test_another_program_reads_the_same_body(solid, tmp_path):
 
 
 def test_the_file_stands_again_in_each_pose(solid, scan, tmp_path):
-    """Read with the direction that a pose names as up, it stands as high as that pose, and as no other; turns set down."""
+    """Read with the direction that a pose names as up, it stands as high as that pose; turns set down."""
     found = solid.equilibria()
     file = GltfFile(solid)
     file.stands(found, found.stable[0])
@@ -100,7 +100,7 @@ def test_colours_are_those_of_the_height(solid, tmp_path):
 
 
 def test_what_is_told_to_touch_is_on_the_ground(solid, tmp_path):
-    """In the poses of the file, vertices that the answer lists are on the ground, none is below; other poses are not."""
+    """In the poses of the file, vertices that the answer lists are on the ground, and none is below."""
     pulse = rk.pulses.sine(amplitude=6.0, period=0.6)
     response = rk.simulate(solid, {"x": pulse, "y": pulse}, 0.6, friction=0.5)
     file = GltfFile(solid)

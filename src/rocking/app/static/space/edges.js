@@ -6,7 +6,7 @@ import { Rows } from "/questions/parts.js";
 import { Scene } from "/space/scene.js";
 
 /** The edges of a question's body. */
-export const Edges = ({ question, answer }) => {
+export const Edges = ({ question, answer, children }) => {
   const models = Object.keys(answer.edges[0].coefficients);
   const doubts = [...new Set(answer.edges.flatMap(({ coefficients }) => Object.entries(coefficients)
     .flatMap(([name, { flags }]) => Object.values(flags).map((words) => `${name}: ${words}`))))];
@@ -19,6 +19,7 @@ export const Edges = ({ question, answer }) => {
       }}
       words=${`Its base has ${answer.edges.length + answer.edges_left_out} edges it may rock about; edge 0 runs from corner 0 to corner 1.`}
       legend=${[["holds", "an edge, with its number"], ["base", "a corner"], ["plumb", "centre of mass and plumb line"]]} />
+    ${children}
     <${Rows} caption="Edges and corners" head=${["from edge", "onto", "slenderness [\u00b0]", ...models]}
       rows=${answer.edges.map((each) => [each.edge, each.lands_on, number((each.slenderness_angle_rad * 180) / Math.PI, 3),
         ...models.map((name) => number(each.coefficients[name].coefficient, 4))])} />

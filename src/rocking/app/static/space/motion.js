@@ -1,6 +1,7 @@
 /** Playing the motion of a body in space: one time for the picture, the curve of the tilt, and the words. */
 
 import { html, useEffect, useRef } from "/parts/preact.js";
+import { highest } from "/app/extremes.js";
 import { lineChart } from "/charts/line.js";
 import { Choice, useSignal } from "/questions/parts.js";
 import { Clock } from "/scene/clock.js";
@@ -8,9 +9,17 @@ import { noteFrame, resetFrames } from "/scene/frames.js";
 import { Played } from "/space/played.js";
 import { Scene } from "/space/scene.js";
 
+const WORTH = 0.01; // of the largest loss
 const TOLD = 100; // between two looks at words and curve while it is played [ms]
 const SPEEDS = [["1", "1\u00d7, real speed"], ["2", "2\u00d7"], ["0.5", "0.5\u00d7"], ["0.1", "0.1\u00d7, slow motion"]];
 const LEGEND = [["holds", "touches the ground and holds"], ["slides", "slides"], ["plumb", "centre of mass and plumb line"]];
+
+// Impacts that are marked: of thousands, only those that lose something worth seeing.
+const marked = (impacts) => {
+  const losses = impacts.map((each) => each.energy_before_J - each.energy_after_J);
+  const most = highest(losses);
+  return impacts.filter((_, k) => losses[k] > WORTH * most).map(({ time_s: at }) => at);
+};
 
 /** The motion that a question found, with its controls. */
 export const MotionScene = ({ question, answer }) => {
@@ -66,7 +75,7 @@ export const MotionScene = ({ question, answer }) => {
       series: [{ label: "tilt", colour: "--accent" }],
     });
     kept.chart.setData([Array.from(time), Array.from(tilt, (each) => (each * 180) / Math.PI)]);
-    kept.chart.setMarks({ vertical: answer.impacts.map(({ time_s: at }) => at) });
+    kept.chart.setMarks({ vertical: marked(answer.impacts) });
     kept.chart.plot.over.addEventListener("click", () => {
       const at = kept.chart.plot.cursor.left;
       if (at >= 0) seek(kept.chart.plot.posToVal(at, "x"));

@@ -26,8 +26,9 @@ export const Scene = ({ question, words, label, onStage, onSpace, legend }) => {
     let gone = false;
     const watcher = new ResizeObserver(() => made?.resize());
     const forget = onTheme(() => made?.repaint());
+    const sent = async () => (await fetchFile(`questions/${question.id}/space.glb`)).arrayBuffer();
     const build = async () => {
-      const [file, three] = await Promise.all([fetchFile(`questions/${question.id}/space.glb`).then((file) => file.arrayBuffer()), import(LIBRARY)]);
+      const [file, three] = await Promise.all([sent(), import(LIBRARY)]);
       if (gone) return;
       made = new Stage(three, canvas.current, readGlb(file));
       stage.value = made;

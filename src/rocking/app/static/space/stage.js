@@ -182,7 +182,7 @@ export class Stage {
         map: labelTexture(three, name), sizeAttenuation: false, depthTest: false,
       }));
       label.position.fromArray(from.map((value, k) => 0.5 * (value + to[k])));
-      label.scale.setScalar(0.045);
+      label.scale.setScalar(edges.length > 8 ? 0.03 : 0.045);
       label.renderOrder = 4;
       this.body.add(label);
     }

@@ -7,6 +7,7 @@ import { calm } from "/scene/theme.js";
 import { Scene } from "/space/scene.js";
 
 const SETTLES = 700; // a body that is set down in another pose is seen to turn for so long [ms]
+const FEW = 12; // poses that are listed
 const MOST = 40; // marks of one kind; a rough scan has hundreds of little ones
 const COLOURS = [["rise", "how high the centre is where that point is lowest"], ["plain", "none"]];
 // what only rounding left is nothing
@@ -14,7 +15,7 @@ const joules = (value, most) => number(Math.abs(value) < 1e-9 * most ? 0 : value
 const millimetres = (value) => (value === null || value === undefined ? "\u2013" : number(1000 * value, 3));
 
 /** The poses of a question's body; `onPose` is told how it must lie in its file to stand in another. */
-export const Standing = ({ question, answer, onPose }) => {
+export const Standing = ({ question, answer, onPose, children }) => {
   const pose = useSignal(String(answer.stands_in));
   const colours = useSignal("rise");
   const stage = useRef(null);
@@ -51,7 +52,7 @@ export const Standing = ({ question, answer, onPose }) => {
         ["rise", `dark: the centre is low (from ${millimetres(low)} mm) when that point is below; bright: high`]]} />
     <div class="space-choices">
       <${Choice} label="Set down in" value=${{ get value() { return pose.value; }, set value(next) { settle(next); } }}
-        options=${poses.map((each) => [String(each.pose),
+        options=${poses.filter((each, k) => k < FEW || each.pose === shown).map((each) => [String(each.pose),
           `pose ${each.pose}: ${millimetres(each.barrier_m)} mm to leave it`])} />
       <${Choice} label="Colours" value=${{ get value() { return colours.value; }, set value(next) {
         colours.value = next;
@@ -62,16 +63,19 @@ export const Standing = ({ question, answer, onPose }) => {
       const { up_in_file: up } = stage.current?.model.poses[shown] ?? {};
       if (up) onPose(shown, up);
     }}>Go on in pose ${shown}</button></div>
+    ${children}
     <${Drawing} question=${question} alt=${`Rise of the centre by tilt and azimuth from pose ${answer.stands_in}, up to ${millimetres(high)} mm high, and its support polygon`} />
     <h3>What it takes to topple it, by direction</h3>
     <${Rows} caption="Directions" head=${["towards [\u00b0]", "centre must rise [mm]", "by the lowest way [mm]", "lifts at [m/s\u00b2]", "into pose"]}
       rows=${answer.directions.map((each) => [
         number((each.azimuth_rad * 180) / Math.PI, 3), millimetres(each.straight_rise_m), millimetres(each.lowest_rise_m),
         number(each.uplift_acceleration_m_s2, 3), each.topples_into === null ? "\u2013" : String(each.topples_into)])} />
-    <h3>All poses, the hardest to leave first</h3>
+    <h3>Its poses, the hardest to leave first</h3>
     <${Rows} caption="Poses" head=${["pose", "rise to leave [mm]", "centre [mm]", "energy [J]", "nearest edge [mm]"]}
-      rows=${poses.map((each) => [String(each.pose), millimetres(each.barrier_m), millimetres(each.height_m),
+      rows=${poses.slice(0, FEW).map((each) => [String(each.pose), millimetres(each.barrier_m), millimetres(each.height_m),
         joules(each.energy_J, most), millimetres(each.nearest_edge_m)])} />
+    ${poses.length > FEW && html`<p class="field-help">And ${poses.length - FEW} more, which a rise of
+      ${millimetres(poses[FEW].barrier_m)} mm or less leaves.</p>`}
     ${answer.notes.map((note) => html`<p class="field-help" key=${note}>${note}</p>`)}`;
 };
 

@@ -15,8 +15,8 @@ const TITLES = { equilibria: "How it can stand", cor: "Its edges", simulate: "Ho
 const UNITS = [["", "what the file says"], ["mm", "mm"], ["cm", "cm"], ["m", "m"], ["in", "in"], ["ft", "ft"]];
 const UP = [["", "what is usual (z; GLB: y)"], ["z", "z"], ["y", "y"], ["x", "x"], ["-z", "z, upside down"]];
 const AXES = { x: [1, 0, 0], "-z": [0, 0, -1] };
-const REPAIRS = [["", "what is safe"], ["none", "nothing: refuse what is not closed"], ["all", "whatever it takes"]];
-const SURFACES = [["", "its faces"], ["wrap", "a skin over its points"], ["hull", "the hull of its points"]];
+const REPAIRS = [["", "what is safe"], ["none", "nothing (\"none\"): refuse what is not closed"], ["all", "whatever it takes (\"all\")"]];
+const SURFACES = [["", "its faces"], ["wrap", "a skin over its points (\"wrap\")"], ["hull", "the hull of its points (\"hull\")"]];
 const SHAKEN = [["x", "the motion of this project, along x"], ["y", "the motion of this project, along y"], ["records", "records along x, y and z"]];
 const LAWS = [["ked-3d", "kinetic energy distribution (ked-3d)"], ["housner-3d", "Housner's (housner-3d)"], ["", "a coefficient"]];
 
@@ -118,22 +118,26 @@ const shakenBy = (app, shaken, records, units, times) => {
   };
 };
 
-const Answer = ({ answer, question, onPose }) => html`
-  ${question.command === "equilibria" && html`<${Standing} question=${question} answer=${answer} onPose=${onPose} />`}
-  ${question.command === "cor" && html`<${Edges} question=${question} answer=${answer} />`}
-  ${question.command === "simulate" && html`
+const Answer = ({ answer, question, onPose }) => {
+  const scan = html`<${Scan} body=${answer.body} repairs=${answer.repairs} />`;
+  if (question.command === "equilibria") return html`<${Standing} question=${question} answer=${answer} onPose=${onPose}>${scan}<//>`;
+  if (question.command === "cor") return html`<${Edges} question=${question} answer=${answer}>${scan}<//>`;
+  return html`
     <p class=${`verdict ${answer.outcome === "overturned" ? "bad" : "good"}`} data-testid="verdict">${sentence(answer.summary)}.</p>
     <${MotionScene} question=${question} answer=${answer} />
     <p>Largest tilt ${number((answer.peak_tilt_rad * 180) / Math.PI, 4)}\u00b0, ${answer.impacts.length} impacts;
       slid ${number(1000 * answer.sliding_distance_m, 3)} mm at most.</p>
-    <${Drawing} question=${question} alt="Tilt, direction and energy over time" />`}
+    <${Drawing} question=${question} alt="Tilt, direction and energy over time" />
+    ${scan}`;
+};
+
+const Scan = ({ body, repairs }) => html`
   <h3>The scan, as it was taken</h3>
-  <p>${answer.body.size_m.map((each) => number(1000 * each, 4)).join(" \u00d7 ")} mm, ${number(answer.body.mass_kg, 4)} kg,
-    centre ${number(1000 * answer.body.centre_height_m, 4)} mm over the ground.</p>
+  <p>${body.size_m.map((each) => number(1000 * each, 4)).join(" \u00d7 ")} mm, ${number(body.mass_kg, 4)} kg,
+    centre ${number(1000 * body.centre_height_m, 4)} mm over the ground.</p>
   <ul class="space-repairs" aria-label="What was mended">
-    ${answer.repairs.length ? answer.repairs.map((words) => html`<li key=${words}>${sentence(words)}.</li>`)
-      : html`<li>Nothing had to be mended.</li>`}
-    ${[...answer.body.assumed, ...answer.body.warnings].map((words) => html`<li key=${words}>${sentence(words)}.</li>`)}
+    ${repairs.length ? repairs.map((words) => html`<li key=${words}>${sentence(words)}.</li>`) : html`<li>Nothing had to be mended.</li>`}
+    ${[...body.assumed, ...body.warnings].map((words) => html`<li key=${words}>${sentence(words)}.</li>`)}
   </ul>`;
 
 const sentence = (words) => `${words.slice(0, 1).toUpperCase()}${words.slice(1)}`;

@@ -1,0 +1,205 @@
+"""In space: a scan is dropped, what was mended is told, it stands, settles and moves, and three.js comes only then."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from browser_pages import link
+
+trimesh = pytest.importorskip("trimesh")
+expect = pytest.importorskip("playwright.sync_api").expect
+LONG = 120_000
+LIBRARY = "/vendor/three/"
+
+
+def scan(folder: Path, *, hole: bool = True, faces: int = 768) -> Path:
+    """Write a leaning block without symmetry, in mm, with a hole if wanted; finer with more faces."""
+    mesh = trimesh.creation.box((400.0, 250.0, 1200.0))
+    while len(mesh.faces) < faces:
+        mesh = mesh.subdivide()
+    points = mesh.vertices.copy()
+    points[:, 2] += 600.0
+    points[:, 0] = points[:, 0] * (1.0 - points[:, 2] / 3000.0) + 0.04 * points[:, 2]
+    points[:, 1] += 0.02 * points[:, 2]
+    path = folder / "leaning block.stl"
+    trimesh.Trimesh(points, mesh.faces[1:] if hole else mesh.faces, process=False).export(path)
+    return path
+
+
+def sent(section: Any, name: str) -> None:
+    """Wait until a file has arrived."""
+    expect(section.get_by_role("list", name="Files")).to_contain_text(name)
+
+
+def asked(page: Any, what: str, path: Path | None = None) -> Any:
+    """Send a scan, ask, and wait for the picture of the answer."""
+    section = page.locator("#view-space")
+    if path:
+        section.get_by_label("Drop a scan here, or").set_input_files(path)
+        sent(section, "leaning-block.stl")
+        section.get_by_label("Unit of the file").select_option("mm")
+    section.get_by_label("Asked is").select_option(what)
+    section.get_by_role("button", name="Ask", exact=True).click()
+    outcome = section.get_by_test_id("outcome")
+    expect(outcome.get_by_role("heading", level=2)).to_contain_text(
+        {"equilibria": "How it can stand", "cor": "Its edges", "simulate": "How it moves"}[what]
+    )
+    expect(outcome).to_have_attribute("data-state", "done", timeout=LONG)
+    expect(outcome.get_by_test_id("space-stage")).to_have_attribute("data-drawn", "true", timeout=LONG)
+    return outcome
+
+
+def seen(page: Any) -> Any:
+    """Return how many colours the picture has, and what of it is neither ground nor sky, read from the screen."""
+    import io
+
+    from PIL import Image
+
+    shot = page.get_by_test_id("space-stage").screenshot()
+    return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB")).astype(int)
+
+
+def test_a_scan_stands_and_settles(
+    open_page: Callable[..., Any], shot: Callable[..., Any], record: Any, served: Any, tmp_path: Path
+) -> None:
+    """What was mended is told; the picture changes with the pose; three.js was not asked for before the answer."""
+    page = open_page(view="space")
+    assert not [url for url in record.requests if LIBRARY in url]
+    outcome = asked(page, "equilibria", scan(tmp_path))
+    assert len({url for url in record.requests if LIBRARY in url}) == 2
+    mended = outcome.get_by_role("list", name="What was mended").inner_text()
+    assert "Closed 1 hole" in mended
+    assert "% of the volume" in mended
+    question = served.api("questions", method="GET")["questions"][0]
+    answer = served.api(f"questions/{question['id']}", method="GET")["answer"]
+    words = outcome.get_by_test_id("space-words")
+    expect(words).to_contain_text(f"Pose {answer['stands_in']}")
+    expect(outcome.get_by_test_id("verdict")).to_contain_text(f"{len(answer['stable'])} ways")
+    before = seen(page)
+    assert len(np.unique(before.reshape(-1, 3), axis=0)) > 200  # shaded and coloured, not an empty ground
+    outcome.get_by_label("Set down in").select_option("0")
+    expect(words).to_contain_text("Pose 0")
+    page.wait_for_timeout(1500)  # it turns for 0.7 s
+    assert (np.abs(seen(page) - before).max(axis=2) > 30).mean() > 0.02
+    shot(page, "space-stands")
+    # in that pose it is asked again: what stands then is as high as the pose was
+    outcome.get_by_role("button", name="Go on in pose 0").click()
+    section = page.locator("#view-space")
+    expect(section).to_contain_text("Stands in pose 0 of the last answer")
+    section.get_by_role("button", name="Ask", exact=True).click()
+    expect(words).to_contain_text("Pose 0", timeout=LONG)
+    expect(outcome).to_have_attribute("data-state", "done", timeout=LONG)
+    question = served.api("questions", method="GET")["questions"][0]
+    again = served.api(f"questions/{question['id']}", method="GET")["answer"]
+    assert again["stands_in"] == 0
+    assert again["body"]["centre_height_m"] == pytest.approx(answer["stable"][0]["height_m"], rel=1e-6)
+
+
+def test_its_edges(open_page: Callable[..., Any], shot: Callable[..., Any], tmp_path: Path) -> None:
+    """Every edge has its row with every model; the body can be turned by keys."""
+    page = open_page(view="space")
+    outcome = asked(page, "cor", scan(tmp_path))
+    table = outcome.get_by_role("table", name="Edges and corners")
+    assert table.locator("tbody tr").count() == 4
+    assert "ked-3d" in table.locator("thead").inner_text()
+    before = seen(page)
+    page.get_by_test_id("space-stage").focus()
+    for key in ("ArrowLeft", "ArrowLeft", "ArrowUp", "+"):
+        page.keyboard.press(key)
+    assert (np.abs(seen(page) - before).max(axis=2) > 30).mean() > 0.02
+    shot(page, "space-edges")
+
+
+def test_it_moves_and_falls(
+    open_page: Callable[..., Any], shot: Callable[..., Any], until: Any, tmp_path: Path
+) -> None:
+    """Played, stopped, scrubbed and stepped by keys; words say where it is, and that it fell."""
+    page = open_page(link("sine:amplitude=6,period=0.8"))
+    page.locator("#tab-space").click()
+    section = page.locator("#view-space")
+    section.get_by_label("Asked is").select_option("simulate")
+    section.get_by_label("Impacts").select_option("")
+    section.get_by_label("Coefficient of restitution").fill("0.6")
+    section.get_by_label("Motion times").fill("1.5")
+    outcome = asked(page, "simulate", scan(tmp_path))
+    expect(outcome.get_by_test_id("verdict")).to_contain_text("verturned")
+    words, time = outcome.get_by_test_id("space-words"), outcome.get_by_test_id("space-time")
+    expect(words).to_contain_text("At 0.00 s: tilted 0.00\u00b0, on 4 points")
+    outcome.get_by_test_id("space-play").click()
+    until(page, lambda: page.evaluate("rockingFrames.count") > 10)
+    page.get_by_test_id("space-stage").focus()
+    page.keyboard.press(" ")
+    expect(outcome.get_by_test_id("space-play")).to_have_text("Play")
+    instant = float(time.input_value())
+    assert instant > 0.0
+    time.focus()
+    page.keyboard.press("ArrowRight")
+    assert float(time.input_value()) == pytest.approx(instant + 0.05, abs=1e-3)
+    last = time.evaluate("node => node.max")
+    time.evaluate("(node, to) => { node.value = to; node.dispatchEvent(new Event('input', { bubbles: true })); }", last)
+    expect(words).to_contain_text("it has overturned")
+    shot(page, "space-moves")
+    page.emulate_media(reduced_motion="reduce")
+    assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
+
+
+def test_what_cannot_be_a_body_is_refused(open_page: Callable[..., Any], tmp_path: Path) -> None:
+    """No scan, no unit, a broken file, a surface that is not closed: each in a sentence, none as a picture."""
+    page = open_page(view="space")
+    section = page.locator("#view-space")
+    ask = section.get_by_role("button", name="Ask", exact=True)
+    ask.click()
+    expect(section.get_by_role("alert")).to_contain_text("No scan was sent yet")
+    section.get_by_label("Drop a scan here, or").set_input_files(scan(tmp_path))
+    sent(section, "leaning-block.stl")
+    ask.click()
+    expect(section.get_by_role("alert")).to_contain_text("do not say their unit")
+    section.get_by_label("Unit of the file").select_option("mm")
+    section.get_by_text("What may be mended").click()
+    section.get_by_label("Mend", exact=True).select_option("none")
+    ask.click()
+    refused = section.get_by_test_id("outcome")
+    expect(refused).to_have_attribute("data-state", "refused", timeout=LONG)
+    expect(section.get_by_role("alert")).to_contain_text("the surface is not closed, it has 1 hole")
+    section.get_by_role("button", name="Leave out leaning-block.stl").click()
+    broken = {"name": "cut.stl", "mimeType": "model/stl", "buffer": scan(tmp_path).read_bytes()[:5000]}
+    section.get_by_label("Drop a scan here, or").set_input_files(broken)
+    sent(section, "cut.stl")
+    ask.click()
+    expect(section.get_by_role("alert")).to_contain_text("cut short", timeout=LONG)
+    assert section.get_by_test_id("space-stage").count() == 0
+
+
+def test_without_webgl_words_remain(open_page: Callable[..., Any], tmp_path: Path) -> None:
+    """A browser that draws nothing in three dimensions says so, and tells the rest."""
+    page = open_page(view="space")
+    page.evaluate("HTMLCanvasElement.prototype.getContext = () => null")
+    section = page.locator("#view-space")
+    section.get_by_label("Drop a scan here, or").set_input_files(scan(tmp_path, hole=False))
+    sent(section, "leaning-block.stl")
+    section.get_by_label("Unit of the file").select_option("mm")
+    section.get_by_role("button", name="Ask", exact=True).click()
+    expect(section).to_contain_text("draws nothing in three dimensions", timeout=LONG)
+    expect(section.get_by_test_id("space-words")).to_contain_text("the centre must rise")
+    expect(section.get_by_role("list", name="What was mended")).to_contain_text("Merged")
+
+
+@pytest.mark.timed
+def test_a_frame_costs_little(open_page: Callable[..., Any], until: Callable[..., None], tmp_path: Path) -> None:
+    """A body of 50,000 faces is played with less than 4 ms of script in the median frame, and none over 16 ms."""
+    page = open_page(link("sine:amplitude=4.5,period=0.8"))
+    page.locator("#tab-space").click()
+    section = page.locator("#view-space")
+    section.get_by_label("Asked is").select_option("simulate")
+    section.get_by_label("Impacts").select_option("")
+    path = scan(tmp_path, hole=False, faces=49_000)
+    outcome = asked(page, "simulate", path)
+    outcome.get_by_label("Speed").select_option("0.1")
+    outcome.get_by_test_id("space-play").click()
+    until(page, lambda: page.evaluate("rockingFrames.count") > 120)
+    times = np.array(json.loads(page.evaluate("JSON.stringify([...rockingFrames.times].slice(0, 120))")))
+    assert np.median(times) < 4.0
+    assert times.max() < 16.0
