@@ -155,7 +155,7 @@ def test_a_question_is_stopped(open_page: Callable[..., Any]) -> None:
 
 
 @pytest.mark.parametrize("width", [320, 768, 1024])
-@pytest.mark.parametrize("view", ["decide", "inventory", "measure", "records"])
+@pytest.mark.parametrize("view", ["decide", "inventory", "measure", "records", "space"])
 def test_no_bar(open_page: Callable[..., Any], view: str, width: int) -> None:
     """Nothing is wider than the window, and every button can be hit by a finger."""
     page = open_page(view=view, viewport={"width": width, "height": 800})

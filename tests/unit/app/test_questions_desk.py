@@ -277,6 +277,21 @@ def test_crossings(desk):
     assert answer["minimum_m_s2"] > answer["uplift_acceleration_m_s2"]
 
 
+def test_a_body_cannot_name_a_file_of_this_computer(desk, tmp_path):
+    """A mesh that a body file names is looked for among what was sent alone: beside it, it is read."""
+    for where, state in ((tmp_path / "secret.ply", "refused"), (None, "done")):
+        if where:
+            where.write_text(PLY)
+        name = "spire.ply" if where is None else str(where)
+        text = f'units = "cm"\n[[solid.part]]\nmesh = {{ file = "{name}", units = "cm" }}\ndensity = 2000.0\n'
+        files = {"body.toml": desk.store.add(text.encode(), "body.toml").record}
+        files |= {"spire.ply": desk.store.add(PLY.encode(), "spire.ply").record}
+        asked = desk.ask("equilibria", {"body": {"file": "body.toml"}, "response": {"friction": 0.5}}, files)
+        found = ended(desk, asked.id)
+        assert found.state == state, found.message
+        assert state == "done" or "must lie in the folder of the body file" in found.message
+
+
 def test_what_cannot_be_run_stops_no_other(desk):
     """A folder that cannot be made refuses its question; the next one is answered."""
     cache = desk.folder.with_name("cache")

@@ -83,6 +83,10 @@ export class Stage {
       this.painted(new three.MeshBasicMaterial({ polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }), "--surface-2"),
     );
     scene.add(plane);
+    for (const [name, x, y] of [["x", 1, 0], ["y", 0, 1]]) {
+      this.line([[0, 0, 0], [1.15 * this.size * x, 1.15 * this.size * y, 0]], "--space-axis");
+      this.label(name, [1.2 * this.size * x, 1.2 * this.size * y, 0], scene, 0.035);
+    }
     this.clear = new three.Color();
   }
 
@@ -173,18 +177,23 @@ export class Stage {
     this.support.geometry = new three.BufferGeometry().setFromPoints(points.map((each) => new three.Vector3(...each)));
   }
 
+  /** Words on a plate, of a size on the screen. */
+  label(words, place, into, size) {
+    const { three } = this;
+    const label = new three.Sprite(new three.SpriteMaterial({
+      map: labelTexture(three, words), sizeAttenuation: false, depthTest: into === this.scene,
+    }));
+    label.position.fromArray(place);
+    label.scale.setScalar(size);
+    label.renderOrder = 4;
+    into.add(label);
+  }
+
   /** Number edges on the body. */
   number(edges) {
-    const { three } = this;
     for (const { name, from, to } of edges) {
       this.line([from, to], "--space-holds", this.body, true);
-      const label = new three.Sprite(new three.SpriteMaterial({
-        map: labelTexture(three, name), sizeAttenuation: false, depthTest: false,
-      }));
-      label.position.fromArray(from.map((value, k) => 0.5 * (value + to[k])));
-      label.scale.setScalar(edges.length > 8 ? 0.03 : 0.045);
-      label.renderOrder = 4;
-      this.body.add(label);
+      this.label(name, from.map((value, k) => 0.5 * (value + to[k])), this.body, edges.length > 8 ? 0.03 : 0.045);
     }
     this.dots(edges.map(({ from }) => from), "dot", "--space-base");
   }

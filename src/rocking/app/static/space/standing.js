@@ -37,7 +37,7 @@ export const Standing = ({ question, answer, onPose, children }) => {
   };
   const here = answer.stable[shown];
   const most = answer.stable.at(-1).energy_J;
-  const [low, high] = [answer.stable[0].height_m, Math.max(...answer.stable.map(({ height_m: each }) => each))];
+  const low = answer.stable[0].height_m;
   const words = `Pose ${shown}: its centre ${millimetres(here.height_m)} mm over the ground, ${joules(here.energy_J, most)} J above the lowest pose; `
     + `the plumb line ${millimetres(here.nearest_edge_m)} mm inside the nearest edge of the support polygon. `
     + (here.barrier_m === null || !Number.isFinite(here.barrier_m) ? "It knows no other pose."
@@ -64,7 +64,7 @@ export const Standing = ({ question, answer, onPose, children }) => {
       if (up) onPose(shown, up);
     }}>Go on in pose ${shown}</button></div>
     ${children}
-    <${Drawing} question=${question} alt=${`Rise of the centre by tilt and azimuth from pose ${answer.stands_in}, up to ${millimetres(high)} mm high, and its support polygon`} />
+    <${Drawing} question=${question} alt=${`Rise of the centre by tilt and azimuth from pose ${answer.stands_in}, and its support polygon`} />
     <h3>What it takes to topple it, by direction</h3>
     <${Rows} caption="Directions" head=${["towards [\u00b0]", "centre must rise [mm]", "by the lowest way [mm]", "lifts at [m/s\u00b2]", "into pose"]}
       rows=${answer.directions.map((each) => [
