@@ -267,7 +267,8 @@ class InventoryTable(JobTable):
     objects: Text = _key("list as .xlsx, .ods or CSV: name, width, depth, height and more, each with its unit", ...)
     encoding: Text | None = _key("encoding of a CSV file, such as cp1252; told from the file if left out")
     columns: Text | dict[str, str] | None = _key(
-        'what columns are, by their titles: "Objekt=name, Maß B=width_cm, Rahmenbreite="; nothing leaves one out'
+        'what columns are, by their titles: "Objekt=name, Maß B=width_cm, Rahmenbreite="; nothing leaves one out; '
+        "a title with a comma in quotation marks: '\"Höhe, gesamt\"=height_cm'"
     )
     pga: Text | None = _key("peak ground acceleration of every motion: 0.3g, 2.9m/s2")
     pgv: Text | None = _key("peak ground velocity in its place: 25cm/s, 0.25m/s")

@@ -4,14 +4,15 @@
 
 import re
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from rocking import checks
+from rocking.conventions import LENGTH_UNITS
 from rocking.errors import InvalidValueError
 from rocking.studies.inventory import header_words
 from rocking.studies.inventory.columns import FACTORS, UNITS, plain, side_of, words_of
-from rocking.studies.inventory.sheets import Cell
+from rocking.studies.inventory.sheets import Cell, Shown
 
 ABOUT = 0.05
 """Half the interval of a measure that is said to be about right, "ca. 120" or "120?", as a share of it [-]."""
@@ -65,13 +66,21 @@ class DecimalMark:
 
 
 _LONGEST = 200
+_SAME = 0.02  # a measure in centimetres and in inches, rounded [-]
+_OTHERWISE = 0.5  # two sizes that are no size and what it might be instead [-]
 _ABOUT = "|".join(sorted(words_of(header_words.ABOUT), key=len, reverse=True))
+_WITH = "|".join(words_of(header_words.WITH))
 _UNKNOWN = words_of(header_words.UNKNOWN)
-_ONE = r"[0-9]+(?:[.,][0-9]+)?(?: [0-9]{1,3}/[0-9]{1,3})?|[0-9]{1,3}/[0-9]{1,3}"
-_UNIT = r"(?:[^\W\d]{1,15}\.?|['\"])"
+_FRACTION = r"[0-9]{1,2}/(?:2|3|4|8|16|32|64)(?![0-9])"  # as of inches: 120/130 is none
+_ONE = rf"{_FRACTION}|[0-9]+(?:[.,][0-9]+)?(?: {_FRACTION})?"
+_UNIT = rf"(?:(?!(?:{_WITH})\b)[^\W\d]{{1,15}}\.?|['\"])"
 _QUANTITY = rf"(?:{_ONE})\s*(?:{_UNIT}\s*(?:(?:{_ONE})\s*{_UNIT})?)?"
 _ABOUT_FIRST = re.compile(rf"(?:~|≈|±|(?:{_ABOUT})(?=[\s.0-9])\.?)\s*(?=\S)")
-_BETWEEN = re.compile(rf"({_QUANTITY})\s*(?:-|–|—|bis|to|until|hasta|εως|至|~)\s*({_QUANTITY})")
+_BETWEEN = re.compile(rf"({_QUANTITY})\s*(-|–|—|/|bis|to|until|a|hasta|εως|至|~)\s*({_QUANTITY})")
+_BESIDE = re.compile(rf"({_QUANTITY})\s*\(=?\s*({_QUANTITY})[^\d()]*\)")
+_IN_BRACKETS = re.compile(rf"[(\[]([^()\[\]]*\d[^()\[\]]*)[)\]]\s*({_UNIT})?")
+_UNIT_FIRST = re.compile(rf"({_UNIT})\s*(\D{{0,20}}\d.*)")
+_DOUBT = re.compile(rf"\s*(?:\?+|[(\[][^\d()\[\]]*[)\]]|\b(?:ca|circa|approx)\.?|\b(?:{_WITH})\b[^\d()]*)$")
 _GIVE_OR_TAKE = re.compile(rf"({_QUANTITY})\s*(?:±|\+ ?/ ?-|\+-)\s*({_QUANTITY})")
 _PAIR = re.compile(rf"({_ONE})\s*([^\W\d]{{1,15}}|['\"])?\.?\s*")
 _MARKS = {"'": "ft", '"': "in"}
@@ -96,26 +105,46 @@ def is_missing(cell: Cell) -> bool:
     return isinstance(cell, str) and (cell.startswith("#") or not cell.strip(" ?-–—./…") or plain(cell) in _UNKNOWN)
 
 
-def measure(title: str, cell: Cell, factor: float | None, mark: DecimalMark) -> CellMeasure:
-    """Return what a cell measures; factor: of numbers without a unit, if that is known."""
+def measure(
+    title: str, cell: Cell, factor: float | None, mark: DecimalMark, units: Mapping[str, float] = LENGTH_UNITS
+) -> CellMeasure:
+    """Return what a cell measures; factor: of numbers without a unit, if that is known; units: those it may have."""
+    if isinstance(cell, Shown):
+        one = measure(title, cell.one, factor, mark, units)
+        return CellMeasure(cell * one.value, cell * one.half_width, one.across)
     if isinstance(cell, float):
         return CellMeasure(checks.number(title, cell) * _named(title, cell, factor))
     if _NUMBER.fullmatch(cell.strip()):
         return CellMeasure(mark.number(title, cell) * _named(title, cell, factor))
+
+    def quantity(text: str, beside: str = "") -> float:
+        return _quantity(title, text, factor, mark, units, beside)
+
     text = _tidied(cell)
     across = text.startswith(("ø", "dm "))
-    text = re.sub(r"^(?:ø|dm )\s*", "", text)
-    text, about = _without_about(text)
+    text, about = _without_about(re.sub(r"^(?:ø|dm )\s*", "", text))
     if match := _GIVE_OR_TAKE.fullmatch(text):
-        half = _quantity(title, match[2], factor, mark)
-        return CellMeasure(_quantity(title, match[1], factor, mark, match[2]), half, across)
-    if match := _BETWEEN.fullmatch(text):
-        low, high = _quantity(title, match[1], factor, mark, match[2]), _quantity(title, match[2], factor, mark)
+        return CellMeasure(quantity(match[1], match[2]), quantity(match[2]), across)
+    two = _two(title, text, quantity)
+    value, half = (quantity(text), 0.0) if two is None else (0.5 * (two[1] + two[0]), 0.5 * (two[1] - two[0]))
+    return CellMeasure(value, half or (ABOUT * value if about else 0.0), across)
+
+
+def _two(title: str, text: str, quantity: Callable[[str, str], float]) -> tuple[float, float] | None:
+    """Return the smaller and the larger of two measures in a text, twice the first if they say the same."""
+    if (match := _BETWEEN.fullmatch(text)) and not (match[2] == "/" and re.match(_FRACTION, text)):
+        low, high = quantity(match[1], match[3]), quantity(match[3], "")
+        if match[2] == "/" and low > high > 0.0:  # in front and behind, of which neither is the first
+            low, high = high, low
         if not low < high:
-            raise InvalidValueError(f"{title} must go from the smaller to the larger, got {cell!r:.40}")
-        return CellMeasure(0.5 * (low + high), 0.5 * (high - low), across)
-    value = _quantity(title, text, factor, mark)
-    return CellMeasure(value, ABOUT * value if about else 0.0, across)
+            raise InvalidValueError(f"{title} must go from the smaller to the larger, got {text!r:.40}")
+        return low, high
+    if match := _BESIDE.fullmatch(text):  # the same in another unit, or what else it might be
+        value, other = quantity(match[1], ""), quantity(match[2], match[1])
+        if abs(value - other) > _OTHERWISE * value:
+            raise InvalidValueError(f"{title} says two sizes, got {text!r:.40}")
+        return (value, value) if abs(value - other) <= _SAME * value else (min(value, other), max(value, other))
+    return None
 
 
 def _tidied(cell: str) -> str:
@@ -127,17 +156,25 @@ def _tidied(cell: str) -> str:
 
 
 def _without_about(text: str) -> tuple[str, bool]:
-    unaccented = "".join(c for c in unicodedata.normalize("NFKD", text) if not unicodedata.combining(c))
-    match = _ABOUT_FIRST.match(unaccented)
-    bare = re.sub(r"\s*\(?(?:\?+|ca\.?|circa|approx\.?)\)?$", "", unaccented[match.end() :] if match else unaccented)
-    return bare.strip(), bool(match) or bare != unaccented
+    """Return a measure without what says that it is not known well, or how it was taken; and whether anything did."""
+    whole = "".join(c for c in unicodedata.normalize("NFKD", text) if not unicodedata.combining(c))
+    match = _ABOUT_FIRST.match(whole)
+    bare = _DOUBT.sub("", whole[match.end() :] if match else whole)
+    bare = _IN_BRACKETS.sub(r"\1 \2", bare).strip() if _IN_BRACKETS.fullmatch(bare) else bare.strip()
+    if bare != whole:
+        return _without_about(bare)[0], True
+    match = _UNIT_FIRST.fullmatch(whole)
+    if match and _unit(match[1]) in FACTORS and match[1] not in header_words.SIDES:  # t is the depth, no tonne
+        return _without_about(f"{match[2]} {match[1]}")
+    return whole, False
 
 
-def _quantity(title: str, text: str, factor: float | None, mark: DecimalMark, beside: str = "") -> float:
+def _quantity(
+    title: str, text: str, factor: float | None, mark: DecimalMark, units: Mapping[str, float], beside: str
+) -> float:
     """Return a number with its unit, or feet with inches; beside: where the unit of one without may stand."""
     pairs = _PAIR.findall(text) if re.fullmatch(_QUANTITY, text) else []
-    units = [_MARKS.get(word) or UNITS.get(plain(word), word) for _, word in pairs]
-    factors = [FACTORS.get(unit, 0.0) for unit in units]
+    factors = [units.get(_unit(word), 0.0) for _, word in pairs]
     if not pairs or (
         len(pairs) > 1 and (sorted(set(factors), reverse=True) != factors or len(pairs) > 2 or 0.0 in factors)
     ):
@@ -146,23 +183,29 @@ def _quantity(title: str, text: str, factor: float | None, mark: DecimalMark, be
             f"{title} must be one number such as 12.5, 120 cm, ca. 120 or 120-130, without separators of thousands, "
             f"got {text[:40]!r}{hint}"
         )
-    if odd := next((unit for unit, one in zip(units, factors, strict=True) if unit and not one), ""):
-        raise InvalidValueError(f"{title} must be one number with a unit of {', '.join(FACTORS)}, got {odd[:20]!r}")
-    if not units[0] and (other := next((word for _, word in _PAIR.findall(beside) if word), "")):
-        factors[0] = FACTORS.get(_MARKS.get(other) or UNITS.get(plain(other), ""), 0.0) or _named(title, text, factor)
-    elif not units[0]:
-        factors[0] = _named(title, text, factor)
-    return sum(_number(title, one, mark) * by for (one, _), by in zip(pairs, factors, strict=True))
+    if odd := next((word for (_, word), one in zip(pairs, factors, strict=True) if word and not one), ""):
+        raise InvalidValueError(
+            f"{title} must be one number with a unit of {', '.join(units) or 'none'}, got {odd[:20]!r}"
+        )
+    if not factors[0]:
+        other = next((word for _, word in _PAIR.findall(beside) if word), "")
+        factors[0] = units.get(_unit(other), 0.0) or _named(title, text, factor)
+    return sum(_number(title, one, mark, by) * by for (one, _), by in zip(pairs, factors, strict=True))
 
 
-def _number(title: str, text: str, mark: DecimalMark) -> float:
+def _number(title: str, text: str, mark: DecimalMark, by: float) -> float:
     whole, _, part = text.rpartition(" ")
     if "/" not in part:
         return mark.number(title, text)
-    above, below = part.split("/")
-    if int(below) == 0:
-        raise InvalidValueError(f"{title} must be one number, got {text[:40]!r}")
-    return (mark.number(title, whole) if whole else 0.0) + int(above) / int(below)
+    above, below = map(int, part.split("/"))
+    if not whole and by in {FACTORS["cm"], FACTORS["mm"]}:
+        one, other = f"{above / below:.4g}", f"{above}-{below}"
+        raise InvalidValueError(f"{title} is ambiguous: {text!r} could be {one} or {other}; write {one} or {other}")
+    return (mark.number(title, whole) if whole else 0.0) + above / below
+
+
+def _unit(word: str) -> str:
+    return _MARKS.get(word) or UNITS.get(plain(word), word)
 
 
 def _named(title: str, cell: Cell, factor: float | None) -> float:
@@ -171,8 +214,11 @@ def _named(title: str, cell: Cell, factor: float | None) -> float:
     return factor
 
 
-_PARTS = re.compile(r"\s*[x×✕*;]\s*|\s*,\s+(?=[^\W\d])|\s+(?=[^\W\d]{1,12}\s*[.:=]?\s*\d)")
-_LABEL = re.compile(r"(ø|[^\W\d]+)\s*[.:=]?\s*(?=[~≈]|\d|(?:ca|circa|etwa)\b)")
+_PARTS = re.compile(
+    r"\s*[x×✕*;]\s*|\s*,\s+(?=[^\W\d])|\s+(?!(?:[cm]?m|in)\b)(?=[^\W\d]{1,12}\s*[.:=]?\s*(?:[cm]?m\s+)?\d)"
+)
+_LABEL = re.compile(r"(ø|[^\W\d]+)\s*[.:=]?\s*(?=[~≈(\[]|\d|(?:ca|circa|etwa|[cm]?m)\b)")
+_TWICE = re.compile(r"([^()]*\d[^()]*)\(([^()]*\d\s*x[^()]*)\)")
 
 
 def parts(
@@ -185,6 +231,11 @@ def parts(
     {'height': 1.2, 'width': 0.8, 'depth': 0.4}
     """
     text, about = _without_about(_tidied(str(cell)))
+    if match := _TWICE.fullmatch(text):
+        found, again = (parts(title, each, order, factor, mark, language) for each in match.groups())
+        if any(abs(one.value - again[side].value) > _SAME * one.value for side, one in found.items()):
+            raise InvalidValueError(f"{title} says two sizes, got {text[:60]!r}")
+        return found
     pieces = [piece for piece in _PARTS.split(re.sub(rf"\b({_ABOUT})\b\.? *", "~", text)) if piece]
     labels = []
     for k, piece in enumerate(pieces):
@@ -192,26 +243,23 @@ def parts(
         side = side_of(plain(label[1]), language) if label else ""
         labels.append(side)
         pieces[k] = piece[label.end() :] if label and side else piece
-    left = [side for side in order if side not in labels]
-    if "diameter" in labels:
-        left = [side for side in left if side not in {"width", "depth"}] or ["height"]
+    said = set(labels) | ({"width", "depth"} if "diameter" in labels else set())
+    left = [side for side in order or ("height",) if side not in said] if order or "diameter" in labels else []
     for k in range(len(labels)):
         if not labels[k] and left:
             labels[k] = left.pop(0)
-    if not pieces or "" in labels or len(set(labels)) < len(labels) or left:
+    if not pieces or "" in labels or len(set(labels)) < len(labels) or (left and "diameter" not in labels):
         why = (
             f"its header names {len(order)} parts" if order
             else "which is the height? Write the order into the header, or say it: columns "
             f'"{title}=height x width x depth cm"'
         )  # fmt: skip
         raise InvalidValueError(f"{title} must have its parts in a known order, got {text[:40]!r}; {why}")
-    last = _PAIR.findall(pieces[-1].lstrip("~"))
-    unit = next((word for _, word in reversed(last) if word), "")
+    units = [[by for _, word in _PAIR.findall(piece) if (by := LENGTH_UNITS.get(_unit(word)))] for piece in pieces]
     found = {}
-    for side, piece in zip(labels, pieces, strict=True):
-        own = any(word for _, word in _PAIR.findall(piece.lstrip("~")))
-        said = ("~" if about and not piece.startswith("~") else "") + (piece if own or not unit else f"{piece} {unit}")
-        found[side] = measure(title, said, factor, mark)
+    for side, piece, own in zip(labels, pieces, units, strict=True):
+        one = ("~" if about and not piece.startswith("~") else "") + piece
+        found[side] = measure(title, one, None if own else next(iter(units[-1]), factor), mark)
     if "length" in found:
         found["width" if "width" not in found else "depth"] = found.pop("length")
     return found

@@ -2,6 +2,7 @@
 
 # ruff: noqa: RUF001 - signs and words of other alphabets are meant
 
+import csv
 import difflib
 import re
 import unicodedata
@@ -13,7 +14,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies.inventory import header_words
 
 SIZES = ("width", "depth", "height", "length", "diameter")
-LENGTHS = (*SIZES, "base", "base_width", "base_depth", "base_diameter", "centre_of_mass_height")
+LENGTHS = (*SIZES, "base", "base_width", "base_depth", "base_diameter", "pedestal", "centre_of_mass_height")
 """What a column of lengths may hold."""
 
 WEIGHTS = {"kg": 1.0, "g": 0.001, "t": 1000.0, "lb": 0.45359237}
@@ -211,7 +212,7 @@ def _remedy(title: str) -> str:
 def _refuse_measure(title: str, source: str, language: str) -> None:
     words = plain(title)
     stem, _, unit = words.rpartition(" ")
-    if {_stem(title, language)[0], _stem(stem, language)[0]} & {"number", "note", "name", "weight", "size"}:
+    if {_stem(title, language)[0], _stem(stem, language)[0]} & {"number", "note", "name", "weight", "size", "pedestal"}:
         return  # it does not decide, or says no more than others
     close = difflib.get_close_matches(stem if stem and unit in UNITS else words, _MEASURED, n=1, cutoff=0.8)
     tokens = words.split()
@@ -231,15 +232,18 @@ def _refuse_measure(title: str, source: str, language: str) -> None:
 
 
 def mapping_of(text: str | Mapping[str, str] | None) -> dict[str, str]:
-    """Return what a user says of columns, own titles to ours; an empty one is not read.
+    """Return what a user says of columns, own titles to ours; an empty one is not read, one with a comma is quoted.
 
     >>> mapping_of("Objekt=name, Maß B=width_cm, Rahmenbreite=")
     {'Objekt': 'name', 'Maß B': 'width_cm', 'Rahmenbreite': ''}
+    >>> mapping_of('"Tiefe, innen"=, "Höhe, gesamt"=height_cm')
+    {'Tiefe, innen': '', 'Höhe, gesamt': 'height_cm'}
     """
     if text is None:
         return {}
     if not isinstance(text, Mapping):
-        parts = [part.rpartition("=") for part in text.split(",") if part.strip()]
+        fields = next(csv.reader([" ".join(text.split())], skipinitialspace=True), [])
+        parts = [part.rpartition("=") for part in fields if part.strip()]
         if odd := next((ours for _, mark, ours in parts if not mark), ""):
             raise InvalidValueError(
                 f'columns must say own title = ours, as in "Objekt=name, Maß B=width_cm", got {odd.strip()!r:.60}'

@@ -48,8 +48,8 @@ class Draws:
         return which, level
 
     def _level(self, item: InventoryObject, name: str) -> FloatArray:
-        """Return the probabilities of a size: one in each stratum, in an order of its own; a round one has one."""
-        own = _ROUND.get(name, name) if item.shape == "round" else name
+        """Return the probabilities of a size: one in each stratum, in an order of its own; a circle has one."""
+        own = _ROUND.get(name, name) if item.shape == "round" and item.width == item.depth else name
         place = 2 + 2 * _SIZES.index(own)
         order, within = (uniforms(self.seed, np.arange(STRATA), place + k) for k in (0, 1))
         return np.asarray((np.argsort(order) + within) / STRATA)

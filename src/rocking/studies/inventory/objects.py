@@ -63,7 +63,7 @@ class InventoryObject:
         The body itself, standing as it does, where more is known than its size, which it then gives: it moves in three
         dimensions, and without friction it does not slide.
     shape : {"box", "round"}
-        Of its outline from above; a round one has its diameter as width and depth.
+        Of its outline from above; a round one is a circle or an ellipse with its width and depth as axes.
     consequence : {"low", "medium", "high"}
         How bad it is if it falls.
     photo : Path, optional
@@ -133,10 +133,6 @@ class InventoryObject:
     def _check_words(self) -> None:
         for name, words in (("shape", ("box", "round")), ("consequence", ("low", "medium", "high"))):
             checks.one_of(name, getattr(self, name), words)
-        if self.shape == "round" and abs(self.width - self.depth) > 1e-9 * self.width:
-            raise InvalidValueError(
-                f"width and depth of a round object must be its diameter, got {self.width:g} m and {self.depth:g} m"
-            )
 
     def base(self, direction: Direction) -> float:
         """Return the size of the base in a direction.
@@ -186,7 +182,7 @@ class InventoryObject:
             A `Block`, or a `Section` if the base says otherwise; of a round object the `MassPoints` of a cylinder.
         """
         if self.shape == "round":
-            return self._cylinder(self.base(direction))
+            return self._cylinder(self._size(direction), self.base(direction))
         size, across = self._size(direction), self._size("depth" if direction == "width" else "width")
         base, height = self.base(direction), self.centre_of_mass_height
         centre = None if height is None else (0.5 * size, height)
@@ -205,13 +201,13 @@ class InventoryObject:
         Raises
         ------
         InvalidValueError
-            If its base is smaller than itself and not round as it is: of such a body the shape must be known.
+            If its base is smaller than itself and not round as it is, or it is an ellipse: the shape must be known.
         """
         if self.solid is not None:
             return self.solid
-        if self.shape == "round" and self.base("width") == self.base("depth"):
+        if self.shape == "round" and self.base("width") == self.base("depth") and self.width == self.depth:
             return self._turned()
-        if any(self.base(way) < self._size(way) for way in DIRECTIONS):
+        if self.shape == "round" or any(self.base(way) < self._size(way) for way in DIRECTIONS):
             raise InvalidValueError(
                 "with friction it moves in three dimensions, and its shape above a smaller base is not known: leave "
                 "the base out, or name its body file"
@@ -246,8 +242,11 @@ class InventoryObject:
         above = self.height - middle
         return (middle, above), (above / self.height, middle / self.height)
 
-    def _cylinder(self, base: float) -> MassPoints:
-        """Return the mass points of a cylinder seen from the side: their second moments are its own, exactly."""
+    def _cylinder(self, size: float, base: float) -> MassPoints:
+        """Return the mass points of a cylinder seen from the side: their second moments are its own, exactly.
+
+        The chords of an ellipse are in the same proportions as those of a circle.
+        """
         turns = math.pi * np.arange(1, _CHORDS + 1) / (_CHORDS + 1)
         # Gauss-Chebyshev of the second kind: chords are in proportion to sqrt(1 - x^2)
         across, chords = portable.each(math.cos, turns), np.square(portable.each(math.sin, turns))
@@ -255,9 +254,9 @@ class InventoryObject:
         heights, masses = self._halves()
         levels = np.concatenate([0.5 * heights[0] * (1.0 + nodes), heights[0] + 0.5 * heights[1] * (1.0 + nodes)])
         shares = 0.5 * np.concatenate([masses[0] * weights, masses[1] * weights])
-        volume = 0.25 * math.pi * self.width**2 * self.height
+        volume = 0.25 * math.pi * self.width * self.depth * self.height
         mass = DEFAULT_DENSITY * volume if self.mass is None else self.mass
-        x, y = (each.ravel() for each in np.meshgrid(0.5 * self.width * across, levels))
+        x, y = (each.ravel() for each in np.meshgrid(0.5 * size * across, levels))
         points = mass * np.outer(shares, chords / chords.sum()).ravel()
         return MassPoints(np.column_stack([x, y]), points, (-0.5 * base, 0.5 * base))
 

@@ -13,6 +13,7 @@ from rocking.studies.inventory.columns import (
     SIZES,
     TEXTS,
     UNITS,
+    WEIGHTS,
     Header,
     InventoryColumn,
     check_header,
@@ -29,6 +30,7 @@ from rocking.studies.inventory.sheets import (
     Cell,
     Row,
     Sheet,
+    Shown,
     rows_of,
     sheets_in,
     tables_of,
@@ -261,8 +263,9 @@ class _Reader:
 
     def _column(self, place: int) -> Iterator[str]:
         """Yield the texts of a column; numbers of spreadsheets have no mark."""
+        cells = (cell for _, row in self.rows for cell in row[place : place + 1])
         return (
-            cell if isinstance(cell, str) else str(int(cell)) for _, row in self.rows for cell in row[place : place + 1]
+            cell if isinstance(cell, str) else cell.one if isinstance(cell, Shown) else str(int(cell)) for cell in cells
         )
 
     def _text(self, row: Sequence[Cell], stem: str) -> str:
@@ -270,7 +273,7 @@ class _Reader:
         return next((text_of(cell) for column, cell in pairs if column and column.stem == stem), "")
 
     def _check_units(self) -> None:
-        """Refuse lengths without a unit; weights without one decide nothing, and are not read."""
+        """Refuse lengths without a unit; weights without one decide nothing, and are not read, nor is a pedestal."""
         if "units" in self.header.known:
             return
         columns = list(self.header.columns)
@@ -279,7 +282,7 @@ class _Reader:
                 continue
             cells = [cell.strip() for cell in self._column(k) if not is_missing(cell)]
             if cells and all(cell.replace(".", "").replace(",", "").isdigit() for cell in cells):
-                if column.stem != "weight":
+                if column.stem not in {"weight", "pedestal"}:
                     known = ", ".join(f"{column.stem}_{each}" for each in LENGTH_UNITS)
                     raise InvalidValueError(f"{self.sheet.source}: column {column.title!r} must name its unit: {known}")
                 columns[k] = None
@@ -316,14 +319,16 @@ class _Reader:
                 found.remarks.append(f"{title} is {cell!r:.40}: as if none were given")
         elif stem == "size":
             self._read_size(found, column, cell, factor)
-        elif stem in LENGTHS:
+        elif stem in LENGTHS and stem != "pedestal":
             one = measure(title, cell, factor, self.mark)
             found.take(("diameter",) if one.across and stem in {"width", "depth"} else fields, one, title, cell)
         else:
             try:
-                found.fields[fields[0]] = measure(
-                    title, cell, 1.0 if stem == "friction" else column.factor, self.mark
-                ).value
+                if stem == "pedestal":
+                    found.take(fields, measure(title, cell, factor, self.mark), title, cell)
+                else:
+                    scale, units = (1.0, {}) if stem == "friction" else (column.factor, WEIGHTS)
+                    found.fields[fields[0]] = measure(title, cell, scale, self.mark, units).value
             except InvalidValueError as error:
                 found.remarks.append(f"{stem} was left aside: {error}")
 

@@ -1,5 +1,6 @@
 """What a row of a list says: its measures, its shape, and what of it is no more than a remark."""
 
+import math
 from collections.abc import Callable, Sequence
 from pathlib import Path, PureWindowsPath
 from typing import Any
@@ -12,7 +13,7 @@ from rocking.studies.inventory.cells import CellMeasure, is_missing
 from rocking.studies.inventory.columns import plain, words_of
 from rocking.studies.inventory.sheets import Cell
 
-_SHAPES = {**dict.fromkeys(words_of(header_words.ROUND), "round"), **dict.fromkeys(words_of(header_words.BOX), "box")}
+_SHAPES = {word: shape for shape, text in header_words.SHAPES.items() for word in words_of(text)}
 _CONSEQUENCES = {word: level for level, text in header_words.CONSEQUENCES.items() for word in words_of(text)}
 
 
@@ -48,11 +49,9 @@ class RowValues:
             self.fields[field] = value
 
     def settle_shape(self) -> None:
-        """Bring a diameter, or a shape that is said to be round, to width and depth."""
+        """Bring a diameter, a pedestal and the shape that is said to what an object has."""
         fields, word = self.fields, self.fields.pop("shape", "")
-        shape = _SHAPES.get(plain(word))
-        if word and shape is None and not is_missing(word):
-            self.remarks.append(f"shape {word!r:.40} is not round or rectangular: a box of its size is taken")
+        shape = "" if is_missing(word) else _SHAPES.get(plain(word), "unknown")
         if (across := fields.pop("diameter", None)) is not None:
             other = next(
                 (way for way in ("width", "depth") if abs(fields.get(way, across) - across) > 1e-9 * across), None
@@ -63,19 +62,59 @@ class RowValues:
             fields |= {"width": across, "depth": across}
             if half := self.approximate.pop("diameter", 0.0):
                 self.approximate |= {"width": half, "depth": half}
-            shape = "round"
-        if shape != "round" or "solid" in fields:
+            shape = "round" if shape in {"", "unknown"} else shape
+        self._settle_pedestal()
+        if "solid" in fields or shape in {"", "box"}:
             return
+        if shape == "unknown":
+            raise InvalidValueError(
+                f"shape {word!r:.40} is not known, and a box of its size might stand better; known are round, oval, "
+                "rectangular, triangular and polygonal; left empty, a box is taken"
+            )
         sides = [way for way in ("width", "depth") if way in fields]
-        if len(sides) == 1:
+        if len(sides) == 1 and shape != "triangle":
             (own,), (other,) = sides, {"width", "depth"} - set(sides)
             fields[other] = fields[own]
             if own in self.approximate:
                 self.approximate[other] = self.approximate[own]
-        if len(sides) == 2 and fields["width"] != fields["depth"]:
-            self.remarks.append("it is said to be round, and its width is not its depth: a box of its size is taken")
+        elif len(sides) < 2:
+            return
+        if shape != "round":
+            self._inscribe(shape, word)
+        fields["shape"] = "round"
+
+    def _inscribe(self, shape: str, word: str) -> None:
+        """Take the round body within an outline that has corners, about its centre: it lifts first, and turns fastest.
+
+        It reaches as far as the nearest side: a third of the height over the longest side that a triangle may have, and
+        of a regular polygon of five sides or more at least the cosine of 36 degrees of half its size.
+        """
+        fields = self.fields
+        width, depth = fields["width"], fields["depth"]
+        across = 2.0 * width * depth / (3.0 * math.hypot(width, depth))
+        if shape == "polygon":
+            across = min(width, depth) * math.cos(math.pi / 5.0)
+        half = max((self.approximate.get(way, 0.0) / fields[way] for way in ("width", "depth")), default=0.0)
+        fields |= {"width": across, "depth": across}
+        if half:
+            self.approximate |= {"width": half * across, "depth": half * across}
+        for base in {"base_width", "base_depth"} & fields.keys():
+            fields[base] = min(fields[base], across)
+        self.remarks.append(f"shape {word!r:.40}: the round body within it is taken, {across:.3g} m across")
+
+    def _settle_pedestal(self) -> None:
+        fields, title = self.fields, self.titles.get("pedestal", "")
+        pedestal, half = fields.pop("pedestal", None), self.approximate.pop("pedestal", 0.0)
+        if pedestal is None:
+            return
+        size = min((fields[way] for way in ("width", "depth") if way in fields), default=0.0)
+        if {"base_width", "base_depth", "solid"} & fields.keys() or pedestal > size:
+            self.remarks.append(f"{title} was left aside: it is no base within the object")
         else:
-            fields["shape"] = "round"
+            both = ("base_width", "base_depth")
+            fields |= dict.fromkeys(both, pedestal)
+            self.approximate |= dict.fromkeys(both, half) if half else {}
+            self.remarks.append(f"{title} is taken as its base")
 
     def settle_words(self, find: Callable[[str], Path] | None) -> None:
         """Bring consequence and photo to what they mean."""

@@ -23,6 +23,13 @@ MOST_COLUMNS, _MOST_LINES, _MOST_SHEETS, _MOST_MERGED = 200, 1 << 20, 50, 1000
 Cell = str | float
 """Text, or a number of a spreadsheet; an empty cell is an empty text."""
 
+
+class Shown(float):
+    """A number of a spreadsheet whose format writes something beside it, such as a unit; and how it writes 1."""
+
+    one = "1"
+
+
 Row = tuple[int, list[Cell]]
 """The line on which it begins, and its cells."""
 
@@ -75,17 +82,44 @@ def _of_excel(archive: zipfile.ZipFile, content: bytes) -> Iterator[tuple[str, I
     for sheet in book.worksheets[:_MOST_SHEETS]:
         if sheet.sheet_state != "visible":
             continue
-        lines = sheet.iter_rows(max_row=_MOST_LINES, max_col=MOST_COLUMNS, values_only=True)
-        rows = (
-            (line, [_cell(value) for value in values])
-            for line, values in enumerate(lines, start=1) if values.count(None) < len(values)
-        )  # fmt: skip
         text = archive.read(sheet._worksheet_path)
         marks = itertools.islice(
             re.finditer(rb'<mergeCell ref="([A-Z]{1,3})(\d{1,7}):[A-Z]{1,3}(\d{1,7})"', text), _MOST_MERGED
         )
         merged = [(int(mark[2]), _place(mark[1]), int(mark[3])) for mark in marks]
-        yield sheet.title, _held(rows), merged
+        yield sheet.title, _held(_lines(sheet)), merged
+
+
+def _lines(sheet: Any) -> Iterator[Row]:
+    blank = None
+    for line, cells in enumerate(sheet.iter_rows(max_row=_MOST_LINES, max_col=MOST_COLUMNS), start=1):
+        if cells is blank:  # a million of them may be the same
+            continue
+        if all(cell.value is None for cell in cells):
+            blank = cells
+        else:
+            yield line, [_shown(_cell(cell.value), cell) for cell in cells]
+
+
+_LITERAL = r'(?:"([^"]*)"|\\(.)|( ))'
+_FORMAT = re.compile(rf"({_LITERAL}*)[#0?][#0?,.]*({_LITERAL}*)")
+
+
+def _shown(value: Cell, cell: Any) -> Cell:
+    """Return a number with what its format writes beside it."""
+    if isinstance(value, str):
+        return value
+    written = _FORMAT.fullmatch(re.sub(r"_.|\*.|\[[^\]]*\]", "", cell.number_format.partition(";")[0]))
+    before, after = (re.sub(_LITERAL, r"\1\2\3", written[k]) if written else "" for k in (1, 5))
+    return _beside(value, before, after)
+
+
+def _beside(value: float, before: str, after: str) -> float:
+    if not (before + after).strip():
+        return value
+    shown = Shown(value)
+    shown.one = f"{before}1{after}"
+    return shown
 
 
 def _place(letters: bytes) -> int:
@@ -163,6 +197,8 @@ class _OpenDocument:
         value: Cell = text
         if given.get("office:value-type") in {"float", "currency"} and not text.startswith("#"):
             value = _cell(float(given.get("office:value", "nan")))
+            if isinstance(value, float) and (written := re.fullmatch(r"([^\d-]*)\d[\d.,' ]*(.*)", text)):
+                value = _beside(value, *written.groups())
         elif given.get("office:value-type") == "date":
             value = given.get("office:date-value", text)
         many = min(int(given.get("table:number-columns-repeated", 1)), MOST_COLUMNS - len(self.row))
