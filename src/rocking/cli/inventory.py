@@ -180,4 +180,4 @@ class InventoryAnswer:
             page.line(say("sheet.terminal_ignored", columns=", ".join(assessment.ignored)))
         if say.asked != say.code:
             page.line(say("no_words", code=say.asked))
-        page.line(say("limits.sliding"))
+        page.line(table.sliding(assessment))

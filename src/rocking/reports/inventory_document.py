@@ -16,10 +16,10 @@ from rocking.studies.inventory.table import (
     noted,
     plan_header,
     plan_row,
-    plan_words,
     rotation_words,
     rounded_down,
     sentence,
+    sliding,
     words_of,
 )
 
@@ -35,7 +35,7 @@ def inventory_document(assessment: Assessment, photos: Mapping[int, str] | None 
     level = assessment.hazard.words(say.code)
     every = [
         sections.ranking(), sections.plan(), sections.refused(), sections.numbers(), sections.meaning(),
-        sections.shaking(), ReportSection(say("report.limits"), [Paragraph(each) for each in limits(say)]),
+        sections.shaking(), ReportSection(say("report.limits"), [Paragraph(each) for each in limits(assessment)]),
     ]  # fmt: skip
     return Document(
         say("report.title"),
@@ -82,7 +82,7 @@ def look_at(assessment: Assessment) -> list[tuple[str, str]]:
         lines.append((say("report.decides"), say("report.undecided", count=undecided)))
     if say.asked != say.code:
         lines.append((say("report.language"), say("no_words", code=say.asked)))
-    return [*lines, (say("report.not_covered"), say("limits.sliding"))]
+    return [*lines, (say("report.not_covered"), sliding(assessment))]
 
 
 class _Sections:
@@ -116,12 +116,11 @@ class _Sections:
     def plan(self) -> ReportSection:
         say, assessment = self.say, self.assessment
         header = [*self._header("object"), *plan_header(say)]
-        rows = [[each.item.name, *map(self._figure, plan_row(each, say))] for each in assessment.plan if each.computed]
-        others = [Paragraph(plan_words(each, say)) for each in assessment.plan if not each.computed]
+        rows = [[each.item.name, *map(self._figure, plan_row(each, say))] for each in assessment.plan]
         weights = {name: 1.0 / assessment.thresholds.factor(name) for name in ("low", "high")}
         lead = Paragraph(say("plan.lead", **weights))
         plan = table(say("plan.caption"), header, rows, say("plan.note"), "plan")
-        return ReportSection(say("plan.title"), [lead, plan, *others] if rows else others)
+        return ReportSection(say("plan.title"), [lead, plan])
 
     def _figure(self, value: str | float) -> str:
         return value if isinstance(value, str) else self.say.number(f"{value:.6g}")

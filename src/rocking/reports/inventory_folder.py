@@ -127,7 +127,7 @@ def write_spreadsheet(assessment: Assessment, path: Path) -> None:
         *(["", each] for each in assessment.thresholds.conventions(say.code)),
         *facts,
         [say("sheet.plan"), say("plan.note")],
-        *([say("sheet.not_covered"), each] for each in limits(say)),
+        *([say("sheet.not_covered"), each] for each in limits(assessment)),
     ])  # fmt: skip
     about.column_dimensions["A"].width, about.column_dimensions["B"].width = 14, 110
     whole = BytesIO()  # a workbook that a full disk cuts off complains for long after it was closed

@@ -178,17 +178,21 @@ def isolation(body: Body, motions: Sequence[GroundMotion], margin: float, gravit
     return (float(PERIODS[first]), float(far[first])) if first < PERIODS.size else None
 
 
-def changed(body: Body, *, out: float = 0.0, down: float = 0.0) -> Block:
-    """Return a block of the same mass and inertia with feet so far outside, and a centre so far below, as given [m]."""
+def changed(body: Body, ballast: bool = False, /, *, out: float = 0.0, down: float = 0.0) -> Block:
+    """Return a block of the same mass and inertia with feet so far outside, and a centre so far below, as given [m].
+
+    With ballast, what lowers the centre is a mass on the ground below it, which is added with its inertia.
+    """
     left, right = body.feet
     width, x, y = right - left + 2.0 * out, body.centre[0] - left + out, body.centre[1] - body.ground - down
     if not y > 0.0:
         raise GeometryError(f"the centre of mass would lie {-1e3 * y:.0f} mm below the ground")
-    gyration = body.moment_of_inertia / body.mass - x * (width - x)  # what of it only height can give
+    mass, inertia = body.mass, body.moment_of_inertia
+    if ballast:
+        mass, inertia = mass * (y + down) / y, inertia + mass * down * (y + down)
+    gyration = inertia / mass - x * (width - x)  # what of it only height can give
     height = max(body.local_box[3], y + 1.01 * max(gyration, y**2) / y)
-    return Block(
-        width=width, height=height, depth=1.0, mass=body.mass, centre=(x, y), moment_of_inertia=body.moment_of_inertia
-    )
+    return Block(width=width, height=height, depth=1.0, mass=mass, centre=(x, y), moment_of_inertia=inertia)
 
 
 class Landings:

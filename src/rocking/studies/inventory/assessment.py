@@ -7,13 +7,12 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.bodies import Block, Solid
+from rocking.bodies import Block
 from rocking.conventions import FloatArray, g
-from rocking.dynamics._simulate import components_of
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
-from rocking.dynamics.settings import Settings, settings_of
+from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome, lost_contact
 from rocking.statistics.counts import share_interval
@@ -24,6 +23,7 @@ from rocking.studies.inventory.lights import Light, Thresholds
 from rocking.studies.inventory.objects import DIRECTIONS, Direction, InventoryObject, NotAssessed
 from rocking.studies.inventory.plan import PlanEntry, Planner
 from rocking.studies.inventory.reading import Inventory
+from rocking.studies.inventory.space import SpatialObject
 from rocking.studies.motion_sets import MotionList
 
 
@@ -310,31 +310,24 @@ class _Assessor:
         self, item: InventoryObject, threads: int | None, progress: Callable[[int], None] | None
     ) -> Verdict | NotAssessed:
         """Return the verdict of an object on the vertices of its hull, shaken along its width and along its depth."""
-        shaking = [components_of(motion) for motion in self.hazard.motions]
-        motions = MotionList([(x, None, up) for x, _, up in shaking] + [(None, x, up) for x, _, up in shaking])
-        stated = self._friction(item)
         found: list[Any] = []
         try:
-            body = item.in_space()
-            settings = settings_of(self.gravity, {"friction": stated}, body)
-            assert settings.friction is not None
-            lifts = [min(settings.friction * self.gravity, each) for each in _uplift(body, self.gravity)]
+            moving = self._moving(item, threads, progress)
             for restitution in self.spatial:
-                if (first := self.spatial.index(restitution)) < len(found):
-                    found.append(found[first])
-                    continue
-                word = getattr(restitution, "name", restitution)
-                parameters = RockingParameters.of_body(body, word, self.gravity, friction=settings.friction)
-                sides = {name: values[None] for name, values in sides_of([parameters]).items()}
-                rows = Product(motions, sides, np.ones(1), law=parameters.law, settings=settings)
-                found.append(results_of(rows, threads=threads, progress=progress))
+                first = self.spatial.index(restitution)
+                found.append(found[first] if first < len(found) else moving.results(restitution))
+            lifts = moving.moves()
         except RockingError as error:
             return NotAssessed(item.row, item.name, str(error))
-        outcome, peak = (
-            np.stack([one[name].reshape(2, -1).T for one in found], axis=-1) for name in ("outcome", "peak_rotation")
+        outcome, ratio = (np.stack(each, axis=-1) for each in zip(*found, strict=True))
+        return self._verdict(item, lifts, outcome, ratio, np.zeros(ratio.shape), moving.friction)
+
+    def _moving(
+        self, item: InventoryObject, threads: int | None, progress: Callable[[int], None] | None = None
+    ) -> SpatialObject:
+        return SpatialObject(
+            item, self.hazard, self.draws, self.gravity, self._friction(item), threads=threads, progress=progress
         )
-        ratio = np.abs(peak) / parameters.right.slenderness_angle
-        return self._verdict(item, lifts, outcome, ratio, np.zeros(ratio.shape), settings.friction)
 
     def _verdict(
         self, item: InventoryObject, lifts: Sequence[float], outcome: np.ndarray, ratio: FloatArray, lost: FloatArray,
@@ -367,7 +360,7 @@ class _Assessor:
         middle, high = (_quantile(ratio[good], fell, share) for share in (0.5, 0.84))
         counts = {"lifted": int(lifted.sum()), "overturned": int(fell.sum()), "count": int(good.sum())}
         failed = int((~good).sum())
-        light = limits.light(high_rotation=high, failed=failed, **counts)
+        light = limits.light(high_rotation=high, failed=failed, slid=int(slid.sum()), **counts)
         return DirectionResult(
             way, lifts, median_rotation=middle, high_rotation=high, light=light, failed=failed,
             lost_contact=int(np.nansum(lost)), slid=int(slid.sum()), **counts,
@@ -396,7 +389,7 @@ class _Assessor:
                 continue
             share, weight = each.worse.overturned_share, 1.0 / self.thresholds.factor(each.item.consequence)
             if self.in_space(each.item):
-                found.append(PlanEntry(each.item, each.item.count * share, each.item.count * share * weight))
+                found.append(planner.entry_in_space(self._moving(each.item, threads), self.spatial[0], share, weight))
             else:
                 lifted = tuple(one.direction for one in each.results if one.lifted or one.failed)
                 wanted.append((each.item, lifted, share, weight))
@@ -411,13 +404,6 @@ class _Assessor:
         if (outcome == Outcome.FAILED.code).all():
             return False
         return self._direction(way, 0.0, outcome, ratio, np.zeros(1), limits).light is Light.GREEN
-
-
-def _uplift(body: Solid, gravity: float) -> list[float]:
-    """Return which steady acceleration along x, and along y, lifts a body over either side [m/s2]."""
-    pose = body.equilibria().settling([0.0, 0.0, -1.0])
-    lifts = pose.uplift_acceleration(0.5 * np.pi * np.arange(4.0)) * gravity / g
-    return [float(min(lifts[k], lifts[k + 2])) for k in (0, 1)]
 
 
 def _quantile(ratio: FloatArray, fell: np.ndarray, share: float) -> float | None:

@@ -93,7 +93,8 @@ class Hazard:
             if progress is not None:
                 progress(1)
         name = motions.family.name
-        words = f"{count} synthetic motions of the family {name} ({motions.family.title}), seed {seed}"
+        many = "motion" if count == 1 else "motions"
+        words = f"{count} synthetic {many} of the family {name} ({motions.family.title}), seed {seed}"
         return cls(tuple(shaken), level, words, motions.description())
 
     @classmethod

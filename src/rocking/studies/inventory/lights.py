@@ -118,7 +118,9 @@ class Thresholds:
         green, red = round(min(factor * self.overturning_green, _MOST), 12), min(factor * self.overturning_red, 1.0)
         return replace(self, overturning_green=green, overturning_red=red, low_consequence=1.0, high_consequence=1.0)
 
-    def light(self, *, lifted: int, overturned: int, count: int, high_rotation: float | None, failed: int = 0) -> Light:
+    def light(
+        self, *, lifted: int, overturned: int, count: int, high_rotation: float | None, failed: int = 0, slid: int = 0
+    ) -> Light:
         """Return the light of what was counted.
 
         Parameters
@@ -131,6 +133,8 @@ class Thresholds:
             The 84 % quantile of the peak rotation over the slenderness angle, None if it overturns there [-].
         failed : int
             How many motions could not be computed: with any there is no green [-].
+        slid : int
+            How many motions make it slide, whose way is not computed: from the share of red on there is no green [-].
 
         Returns
         -------
@@ -139,6 +143,8 @@ class Thresholds:
         """
         if overturned >= self.overturning_red * count - _ROUNDING:
             return Light.RED
+        if slid and slid >= self.overturning_red * count - _ROUNDING:
+            return Light.AMBER
         if lifted == 0 and failed == 0:
             return Light.GREEN
         small = high_rotation is not None and high_rotation < self.rocking

@@ -16,7 +16,8 @@ from rocking.restitution import ImpactGeometry
 from rocking.studies.histories import HistoryTable, results_of
 from rocking.studies.inventory.draws import Draws, impacts, slenderest
 from rocking.studies.inventory.hazard import Hazard
-from rocking.studies.inventory.objects import Direction, InventoryObject
+from rocking.studies.inventory.objects import DIRECTIONS, Direction, InventoryObject
+from rocking.studies.inventory.space import SpatialObject
 from rocking.studies.motion_sets import MotionList
 from rocking.studies.remedies import Landings, changed, lifting_factor, still, tension
 
@@ -33,7 +34,7 @@ _Wanted = tuple[InventoryObject, tuple[Direction, ...], float, float]
 
 @dataclass(frozen=True, eq=False)
 class PlanEntry:
-    """What would make an object green; None where it does not serve, is not known, or was not computed."""
+    """What would make an object green; None where it does not serve, is not known, or is not computed."""
 
     item: InventoryObject
     spared: float  # pieces that fall less, as expected [-]
@@ -42,15 +43,12 @@ class PlanEntry:
     wider: float | None = None  # how far either side of its base must reach out [m]
     lower: float | None = None  # how far the centre of mass must come down [m]
     ballast: float | None = None  # mass at the floor that lowers it so far, where its own is known [kg]
+    ballast_share: float | None = None  # the same over its own [-]
     weaker: float | None = None  # largest share of this shaking under which it is green where it stands [-]
     pull: float | None = None  # force that anchors along one edge must hold, over the weight [-]
     force: float | None = None  # the same, where the mass is known [N]
     shear: float | None = None  # horizontal force on all anchors over the weight [-]
-
-    @property
-    def computed(self) -> bool:
-        """Whether anything was computed: not in three dimensions."""
-        return self.pull is not None
+    in_space: bool = False  # whether it moves in three dimensions, where neither base nor centre is changed
 
 
 @dataclass(eq=False)
@@ -93,6 +91,32 @@ class Planner:
             subject.entry(share, weight, *(found.get((id(subject), name)) for name in names))
             for subject, share, weight in subjects
         ]
+
+    def entry_in_space(self, moving: SpatialObject, restitution: Any, share: float, weight: float) -> PlanEntry:
+        """Return how much weaker the shaking must be for an object in three dimensions, and what anchors must hold."""
+        item, others = moving.item, np.setdiff1d(np.arange(len(self.motions)), self.hardest)
+
+        def green(k: int) -> bool:
+            hard = moving.results(restitution, self.hardest, 1.0 - _COARSE * k)
+            if overturned(hard[0]).any():
+                return False
+            rest = moving.results(restitution, others, 1.0 - _COARSE * k)
+            both = (np.concatenate(each).T for each in zip(hard, rest, strict=True))
+            return all(self.is_green(item, *each) for each in zip(DIRECTIONS, *both, strict=True))
+
+        # of level motions, what neither lifts it nor makes it slide
+        still = 0.0 if len(self.strongest) > 1 else min(moving.moves()) / self.peak
+        low, high = 0, min(99, max(1, math.floor((1.0 - still) / _COARSE + 1e-9) + 1))
+        serves = green(high)
+        for _ in range(ROUNDS if serves else 0):
+            middle = (low + high) // 2
+            low, high = (low, high) if middle == low else (low, middle) if green(middle) else (middle, high)
+        pull = moving.pull()
+        return PlanEntry(
+            item, item.count * share, item.count * share * weight, DIRECTIONS, in_space=True, pull=pull,
+            weaker=round(1.0 - _COARSE * high, 9) if serves else None, shear=self.peak / self.gravity,
+            force=None if item.mass is None else pull * item.mass * self.gravity,
+        )  # fmt: skip
 
     def _bisect(self, searches: Sequence[_Search]) -> None:
         for each, green in zip(searches, self.green([(one, one.high) for one in searches]), strict=True):
@@ -163,9 +187,12 @@ class _Subject:
         """Return the rows of a changed object, under each motion."""
         right, gravity = self._right[way], self.planner.gravity
         height, old, new = right.height - down, right.old_lever + out, right.new_lever + out
+        # ballast below the centre, at the floor, is down / right.height of the whole mass
+        spread_x, spread_y = height / right.height * np.array([right.spread_x, right.spread_y])
+        spread_y = spread_y + down * height
         rows = {"scale": np.full(len(height), 1.0 - weaker)}
         for foot, behind, ahead in (("right", old, new), ("left", new, old)):
-            geometry = ImpactGeometry(height, behind, ahead, right.spread_x, right.spread_y)
+            geometry = ImpactGeometry(height, behind, ahead, spread_x, spread_y)
             square = height**2 + ahead**2
             rows[f"alpha_{foot}"] = np.asarray(_angle(ahead, height), dtype=np.float64)
             rows[f"p_{foot}"] = np.sqrt(gravity * np.sqrt(square) / geometry.new_gyration)  # Eq. 26
@@ -174,7 +201,7 @@ class _Subject:
                 rows[f"r_{foot}"] = self.planner.draws.restitution(geometry)
         if self.planner.restitution is not None:
             pairs = [
-                landings.of(changed(body, out=out, down=down))[0]
+                landings.of(changed(body, True, out=out, down=down))[0]
                 for landings, body in zip(self._landings[way], self._bodies[way], strict=True)
             ]
             rows |= {f"r_{foot}": np.array([pair[foot] for pair in pairs])[self._number] for foot in FEET}
@@ -189,10 +216,10 @@ class _Subject:
             max(tension(body, each, 1.0, planner.gravity).values()) / (body.mass * planner.gravity)
             for body in self._worst for each in planner.strongest
         )  # fmt: skip
-        height = self._worst[0].side("right").centre_height
+        added = None if down is None else down / (self._worst[0].side("right").centre_height - down)
         return PlanEntry(
             item, item.count * share, item.count * share * weight, self.directions, wider=out, lower=down,
-            ballast=None if down is None or item.mass is None else item.mass * down / (height - down),
+            ballast=None if added is None or item.mass is None else item.mass * added, ballast_share=added,
             weaker=None if weaker is None else round(1.0 - weaker, 9), pull=pull,
             force=None if item.mass is None else pull * item.mass * planner.gravity,
             shear=planner.peak / planner.gravity,

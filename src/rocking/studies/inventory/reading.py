@@ -6,6 +6,7 @@ from pathlib import Path
 
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import InvalidValueError, RockingError
+from rocking.language import language
 from rocking.studies.inventory import header_words
 from rocking.studies.inventory.cells import DecimalMark, count_of, is_missing, measure, parts
 from rocking.studies.inventory.columns import (
@@ -358,7 +359,8 @@ class _Reader:
                 ways = [each, *(["diameter"] if each != "height" else [])]
                 title = next((c.title for c in self.header.columns if c and each in c.fields), each)
                 raise InvalidValueError(next(filter(None, map(found.unknown.get, ways)), f"{title} is empty"))
-        number = fields.pop("number", None) or f"line {fields['row']}"  # names what has no name
+        line = language(self.header.language)("report.columns.line")
+        number = fields.pop("number", None) or f"{line} {fields['row']}"  # names what has no name
         if not fields.get("name"):
             fields["name"] = number
             remarks.append("it has no name")

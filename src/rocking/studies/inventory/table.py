@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from rocking.conventions import g
+from rocking.dynamics.settings import NEVER_SLIDES
 from rocking.language import Language, language
 from rocking.studies.inventory.assessment import Assessment, DirectionResult, Verdict
 from rocking.studies.inventory.lights import Light
@@ -20,7 +21,7 @@ PLAN_COLUMNS = ("pieces", "gain", "wider", "lower", "ballast", "anchors", "force
 _WORDS = COLUMNS.index("words")
 
 # what every report says about the assumptions
-_LIMITS = ("sliding", "rigid", "directions", "shape", "drawn", "sizes", "damage")
+_LIMITS = ("rigid", "directions", "shape", "drawn", "sizes", "damage")
 
 
 def header(say: Language) -> list[str]:
@@ -33,9 +34,16 @@ def plan_header(say: Language) -> list[str]:
     return [say(f"plan.columns.{name}") for name in PLAN_COLUMNS]
 
 
-def limits(say: Language) -> list[str]:
+def sliding(assessment: Assessment) -> str:
+    """Return whether objects slide, as a sentence or two."""
+    slides = [(each.friction or NEVER_SLIDES) < NEVER_SLIDES for each in assessment.verdicts]
+    names = ([] if slides and all(slides) else ["sliding"]) + (["slides"] if any(slides) else [])
+    return " ".join(words_of(assessment)(f"limits.{name}") for name in names)
+
+
+def limits(assessment: Assessment) -> list[str]:
     """Return what every report says about the assumptions."""
-    return [say(f"limits.{name}") for name in _LIMITS]
+    return [sliding(assessment), *(words_of(assessment)(f"limits.{name}") for name in _LIMITS)]
 
 
 def rows(assessment: Assessment, code: str = "en") -> list[list[str | float | int]]:
@@ -72,10 +80,10 @@ def rows(assessment: Assessment, code: str = "en") -> list[list[str | float | in
 
 def plan_row(entry: PlanEntry, say: Language) -> list[str | float]:
     """Return what is in the plan of an object, by `PLAN_COLUMNS`."""
-    if not entry.computed:
-        return [entry.spared, entry.gain, say("plan.in_space"), *[""] * (len(PLAN_COLUMNS) - 3)]
     ways = (entry.wider, entry.lower, entry.weaker)
     wider, lower, moved = (say("plan.serves_not") if each is None else round(100.0 * each, 3) for each in ways)
+    if entry.in_space:
+        wider = lower = say("plan.not_computed")
     forces = (entry.ballast, entry.pull, entry.force, entry.shear)
     ballast, *anchors = ("" if each is None else rounded_up(each) for each in forces)
     return [round(entry.spared, 3), round(entry.gain, 3), wider, lower, ballast, *anchors, moved]
@@ -83,8 +91,6 @@ def plan_row(entry: PlanEntry, say: Language) -> list[str | float]:
 
 def plan_words(entry: PlanEntry, say: Language) -> str:
     """Return what would make an object green, any one of it, as a sentence."""
-    if not entry.computed:
-        return say("plan.sentence", name=entry.item.name, options=say("plan.in_space"))
     assert entry.pull is not None
     options = []
     if entry.wider is not None:
@@ -94,14 +100,21 @@ def plan_words(entry: PlanEntry, say: Language) -> str:
             say("plan.ballasted", lower=_demanded(100.0 * entry.lower, say), ballast=_demanded(entry.ballast, say))
         )
     elif entry.lower is not None:
-        options.append(say("plan.lower", lower=_demanded(100.0 * entry.lower, say)))
+        share = _demanded(entry.ballast_share or 0.0, say)
+        options.append(say("plan.lower", lower=_demanded(100.0 * entry.lower, say), share=share))
     if entry.weaker is not None:
         options.append(say("plan.moved", share=100.0 * entry.weaker))
     if not options:
         options.append(say("plan.nothing"))
     weight = say("plan.weight", share=_demanded(entry.pull, say))
     pull = weight if entry.force is None else say("plan.newton", force=_demanded(entry.force, say))
-    return say("plan.sentence", name=entry.item.name, options="; ".join([*options, say("plan.anchors", pull=pull)]))
+    if entry.pull or not entry.in_space:
+        options.append(say("plan.anchors", pull=pull))
+    else:
+        options.append(say("plan.across", share=_demanded(entry.shear or 0.0, say)))
+    if entry.in_space:
+        options.append(say("plan.in_space"))
+    return say("plan.sentence", name=entry.item.name, options="; ".join(options))
 
 
 def as_csv(assessment: Assessment) -> str:
@@ -146,7 +159,7 @@ def as_plain(assessment: Assessment) -> dict[str, Any]:
             {"row": each.row, "name": each.name, "reason": each.reason} for each in assessment.not_assessed
         ],
         "columns_not_read": list(assessment.ignored),
-        "assumptions": limits(words_of(assessment)),
+        "assumptions": limits(assessment),
     }
 
 
@@ -266,6 +279,8 @@ def advice(verdict: Verdict, assessment: Assessment) -> str:
     if light is Light.GREEN:
         return say("advice.green")
     how = say("advice.secure") if verdict.friction is not None else _base(verdict, assessment)
+    if verdict.worse.overturned == 0 and verdict.worse.slid:
+        return say("advice.slides")
     return f"{how} {say(f'advice.{light.word}')}"
 
 

@@ -1,0 +1,77 @@
+"""An object in three dimensions: its histories on the vertices of its hull, and what would help it."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from rocking.bodies import Solid
+from rocking.conventions import FloatArray, IntArray, g
+from rocking.dynamics._simulate import components_of
+from rocking.dynamics.parameters import RockingParameters, sides_of
+from rocking.dynamics.settings import settings_of
+from rocking.studies.histories import Product, results_of
+from rocking.studies.inventory.draws import Draws, slenderest
+from rocking.studies.inventory.hazard import Hazard
+from rocking.studies.inventory.objects import InventoryObject
+from rocking.studies.motion_sets import MotionList
+from rocking.studies.remedies import parts_of
+
+
+class SpatialObject:
+    """An object that slides, rocks and falls, shaken along its width and along its depth; one body for each motion."""
+
+    def __init__(
+        self, item: InventoryObject, hazard: Hazard, draws: Draws, gravity: float, friction: float | None,
+        *, threads: int | None, progress: Callable[[int], None] | None = None,
+    ) -> None:  # fmt: skip
+        self.item, self.hazard, self.gravity, self.threads, self.progress = item, hazard, gravity, threads, progress
+        self.bodies = [each.in_space() for each in draws.bodies(item)]
+        self.number = draws.number(len(self.bodies))
+        self.settings = settings_of(gravity, {"friction": friction}, self.bodies[0])
+        assert self.settings.friction is not None
+        self.friction = self.settings.friction
+        self._first = slenderest(item).in_space()  # of approximate sizes, those that lift first
+
+    def results(
+        self, restitution: Any, which: IntArray | None = None, scale: float = 1.0
+    ) -> tuple[np.ndarray, FloatArray]:
+        """Return outcomes, and peak rotations over the slenderness angle, of some motions and both directions."""
+        which = np.arange(len(self.hazard.motions)) if which is None else which
+        outcome, ratio = np.zeros((len(which), 2), np.int64), np.zeros((len(which), 2))
+        for k, body in enumerate(self.bodies):
+            own = np.flatnonzero(self.number[which] == k)
+            if not own.size:
+                continue
+            shaking = [components_of(self.hazard.motions[which[one]]) for one in own]
+            motions = MotionList([(x, None, up) for x, _, up in shaking] + [(None, x, up) for x, _, up in shaking])
+            word = getattr(restitution, "name", restitution)
+            parameters = RockingParameters.of_body(body, word, self.gravity, friction=self.friction)
+            sides = {name: values[None] for name, values in sides_of([parameters]).items()}
+            rows = Product(motions, sides, np.array([scale]), law=parameters.law, settings=self.settings)
+            found = results_of(rows, threads=self.threads, progress=self.progress)
+            outcome[own] = found["outcome"].reshape(2, -1).T
+            ratio[own] = np.abs(found["peak_rotation"]).reshape(2, -1).T / parameters.right.slenderness_angle
+        return outcome, ratio
+
+    def moves(self) -> list[float]:
+        """Return which steady acceleration along x, and along y, lifts it over either side, or makes it slide."""
+        return [min(self.friction * self.gravity, *pair) for pair in _uplift(self._first, self.gravity).tolist()]
+
+    def pull(self) -> float:
+        """Return the force over the weight that anchors along one edge must hold, the other being the pivot [-]."""
+        height = float(self._first.centre[2]) - self._first.ground
+        most = 0.0
+        for levers in _uplift(self._first, self.gravity) / self.gravity * height:
+            for motion in self.hazard.motions:
+                across, up = parts_of(motion)
+                moment = across * height - (self.gravity + up) * levers.min()
+                most = max(most, float(moment.max()) / (self.gravity * levers.sum()))  # Eq. 313
+        return most
+
+
+def _uplift(body: Solid, gravity: float) -> FloatArray:
+    """Return which steady acceleration lifts a body over either side, along x and along y [m/s2]."""
+    pose = body.equilibria().settling([0.0, 0.0, -1.0])
+    lifts = pose.uplift_acceleration(0.5 * np.pi * np.arange(4.0)) * gravity / g
+    return np.asarray(lifts).reshape(2, 2).T
