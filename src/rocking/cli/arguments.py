@@ -291,8 +291,8 @@ class Arguments:
         return {axis: self.motion_table(word, keys[axis]) for axis, word in along.items()}
 
     def of_body(self, motions: Sequence[str]) -> Tables:
-        """Return the table [motion] of the body, plane or in space."""
-        return self.components(motions) if self.solid else self.one_motion(motions)
+        """Return the table [motion] of the body, in space if it is a solid or moves along y too."""
+        return self.components(motions) if self.solid or "y" in _along(motions) else self.one_motion(motions)
 
     @staticmethod
     def each(motions: Sequence[str], table: Callable[[Sequence[str]], Tables]) -> list[Tables]:

@@ -377,9 +377,13 @@ def components_of(motion: Any) -> tuple[Component, Component, Component]:
     return x, y, z
 
 
-def together(motion: Any) -> Any:
-    """Return a motion of one component as it is, of several, by mapping or tuple, as one of a study."""
-    return Components(*components_of(motion)) if isinstance(motion, (Mapping, tuple)) else motion
+def together(motion: Any, *, plane: bool = False) -> Any:
+    """Return a motion of one component as it is, of several as one of a study: in a plane along x, with its z."""
+    if not isinstance(motion, (Mapping, tuple, Components)):
+        return motion
+    if plane:
+        return in_plane(motion)
+    return motion if isinstance(motion, Components) else Components(*components_of(motion))
 
 
 def in_plane(motion: Any) -> GroundMotion | Pulse:

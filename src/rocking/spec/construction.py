@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking import checks
-from rocking.bodies import Block, Body
+from rocking.bodies import Block, Body, Section
 from rocking.bodies.formats import read_body
 from rocking.bodies.formats.body_file import body_from_tables
 from rocking.bodies.formats.reader import KNOWN
@@ -161,6 +161,21 @@ def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Soli
         raise InvalidValueError(str(error)) from error
 
 
+def body_moved(table: dict[str, Any], inputs: InputFiles | None, *, turned: bool) -> Body | Solid:
+    """Return the body of a table; turned: it moves along y too, where a plane body of known depth is one in space."""
+    body = any_body_of(table, inputs)
+    if not turned or isinstance(body, Solid):
+        return body
+    tables = (tables_in(inputs.file(table["file"])) or {}) if inputs is not None and "file" in table else table
+    inner = (each for each in tables.values() if isinstance(each, dict))
+    if not isinstance(body, (Block, Section)) or not any("depth" in each for each in (tables, *inner)):
+        raise InvalidValueError(
+            "a plane body has one horizontal motion, along x, and a vertical one, along z; a block or section whose "
+            "depth is given (--depth, or depth in its table) moves along y too, as a body in space"
+        )
+    return Solid.from_section(body)
+
+
 _BESIDE_FILE = ("units", "density", "up", "repair", "surface", "wall", "base_tolerance", *KNOWN)
 _OF_ANGLE = (*_OUTSIDE, "slenderness_angle", "semi_diagonal", "depth", "density", "mass", "moment_of_inertia")
 
@@ -210,9 +225,11 @@ def _note_outlines(tables: dict[str, Any], folder: str, inputs: InputFiles) -> N
             inputs.file((Path(folder) / name).as_posix())
 
 
-def motions_of(tables: "list[MotionTable]", inputs: InputFiles, *, paired: bool = False) -> MotionSet:
+def motions_of(
+    tables: "list[MotionTable]", inputs: InputFiles, *, paired: bool = False, plane: bool = False
+) -> MotionSet:  # fmt: skip
     """Return the motions that tables describe: a `SyntheticSet` of one family alone, otherwise a `MotionList`."""
-    # paired: what is shaken takes both horizontal components of a record at once
+    # paired: what is shaken takes both horizontal components of a record at once; plane: it takes x and z alone
     sets: list[list[Motion] | SyntheticSet] = []
     for k, table in enumerate(tables):
         with located(f"motions[{k}]"):
@@ -223,7 +240,7 @@ def motions_of(tables: "list[MotionTable]", inputs: InputFiles, *, paired: bool 
     if count > MOST_IN_MEMORY:
         raise InvalidValueError(f"motions: a set of several sources may have up to {MOST_IN_MEMORY}, got {count}")
     with located("motions"):
-        return MotionList([each[k] for each in sets for k in range(len(each))])
+        return MotionList([each[k] for each in sets for k in range(len(each))], plane=plane)
 
 
 def _motions(table: "MotionTable", inputs: InputFiles, paired: bool) -> "list[Motion] | SyntheticSet":

@@ -9,9 +9,10 @@ from rocking.bodies import Body
 from rocking.bodies.solid import Solid
 from rocking.conventions import DEFAULT_FRICTION
 from rocking.dynamics import free_rocking, simulate
+from rocking.dynamics._simulate import together
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, PureRockingWarning
-from rocking.spec.construction import any_body_of, components_of, motion_of, restitutions_of
+from rocking.spec.construction import body_moved, components_of, motion_of, restitutions_of
 from rocking.spec.reading import InputFiles, located
 
 if TYPE_CHECKING:
@@ -125,18 +126,12 @@ def _refuse(reason: str, table: Any, keys: set[str]) -> None:
 
 def response_problem(document: "ResponseDocument", files: InputFiles) -> ResponseProblem:
     r"""Return the problem that a file describes; files: those that it may name."""
-    with located("body"):
-        body = any_body_of(document.body, files)
     table = document.motion
+    with located("body"):
+        body = body_moved(document.body, files, turned=table is not None and table.y is not None)
     motion: Any = None
-    if table is not None and not table.components:
-        with located("motion"):
-            motion = motion_of(table, files)
-    elif table is not None:
-        if not isinstance(body, Solid):
-            raise InvalidValueError(
-                "motion: a plane body has one motion and its vertical part; x, y and z are for solids"
-            )
-        with located("motion"):
-            motion = components_of(table, files)
+    with located("motion"):
+        if table is not None:
+            several = components_of(table, files) if table.components else motion_of(table, files)
+            motion = together(several, plane=True) if isinstance(body, Body) else several
     return problem_of(document, body, motion, inputs=files)

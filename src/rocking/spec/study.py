@@ -9,7 +9,7 @@ from rocking.bodies import Body
 from rocking.conventions import g
 from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError
-from rocking.spec.construction import any_body_of, motions_of, restitutions_of
+from rocking.spec.construction import body_moved, motions_of, restitutions_of
 from rocking.spec.reading import InputFiles, located
 from rocking.studies.axis import Axis, axis_of, friction_beside
 from rocking.studies.motion_sets import MotionList, MotionSet
@@ -39,16 +39,18 @@ class StudyProblem:
             stated = document.settings.stated()
             axes = axes_of(document.map) if document.map is not None else ()
             stated |= friction_beside(axes, stated.get("friction"))
+        turned = any(table.y is not None for table in document.motions) or any(axis.name == "azimuth" for axis in axes)
         bodies = []
         for k, table in enumerate(document.body or []):
             with located("body" if len(document.body or []) == 1 else f"body[{k}]"):
-                bodies.append(any_body_of(table, inputs))
+                bodies.append(body_moved(table, inputs, turned=turned))
         with located("settings"):
             kinds = {isinstance(body, Body) for body in bodies}
             if len(kinds) > 1:
                 raise InvalidValueError("bodies of a study are all plane or all in space")
             settings = settings_of(stated.pop("gravity", g), stated, next(iter(bodies), None))
-        motions = motions_of(document.motions, inputs, paired=bool(bodies) and kinds == {False})
+        plane = document.spectrum is not None or kinds == {True}
+        motions = motions_of(document.motions, inputs, paired=kinds == {False}, plane=plane)
         seed, friction = document.campaign.seed, settings.friction
         restitutions = restitutions_of(document.restitution, seed, bodies, inputs, friction=friction)
         return cls(document, bodies, motions, restitutions, settings, inputs)

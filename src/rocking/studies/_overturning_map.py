@@ -41,12 +41,12 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
     ----------
     body : Body
         The body, as it is where the axes do not change it.
-    motion : GroundMotion or Pulse
-        The motion, as it is where the axes do not change it.
+    motion : GroundMotion, Pulse or mapping
+        The motion, or its components as for `simulate`, as it is where the axes do not change it.
     x, y : Axis or (str, array_like)
         Axes, or their names and values: frequency_ratio, amplitude_ratio, scale, pga [m/s2], pgv [m/s], period [s],
         duration [s], semi_diagonal [m], slenderness_ratio, slenderness_angle [rad], width [m], height [m],
-        restitution, friction.
+        restitution, friction; in space azimuth [rad].
     restitution : as for `simulate`
         Not used where it is an axis.
     gravity : float

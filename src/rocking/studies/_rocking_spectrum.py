@@ -42,8 +42,8 @@ def rocking_spectrum(
 
     Parameters
     ----------
-    motions : GroundMotion or Pulse, or a sequence of them
-        All records or all pulses.
+    motions : GroundMotion, Pulse or mapping, or a sequence of them
+        All records or all pulses; components along x and z as for `simulate`.
     slenderness_angles : array_like
         alpha, between 0 and pi/2 [rad].
     periods : array_like
@@ -87,7 +87,7 @@ def rocking_spectrum(
     angles = _row("slenderness_angles", slenderness_angles, "rad")
     times = _row("periods", periods, "s")
     sizes = 0.75 * settings.gravity * (0.5 * times / np.pi) ** 2  # Eq. 180
-    all_motions = MotionList(motions)
+    all_motions = MotionList(motions, plane=True)
     blocks = [Block.from_angle(float(alpha), float(size)) for alpha in angles for size in sizes]
     question = Question(blocks[0], all_motions[0], restitution, settings, threads, engine)
     sides = sides_of([question.parameters_of(block) for block in blocks])

@@ -249,8 +249,8 @@ def minimum_overturning_acceleration(
     ----------
     body : Body
         The body.
-    motion : GroundMotion or Pulse
-        The motion, of any amplitude above zero.
+    motion : GroundMotion, Pulse or mapping
+        The motion, or its components as for `simulate`, of any amplitude above zero.
     restitution : as for `simulate`
         One that is drawn at random draws the same numbers at every amplitude.
     lowest, highest : float, optional

@@ -49,7 +49,9 @@ class MotionList(MotionSet):
     Parameters
     ----------
     motions : GroundMotion, Pulse or mapping, or a sequence of them
-        All records or all pulses; of bodies in space also components by axis, as for `simulate`.
+        All records or all pulses; also components by axis, as for `simulate`.
+    plane : bool
+        Whether they shake plane bodies, which take a component along x and one along z, a record each.
 
     Raises
     ------
@@ -63,12 +65,12 @@ class MotionList(MotionSet):
     2
     """
 
-    def __init__(self, motions: Any) -> None:
+    def __init__(self, motions: Any, *, plane: bool = False) -> None:
         single = isinstance(motions, (GroundMotion, Pulse, Components, Mapping))
         wanted = "motions must be ground motions or pulses"
         if not single and not isinstance(motions, Iterable):
             raise InvalidValueError(f"{wanted}, got {motions!r:.60}")
-        found = [together(each) for each in ([motions] if single else motions)]
+        found = [together(each, plane=plane) for each in ([motions] if single else motions)]
         if not found:
             raise InvalidValueError(f"{wanted}, got none")
         for k, item in enumerate(found):

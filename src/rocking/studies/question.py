@@ -42,8 +42,7 @@ class Question:
     engine: str = "auto"  # which engine
 
     def __post_init__(self) -> None:
-        if not isinstance(self.body, Body):
-            object.__setattr__(self, "motion", together(self.motion))
+        object.__setattr__(self, "motion", together(self.motion, plane=isinstance(self.body, Body)))
         checks.of_kind("motion", self.motion, (GroundMotion, Pulse, Components), "a GroundMotion or a pulse")
         _ = self.parameters
 

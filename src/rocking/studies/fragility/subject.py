@@ -57,7 +57,7 @@ class Subject:
         engine = rest.pop("engine", "auto")
         settings = settings_of(rest.pop("gravity", conventions.g), rest, body)
         parameters = RockingParameters.of_body(body, restitution, settings.gravity, friction=settings.friction)
-        all_motions = motions if isinstance(motions, MotionSet) else MotionList(motions)
+        all_motions = motions if isinstance(motions, MotionSet) else MotionList(motions, plane=isinstance(body, Body))
         return cls(parameters, all_motions, measure(measure_name), settings, engine)
 
     @cached_property

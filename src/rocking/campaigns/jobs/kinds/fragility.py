@@ -87,7 +87,7 @@ def _plan(table: FragilityTable, problem: StudyProblem, restitution: Any) -> tup
         return multiple_stripe_plan(body, motions, table.levels.numbers(), restitution, **how)
     tolerance = 1e-8 if table.tolerance is None else table.tolerance
     # what is in [fragility] is the search's; that of [settings] is the reference engine's
-    if how["tolerance"] != type(problem.settings)().tolerance:
+    if "tolerance" in problem.document.settings.stated():
         raise InvalidValueError("settings.tolerance cannot be changed in an incremental analysis; leave it out")
     return incremental_dynamic_plan(
         body, motions, table.levels.numbers(), restitution, **(how | {"tolerance": tolerance})
