@@ -37,6 +37,14 @@ def card(page: Any, label: str) -> Any:
     return page.get_by_test_id(f"outcome-{label}")
 
 
+def saved(page: Any, kind: str, what: str) -> Any:
+    """Save "chart Probe", or another figure, by its menu; returns the download."""
+    page.get_by_label(f"Save the {what}", exact=True).click()
+    with page.expect_download() as waiting:
+        page.get_by_role("button", name=f"{kind} of the {what}", exact=True).click()
+    return waiting.value
+
+
 def pasted(page: Any) -> str:
     """Return what a user pastes after copying, once the page says that it has copied."""
     page.get_by_text("paste them into Excel").wait_for()

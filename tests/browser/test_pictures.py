@@ -8,17 +8,11 @@ from typing import Any
 from xml.etree import ElementTree as ET
 
 import pytest
+from browser_pages import saved
 from matplotlib import image
 from playwright.sync_api import expect
 
 SVG = "{http://www.w3.org/2000/svg}"
-
-
-def saved(page: Any, name: str) -> Path:
-    """Press a button and return the file that it saves."""
-    with page.expect_download() as waiting:
-        page.get_by_role("button", name=name, exact=True).click()
-    return Path(waiting.value.path())
 
 
 def drawing(path: Path) -> ET.Element:
@@ -38,14 +32,14 @@ def test_the_pictures_of_an_impact_are_saved(open_page: Callable[..., Any], titl
     """The SVG has words, rows and colours without the page's style sheet; the PNG is twice as wide and not blank."""
     page = open_page(view="impact")
     page.get_by_test_id("ledger").wait_for()
-    root = drawing(saved(page, f"SVG of the picture {title}"))
+    root = drawing(saved(page, "SVG", f"picture {title}").path())
     words = ["".join(each.itertext()) for each in root.iter(f"{SVG}text")]
     assert words[0] == f"{title}, right foot"
     assert any(word in each for each in words)
     marks = [each for each in root.iter() if each.tag in (f"{SVG}circle", f"{SVG}rect") and each.get("fill")]
     assert len(marks) >= count
     assert len({each.get("fill") for each in marks}) >= 3
-    pixels = image.imread(saved(page, f"PNG of the picture {title}"), format="png")
+    pixels = image.imread(saved(page, "PNG", f"picture {title}").path(), format="png")
     assert pixels.shape[1] == 2 * round(float(root.get("width", "0")))
     assert pixels.reshape(-1, pixels.shape[2]).std(axis=0).max() > 0.01
     assert pixels[..., 3].min() == 1.0
@@ -71,7 +65,7 @@ def test_a_still_of_the_scene_is_saved(open_page: Callable[..., Any], shot: Call
     shot(page, "response-still")
     readout = page.get_by_test_id("scene-rotation").inner_text().replace("\u2212", "-")
     degrees = float(readout.split("\u00b0")[0].split("=")[1])
-    root = drawing(saved(page, "SVG of the picture The body at this instant"))
+    root = drawing(saved(page, "SVG", "picture The body at this instant").path())
     words = ["".join(each.itertext()) for each in root.iter(f"{SVG}text")]
     assert words[0] == f"The body at {page.get_by_test_id('scene-now').inner_text()}"
     models = page.locator(".outcome-model").all_inner_texts()
@@ -82,5 +76,5 @@ def test_a_still_of_the_scene_is_saved(open_page: Callable[..., Any], shot: Call
     (lead,) = [each for each in bodies if each.get("fill") != "none"]
     assert abs(degrees) > 0.5
     assert turn_of(lead.get("d", "")) == pytest.approx(degrees, abs=0.2)
-    pixels = image.imread(saved(page, "PNG of the picture The body at this instant"), format="png")
+    pixels = image.imread(saved(page, "PNG", "picture The body at this instant").path(), format="png")
     assert pixels.shape[1] == 2 * round(float(root.get("width", "0")))

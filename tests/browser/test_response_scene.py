@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser_pages import DECISIVE, GENTLE, LEANING, link, pasted, response
+from browser_pages import DECISIVE, GENTLE, LEANING, link, pasted, response, saved
 from playwright.sync_api import expect
 
 from rocking.bodies import Block, Region, Section
@@ -232,7 +232,7 @@ def test_the_curve_of_a_fall_ends(answered: Callable[..., Any]) -> None:
     page = answered(link(DECISIVE, restitution={"models": ["ked"]}))
     expect(page.get_by_text("Curves of a body that overturns end at 1.5 \u03b1")).to_be_visible()
     chart = page.get_by_test_id("chart-rotation")
-    chart.locator("summary").click()
+    chart.get_by_text("Show as table").click()
     page.get_by_role("button", name=re.compile("Copy table: Rotation over slenderness")).click()
     rows = [row.split("\t") for row in pasted(page).splitlines()[1:]]
     found = response(DECISIVE, "ked")
@@ -277,9 +277,7 @@ def rattle(page: Any, served: Any) -> Response:
 
 def drawn(page: Any, title: str) -> tuple[dict[str, Any], np.ndarray]:
     """Save a chart as SVG and return its frame and the points of its curve [dots]."""
-    with page.expect_download() as waiting:
-        page.get_by_role("button", name=f"SVG of the chart {title}", exact=True).click()
-    text = Path(waiting.value.path()).read_text(encoding="utf-8").split("\n", 1)[1]
+    text = Path(saved(page, "SVG", f"chart {title}").path()).read_text(encoding="utf-8").split("\n", 1)[1]
     script = f"(text) => ({CURVE})(new DOMParser().parseFromString(text, 'image/svg+xml').documentElement)"
     found = page.evaluate(script, text)
     pairs = re.findall(r"(-?[\d.]+) (-?[\d.]+)", "".join(found["curves"]))

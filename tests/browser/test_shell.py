@@ -10,6 +10,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
+from browser_pages import saved
 from matplotlib import image
 
 playwright = pytest.importorskip("playwright.sync_api")
@@ -23,6 +24,7 @@ STEPS = [
     "motion",
     "records",
     "response",
+    "compare",
     "studies",
     "decide",
     "inventory",
@@ -213,12 +215,13 @@ def test_only_the_newest_call_follows_the_one_in_flight(page: Any) -> None:
 def _check_vector(page: Any, folder: Path) -> None:
     """The SVG of the chart has its curves where its axes say, with gaps, dashes and words; the PNG is twice as wide."""
     saved_as = {}
-    for kind in ("SVG", "PNG"):
-        with page.expect_download() as saved:
-            page.get_by_role("button", name=f"{kind} of the chart Probe").click()
-        saved_as[kind] = folder / saved.value.suggested_filename
-        saved.value.save_as(saved_as[kind])
-    assert [path.name for path in saved_as.values()] == ["probe.svg", "probe.png"]
+    for kind in ("SVG", "PNG", "CSV"):
+        download = saved(page, kind, "chart Probe")
+        saved_as[kind] = folder / download.suggested_filename
+        download.save_as(saved_as[kind])
+    assert [path.name for path in saved_as.values()] == ["probe.svg", "probe.png", "probe.csv"]
+    rows = saved_as["CSV"].read_text(encoding="utf-8").splitlines()
+    assert rows == ['"time [s]","first [rad]","second [rad]"', "0,0,0", "1,2,", "2,-1,1", "3,0,1.5"]
     root = ET.parse(saved_as["SVG"]).getroot()
     named = {element.tag.removeprefix("{http://www.w3.org/2000/svg}") for element in root.iter()}
     assert named == {"svg", "title", "rect", "text", "g", "line", "clipPath", "path"}

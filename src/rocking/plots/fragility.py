@@ -84,7 +84,7 @@ def fragility_picture(analysis: Any, *, level: float = 0.95) -> "Figure":
         _points(upper, analysis, name, place, level)
         fit = analysis.fits.get(name)
         if fit is not None and fit.exists:
-            _fitted(upper, fit, fine, place, level)
+            fitted(upper, fit, fine, place, level)
         elif fit is None:
             _step(upper, analysis.subject.uplift_threshold, fine, place)
     upper.set_ylim(-0.03, 1.03)
@@ -156,7 +156,8 @@ def _points(axes: "Axes", analysis: Any, name: str, place: int, level: float) ->
     )  # fmt: skip
 
 
-def _fitted(axes: "Axes", fit: "LognormalFit", fine: FloatArray, place: int, level: float) -> None:
+def fitted(axes: "Axes", fit: "LognormalFit", fine: FloatArray, place: int, level: float) -> None:
+    """Draw a curve with its band, where it has one."""
     method: Any = "profile" if fit.counts.cluster_trials is None else "bootstrap"
     try:
         low, high = fit.band(fine, level, method)

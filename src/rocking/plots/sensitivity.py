@@ -7,7 +7,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import percent
 from rocking.errors import InvalidValueError
-from rocking.plots.fragility import symbol
+from rocking.plots.fragility import fitted, symbol
 from rocking.plots.labels import PEAK, axis_label, geometric, plain, plain_log
 from rocking.plots.overturning_map import class_patches, classes_of, draw_map
 from rocking.plots.rocking_spectrum import fractiles
@@ -33,7 +33,8 @@ def sensitivity_picture(found: Sensitivity, *, unit: tuple[str, float] | None = 
     """Draw a comparison of restitutions.
 
     Maps stand beside one another, the baseline first; below each other one is the map of the verdicts that differ,
-    with their number. Of spectra and of fragility each choice has its curve.
+    with their number. Of spectra and of fragility each choice has its curve; those of fragility have their 95 % bands,
+    and over them stand the medians and their ratios to that of the baseline, from the same motions.
 
     Parameters
     ----------
@@ -164,7 +165,7 @@ def _of_fragility(found: Sensitivity, unit: tuple[str, float] | None) -> "Figure
             fit = result.fits[state]
             words = plain(label) if panel is axes[0] else None
             if fit.exists:
-                panel.plot(fine, fit.probability(fine), linewidth=1.0, **look(number))
+                fitted(panel, fit, fine, number, 0.95)
             share = result.counts[state] / np.maximum(result.trials, 1)
             panel.plot(levels, share, MARKS[number], markersize=2.6, color=look(number)["color"], alpha=0.8)
             panel.plot([], [], marker=MARKS[number], markersize=2.6, label=words, **look(number))
@@ -173,11 +174,25 @@ def _of_fragility(found: Sensitivity, unit: tuple[str, float] | None) -> "Figure
         medians = [result.fits[state].median for result in results]
         words = ", ".join("none" if value is None else f"{value / size:.3g}" for value in medians)
         title = f"medians {words} {name}".removesuffix(" -").replace("m/s2", "m/s$^2$")
-        panel.set_title(f"{symbol(state)}: {title}", loc="left", fontsize=7)
+        panel.set_title(f"{symbol(state)}: {title}{_ratios(found, state)}", loc="left", fontsize=7)
     figure.supylabel("probability [-]", fontsize=8)
     axes[-1].set_xlabel(axis_label(measure.name, measure.unit, linear=results[0].subject.settings.linear))
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=7)
     return figure
+
+
+def _ratios(found: Sensitivity, state: str) -> str:
+    """Return a line of the ratios of medians to that of the baseline; nothing where no choice has one."""
+    key = f"{state}: median ratio"
+    rows = [row for row in found.summary() if row["choice"] != found.baseline]
+    if not any(key in row for row in rows):
+        return ""
+    told = []
+    for row in rows:
+        ends = [row[f"{key} {end}"] for end in ("low", "high") if f"{key} {end}" in row]
+        interval = " ({:.3g} to {:.3g})".format(*ends) if ends else ""
+        told.append(f"{row[key]:.3g}{interval}" if key in row else "none")
+    return f"\nratios of medians {', '.join(told)}"
 
 
 @in_journal_style

@@ -323,7 +323,8 @@ def test_units_of_sensitivity():
     found = fragility_sensitivity(BLOCK, TWELVE, np.arange(2.0, 14.1, 2.0), [0.95, 0.8], repetitions=0)
     title = sensitivity_picture(found).axes[-1].get_title(loc="left")
     medians = [found.results[label].fits["overturned"].median for label in ("0.95", "0.8")]
-    assert title == f"overturned: medians {medians[0]:.3g}, {medians[1]:.3g} m/s$^2$"
+    ratio = f"ratios of medians {medians[1] / medians[0]:.3g}"
+    assert title == f"overturned: medians {medians[0]:.3g}, {medians[1]:.3g} m/s$^2$\n{ratio}"
     axes = ("frequency_ratio", [1.0, 2.0, 3.0, 4.0]), ("amplitude_ratio", [1.0, 2.0, 3.0, 4.0])
     panels = sensitivity_picture(map_sensitivity(BLOCK, rk.pulses.sine(3.0, 0.6), *axes, ["housner", "ked"])).axes
     assert panels[3].get_ylabel() == panels[0].get_ylabel() != ""

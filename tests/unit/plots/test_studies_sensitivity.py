@@ -1,5 +1,7 @@
 """Pictures of the sensitivity to the restitution: flips, curves and words against counts by hand."""
 
+import re
+
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -72,6 +74,20 @@ def test_fragility():
     for line, label in zip(points, CHOICES, strict=True):
         np.testing.assert_allclose(line.get_ydata(), found.results[label].counts["overturned"] / 5.0)
     FigureCanvasAgg(figure).draw()
+
+
+def test_ratios_of_medians_come_from_the_same_motions():
+    """Over fragility curves stand ratios of medians to the baseline's, their interval, and bands."""
+    found = fragility_sensitivity(BLOCK, PULSES, np.arange(2.0, 16.1, 2.0), CHOICES, repetitions=200)
+    last = sensitivity_picture(found).axes[-1]
+    told = last.get_title(loc="left").partition("ratios of medians ")[2]
+    ratios = [float(word) for word in re.findall(r"[\d.]+", told)]
+    medians = [found.results[label].fits["overturned"].median for label in CHOICES]
+    row = found.summary()[1]
+    ends = [row[f"overturned: median ratio {end}"] for end in ("low", "high")]
+    np.testing.assert_allclose(ratios[:3], [medians[1] / medians[0], *ends], rtol=5e-3)  # three digits are printed
+    assert ends[0] < ends[1]
+    assert len(last.collections) == len(CHOICES)
 
 
 def test_refusals(maps):

@@ -117,7 +117,7 @@ def written(
     elif kind in {"png", "svg"}:
         from rocking.app.downloads.pictures import draw_to
 
-        draw_to(_picture(study, restitution), target)
+        draw_to(_picture(study, None if what == "differences" else restitution), target)
     else:
         from rocking.campaigns.jobs import export
 
@@ -131,12 +131,18 @@ def written(
             raise Refused(study.folder.without_paths(str(error)).replace(f"{target.parent}/", "")) from error
 
 
-def _picture(study: OpenStudy, restitution: int) -> "Callable[[], Figure]":
+def _picture(study: OpenStudy, restitution: int | None) -> "Callable[[], Figure]":
+    """Return what draws a study: with one restitution, or all of them compared."""
+    from rocking.plots.campaign import campaign_picture
     from rocking.plots.fragility import fragility_picture
     from rocking.plots.incremental_dynamic_analysis import incremental_dynamic_analysis_picture
     from rocking.plots.overturning_map import overturning_map_picture
     from rocking.plots.rocking_spectrum import rocking_spectrum_picture
 
+    if restitution is None:
+        if len(study.job.problem.restitutions) < 2:
+            raise Refused("there is nothing to compare in a study that was asked with one restitution")
+        return lambda: campaign_picture(study.opened)
     kind = str(study.job.document.campaign.kind)
     of_data = {"overturning-map": overturning_map_picture, "rocking-spectrum": rocking_spectrum_picture}
     of_analysis: dict[str, Callable[[Any], Figure]] = {

@@ -148,7 +148,8 @@ async def export_study(
     study: str,
     kind: Kind,
     what: Annotated[
-        str | None, Query(max_length=40, description="WHAT of `rocking campaign export --out WHAT=FILE`")
+        str | None,
+        Query(max_length=40, description="WHAT of `rocking campaign export --out WHAT=FILE`; differences compares all"),
     ] = None,
     restitution: Annotated[Whole, Query(description="of pictures and curves, counted from 0")] = 0,
     crossing: Annotated[Crossing | None, Query(description="what to do with fragility curves that cross")] = None,

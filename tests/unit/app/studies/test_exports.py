@@ -109,3 +109,14 @@ def test_every_format_has_a_type():
     """None is sent as a page."""
     assert set(get_args(Kind)) == {"nc", "csv", "mat", "xlsx", "parquet", "toml", "png", "svg", "xml"}
     assert all("html" not in MEDIA_TYPES[kind] for kind in get_args(Kind))
+
+
+def test_a_picture_compares_all_restitutions(computed, map_job, stripes, tmp_path):
+    """What differs is drawn of all choices at once, which one choice alone is not; a study with one is refused."""
+    both = _written(stripes, "svg", tmp_path, "differences").read_bytes()
+    alone = _written(stripes, "svg", tmp_path).read_bytes()
+    assert both != alone
+    assert both.count(b"<path") > 10
+    one = computed(map_job(3, restitution={"model": "ked"}))
+    with pytest.raises(Refused, match="nothing to compare"):
+        written(one, "svg", tmp_path / "one.svg", "differences", 0)

@@ -4,7 +4,7 @@ import uPlot from "/vendor/uplot/uPlot.esm.js";
 import { chartTable } from "/charts/chart-table.js";
 import { chartFiles, savePng } from "/charts/save.js";
 import { axes, colour, onTheme } from "/charts/style.js";
-import { vectorOf } from "/charts/vector.js";
+import { TICK, vectorOf } from "/charts/vector.js";
 import { el, fill, freshId } from "/app/dom.js";
 import { highest, lowest } from "/app/extremes.js";
 import { number, pretty } from "/app/format.js";
@@ -21,11 +21,10 @@ export const lineChart = (container, options) => {
   let data = [[], ...options.series.map(() => [])];
   let marks = {};
   let hook = null;
-  let aim = null;
   let zoomed = null;
   const table = chartTable(options, () => data);
   const vector = () => vectorOf(plot, options, data, marks);
-  figure.append(el("div", { class: "chart-foot" }, table.element, chartFiles(title, vector)));
+  figure.append(el("div", { class: "chart-foot" }, table.element, chartFiles(title, vector, "chart", () => csvOf(options, data))));
 
   const shown = el("p", { class: "chart-readout", "aria-hidden": "true" });
   stage.after(shown);
@@ -58,7 +57,7 @@ export const lineChart = (container, options) => {
         ) hook?.(self.cursor.idx, data[0][self.cursor.idx]);
       }],
       setScale: [(self, key) => key === "x" && data[0].length && look(self)],
-      draw: [(self) => drawMarks(self, marks, aim)],
+      draw: [(self) => drawMarks(self, marks)],
     },
   }, data, stage);
 
@@ -88,9 +87,11 @@ export const lineChart = (container, options) => {
       marks = next;
       plot.redraw(false, true);
     },
-    setAim: (value) => {
-      aim = value;
-      plot.redraw(false, false);
+    /** Puts the cursor at an instant that is shown elsewhere; nobody else is told. */
+    point: (instant) => {
+      const left = plot.valToPos(instant, "x");
+      plot.setCursor({ left: left <= plot.over.clientWidth ? left : -10, top: 0 }, false, false);
+      readout(plot);
     },
     resize,
     destroy: () => {
@@ -101,6 +102,13 @@ export const lineChart = (container, options) => {
     },
     toPng: () => savePng(vector(), title),
   };
+};
+
+const csvOf = ({ x, series, y }, data) => {
+  const head = [axisWords(x), ...series.map(({ label }) => axisWords({ label, unit: y.unit }))];
+  const quoted = (words) => `"${String(words).replaceAll('"', '""')}"`;
+  const rows = data[0].map((_, k) => data.map((column) => column[k] ?? "").join(","));
+  return [head.map(quoted).join(","), ...rows, ""].join("\n");
 };
 
 // A logarithmic axis ends with the data and not at the next power of ten.
@@ -147,7 +155,7 @@ const summary = ({ title, x, y, series }, [xs, ...columns]) => {
   return `${title}, over ${x.label} from ${span}: ${ranges.join("; ")}`;
 };
 
-const drawMarks = (self, { vertical = [], horizontal = [] }, aim) => {
+const drawMarks = (self, { vertical = [], horizontal = [], ticks = [] }) => {
   const { ctx } = self;
   const { left, top, width, height } = self.bbox;
   ctx.save();
@@ -169,9 +177,13 @@ const drawMarks = (self, { vertical = [], horizontal = [] }, aim) => {
     const at = self.valToPos(value, "y", true);
     if (inside(at, top, height)) line("--mark-strong", [6, 4], left, at, left + width, at);
   }
-  if (aim !== null && aim !== undefined) {
-    const at = self.valToPos(aim, "x", true);
-    if (inside(at, left, width)) line("--accent", [], at, top, at, top + height);
-  }
+  ctx.lineWidth = 1.5 * devicePixelRatio;
+  ticks.forEach(({ colour: paint, at }, row) => {
+    const foot = top + height - row * TICK * devicePixelRatio;
+    for (const value of at) {
+      const place = self.valToPos(value, "x", true);
+      if (inside(place, left, width)) line(paint, [], place, foot, place, foot - (TICK - 1) * devicePixelRatio);
+    }
+  });
   ctx.restore();
 };

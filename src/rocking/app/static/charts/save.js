@@ -24,13 +24,25 @@ export const savePng = async (picture, title) => {
   }
 };
 
-/** Buttons that save a chart, or what else `what` says; `vector` draws it. */
-export const chartFiles = (title, vector, what = "chart") => {
-  const kinds = [["PNG", savePng], ["SVG", saveSvg]];
-  return el("div", { class: "chart-files" }, kinds.map(([kind, save]) => el("button", {
+/** The menu that saves a chart, or what else `what` says: `vector` draws it, `csv` has its numbers. */
+export const chartFiles = (title, vector, what = "chart", csv = null) => {
+  const kinds = [["PNG", () => savePng(vector(), title)], ["SVG", () => saveSvg(vector(), title)]];
+  if (csv) kinds.push(["CSV", () => saveBlob(new Blob([csv()], { type: "text/csv" }), `${slug(title)}.csv`)]);
+  const items = kinds.map(([kind, save]) => el("button", {
     type: "button", class: "button quiet", "aria-label": `${kind} of the ${what} ${title}`,
-    onclick: () => save(vector(), title),
-  }, kind)));
+    onclick: () => {
+      save();
+      menu.open = false;
+    },
+  }, kind));
+  const menu = el("details", { class: "chart-files" },
+    el("summary", { class: "button quiet", "aria-label": `Save the ${what} ${title}` }, "Save"),
+    el("div", {}, items));
+  const close = (event) => {
+    if (event.type === "keydown" ? event.key === "Escape" : !menu.contains(event.relatedTarget)) menu.open = false;
+  };
+  for (const kind of ["focusout", "keydown"]) menu.addEventListener(kind, close);
+  return menu;
 };
 
 const blobOf = (picture) => {

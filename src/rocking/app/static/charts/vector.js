@@ -3,6 +3,9 @@
 import { freshId, svg } from "/app/dom.js";
 import { colour } from "/charts/style.js";
 
+/** Height of a row of ticks on the axis [px]. */
+export const TICK = 6;
+
 const [TITLE, ROW, MARGIN, LETTER] = [28, 18, 12, 6.4];
 const FONT = { "font-family": "system-ui, sans-serif", "font-size": 12 };
 
@@ -17,6 +20,7 @@ export const vectorOf = (plot, { title, series, bands = [] }, data, marks) => {
     bands.map((band) => bandOf(frame, band, data)),
     (marks.vertical ?? []).map((value) => markOf(frame, frame.x(value), null)),
     (marks.horizontal ?? []).map((value) => markOf(frame, null, frame.y(value))),
+    (marks.ticks ?? []).map((row, k) => ticksOf(frame, row, k)),
     series.map((each, index) => curveOf(frame, each, data[0], data[index + 1] ?? [])));
   const { left, top, width, height: tall } = frame.box;
   const size = { width: plot.width, height, viewBox: `0 0 ${plot.width} ${height}` };
@@ -59,6 +63,11 @@ const axesOf = (plot, { box, x, y }) => {
 const markOf = ({ box }, x, y) => svg("line", {
   x1: x ?? box.left, x2: x ?? box.left + box.width, y1: y ?? box.top, y2: y ?? box.top + box.height,
   stroke: colour(x === null ? "--mark-strong" : "--mark"), "stroke-dasharray": x === null ? "6 4" : "2 3",
+});
+
+const ticksOf = ({ box, x }, { colour: paint, at }, row) => at.map((value) => {
+  const foot = box.top + box.height - row * TICK;
+  return svg("line", { x1: x(value), x2: x(value), y1: foot, y2: foot - TICK + 1, stroke: colour(paint), "stroke-width": 1.5 });
 });
 
 const known = (value) => value !== null && value !== undefined;

@@ -1,9 +1,9 @@
 /** The model that is looked at: one for the cards, the scene, the charts, the impacts, and the files. */
+import { signal } from "/parts/preact.js";
 import { curveKey } from "/views/response-labels.js";
 import { readRestitution } from "/views/response-restitution.js";
 
-let wanted = null;
-const watchers = new Set();
+const wanted = signal(null);
 
 /** Returns the labels of a restitution table in the order of its answers. */
 export const labelsOf = (table) => {
@@ -13,16 +13,19 @@ export const labelsOf = (table) => {
 };
 
 /** Returns which of some labels is looked at; the first, which is the main model, unless another was chosen. */
-export const chosenOf = (labels) => labels.find((label) => curveKey(label) === wanted) ?? labels[0] ?? null;
+export const chosenOf = (labels) => labels.find((label) => curveKey(label) === wanted.value) ?? labels[0] ?? null;
 
 /** Looks at a model; null goes back to the main one. */
-export const look = (label) => {
-  wanted = label === null ? null : curveKey(label);
-  for (const watcher of [...watchers]) watcher();
-};
+export const look = (label) => (wanted.value = label === null ? null : curveKey(label));
 
 /** Calls back when another model is looked at. */
-export const onLook = (watcher) => watchers.add(watcher);
+export const onLook = (watcher) => {
+  let known = wanted.peek();
+  return wanted.subscribe((now) => {
+    if (now !== known) watcher();
+    known = now;
+  });
+};
 
 /** Returns the address of a file about the model that is looked at. */
 export const pathOfChosen = (path, table) => {

@@ -8,8 +8,8 @@ import { readRestitution, writeRestitution } from "/views/response-restitution.j
 const USUAL = 0.9;
 const CALIBRATED = "The calibrated model is fitted to the published measurements; Impact shows its interval.";
 
-// a model whose number has to be given is the coefficient of one's own
-const complete = ({ parameters }) => Object.values(parameters).every((one) => one.default !== null);
+/** Whether a model needs no number of one's own. */
+export const complete = ({ parameters }) => Object.values(parameters).every((one) => one.default !== null);
 
 /** Returns the choice of models. */
 export const modelsOf = (app) => new ModelChoice(app);

@@ -1,0 +1,56 @@
+/** What a model of the impact is: its source, assumptions, known defects, and what was measured. */
+
+import { html, useEffect, useRef } from "/parts/preact.js";
+import { number } from "/app/format.js";
+import { useSignal } from "/questions/parts.js";
+import { styleOf, wordsOf } from "/views/response-labels.js";
+
+/** A short line in the colour and the dash of a restitution. */
+export const Swatch = ({ label }) => {
+  const { colour, dash = [] } = styleOf(label);
+  return html`<svg class="dash-key" width="34" height="10" viewBox="0 0 34 10" aria-hidden="true" focusable="false">
+    <path d="M0 5H34" fill="none" stroke=${colour} stroke-width="2.5" stroke-dasharray=${dash.join(" ") || null} /></svg>`;
+};
+
+const familyOf = (label) => label.split("*").at(-1).split(":")[0];
+
+/** What the catalogue of models and the published measurements say of one of them. */
+export const About = ({ app, label, onClose }) => {
+  const model = app.info.models.find(({ name }) => name === familyOf(label));
+  const impact = useSignal(null);
+  const heading = useRef(null);
+  const { body, settings } = app.inputs.get();
+  useEffect(() => void app.call("impact", { json: { body, ...(settings && { settings }) } })
+    .then((found) => (impact.value = found)).catch(() => (impact.value = null)), [body, settings]);
+  useEffect(() => heading.current?.focus(), [label]);
+  const close = html`<button type="button" class="button" onClick=${onClose}>Close</button>`;
+  if (!model) return html`<section class="card"><h2 ref=${heading} tabindex="-1">${wordsOf(label)}</h2>
+    <p>A number that was typed: it has no source here.</p><div class="toolbar">${close}</div></section>`;
+  return html`
+    <section class="card about-model" aria-labelledby="about-model-title" data-testid="about-model">
+      <h2 id="about-model-title" ref=${heading} tabindex="-1">${model.title}</h2>
+      <h3>Source</h3><p>${model.citation}</p>
+      <h3>Assumptions</h3><${List} of=${model.assumptions} />
+      ${model.domain && html`<h3>Where it holds</h3><p>${model.domain}</p>`}
+      <h3>Known defects</h3><${List} of=${model.known_defects} />
+      <h3>Evidence</h3><${Evidence} found=${impact.value} name=${model.name} />
+      <div class="toolbar"><button type="button" class="button" onClick=${() => app.go("impact")}>Against the measurements</button>${close}</div>
+    </section>`;
+};
+
+const List = ({ of }) => (of.length ? html`<ul class="bullets">${of.map((words) => html`<li key=${words}>${words}</li>`)}</ul>`
+  : html`<p>None is known.</p>`);
+
+const Evidence = ({ found, name }) => {
+  if (!found) return html`<p class="waiting">Computing</p>`;
+  const rows = Object.entries(found.coefficients)
+    .map(([foot, all]) => [foot, all.find(({ model }) => familyOf(model) === name)]).filter(([, row]) => row);
+  if (!rows.length) return html`<p>No published measurement bears on it.</p>`;
+  return html`${rows.map(([foot, row]) => html`<p key=${foot}>Of this body, landing on the ${foot} foot: r = ${number(row.coefficient_of_restitution, 4)};
+      of a measured body 95 % lie from ${number(row.low_95, 4)} to ${number(row.high_95, 4)}.${" "}
+      ${row.admissible ? "" : "No single impulse on the base does this without creating energy."}</p>
+      <${Warnings} of=${row.warnings} />`)}
+    <p class="field-help">${found.measured.points.length} published measurements. ${found.measured.source}</p>`;
+};
+
+const Warnings = ({ of }) => of.map((words) => html`<p key=${words} class="note warning"><span class="sign" aria-hidden="true">!</span><span>${words}</span></p>`);

@@ -1,0 +1,36 @@
+/** Studies that were asked with several models: their fragility, maps and spectra, and what the choice changes. */
+
+import { html, useEffect } from "/parts/preact.js";
+import { Choice, useSignal } from "/questions/parts.js";
+
+const KINDS = new Set(["overturning-map", "rocking-spectrum", "stripes", "minimum-acceleration"]);
+const TABLES = [["flips", "What the choice changes"], ["differences", "Every difference"]];
+
+/** The picture of a study that compares its models, as the command line draws it, and its files. */
+export const Studies = ({ app, asked }) => {
+  const [all, chosen, drawn, refused] = [useSignal([]), useSignal(""), useSignal(""), useSignal("")];
+  asked.look = async () => {
+    const { studies } = await app.call("studies").catch(() => ({ studies: [] }));
+    const here = app.project.here.value.id;
+    all.value = studies.filter(({ state, kind, project }) => state === "done" && KINDS.has(kind) && (!project || project === here));
+    if (!all.value.some(({ id }) => id === chosen.value)) chosen.value = all.value[0]?.id ?? "";
+  };
+  useEffect(() => void (refused.value = ""), [chosen.value]);
+  const study = all.value.find(({ id }) => id === chosen.value);
+  const path = (kind, what) => `/api/studies/${study.id}/export.${kind}?what=${what}`;
+  const save = (kind, what, words) => html`<button type="button" class="button" aria-label=${`${words} as ${kind.toUpperCase()}`}
+    onClick=${() => app.download(path(kind, what), undefined, `${what}.${kind}`)}>${words}, ${kind.toUpperCase()}</button>`;
+  return html`
+    <section class="card" aria-labelledby="compare-studies-title"><h2 id="compare-studies-title">In studies of this project</h2>
+      ${!study ? html`<p class="field-help">Maps, spectra and fragility that were asked with several models stand here side by side, once they are computed.
+          <button type="button" class="button" onClick=${() => app.go("studies")}>Launch a study</button></p>` : html`
+        <${Choice} label="Study" value=${chosen} options=${all.value.map(({ id, name }) => [id, name])} />
+        ${refused.value ? html`<p class="note" data-testid="not-compared"><span class="sign" aria-hidden="true">i</span><span>${refused.value}</span></p>` : html`
+          ${drawn.value !== chosen.value && html`<p class="waiting" role="status">Being drawn</p>`}
+          <img key=${chosen.value} class="drawing" onLoad=${() => (drawn.value = chosen.value)} src=${path("svg", "differences")} alt=${`${study.name}: its models side by side, and what the choice changes`}
+            onError=${() => (refused.value = "There is nothing to compare in it: it was asked with one model, or with more than six.")} />
+          <div class="toolbar" role="group" aria-label="Take away the comparison">
+            ${save("svg", "differences", "Picture")}${save("png", "differences", "Picture")}
+            ${study.kind !== "minimum-acceleration" && TABLES.map(([what, words]) => save("csv", what, words))}</div>`}`}
+    </section>`;
+};

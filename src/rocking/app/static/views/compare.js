@@ -1,0 +1,179 @@
+/** Compare: does it stand, and does the model matter? Every model of the impact, side by side. */
+
+import { computed, html, render, useEffect, useMemo } from "/parts/preact.js";
+import { highest, lowest } from "/app/extremes.js";
+import { number } from "/app/format.js";
+import { createTime } from "/charts/figure.js";
+import { dotsOf } from "/charts/zoom.js";
+import { createQuestions, motionOf } from "/questions/asking.js";
+import { useSignal } from "/questions/parts.js";
+import { createAnswer } from "/views/answer.js";
+import { About, Swatch } from "/views/compare-about.js";
+import { Studies } from "/views/compare-studies.js";
+import { Figures, marksWords } from "/views/response-figures.js";
+import { wordsOf } from "/views/response-labels.js";
+import { complete } from "/views/response-models.js";
+import { readRestitution } from "/views/response-restitution.js";
+import { Banner, inWords, outcomeOf, verdictKind } from "/views/response-words.js";
+
+/** Build the view inside its section. */
+export const mount = (section, app) => {
+  const question = () => {
+    const { body, motion, restitution, response, settings } = app.inputs.get();
+    const free = response?.free ?? null;
+    if (!motion && free === null) return null;
+    const own = readRestitution(restitution);
+    const known = app.info.models.filter(complete).map(({ label }) => label);
+    const typed = own.value === null ? {} : { values: [own.value] };
+    return {
+      body, motion: free === null ? motion : undefined, response, settings,
+      restitution: { models: [...new Set([...known, ...own.models])], ...typed }, points: dotsOf(section),
+    };
+  };
+  const asked = createAnswer(app, "compare", ["body", "motion", "restitution", "response", "settings"], question);
+  const margins = createMargins(app);
+  const time = createTime(null, asked.look);
+  const studies = { look: () => {} };
+  render(html`<${Compare} app=${app} asked=${asked} margins=${margins} time=${time} studies=${studies} />`, section);
+  return {
+    shown: () => {
+      asked.shown();
+      studies.look();
+    },
+    hidden: asked.hidden,
+  };
+};
+
+/** Least factors on the motion that overturn the body, by model, as `rocking assess` finds them; of these inputs alone. */
+const createMargins = (app) => {
+  const questions = createQuestions(app, "assess");
+  const keyOf = ({ body, motion, settings }) => JSON.stringify([body, motion, settings]);
+  let of = "";
+  app.inputs.subscribe((inputs) => {
+    if (keyOf(inputs) !== of) questions.shown.value = null;
+  });
+  return {
+    questions,
+    found: computed(() => questions.shown.value?.answer?.models ?? null),
+    ask: () => {
+      const inputs = app.inputs.get();
+      const { tables, files } = motionOf(inputs);
+      of = keyOf(inputs);
+      const name = `Margins of ${inputs.body.name || app.project.here.value.name}`;
+      return questions.ask({ body: inputs.body, ...tables, assess: {}, ...(inputs.settings && { settings: inputs.settings }) }, files, name);
+    },
+  };
+};
+
+const Compare = ({ app, asked, margins, time, studies }) => {
+  const hidden = useSignal(new Set());
+  const opened = useSignal(null);
+  const { answer: found, refused, part } = asked;
+  const answers = found.value?.answers ?? [];
+  const there = useMemo(() => answers.filter((one) => one.series), [answers]);
+  const shown = useMemo(() => there.filter(({ label }) => !hidden.value.has(label)), [there, hidden.value]);
+  const lead = shown.find(({ label }) => label === opened.value)?.label;
+  const toggle = (label) => {
+    const next = new Set(hidden.value);
+    if (!next.delete(label)) next.add(label);
+    hidden.value = next;
+  };
+  return html`
+    <header class="view-head"><h1>Does it stand, and does the model matter?</h1>
+      <p class="lead">The same body and motion with every model of what an impact costs.</p></header>
+    ${refused.value && html`<p class="note error" role="alert"><span class="sign" aria-hidden="true">\u2715</span><span>${refused.value}</span></p>`}
+    ${!found.value && !refused.value && html`<p class="note" data-testid="nothing-moves">Nothing moves the body yet, or the answer is on its way.
+      <button type="button" class="button" onClick=${() => app.go("motion")}>Choose a motion</button></p>`}
+    ${there.length > 0 && html`
+      <${Banner} kind=${verdictKind(there)} sentences=${sentencesOf(found.value, there)} testid="compare-verdict" />
+      <div class="compare">
+        <div class="compare-models">
+          <section class="card" aria-labelledby="compare-models-title"><h2 id="compare-models-title">Models</h2>
+            <${Models} answers=${answers} hidden=${hidden.value} opened=${opened} toggle=${toggle} margins=${margins} />
+            <${Margins} app=${app} margins=${margins} /></section>
+          ${opened.value && html`<${About} app=${app} label=${opened.value} onClose=${() => (opened.value = null)} />`}
+        </div>
+        <section class="card" aria-labelledby="compare-time-title"><h2 id="compare-time-title">Over time</h2>
+          ${shown.length ? html`
+            <div class="figures" data-testid="compare-figures">
+              <${Figures} kinds=${["rotation", "velocity", "lost", "ground"]} answers=${shown} lead=${lead} ticked=${shown}
+                part=${part.value} friction=${0.5} time=${time} height=${240} /></div>
+            <p class="field-help">${marksWords(shown, "each model in its colour")}</p>
+            ${part.value && html`<button type="button" class="button" onClick=${() => asked.look(null)}>Show all of the time</button>`}`
+          : html`<p class="field-help">No model is shown: tick one.</p>`}
+        </section>
+      </div>`}
+    <${Studies} app=${app} asked=${studies} />`;
+};
+
+/** The answer in plain words, from what was computed: what most models say first. */
+const sentencesOf = (found, there) => {
+  const falls = ({ outcome }) => outcome === "overturned";
+  const [fallen, standing] = [there.filter(falls), there.filter((one) => !falls(one))];
+  const [most, fewer] = fallen.length > standing.length ? [fallen, standing] : [standing, fallen];
+  const [verb, other] = most === fallen ? ["overturns", "stands"] : ["stands", "overturns"];
+  const names = fewer.map(({ label }) => wordsOf(label)).join(", ");
+  const words = fewer.length ? `it ${other} with ${names}. The model matters.` : "the choice of the model does not change that.";
+  const peaks = standing.map((one) => one.peak_rotation_over_alpha);
+  const ends = [...new Set([lowest(peaks), highest(peaks)].map((peak) => number(peak, 3)))].join(" to ");
+  const lean = highest(peaks, 0) > 0 ? [`Where it stands it leans to ${ends} of the angle at which it would fall by itself.`] : [];
+  const doubts = found.verdict.sentence.split(/(?<=\.) (?=Still|The ground)/).slice(1);
+  return [`${most.length} of ${there.length} models: it ${verb}; ${words}`, ...lean, ...doubts.map((each) => inWords(each, there))];
+};
+
+const SHORT = { no_uplift: "is not lifted", rocked: "stands", overturned: "overturns" };
+
+const Models = ({ answers, hidden, opened, toggle, margins }) => html`
+  <div class="table-scroll" tabindex="0" role="region" aria-label="Models">
+    <table data-testid="compare-models">
+      <thead><tr><th scope="col"><span class="visually-hidden">Shown</span></th>
+        ${["Model", "It", "Peak \u03b8/\u03b1", "Impacts", "r", "Margin"].map((words) => html`<th scope="col" key=${words}>${words}</th>`)}</tr></thead>
+      <tbody>${answers.map((answer) => html`<${Model} key=${answer.label} answer=${answer} shown=${!hidden.has(answer.label)}
+        opened=${opened} toggle=${toggle} margin=${marginOf(margins, answer.label)} />`)}</tbody>
+    </table>
+  </div>`;
+
+const Model = ({ answer, shown, opened, toggle, margin }) => {
+  const { label } = answer;
+  const open = opened.value === label;
+  const name = wordsOf(label);
+  const { kind, sign, word } = outcomeOf(answer);
+  return html`<tr data-testid=${`compare-${label}`} data-outcome=${answer.outcome} class=${open ? "chosen" : null}>
+    <td>${answer.series && html`<label class="tick"><input type="checkbox" aria-label=${`Show ${name}`} checked=${shown} onChange=${() => toggle(label)} /></label>`}</td>
+    <th scope="row"><button type="button" class="button quiet model-open" aria-expanded=${open} onClick=${() => (opened.value = open ? null : label)}>
+      <${Swatch} label=${label} />${name}</button></th>
+    ${answer.error ? html`<td colspan="5" class="text">${answer.error}</td>` : html`
+      <td class=${`outcome-${kind} text`}><span class="outcome-word"><span aria-hidden="true">${sign}</span>${SHORT[answer.outcome] ?? word}</span></td>
+      <td class="number">${answer.outcome === "overturned" ? "\u2013" : number(answer.peak_rotation_over_alpha, 3)}</td>
+      <td class="number">${answer.impacts.length}</td>
+      <td class="number">${coefficients(answer.body.sides)}</td>
+      <td class="number">${margin}</td>`}
+  </tr>`;
+};
+
+const coefficients = ({ left, right }) => {
+  const [a, b] = [left, right].map(({ coefficient }) => number(coefficient, 4));
+  return a === b ? b : `${a} | ${b}`;
+};
+
+const marginOf = (margins, label) => {
+  const found = margins.found.value;
+  if (!found) return "\u2013";
+  const key = Object.keys(found).find((each) => each === label || (each.split(":")[0] === label));
+  if (!key) return "\u2013";
+  return found[key].lowest === null ? "none found" : number(found[key].lowest, 3);
+};
+
+const Margins = ({ app, margins }) => {
+  const { questions } = margins;
+  useEffect(() => void questions.look(), []);
+  const inputs = app.inputs.get();
+  if (!inputs.motion || inputs.response?.free != null) return null;
+  const wrong = questions.shown.value?.state === "refused" ? questions.shown.value.message : "";
+  return html`<div class="toolbar">
+      ${questions.busy.value ? html`<progress aria-label="The margins are being computed"></progress>`
+        : html`<button type="button" class="button" disabled=${Boolean(margins.found.value)} onClick=${margins.ask}>Find the margins</button>`}
+    </div>
+    ${wrong && html`<p class="field-help field-error">${wrong}</p>`}
+    <p class="field-help">Margin: the least factor on this motion that overturns the body, of either way round; Decide keeps the whole answer.</p>`;
+};

@@ -1,0 +1,116 @@
+/** What happens over time, as linked figures: rotation, velocity, ground, energy, forces. */
+import { html, useMemo } from "/parts/preact.js";
+import { highest } from "/app/extremes.js";
+import { Figure } from "/charts/figure.js";
+import { detailed } from "/charts/zoom.js";
+import { sharesOf } from "/scene/sampled.js";
+import { styleOf, wordsOf } from "/views/response-labels.js";
+import { together } from "/views/response-series.js";
+
+const TIME = { label: "time", unit: "s" };
+const MOST_FRICTION = 3;
+const FALL_SHOWN = 1.5;
+
+// what follows the point of no return is a fall to the ground, beside which no rocking could be seen
+const untilFall = (answer, values) => {
+  const shares = sharesOf(answer.series.rotation, answer.body);
+  const falls = answer.outcome === "overturned";
+  const fallen = falls ? shares.findIndex((share) => Math.abs(share) > FALL_SHOWN) : -1;
+  return fallen < 0 ? values : values.map((value, k) => (k < fallen ? value : null));
+};
+
+const capped = (values) => values.map((value) => (value === null || value > MOST_FRICTION ? null : value));
+
+// the lines of +1 and -1 are in sight unless the rocking is small beside them
+const rotationRange = (_, low, high) => {
+  const most = Math.max(Math.abs(low ?? 0), Math.abs(high ?? 0));
+  const span = most > 0.25 ? Math.max(1.15, 1.05 * most) : 1.15 * most || 1;
+  return [-span, span];
+};
+
+const ENERGIES = [
+  { key: "kinetic", label: "kinetic", colour: "#0072B2", dash: [] },
+  { key: "potential", label: "potential", colour: "#009E73", dash: [8, 3, 2, 3] },
+  { key: "lost", label: "lost at impacts", colour: "#D55E00", dash: [6, 4] },
+  { key: "work", label: "work of the ground", colour: "#8A8A8A", dash: [2, 3] },
+];
+
+const longest = (answers) => {
+  const ends = answers.map(({ series }) => series.time.at(-1));
+  return answers[ends.indexOf(highest(ends))];
+};
+
+/** A figure with a curve of each model. */
+const ofEach = (title, y, values) => ({
+  title,
+  y,
+  series: (answers) => answers.map(({ label }) => {
+    const { colour, dash } = styleOf(label);
+    return { label: wordsOf(label), colour, dash };
+  }),
+  data: (answers) => together(answers, (answer) => untilFall(answer, values(answer))),
+});
+
+const KINDS = {
+  rotation: ofEach(
+    "Rotation over slenderness angle", { label: "\u03b8/\u03b1", unit: "-", range: rotationRange },
+    ({ series, body }) => sharesOf(series.rotation, body),
+  ),
+  velocity: ofEach("Angular velocity", { label: "", unit: "rad/s" }, ({ series }) => series.velocity),
+  ground: {
+    title: "Acceleration of the ground",
+    y: { label: "", unit: "m/s2" },
+    series: () => [{ label: "ground", colour: "--mark-strong" }],
+    data: (answers) => [longest(answers).series.time, longest(answers).series.ground_acceleration],
+  },
+  energy: {
+    title: (lead) => `Energy (${wordsOf(lead.label)})`,
+    y: { label: "", unit: "J" },
+    series: () => ENERGIES,
+    data: (_, lead) => [lead.series.time, ...ENERGIES.map(({ key }) => untilFall(lead, lead.series[key]))],
+  },
+  lost: ofEach("Energy lost at impacts", { label: "", unit: "J" }, ({ series }) => series.lost),
+  force: ofEach("Vertical force of the ground", { label: "", unit: "N" }, ({ series }) => series.vertical_force),
+  friction: ofEach(
+    "Friction that rocking without slip takes", { label: "", unit: "-" }, ({ series }) => capped(series.friction_demand),
+  ),
+};
+
+/** What the marks of the figures mean; `whose` impacts are ticked. */
+export const marksWords = (answers, whose) =>
+  `Ticks on the axis: impacts of ${whose}; dashed: the slenderness angles.${fallWords(answers)} `
+  + "Drag across a chart to look into it with every sample; a double click shows all of it again.";
+
+const fallWords = (answers) =>
+  (answers.some(({ outcome }) => outcome === "overturned")
+    ? ` Curves of a body that overturns end at ${FALL_SHOWN} \u03b1. The animation follows the fall, by the same equation, `
+      + "until a corner meets the ground; there it stays, since a landing on a side is not computed."
+    : "");
+
+/** Figures of some kinds; `lead` has the energy, `ticked` the impacts, `part` is what is looked into. */
+export const Figures = ({ kinds, answers, lead, ticked, part, friction, time, height = 220 }) => {
+  const shown = useMemo(() => answers.map((answer) => {
+    const found = part?.answers.find(({ label }) => label === answer.label)?.series;
+    return found ? { ...answer, series: detailed(answer.series, found) } : answer;
+  }), [answers, part]);
+  const first = shown.find(({ label }) => label === lead) ?? shown[0];
+  const rows = useMemo(() => (ticked ?? answers).map(({ label, impacts }) =>
+    ({ colour: styleOf(label).colour, at: impacts.map(({ time_s: at }) => at) })), [answers, ticked?.map((one) => one.label).join()]);
+  return kinds.map((kind) => html`<${OneFigure} key=${kind} kind=${kind} answers=${shown} lead=${first} rows=${rows}
+    part=${part?.window ?? null} friction=${friction} time=${time} height=${height} />`);
+};
+
+const OneFigure = ({ kind, answers, lead, rows, part, friction, time, height }) => {
+  const { title, y, series, data } = KINDS[kind];
+  // the friction that is given stays in sight
+  const held = kind === "friction" && { range: (_, low, high) => [0, 1.1 * Math.max(high ?? 0, friction)], of: friction };
+  const shape = {
+    title: typeof title === "string" ? title : title(lead), x: TIME, y: { ...y, ...held }, series: series(answers), height,
+  };
+  const columns = useMemo(() => data(answers, lead), [answers, lead]);
+  const marks = useMemo(() => ({
+    ticks: rows,
+    horizontal: kind === "rotation" ? [-1, 1] : kind === "friction" ? [friction] : [],
+  }), [rows, friction]);
+  return html`<${Figure} shape=${shape} data=${columns} part=${part} marks=${marks} time=${time} testid=${`chart-${kind}`} />`;
+};
