@@ -19,7 +19,7 @@ from benchmarks import spatial_mujoco, table
 from benchmarks.table import Row
 from rocking.conventions import FloatArray, g
 from rocking.dynamics.hull import HullBody, HullGround, HullSettings, hull_histories, standing
-from rocking.dynamics.hull.vectors import frame
+from rocking.dynamics.hull.ground import frame
 from rocking.motions import GroundMotion
 
 BATCH = 50

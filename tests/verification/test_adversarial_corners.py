@@ -13,8 +13,8 @@ from scipy.special import ellipk, ellipkinc
 from rocking.conventions import g
 from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
 from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.plane.equations import EventKind, Trajectory
 from rocking.dynamics.plane.fast_engine import run
-from rocking.dynamics.plane.trajectory import EventKind, Trajectory
 from rocking.motions import Segments
 
 pytestmark = pytest.mark.verifies(room="rocking in the plane")

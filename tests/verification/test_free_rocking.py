@@ -18,8 +18,8 @@ from scipy.special import elliprf
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics import RockingParameters, Settings
+from rocking.dynamics.plane.equations import EventKind
 from rocking.dynamics.plane.fast_engine import run
-from rocking.dynamics.plane.trajectory import EventKind
 from rocking.motions import Segments
 from rocking.outcome import Outcome
 

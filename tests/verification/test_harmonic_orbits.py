@@ -19,8 +19,8 @@ from scipy.optimize import minimize_scalar
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
+from rocking.dynamics.plane.equations import EventKind
 from rocking.dynamics.plane.fast_engine import run
-from rocking.dynamics.plane.trajectory import EventKind
 
 pytestmark = pytest.mark.verifies(room="rocking in the plane")
 

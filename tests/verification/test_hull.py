@@ -15,12 +15,12 @@ import rocking as rk
 from rocking.bodies.solid import Solid, box
 from rocking.dynamics import SpatialStart
 from rocking.dynamics.hull import HullBody, HullEngine, HullGround, HullSettings, fast_engine, hull_histories, standing
-from rocking.dynamics.hull import sliding as sliding_module
+from rocking.dynamics.hull import motion as sliding_module
 from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear, solve, valid
+from rocking.dynamics.hull.ground import ZERO, added, applied, back, cross, dot, frame, length, scaled
 from rocking.dynamics.hull.history import HullEventKind
 from rocking.dynamics.hull.motion import HullMode, State, energies, problem_of, step
 from rocking.dynamics.hull.restitution import place_of
-from rocking.dynamics.hull.vectors import ZERO, added, applied, back, cross, dot, frame, length, scaled
 from rocking.dynamics.space import SpatialBody
 from rocking.errors import GeometryError, InvalidValueError
 from rocking.motions import GroundMotion

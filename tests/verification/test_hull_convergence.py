@@ -16,11 +16,11 @@ from rocking.bodies.solid import Part, Polyhedron, Solid, box, extrusion, frustu
 from rocking.dynamics import SpatialStart
 from rocking.dynamics.hull import HullBody, HullEngine, HullGround, HullSettings, fast_engine, hull_histories, standing
 from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear
+from rocking.dynamics.hull.ground import applied, cross, dot, frame, scaled
 from rocking.dynamics.hull.histories import start_of
 from rocking.dynamics.hull.history import HullEventKind
 from rocking.dynamics.hull.motion import State, energies
 from rocking.dynamics.hull.restitution import place_of
-from rocking.dynamics.hull.vectors import applied, cross, dot, frame, scaled
 from rocking.dynamics.space import SpatialBody
 from rocking.errors import PlausibilityWarning
 from rocking.motions import GroundMotion

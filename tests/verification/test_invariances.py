@@ -17,8 +17,8 @@ import rocking as rk
 from rocking.conventions import g
 from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
 from rocking.dynamics.plane import equations
+from rocking.dynamics.plane.equations import Trajectory
 from rocking.dynamics.plane.fast_engine import run
-from rocking.dynamics.plane.trajectory import Trajectory
 from rocking.motions import Segments
 
 FEW = settings(max_examples=25)

@@ -16,9 +16,9 @@ from scipy.optimize import brentq
 from rocking import conventions
 from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
 from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.plane.equations import EventKind
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.reference import Reference
-from rocking.dynamics.plane.trajectory import EventKind
 from rocking.errors import InvalidValueError
 from rocking.motions import Segments
 from rocking.outcome import Outcome

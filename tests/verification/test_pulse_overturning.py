@@ -17,7 +17,7 @@ import rocking as rk
 from rocking import conventions
 from rocking.dynamics import Settings
 from rocking.dynamics.plane.batch import Batch, Rows
-from rocking.dynamics.plane.trajectory import EventKind
+from rocking.dynamics.plane.equations import EventKind
 from rocking.outcome import Outcome
 
 pytestmark = pytest.mark.verifies(room="rocking in the plane")

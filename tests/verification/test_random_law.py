@@ -10,8 +10,8 @@ from scipy import stats
 
 from rocking.dynamics import RandomRestitution, RockingParameters, RockingSide, Settings
 from rocking.dynamics.impact_laws import uniform
+from rocking.dynamics.plane.equations import EventKind
 from rocking.dynamics.plane.fast_engine import run
-from rocking.dynamics.plane.trajectory import EventKind
 from rocking.motions import Segments
 
 pytestmark = pytest.mark.verifies(room="rocking in the plane")

@@ -7,7 +7,7 @@ from engines import every_engine
 from rocking.conventions import g
 from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
 from rocking.dynamics.plane import fast_engine, reference
-from rocking.dynamics.plane.trajectory import EventKind
+from rocking.dynamics.plane.equations import EventKind
 from rocking.motions import Segments
 
 pytestmark = pytest.mark.verifies(room="rocking in the plane")

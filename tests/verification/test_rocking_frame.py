@@ -33,8 +33,8 @@ from scipy.integrate import solve_ivp
 
 from rocking.conventions import g
 from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
+from rocking.dynamics.plane.equations import EventKind
 from rocking.dynamics.plane.fast_engine import run
-from rocking.dynamics.plane.trajectory import EventKind
 from rocking.motions import Segments
 
 pytestmark = pytest.mark.verifies(room="rocking in the plane")

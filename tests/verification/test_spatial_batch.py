@@ -13,7 +13,7 @@ import pytest
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics import Settings
-from rocking.dynamics.space import SpatialBody, SpatialStart, attitude, fast_engine, pivot_motion
+from rocking.dynamics.space import SpatialBody, SpatialStart, attitude, fast_engine, rolling
 from rocking.dynamics.space.batch import batch_in_space
 from rocking.dynamics.space.fast_engine import steps_of
 from rocking.dynamics.space.ground import ground_of
@@ -149,7 +149,7 @@ def test_the_first_three_impacts_are_those_of_the_reference_engine(agreement):
 @pytest.mark.verifies("negative control", "equations without the gyroscopic term")
 def test_a_gyroscopic_term_left_out_is_rejected(monkeypatch):
     """Negative control: against a reference engine without w x I w the same check is off by more than 1e-3."""
-    start, case = pivot_motion.PivotFlow.__init__, _case(101)
+    start, case = rolling.PivotFlow.__init__, _case(101)
     assert _first_three(*case)[0] < 1e-6
 
     def without(self, *arguments):
@@ -161,7 +161,7 @@ def test_a_gyroscopic_term_left_out_is_rejected(monkeypatch):
     hit = course[course["kind"] == 1]["time"][0]
     first = {"tilt": 0.15, "azimuth": 0.6, "angular_velocity": (0.0, 0.0, 0.8)}
     assert abs(_let_go(first, "housner").impacts["time"][0] - hit) < 1e-10
-    monkeypatch.setattr(pivot_motion.PivotFlow, "__init__", without)
+    monkeypatch.setattr(rolling.PivotFlow, "__init__", without)
     assert abs(_let_go(first, "housner").impacts["time"][0] - hit) > 1e-3
 
 

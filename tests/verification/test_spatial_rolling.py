@@ -15,8 +15,7 @@ from rocking.dynamics.space import (
     SpatialBody,
     attitude,
 )
-from rocking.dynamics.space.pivot_motion import value
-from rocking.dynamics.space.rolling import RollingFlow
+from rocking.dynamics.space.rolling import RollingFlow, value
 
 pytestmark = pytest.mark.verifies(room="rocking in space")
 

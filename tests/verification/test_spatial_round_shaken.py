@@ -17,10 +17,9 @@ from rocking.dynamics.space import (
     SpatialBody,
     SpatialStart,
     attitude,
-    contact_mode,
+    complementarity,
     event_functions,
     fast_engine,
-    loss_of_contact,
 )
 from rocking.dynamics.space.batch import batch_in_space
 from rocking.dynamics.space.event_functions import Step
@@ -99,7 +98,7 @@ def _lifted(first, second):
     lean = np.array([0.0, first, second, cube, 0.0])
     up = np.column_stack([lean[:, None] * direction, [1.0, 0.0, 0.0, 0.0, 0.0]])
     step = Step(0.01, np.zeros((5, 3)), up, np.array([[0.0], [0.0], [-G]]), np.zeros(3))
-    return event_functions.rim_events(CYLINDER, contact_mode.rim(CYLINDER, -direction), step)
+    return event_functions.rim_events(CYLINDER, complementarity.rim(CYLINDER, -direction), step)
 
 
 @pytest.mark.verifies(
@@ -178,8 +177,8 @@ def test_a_spin_draws_a_rim_that_is_nearly_flat(turning, spin, pulls):
     velocity = np.array([rate, turning * math.sin(tilt), spin])  # node line, e2, axis
     length, field = 1e-5, np.array([[0.0], [0.0], [-G]])
     _, w, up, _ = RollingFlow(CYLINDER).series((q, velocity, np.zeros(2)), length, field, 12)
-    contact = contact_mode.rolling(contact_mode.rim(CYLINDER, -up[0, :2]))
-    normal = loss_of_contact._normal(CYLINDER, contact, Step(length, w, up, field, np.zeros(3)))[0]
+    contact = complementarity.rolling(complementarity.rim(CYLINDER, -up[0, :2]))
+    normal = event_functions._normal(CYLINDER, contact, Step(length, w, up, field, np.zeros(3)))[0]
     expected = _normal_by_angles(tilt, rate, turning, spin)
     # second differences of a height over 1e-5 s leave some 1e-16 m / (1e-5 s)^2 of rounding
     assert normal == pytest.approx(expected, abs=1e-5)

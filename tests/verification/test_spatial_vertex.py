@@ -20,7 +20,7 @@ from rocking.dynamics.space import (
     attitude,
 )
 from rocking.dynamics.space.impact_laws import law_of
-from rocking.dynamics.space.pivot_motion import PivotFlow, value
+from rocking.dynamics.space.rolling import PivotFlow, value
 from rocking.restitution.space import SpatialHousner, SpatialImpact
 
 pytestmark = pytest.mark.verifies(room="rocking in space")

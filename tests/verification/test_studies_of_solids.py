@@ -12,7 +12,7 @@ from rocking.bodies.solid import Part, Solid, box
 from rocking.cli import main
 from rocking.conventions import g
 from rocking.dynamics import SpatialBody, SpatialStart
-from rocking.dynamics.hull.law import RestitutionOnHull
+from rocking.dynamics.hull.restitution import RestitutionOnHull
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.settings import NEVER_SLIDES, Settings, settings_of

@@ -18,8 +18,8 @@ from rocking.dynamics import RandomRestitution, RockingParameters, RockingSide, 
 from rocking.dynamics.impact_laws import uniform
 from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.plane.equations import EventKind
 from rocking.dynamics.plane.fast_engine import run
-from rocking.dynamics.plane.trajectory import EventKind
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.evidence import Calibration, calibrate, restitution_distribution
 from rocking.evidence.likelihood import scatter

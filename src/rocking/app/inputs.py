@@ -13,7 +13,7 @@ from rocking.app.errors import Refused, TooLarge
 from rocking.app.work import Remembered
 from rocking.bodies import Body
 from rocking.bodies.formats.schema import BODIES, BodyFile, KnownTable, Positive
-from rocking.bodies.formats.source import blamed
+from rocking.bodies.formats.words import blamed
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.pulse import Motion
 from rocking.spec.construction import body_of, motion_of

@@ -15,7 +15,7 @@ from rocking.campaigns import disk
 from rocking.campaigns.chunks import DEFAULT_CHUNK, FORMAT, REFERENCE_CHUNK, Plan
 from rocking.campaigns.disk import CampaignDamagedError, CampaignMismatchError
 from rocking.conventions import FloatArray
-from rocking.dynamics.hull.law import RestitutionOnHull
+from rocking.dynamics.hull.restitution import RestitutionOnHull
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
 from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.plane.batch import Batch, Rows

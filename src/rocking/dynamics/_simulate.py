@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking import conventions, errors
 from rocking.bodies import Body
-from rocking.dynamics.plane.histories import response_of_rocking
+from rocking.dynamics.plane.batch import response_of_rocking
 from rocking.dynamics.response import Response
 from rocking.dynamics.settings import Settings, in_space
 from rocking.errors import InvalidValueError, PureRockingWarning

@@ -202,7 +202,7 @@ class RockingParameters:
 
     @classmethod
     def _in_space(cls, body: Any, restitution: Any, gravity: float) -> "RockingParameters":
-        from rocking.dynamics.hull.law import RestitutionOnHull
+        from rocking.dynamics.hull.restitution import RestitutionOnHull
 
         law = RestitutionOnHull.of(body, restitution, gravity)
         r = UNIMPOSED if isinstance(law.model, str) else law.model

@@ -12,7 +12,7 @@ import numpy as np
 from rocking.bodies import Body
 from rocking.conventions import FEET, Assumed, FloatArray, given_or_assumed
 from rocking.dynamics.parameters import RockingParameters
-from rocking.dynamics.plane.trajectory import EventKind, Trajectory
+from rocking.dynamics.plane.equations import EventKind, Trajectory
 from rocking.dynamics.response_base import ResponseBase, motion_provenance
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.errors import InvalidValueError, PlausibilityWarning

@@ -12,7 +12,7 @@ from rocking import checks, quantities
 from rocking.bodies import Block, Body
 from rocking.conventions import FloatArray
 from rocking.dynamics._simulate import together
-from rocking.dynamics.contact.fast_engine import FAST
+from rocking.dynamics.contact.batch import FAST
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.batch import Batch, Rows

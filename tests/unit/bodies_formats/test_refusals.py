@@ -15,7 +15,7 @@ from rocking.bodies.formats import (
     schema,
     section_from_geojson,
     section_from_wkt,
-    source,
+    words,
 )
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, MissingExtraError, RockingError
@@ -204,7 +204,7 @@ def test_read_body(tmp_path):
     assert read_body(tmp_path / "a.wkt", units="cm").ground == 0.05
     assert read_body(str(tmp_path / "b.toml"), units="cm") == Block(width=0.01, height=0.02)
     assert read_body(tmp_path / "e.json", units="m", density=3.0, depth=2.0).mass == 6.0
-    for name, options, words in (
+    for name, options, said in (
         ("a.wkt", {}, "a.wkt: does not state its unit; give units=, one of m, cm"),
         ("b.toml", {"units": "m"}, 'b.toml: states units = "cm", but units = "m" was asked'),
         ("b.toml", {"density": 3.0}, "b.toml: a TOML body file states density itself; change it there"),
@@ -216,7 +216,7 @@ def test_read_body(tmp_path):
     ):
         with pytest.raises(RockingError) as caught:
             read_body(tmp_path / name, **options)
-        assert words in str(caught.value)
+        assert said in str(caught.value)
     for strange in (3, "a\0.toml", "x" * 9999 + ".toml"):
         with pytest.raises(BodyFileError):
             read_body(strange)
@@ -225,10 +225,10 @@ def test_read_body(tmp_path):
 def test_large_files_and_outlines(tmp_path, monkeypatch):
     """A file above the limit is not even opened; vertices have a limit of their own."""
     with (tmp_path / "a.wkt").open("wb") as file:
-        os.truncate(file.fileno(), source.LARGEST_FILE + 1)
+        os.truncate(file.fileno(), words.LARGEST_FILE + 1)
     with pytest.raises(BodyFileError, match=r"a.wkt: has 64.0 MiB; body files may have up to 64 MiB"):
         read_body(tmp_path / "a.wkt", units="m")
-    monkeypatch.setattr(source, "MOST_VERTICES", 4)
+    monkeypatch.setattr(words, "MOST_VERTICES", 4)
     for read, given in ((section_from_wkt, LOAD), (section_from_geojson, SQUARE)):
         with pytest.raises(BodyFileError, match="has 5 vertices; a body may have up to 4"):
             read(given)

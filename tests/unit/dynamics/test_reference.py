@@ -12,8 +12,8 @@ import rocking as rk
 from rocking.conventions import g
 from rocking.dynamics import ConstantRestitution, Outcome, RockingParameters, RockingSide, Settings
 from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.plane.equations import EventKind, Trajectory
 from rocking.dynamics.plane.reference import Reference
-from rocking.dynamics.plane.trajectory import EventKind, Trajectory
 from rocking.dynamics.taylor import first_fall, last_fall, turning_points
 from rocking.errors import InvalidValueError
 from rocking.motions import Segments

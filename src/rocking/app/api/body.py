@@ -16,7 +16,7 @@ from rocking.bodies import Body
 from rocking.bodies.formats import read_plane_body
 from rocking.bodies.formats.body_writer import body_to_toml
 from rocking.bodies.formats.schema import UnitName
-from rocking.bodies.formats.source import blamed
+from rocking.bodies.formats.words import blamed
 from rocking.conventions import FEET, g
 from rocking.errors import BodyFileError
 from rocking.evidence._coefficient_table import outside_evidence

@@ -22,9 +22,8 @@ from rocking.bodies.block import Block
 from rocking.bodies.body import DEFAULT_DENSITY, Body
 from rocking.bodies.formats.dxf import regions_from_dxf
 from rocking.bodies.formats.geojson import regions_from_geojson
-from rocking.bodies.formats.source import blamed, check_count, read_text
 from rocking.bodies.formats.wkt import regions_from_wkt
-from rocking.bodies.formats.words import validated
+from rocking.bodies.formats.words import blamed, check_count, read_text, validated
 from rocking.bodies.mass_points import MassPoints
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section

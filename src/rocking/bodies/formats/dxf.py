@@ -15,8 +15,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies._rings import nested
 from rocking.bodies.body import DEFAULT_DENSITY
-from rocking.bodies.formats.source import Placement, blamed, check_count, checked_file
-from rocking.bodies.formats.words import suggestion
+from rocking.bodies.formats.words import Placement, blamed, check_count, checked_file, suggestion
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
 from rocking.conventions import LENGTH_UNITS, FloatArray

@@ -12,7 +12,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
-from rocking.bodies.formats.source import Placement, blamed, check_count
+from rocking.bodies.formats.words import Placement, blamed, check_count
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
 from rocking.conventions import FloatArray

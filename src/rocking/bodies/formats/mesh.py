@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.equilibria.poses import set_down
-from rocking.bodies.formats.source import MOST_VERTICES, blamed, checked_file
+from rocking.bodies.formats.words import MOST_VERTICES, blamed, checked_file
 from rocking.bodies.solid._changes import Repair, in_words
 from rocking.bodies.solid._repair import Repaired, repaired
 from rocking.bodies.solid._resting import settled, stands

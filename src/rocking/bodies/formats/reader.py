@@ -16,8 +16,8 @@ from rocking.bodies.formats.dxf import regions_from_dxf
 from rocking.bodies.formats.geojson import regions_from_geojson
 from rocking.bodies.formats.mesh import MESH_FORMATS, solid_from_mesh
 from rocking.bodies.formats.solid_file import solid_from_toml
-from rocking.bodies.formats.source import Placement, blamed, read_text, readable
 from rocking.bodies.formats.wkt import regions_from_wkt
+from rocking.bodies.formats.words import Placement, blamed, read_text, readable
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
 from rocking.bodies.solid._changes import Repair

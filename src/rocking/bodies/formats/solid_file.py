@@ -23,8 +23,7 @@ import numpy as np
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.formats.body_file import beside, parsed_toml
 from rocking.bodies.formats.mesh import mesh_from_file
-from rocking.bodies.formats.source import blamed, check_count
-from rocking.bodies.formats.words import validated
+from rocking.bodies.formats.words import blamed, check_count, validated
 from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.prism import box, extrusion
 from rocking.bodies.solid.shape import Shape

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 
 from rocking.bodies.body import DEFAULT_DENSITY
-from rocking.bodies.formats.source import Placement, blamed, check_count
+from rocking.bodies.formats.words import Placement, blamed, check_count
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
 from rocking.checks import length_unit

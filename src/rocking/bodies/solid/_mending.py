@@ -4,8 +4,7 @@ import numpy as np
 
 from rocking.bodies.moments import polyhedron_moments
 from rocking.bodies.solid._changes import MOST_VOLUME, Changes
-from rocking.bodies.solid._piercing import pierced
-from rocking.bodies.solid._self_crossing import check_crossings
+from rocking.bodies.solid._self_crossing import check_crossings, pierced
 from rocking.bodies.solid._shells import connected, neighbours
 from rocking.bodies.solid.polyhedron import directed_edges, edge_numbers
 from rocking.bodies.solid.surfaces import area_vectors

@@ -15,8 +15,7 @@ from rocking.bodies.body import assumed_density
 from rocking.bodies.equilibria import Equilibria, StablePose
 from rocking.bodies.moments import SolidMoments, combined
 from rocking.bodies.section import Section
-from rocking.bodies.solid._admissible import check_disjoint, check_possible
-from rocking.bodies.solid._known import ASSUMED, checked_centre, known_moments, similar
+from rocking.bodies.solid._known import ASSUMED, check_disjoint, check_possible, checked_centre, known_moments, similar
 from rocking.bodies.solid.base import Base, RoundBase, SupportPolygon, hull
 from rocking.bodies.solid.part import Part, footprint, rotation_about
 from rocking.bodies.solid.prism import Prism
@@ -270,7 +269,7 @@ class Solid:
         >>> round(side.slenderness_ratio, 12), round(side.depth, 12)
         (2.0, 1.0)
         """
-        from rocking.bodies.solid._in_plane import plane_body
+        from rocking.bodies.solid.standing import plane_body
 
         seen = self.turned(-checks.number("azimuth", azimuth, "rad"))
         return plane_body(seen.local_parts, seen.local_base, seen.local_moments)

@@ -11,8 +11,17 @@ import math
 import numpy as np
 
 from rocking.dynamics.contact.base import BOTH, FLIGHT, REST, ContactState, Mode, PlaneBase, away, kept, kinetic
-from rocking.dynamics.contact.complementarity import TOLERANCE, NextMode, choose, weight_of
-from rocking.dynamics.contact.event_functions import ModeEnd, consistent, event_functions, excited_stretches, first_end
+from rocking.dynamics.contact.event_functions import (
+    TOLERANCE,
+    ModeEnd,
+    NextMode,
+    choose,
+    consistent,
+    event_functions,
+    excited_stretches,
+    first_end,
+    weight_of,
+)
 from rocking.dynamics.contact.history import Blow, History
 from rocking.dynamics.contact.impact_resolution import (
     GroundContact,

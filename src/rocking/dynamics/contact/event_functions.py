@@ -1,20 +1,25 @@
-"""What must stay above zero while a mode lasts, its sign a moment after the start, and when it first falls below.
+"""Which mode follows: complementarity of contact forces and motions; what must stay above zero while a mode lasts.
 
 A mode is consistent where the forces and gaps that complementarity asks for are above zero *for a while*: the first
 coefficient of their series that is not zero decides. At the start only, that is the linear complementarity problem of
 the contact accelerations; where these vanish, as at every uplift under a continuous motion, the next derivatives speak.
+
+With one pair of feet there are at most nine modes, so that the complementarity problem is solved by trying each; what
+Lemke's algorithm would find is among them, and unlike it the trial also sees where there are two solutions or none.
 """
 
 import math
 from enum import Enum
+from itertools import chain, combinations
 from typing import NamedTuple
 
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.base import BOTH, Mode, PlaneBase
-from rocking.dynamics.contact.mode_series import ModeSeries, padded
+from rocking.dynamics.contact.base import BOTH, ContactState, Mode, PlaneBase, along, away
+from rocking.dynamics.contact.mode_series import GroundSeries, ModeSeries, mode_series, padded
 from rocking.dynamics.taylor import first_fall
+from rocking.outcome import Status
 
 _DEPTH = 7  # coefficients that are asked for a sign
 
@@ -101,3 +106,58 @@ def excited_stretches(base: PlaneBase, push: FloatArray, lift: FloatArray, frict
     held = [lift * base.right + turn, lift * base.left - turn, friction * lift - push, friction * lift + push]
     low = [m[:, 0] + np.minimum(m[:, 1:], 0.0).sum(axis=1) for m in held]
     return np.flatnonzero(np.min(low, axis=0) <= 0.0)
+
+
+TOLERANCE = 1e-12
+_LADDER = (TOLERANCE, 1e-10, 1e-8)
+_ORDER = 8
+_SAME = 1e-6
+
+
+def candidates(base: PlaneBase, state: ContactState) -> list[Mode]:
+    """Return the modes that the velocities allow: most feet first, those that stick before those that slide."""
+    resting = [foot for foot in state.touching if away(base, state, foot) == 0.0]
+    subsets = chain.from_iterable(combinations(resting, n) for n in range(len(resting), 0, -1))
+    found = []
+    for feet in subsets:
+        speed = along(base, state, feet[0])
+        if speed == 0.0:
+            found.append(Mode(feet))
+        found += [Mode(feet, slip) for slip in (1, -1) if slip * speed >= 0.0]
+    return [*found, Mode(())]
+
+
+class NextMode(NamedTuple):
+    """The mode that follows."""
+
+    mode: Mode
+    tolerance: float  # below it, over their scale, coefficients counted as zero [-]
+    alone: bool = True  # whether no other one is possible that moves the body differently
+
+
+def choose(base: PlaneBase, state: ContactState, ground: GroundSeries, friction: float) -> NextMode | Status:
+    """Return the mode that follows a state, a status if there is none."""
+    # of several the first: contacts last, and stick, where they can
+    weight = weight_of(ground)
+    tried = [(mode, mode_series(base, state, mode, ground, friction, _ORDER)) for mode in candidates(base, state)]
+    possible = [(m, c, event_functions(base, m, c, friction, weight)) for m, c in tried if c.stiff > 0.0]
+    for tolerance in _LADDER:
+        good = [(m, c) for m, c, found in possible if consistent(found, 1.0, tolerance)]  # Eq. 20
+        if good:
+            same = all(_agree(good[0][1], other, base.size) for _, other in good[1:])
+            return NextMode(good[0][0], tolerance, same)
+    return Status.NO_CONTACT_FORCE
+
+
+def weight_of(ground: GroundSeries) -> float:
+    """Return the acceleration that contact forces are measured by; |g + a_z| + |a_x|, and at least a little [m/s2]."""
+    return max(abs(ground.lift[0]) + abs(ground.push[0]), 1e-3)
+
+
+def _agree(one: ModeSeries, other: ModeSeries, size: float) -> bool:
+    """Whether two modes start alike, as they do where an event function is just zero."""
+    gap = max(
+        abs(one.rotation[2] - other.rotation[2]) * size, abs(one.x[2] - other.x[2]), abs(one.rise[2] - other.rise[2])
+    )
+    reach = max(abs(one.rotation[2]) * size, abs(one.x[2]), abs(one.rise[2]), 1e-9 * size)
+    return bool(gap <= _SAME * reach or gap <= 1e-9 * size)

@@ -13,9 +13,18 @@ from rocking import checks, conventions, plausibility
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.dynamics.contact.base import PlaneBase, Start, state_at_start
-from rocking.dynamics.contact.batch import AFTER, FINE, ends_of
+from rocking.dynamics.contact.batch import (
+    AFTER,
+    FAST,
+    FINE,
+    NUMBERS,
+    REFERENCE,
+    chosen,
+    ends_of,
+    library_of,
+    run_compiled,
+)
 from rocking.dynamics.contact.engine import ContactEngine
-from rocking.dynamics.contact.fast_engine import FAST, NUMBERS, REFERENCE, chosen, library_of, run_compiled
 from rocking.dynamics.contact.impact_resolution import GroundContact
 from rocking.dynamics.contact.response import ContactResponse
 from rocking.dynamics.impact_laws import ImpactLaw

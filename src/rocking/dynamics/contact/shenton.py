@@ -16,7 +16,7 @@ from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.contact.base import LEFT, RIGHT, ContactState, PlaneBase
-from rocking.dynamics.contact.complementarity import NextMode, choose
+from rocking.dynamics.contact.event_functions import NextMode, choose
 from rocking.dynamics.contact.mode_series import GroundSeries
 from rocking.errors import InvalidValueError
 from rocking.outcome import Regime

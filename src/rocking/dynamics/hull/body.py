@@ -10,7 +10,7 @@ from rocking import checks
 from rocking.bodies.equilibria.polytope import Polytope, polytope
 from rocking.bodies.solid import Solid
 from rocking.conventions import FloatArray
-from rocking.dynamics.hull.vectors import Frame, Vector, dot, length
+from rocking.dynamics.hull.ground import Frame, Vector, dot, length
 from rocking.dynamics.space.body import SpatialBody, checked_inertia, finite
 from rocking.errors import GeometryError, InvalidValueError
 from rocking.portable import inverse

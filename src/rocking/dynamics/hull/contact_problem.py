@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from itertools import combinations
 
 from rocking.dynamics.hull.body import HullBody
-from rocking.dynamics.hull.vectors import (
+from rocking.dynamics.hull.ground import (
     ZERO,
     Frame,
     Vector,

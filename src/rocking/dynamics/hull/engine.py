@@ -10,24 +10,9 @@ from rocking.dynamics.hull import contact_problem as contacts
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.contact_problem import FLIGHT, HullContact, Problem, Solution
 from rocking.dynamics.hull.event_functions import CLOSED, HALVINGS, EventFunctions, stops_at
-from rocking.dynamics.hull.ground import HullGround
-from rocking.dynamics.hull.history import HullEvent, HullEventKind, HullHistory, HullSettings
-from rocking.dynamics.hull.motion import (
-    HullMode,
-    State,
-    StepResult,
-    energies,
-    levelled,
-    point_velocity,
-    problem_of,
-    slip_speed,
-    step,
-    valued,
-)
-from rocking.dynamics.hull.restitution import law_of, nearest, place_of
-from rocking.dynamics.hull.sliding import sliding
-from rocking.dynamics.hull.vectors import (
+from rocking.dynamics.hull.ground import (
     ZERO,
+    HullGround,
     Vector,
     added,
     applied,
@@ -40,6 +25,21 @@ from rocking.dynamics.hull.vectors import (
     scaled,
     unit,
 )
+from rocking.dynamics.hull.history import HullEvent, HullEventKind, HullHistory, HullSettings
+from rocking.dynamics.hull.motion import (
+    HullMode,
+    State,
+    StepResult,
+    energies,
+    levelled,
+    point_velocity,
+    problem_of,
+    sliding,
+    slip_speed,
+    step,
+    valued,
+)
+from rocking.dynamics.hull.restitution import law_of, nearest, place_of
 from rocking.outcome import Outcome, Status
 
 _SLIDES = 1e-4  # speed over sqrt(g size) below which a vertex still slides as it started, if not below twice a stop

@@ -5,9 +5,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from rocking.dynamics.hull.body import HullBody
-from rocking.dynamics.hull.ground import HullGround
+from rocking.dynamics.hull.ground import HullGround, added, applied, dot, frame, length
 from rocking.dynamics.hull.motion import HullMode, Rates, State, StepResult, gap, point_velocity, slip_direction
-from rocking.dynamics.hull.vectors import added, applied, dot, frame, length
 
 CLOSED, _GRAZED = 1e-11, 1e-14  # gaps over the size: of vertices that land together, and at which one lands
 _FORCE = 1e-11  # acceleration over gravity below which a force counts as zero

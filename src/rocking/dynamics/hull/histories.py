@@ -13,11 +13,10 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.hull import fast_engine
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.engine import HullEngine
-from rocking.dynamics.hull.ground import HullGround
+from rocking.dynamics.hull.ground import HullGround, applied, cross, dot, frame, scaled
 from rocking.dynamics.hull.history import HullEventKind, HullHistory, HullSettings
 from rocking.dynamics.hull.motion import State
 from rocking.dynamics.hull.restitution import FixedPosition
-from rocking.dynamics.hull.vectors import applied, cross, dot, frame, scaled
 from rocking.dynamics.settings import check_progress, check_threads, processors
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.ground import SpatialGround

@@ -11,12 +11,10 @@ from rocking import checks, plausibility
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.engine import HullEngine
-from rocking.dynamics.hull.ground import HullGround
+from rocking.dynamics.hull.ground import HullGround, unit
 from rocking.dynamics.hull.histories import start_of
 from rocking.dynamics.hull.history import HullEventKind, HullHistory, HullSettings
-from rocking.dynamics.hull.law import law_on_hull
-from rocking.dynamics.hull.restitution import FixedPosition
-from rocking.dynamics.hull.vectors import unit
+from rocking.dynamics.hull.restitution import FixedPosition, law_on_hull
 from rocking.dynamics.response_base import ResponseBase, motion_provenance
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude

@@ -11,7 +11,7 @@ import numpy as np
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane import equations
-from rocking.dynamics.plane.trajectory import EventKind, Trajectory
+from rocking.dynamics.plane.equations import EventKind, Trajectory
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import series, shifted, slope, value
 from rocking.errors import InvalidValueError

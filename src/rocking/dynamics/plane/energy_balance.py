@@ -9,7 +9,7 @@ from rocking.bodies import Body
 from rocking.conventions import FEET, FloatArray, Foot, opposite
 from rocking.dynamics.plane import equations
 from rocking.dynamics.plane.dense_output import DenseOutput
-from rocking.dynamics.plane.trajectory import EventKind, Trajectory
+from rocking.dynamics.plane.equations import EventKind, Trajectory
 from rocking.dynamics.settings import Settings
 
 

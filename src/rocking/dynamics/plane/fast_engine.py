@@ -9,7 +9,7 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, sides_of
-from rocking.dynamics.plane.trajectory import Event, EventKind, Trajectory
+from rocking.dynamics.plane.equations import Event, EventKind, Trajectory
 from rocking.dynamics.settings import ENGINES, CompiledEngine, Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments

@@ -12,8 +12,8 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane import equations
+from rocking.dynamics.plane.equations import Event, EventKind, Trajectory
 from rocking.dynamics.plane.event_functions import NOTHING, Push, RestoringMoments, comes_to_rest
-from rocking.dynamics.plane.trajectory import Event, EventKind, Trajectory
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import first_fall, last_fall, series, shifted, slope, turning_points, value
 from rocking.errors import InvalidValueError

@@ -1,4 +1,4 @@
-"""What may end a step, as polynomials: gaps that close, and a round base that begins to roll or lies flat."""
+"""What may end a step: gaps that close, a round base that rolls or lies flat, and where the ground lets go."""
 
 import math
 from dataclasses import dataclass
@@ -7,11 +7,15 @@ from operator import mul
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.dynamics.space import complementarity
+from rocking.dynamics.space.attitude import cross
 from rocking.dynamics.space.body import SpatialBody
-from rocking.dynamics.space.contact_mode import ContactSet
-from rocking.dynamics.taylor import first_fall
+from rocking.dynamics.space.complementarity import ContactSet, SpatialState, of_forces
+from rocking.dynamics.space.ground import SpatialGround
+from rocking.dynamics.taylor import first_fall, shifted, value
 from rocking.outcome import ContactMode
-from rocking.portable import applied, convolved, norm
+from rocking.portable import applied, convolved, inverse, norm, times
+from rocking.portable import dot as dot_of
 
 NOTHING = 1e-13  # coefficients below this share of the largest one are rounding
 
@@ -131,3 +135,170 @@ def rim_events(body: SpatialBody, contact: ContactSet, step: Step) -> float | No
     floor = 0.25 * SLOW_OPENING * norm(step.field[:, 0]) * step.length**2 / body.radius
     found = [first_zero(flat, started=abs(lean[0]) < NOTHING, floor=floor), first_zero(steep, started=False)]
     return min((at for at in found if at is not None), default=None)
+
+
+def first_release(body: SpatialBody, contact: ContactSet, step: Step) -> tuple[float, int] | None:
+    """Return when the ground first lets go."""
+    # An end of an edge is released where its force would be a pull and its gap would open. Where it would not open (the
+    # friction at that end holds it down, so that neither the edge nor its other end alone is without contradiction),
+    # the edge stays, and the pull shows in `end_forces`: such a corner slips in truth. Returns which: number of the end
+    # in the contact that is released, -1 for all contact; None instead of both if none is.
+    normal = _normal(body, contact, step)
+    lost = first_zero(normal, started=False)
+    found = [] if lost is None else [(lost, -1)]
+    if contact.axis is not None:
+        second = _second(body, contact, step)
+        for which, force in ((0, normal - second), (1, second)):
+            if force[0] - np.abs(force[1:]).sum() > 0.0:
+                continue
+            at = _opens(force, _opening(body, contact, step, which))
+            if at is not None:
+                found.append((at, which))
+    return min(found, default=None)
+
+
+def end_forces(body: SpatialBody, contact: ContactSet, step: Step, at: float) -> tuple[float, float]:
+    """Return vertical forces per unit mass at both ends of an edge; below zero the ground would have to pull [N/kg]."""
+    second = value(_second(body, contact, step).tolist(), at)
+    return value(_normal(body, contact, step).tolist(), at) - second, second
+
+
+def _opens(force: FloatArray, opening: FloatArray) -> float | None:
+    """When a force is a pull while its gap would open."""
+    at = first_zero(force, started=False)
+    if at is None:
+        return None
+    if value(opening.tolist(), at) > 0.0:
+        return at
+    later = first_zero(-opening, started=False)
+    return later if later is not None and later > at and value(force.tolist(), later) < 0.0 else None
+
+
+def _normal(body: SpatialBody, contact: ContactSet, step: Step) -> FloatArray:
+    """Vertical force per unit mass."""
+    if contact.mode is ContactMode.ROLLING:
+        # height of the centre over the ground: Z . C + b sin(tilt)
+        level = step.up[:, :2]
+        height = applied(step.up, body.centre) + body.radius * square_root(dot(level, level))
+    else:
+        height = applied(step.up, body.centre - contact.pivot)
+    k = np.arange(len(height))
+    rise = (k * (k - 1) * height)[2:] / step.length**2  # Eq. 96
+    return rise - padded(step.field[2], len(rise))
+
+
+def _second(body: SpatialBody, contact: ContactSet, step: Step) -> FloatArray:
+    """Vertical force per unit mass at the second end of an edge."""
+    axis, arm, n = _axis(contact), body.centre - contact.pivot, len(step.up)
+    about = applied(body.inertia_about(contact.pivot), axis) / body.mass
+    spin = applied(step.velocities, axis)
+    rate = np.append((np.arange(n) * spin)[1:], 0.0) / step.length
+    # Z . (Z x M) along the edge, with M = I w' + w x I w - rho x m g
+    made = -cauchy(applied(step.up, cross(axis, about)), rate)
+    made -= cauchy(applied(step.up, cross(axis, cross(axis, about))), cauchy(spin, spin))
+    made += cauchy(applied(step.up, arm), padded(applied(step.field.T, step.heading), n))
+    made -= padded(step.field[2], n) * dot_of(axis, arm)
+    return made[: n - 2] / contact.length  # Eq. 97
+
+
+def _opening(body: SpatialBody, contact: ContactSet, step: Step, which: int) -> FloatArray:
+    """Acceleration of the gap of an end of an edge if the body turned about the other end alone."""
+    axis, n = _axis(contact), len(step.up)
+    stays = contact.pivot if which else contact.pivot + contact.length * axis
+    leaves = axis * (contact.length if which else -contact.length)
+    inertia, arm = body.inertia_about(stays), body.centre - stays
+    across = np.array([-step.heading[1], step.heading[0], 0.0])  # Z x e on the ground
+    field = np.outer(padded(applied(step.field.T, step.heading), n), axis)
+    for direction, series in ((step.up, step.field[2]), (cross(step.up, axis), applied(step.field.T, across))):
+        strength = padded(series, n)
+        field += np.column_stack([cauchy(direction[:, i], strength) for i in range(3)])
+    spin = applied(step.velocities, axis)
+    torque = body.mass * cross(arm, field) - np.outer(cauchy(spin, spin), cross(axis, applied(inertia, axis)))
+    return dot(times(cross(leaves, step.up), inverse(inertia)), torque)[: n - 2]  # Eq. 98
+
+
+def _axis(contact: ContactSet) -> FloatArray:
+    assert contact.axis is not None
+    return contact.axis
+
+
+_SAME = 1e-11
+_WHOLE = 1.0 - 1e-12
+
+
+def next_uplift(
+    body: SpatialBody, ground: SpatialGround, rotation: FloatArray, gravity: float, since: tuple[int, float]
+) -> tuple[int, float, tuple[int, ...]] | None:
+    """Return when the ground next lifts a body."""
+    # The centre of pressure is at c - h a / (g + a_z); it is inside while (c - v_i) . n_i (g + a_z) - h n_i . a >= 0
+    # for every edge, polynomials of time; for a round base while b^2 (g + a_z)^2 - |c (g + a_z) - h a|^2 >= 0. gravity:
+    # acceleration of gravity [m/s2]. Returns tau: time within it, in units of its duration; edges: edges that the
+    # centre of pressure crosses just then; empty where it jumps out of the base, and for a round base. None instead of
+    # all three if it is never lifted.
+    stretch, tau = since
+    if stretch >= ground.count:
+        return None
+    holds = _holds(body, ground.coefficients[stretch:], rotation, gravity)
+    low = holds[:, :, 0] + np.minimum(holds[:, :, 1:], 0.0).sum(axis=2)
+    low[0] = np.where(tau > 0.0, -np.inf, low[0])
+    for k in np.flatnonzero((low <= 0.0).any(axis=1)):
+        found = _within(holds[k], tau if k == 0 else 0.0, _SAME * gravity * body.size)
+        if found is not None:
+            return stretch + int(k), found[0], () if body.round else found[1]
+    return None
+
+
+def lifted(body: SpatialBody, state: SpatialState, edges: tuple[int, ...]) -> ContactSet | None:
+    """Return on what a body stands when it is lifted from rest; none if the ground would have to pull."""
+    if body.round:
+        pressure = -state.field[2] * body.centre[:2] + body.centre[2] * state.field[:2]
+        return complementarity.rim(body, pressure) if state.field[2] < 0.0 else None
+    count = len(body.vertices)
+    if len(edges) == 1:
+        return complementarity.edge(body, edges[0])
+    if len(edges) == 2:
+        first, second = edges
+        return complementarity.vertex(body, second if (first + 1) % count == second else first)
+    found = of_forces(body, state, tuple(range(count)))
+    return found[0].contact if found else None
+
+
+def _holds(body: SpatialBody, accelerations: FloatArray, rotation: FloatArray, gravity: float) -> FloatArray:
+    """Return what must stay above zero, by stretch, edge and power."""
+    level = times(rotation[:2, :2].T, accelerations[:, :2])
+    weight = accelerations[:, 2].copy()
+    weight[:, 0] += gravity
+    if not body.round:
+        inside = ((body.centre[:2] - body.vertices[:, :2]) * body.inward).sum(axis=1)
+        tipping = times(body.inward, level)
+        return np.asarray(inside[None, :, None] * weight[:, None, :] - body.centre[2] * tipping)  # Eq. 94
+    made = np.zeros((len(weight), 2, 2 * weight.shape[1] - 1))
+    made[:, 1, : weight.shape[1]] = weight * body.size  # the ground must push
+    for k, w in enumerate(weight):
+        made[k, 0] = body.radius**2 * convolved(w, w)
+        for axis in range(2):
+            arm = body.centre[axis] * w - body.centre[2] * level[k, axis]
+            made[k, 0] -= convolved(arm, arm)  # Eq. 95
+    return made
+
+
+def _within(holds: FloatArray, tau: float, same: float) -> tuple[float, tuple[int, ...]] | None:
+    """First fall in a stretch, and the edges that share it; none of them where there is no holding at its start."""
+    rows = [shifted(row.tolist(), tau, 1.0 - tau) if tau > 0.0 else row.tolist() for row in holds]
+    if min(row[0] for row in rows) < -same:
+        return tau, ()
+    falls: list[tuple[float, int]] = []
+    for edge, row in enumerate(rows):
+        at = first_fall(row) if row[0] > 0.0 else (0.0 if _falls_at_once(row) else None)
+        if at is not None and at < _WHOLE:  # at the very end the next stretch decides
+            falls.append((at, edge))
+    if not falls:
+        return None
+    first = min(falls)[0]
+    edges = tuple(edge for edge, row in enumerate(rows) if value(row, first) <= same)
+    return tau + (1.0 - tau) * first, edges
+
+
+def _falls_at_once(row: list[float]) -> bool:
+    """Whether a polynomial that starts at zero goes below it from the start."""
+    return next((c for c in row[1:] if c != 0.0), 0.0) < 0.0

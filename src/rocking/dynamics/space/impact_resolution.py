@@ -3,10 +3,11 @@
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.space import contact_mode
+from rocking.dynamics.space import complementarity
 from rocking.dynamics.space.attitude import cross
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.complementarity import (
+    ContactSet,
     Continuation,
     SpatialState,
     candidates,
@@ -15,7 +16,6 @@ from rocking.dynamics.space.complementarity import (
     of_forces,
     of_impact,
 )
-from rocking.dynamics.space.contact_mode import ContactSet
 from rocking.dynamics.space.event_functions import START_ROLLING, STOP_ROLLING
 from rocking.dynamics.space.impact_laws import SpatialImpactLaw
 from rocking.outcome import ContactMode
@@ -57,20 +57,20 @@ def stuck(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> 
 
 def laid_down(body: SpatialBody, state: SpatialState) -> Continuation | None:
     """Return a round base laid flat, as rolling alone never comes to rest; None where it would lift at once."""
-    flat, still = contact_mode.face(body), np.zeros(3)
+    flat, still = complementarity.face(body), np.zeros(3)
     holds = forces(body, flat, still, state.up, state.field)[1].min() > 0.0
     return Continuation(flat, still, impulses(body, state, flat, still)) if holds else None
 
 
 def rim_landed(body: SpatialBody, state: SpatialState, law: SpatialImpactLaw) -> Continuation:
     """Return what a round base that falls flat stands on, its far side or all of it, and the angular velocity after."""
-    far = contact_mode.rim(body, -state.pivot[:2])
+    far = complementarity.rim(body, -state.pivot[:2])
     push = impulses(body, state, far, state.plastic(body, far))
     velocity = law.velocity_after(body, state.impact(body, far))
     opens = dot(cross(velocity, state.pivot - far.pivot), state.up) > 0.0
     if opens and push.min() >= 0.0:
         return Continuation(far, velocity, push)
-    flat = contact_mode.face(body)
+    flat = complementarity.face(body)
     return Continuation(flat, np.zeros(3), impulses(body, state, flat, np.zeros(3)))
 
 
@@ -79,9 +79,9 @@ def settled(
 ) -> Continuation:
     """Return what a body stands on once points that leave slower than `slow` [m/s] are taken to stay."""
     if body.round:
-        push = forces(body, contact_mode.face(body), np.zeros(3), state.up, state.field)[1]
+        push = forces(body, complementarity.face(body), np.zeros(3), state.up, state.field)[1]
         rests = (weak or choice.contact.mode is ContactMode.REST) and push.min() >= 0.0
-        return Continuation(contact_mode.face(body), np.zeros(3), choice.supports) if rests else choice
+        return Continuation(complementarity.face(body), np.zeros(3), choice.supports) if rests else choice
     opening = applied(cross(choice.velocity, body.vertices - choice.contact.pivot), state.up)
     every = range(len(body.vertices)) if weak else touching
     near = tuple(i for i in every if weak or i in choice.contact.points or opening[i] <= slow)
@@ -98,21 +98,21 @@ def started(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> tuple[Co
     touching = tuple(np.flatnonzero(height - height.min() <= CLOSED * body.size).tolist())
     size = float(np.abs(velocity).max())
     if size == 0.0 and len(touching) == len(body.vertices):
-        return contact_mode.face(body), touching
+        return complementarity.face(body), touching
     rates = applied(cross(velocity, body.vertices), up)
     low = [i for i in touching if rates[i] <= min(rates[list(touching)]) + CLOSED * size * body.size]
     for number in low:
         along = body.edges[number]
         alone = float(np.abs(velocity - along * dot(along, velocity)).max()) <= CLOSED * size
         if (number + 1) % len(body.vertices) in low and alone:
-            return contact_mode.edge(body, number), touching
-    return contact_mode.vertex(body, low[0]), touching
+            return complementarity.edge(body, number), touching
+    return complementarity.vertex(body, low[0]), touching
 
 
 def _started_round(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> ContactSet:
     sine = norm(up[:2])
     lean = up[:2] if sine > STOP_ROLLING else np.array([-velocity[1], velocity[0]])
     if not np.any(lean):
-        return contact_mode.face(body)
-    contact = contact_mode.rim(body, -lean)
-    return contact_mode.rolling(contact) if sine > START_ROLLING else contact
+        return complementarity.face(body)
+    contact = complementarity.rim(body, -lean)
+    return complementarity.rolling(contact) if sine > START_ROLLING else contact

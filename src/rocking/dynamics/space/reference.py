@@ -7,18 +7,22 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.space import attitude, contact_mode, event_functions, loss_of_contact, pivot_motion
+from rocking.dynamics.space import attitude, complementarity, event_functions, rolling
 from rocking.dynamics.space.attitude import cross
 from rocking.dynamics.space.body import SpatialBody
-from rocking.dynamics.space.complementarity import Continuation, SpatialState, of_forces
-from rocking.dynamics.space.contact_mode import ContactSet
+from rocking.dynamics.space.complementarity import ContactSet, Continuation, SpatialState, of_forces
 from rocking.dynamics.space.event_functions import Step
 from rocking.dynamics.space.ground import SpatialGround
 from rocking.dynamics.space.impact_laws import SpatialImpactLaw
 from rocking.dynamics.space.impact_resolution import CLOSED, laid_down, landed, rim_landed, settled, started, stuck
-from rocking.dynamics.space.integration_state import IntegrationState
 from rocking.dynamics.space.rolling import RollingFlow
-from rocking.dynamics.space.trajectory import SpatialEvent, SpatialEventKind, SpatialTrajectory, StepPiece
+from rocking.dynamics.space.trajectory import (
+    IntegrationState,
+    SpatialEvent,
+    SpatialEventKind,
+    SpatialTrajectory,
+    StepPiece,
+)
 from rocking.outcome import ContactMode, Outcome, Status
 from rocking.portable import applied, norm
 
@@ -39,7 +43,7 @@ class SpatialReference:
         self.slow = settings.rest_speed * math.sqrt(settings.gravity * body.size)
         self.weak = settings.rest_speed**2 * body.mass * settings.gravity * body.lift
         self.pull = _PULL * settings.gravity
-        self.flows: dict[tuple[ContactMode, tuple[int, ...]], pivot_motion.PivotFlow] = {}
+        self.flows: dict[tuple[ContactMode, tuple[int, ...]], rolling.PivotFlow] = {}
         self.rolling = RollingFlow(body)
         self.time, self.stretch = 0.0, 0
         self.place = np.zeros(2)
@@ -86,14 +90,14 @@ class SpatialReference:
             begin, end = self.ground.times[self.stretch : self.stretch + 2]
             tau = (self.time - begin) / (end - begin)
         since = self.stretch, tau
-        found = loss_of_contact.next_uplift(self.body, self.ground, rotation, self.settings.gravity, since)
+        found = event_functions.next_uplift(self.body, self.ground, rotation, self.settings.gravity, since)
         if found is None:
             self._add_rest(max(self.horizon, self.ground.end, self.time))
             return Outcome.ROCKED if self.integration_state.events else Outcome.NO_UPLIFT, Status.GOOD
         self.stretch, tau, edges = found
         begin, end = self.ground.times[self.stretch : self.stretch + 2]
         self._add_rest(max(float(begin + tau * (end - begin)), self.time))
-        lifted = loss_of_contact.lifted(self.body, self._state(), edges)
+        lifted = event_functions.lifted(self.body, self._state(), edges)
         if lifted is None:
             return Outcome.FAILED, Status.LOST_CONTACT
         self._stand(lifted, range(len(self.body.vertices)))
@@ -107,11 +111,11 @@ class SpatialReference:
         if step is None or piece is None:
             return Outcome.FAILED, Status.NOT_FINITE
         landing = event_functions.first_contact(self.body, self.contact, step, self.touching)
-        letting = loss_of_contact.first_release(self.body, self.contact, step)
+        letting = event_functions.first_release(self.body, self.contact, step)
         rim = event_functions.rim_events(self.body, self.contact, step) if self.body.round else None
         held = False  # whether contact stays although the ground would let go
         if letting is not None:
-            nearly_flat = event_functions.nearly_flat(self.body, pivot_motion.value(step.up, letting[0]))
+            nearly_flat = event_functions.nearly_flat(self.body, rolling.value(step.up, letting[0]))
             held = self.sticks if letting[1] >= 0 else nearly_flat
         letting = None if held else letting
         self.sticks &= held
@@ -130,7 +134,7 @@ class SpatialReference:
     def _stepped(self, step: Step, at: float, *, held: bool) -> Ending:
         """Look at where a step without event has led."""
         pulls = self.contact.mode is ContactMode.EDGE
-        pulls = pulls and min(loss_of_contact.end_forces(self.body, self.contact, step, at)) < -self.pull
+        pulls = pulls and min(event_functions.end_forces(self.body, self.contact, step, at)) < -self.pull
         self.integration_state.held += step.length if pulls or held else 0.0
         self.touching = ()
         if self.body.round and event_functions.nearly_flat(self.body, self._up) and self._weak:
@@ -155,36 +159,36 @@ class SpatialReference:
             length = min(length, self.horizon - self.time)
         field = -self.ground.part(self.stretch, self.time, length)
         field[2, 0] -= self.settings.gravity
-        order = min(max(pivot_motion.terms_needed(1.5 * rate * length, 40), field.shape[1] + 2), self.settings.order)
+        order = min(max(rolling.terms_needed(1.5 * rate * length, 40), field.shape[1] + 2), self.settings.order)
         places = self.place[None, :]
         if self.contact.mode is ContactMode.ROLLING:
             state = self.quaternion, self.velocity, self.place
             q, w, up, places = self.rolling.series(state, length, field, order)
         else:
             q, w, up = self._flow().series(self.quaternion, self.velocity, length, field, order)
-        part = pivot_motion.trusted_part(q, w, length, self.settings.tolerance)
+        part = rolling.trusted_part(q, w, length, self.settings.tolerance)
         if not part > 0.0:
             return None, None, False
-        q, w, up, places = (pivot_motion.stretched(c, part) for c in (q, w, up, places))
-        field = pivot_motion.stretched(field.T, part).T
+        q, w, up, places = (rolling.stretched(c, part) for c in (q, w, up, places))
+        field = rolling.stretched(field.T, part).T
         heading = (
             np.zeros(3) if self.contact.axis is None else applied(attitude.matrix(self.quaternion), self.contact.axis)
         )
         step = Step(length * part, w, up, field, heading)
         return step, StepPiece(self.time, length * part, 1.0, q, w, places, self.contact), last and part == 1.0
 
-    def _flow(self) -> pivot_motion.PivotFlow:
+    def _flow(self) -> rolling.PivotFlow:
         key = self.contact.mode, self.contact.points
         if not self.contact.points:
-            return pivot_motion.PivotFlow(self.body, self.contact.pivot)
+            return rolling.PivotFlow(self.body, self.contact.pivot)
         if key not in self.flows:
-            self.flows[key] = pivot_motion.PivotFlow(self.body, self.contact.pivot, self.contact.axis)
+            self.flows[key] = rolling.PivotFlow(self.body, self.contact.pivot, self.contact.axis)
         return self.flows[key]
 
     def _arrive(self, piece: StepPiece, at: float, vertical: FloatArray, *, whole: bool) -> None:
-        self.quaternion = attitude.normalised(pivot_motion.value(piece.quaternions, at))
-        self.velocity = pivot_motion.value(piece.velocities, at)
-        self.place = pivot_motion.value(piece.places, at)
+        self.quaternion = attitude.normalised(rolling.value(piece.quaternions, at))
+        self.velocity = rolling.value(piece.velocities, at)
+        self.place = rolling.value(piece.places, at)
         self.integration_state.add(piece, at, self._up, self._pivot, vertical)
         self.time = piece.start + at * piece.length
         if whole:
@@ -219,11 +223,11 @@ class SpatialReference:
             self.contact.mode is not ContactMode.ROLLING
             and math.hypot(up[0], up[1]) > 0.5 * event_functions.START_ROLLING
         ):
-            self.contact = contact_mode.rolling(self.contact)
+            self.contact = complementarity.rolling(self.contact)
             return self._guard()
         state = self._state()
         if self.contact.mode is ContactMode.ROLLING:
-            self.contact = contact_mode.rim(self.body, state.pivot[:2])  # so flat that the point of contact is fixed
+            self.contact = complementarity.rim(self.body, state.pivot[:2])  # so flat that the point of contact is fixed
             return self._guard()
         self.quaternion = attitude.flat(self.quaternion)
         return self._land(rim_landed(self.body, state, self.law), ())
@@ -247,7 +251,7 @@ class SpatialReference:
         if which < 0:
             return self.integration_state.falls(self._pivot, self._up), Status.LOST_CONTACT
         stays, leaves = self.contact.points[1 - which], self.contact.points[which]
-        self._stand(contact_mode.vertex(self.body, stays), (leaves,))
+        self._stand(complementarity.vertex(self.body, stays), (leaves,))
         energy = self._kinetic()
         self._note(SpatialEventKind.CHANGE, energy, energy)
         return self._guard()
@@ -288,7 +292,7 @@ class SpatialReference:
 
     @property
     def _pivot(self) -> FloatArray:
-        return contact_mode.touching_point(self.body, self.contact, self._up)
+        return complementarity.touching_point(self.body, self.contact, self._up)
 
     @property
     def _final(self) -> bool | None:
@@ -309,7 +313,7 @@ class SpatialReference:
         return self.body.kinetic(self._pivot, self.velocity)
 
     def _potential(self) -> float:
-        return self.body.mass * self.settings.gravity * contact_mode.rise(self.body, self._pivot, self._up)
+        return self.body.mass * self.settings.gravity * complementarity.rise(self.body, self._pivot, self._up)
 
     @property
     def _weak(self) -> bool:

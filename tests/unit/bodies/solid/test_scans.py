@@ -10,7 +10,7 @@ import pytest
 
 import rocking as rk
 from rocking.bodies.equilibria.poses import set_down
-from rocking.bodies.solid import _manifold, box, extrusion, rotation_about
+from rocking.bodies.solid import _shells, box, extrusion, rotation_about
 from rocking.bodies.solid._changes import MOST_SHIFT, MOST_VOLUME
 from rocking.bodies.solid._repair import repaired
 from rocking.bodies.solid._resting import settled
@@ -250,7 +250,7 @@ def test_fewer_faces(monkeypatch):
     vertices, sides, bottom = bad_scans.statue(120, 120)
     faces = np.concatenate([sides, bottom])
     assert len(repaired(vertices, faces).shape.faces) == len(faces)
-    monkeypatch.setattr(_manifold, "MOST_FACES", 20_000)
+    monkeypatch.setattr(_shells, "MOST_FACES", 20_000)
     done = repaired(vertices, faces)
     words = next(sentence for sentence in done.repairs if sentence.startswith("simplified"))
     hull, shift = (float(x) / 1000.0 for x in re.findall(r"by (?:at most )?([\d.e-]+) mm", words)[:2])

@@ -10,10 +10,9 @@ from hypothesis import strategies as st
 
 from rocking.bodies.formats import read_body
 from rocking.bodies.solid import Part, Polyhedron, Solid, SolidMoments, box, extrusion
-from rocking.bodies.solid._admissible import check_possible
-from rocking.bodies.solid._piercing import meeting_boxes, pierced
+from rocking.bodies.solid._known import check_possible
 from rocking.bodies.solid._repair import repaired
-from rocking.bodies.solid._self_crossing import check_crossings
+from rocking.bodies.solid._self_crossing import check_crossings, meeting_boxes, pierced
 from rocking.cli import main
 from rocking.errors import GeometryError
 
@@ -290,7 +289,7 @@ def test_boxes_that_meet(count, seed):
 
 def test_more_pairs_than_can_be_tried(monkeypatch):
     """Where too many faces lie side by side, the reader says that not all of them were tried."""
-    monkeypatch.setattr("rocking.bodies.solid._piercing.MOST_PAIRS", 100)
+    monkeypatch.setattr("rocking.bodies.solid._self_crossing.MOST_PAIRS", 100)
     vertices, faces = ball(3)
     assert repaired(vertices, faces).repairs[-1].startswith("too many faces lie side by side")
 

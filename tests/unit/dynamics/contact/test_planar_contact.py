@@ -20,18 +20,20 @@ from rocking.dynamics.contact.base import (
     kept,
     kinetic,
 )
-from rocking.dynamics.contact.complementarity import NextMode, candidates, choose, weight_of
 from rocking.dynamics.contact.event_functions import (
     EventFunction,
     ModeEnd,
+    NextMode,
+    candidates,
+    choose,
     consistent,
     event_functions,
     first_end,
     leading,
+    weight_of,
 )
 from rocking.dynamics.contact.impact_resolution import Struck, strike, strike_with
-from rocking.dynamics.contact.mode_series import GroundSeries, derivative, integral, mode_series, value
-from rocking.dynamics.contact.pivot_motion import pivot_motion
+from rocking.dynamics.contact.mode_series import GroundSeries, derivative, integral, mode_series, pivot_motion, value
 from rocking.outcome import Regime, Status
 
 pytestmark = pytest.mark.verifies(room="sliding, hopping and flight")

@@ -9,8 +9,7 @@ import rocking as rk
 from rocking.bodies.solid import Corner, Edge
 from rocking.dynamics import Settings
 from rocking.dynamics.space import ContactMode, SpatialBody, attitude
-from rocking.dynamics.space.complementarity import SpatialState, forces, impulses, of_impact
-from rocking.dynamics.space.contact_mode import edge, face, rise, vertex
+from rocking.dynamics.space.complementarity import SpatialState, edge, face, forces, impulses, of_impact, rise, vertex
 from rocking.dynamics.space.ground import ground_of
 from rocking.dynamics.space.impact_laws import FixedSpatial, law_of
 from rocking.dynamics.space.impact_resolution import landed, started
